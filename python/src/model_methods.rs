@@ -13,7 +13,7 @@ use crate::arguments::{check_ending, path};
 use crate::arrays::{floats, line, table, vector};
 use crate::certificates::Certificates;
 use crate::certify;
-use crate::errors::{file, kind, refused, room, value};
+use crate::errors::{file, kind, refused, room, value, warn};
 use crate::metric::{factor, read_metric};
 use crate::model::{LoadedModel, Model, mesh};
 
@@ -53,6 +53,8 @@ impl Model {
         let modes = modes.map(|modes| self::path(modes, "modes")).transpose()?;
         let read = py.detach(|| load_model_with(&path, &LoadOptions::new(modes.as_deref(), mesh_name)));
         let read = read.map_err(|error| file(&error))?;
+        let name = path.to_string_lossy().escape_debug().to_string();
+        warn(py, &read.warnings.iter().map(|warning| format!("{name}: {warning}")).collect::<Vec<_>>())?;
         Ok(Self::of(LoadedModel {
             default_q: read.default_q,
             mode_names: read.mode_names,

@@ -8,9 +8,10 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sscc::{Progress, TriMesh};
-use sscc_io::{read_frames, read_mesh, splits_vertices};
+use sscc_io::{read_frames, splits_vertices};
 use sscc_sim::{
     ModesKind, NewModel, SimError, SolidSource, elastic_model, is_solid, pca_model, polynomial_model,
+    read_surface,
 };
 use sscc_solid::PartialMaterial;
 
@@ -116,7 +117,11 @@ pub fn _polynomial(
         Source::File(path) if is_solid(path) => {
             elastic(source, ModesKind::Polynomial, BodyOptions::default(), progress)
         }
-        Source::File(path) => Ok((polynomial_model(read_mesh(path)?, &source.name())?, None)),
+        Source::File(path) => {
+            let (mesh, warnings) = read_surface(path)?;
+            let note = (!warnings.is_empty()).then(|| warnings.join("; "));
+            Ok((polynomial_model(mesh, &source.name())?, note))
+        }
         Source::Surface(mesh) => Ok((polynomial_model(mesh.clone(), &source.name())?, None)),
     })
 }
@@ -218,6 +223,7 @@ pub fn _pca(
             return Err(value("faces: the meshes of a folder have their own: leave faces out"));
         }
         let frames = py.detach(|| read_frames(&folder)).map_err(|error| file(&error))?;
+        warn(py, &frames.warnings)?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         (frames.mesh, frames.positions, format!("meshes in {name}"), splits_vertices(&frames.paths[0]))
     } else {

@@ -30,7 +30,8 @@ class Model:
 
     vertices: (V, 3), rest positions p in any unit of length.
     faces: (F, 3) integers, vertex numbers counted from 0.
-    modes: U as (3V, r), (V, 3, r) or (r, V, 3): the displacement of each vertex for a unit of each entry of q.
+    modes: U as (3V, r), (V, 3, r), (r, V, 3), or of one mode (V, 3): the displacement of each vertex for a unit of
+        each entry of q.
     metric: the matrix M of the norm ``sqrt(q'Mq)``: a name, its diagonal (r,) or all of it (r, r); None:
         "displacement".
 

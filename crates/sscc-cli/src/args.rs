@@ -1,5 +1,6 @@
 //! Command-line arguments as typed, and the help texts. [`commands`](crate::commands) interprets the arguments.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -164,7 +165,8 @@ impl ModesKind {
 #[derive(Debug, Args)]
 pub struct Model {
     /// The model: *.model.safetensors, a .glb or .gltf with morph targets, a complete .npz (mean, components,
-    /// faces), or a mesh (.obj, .off, .ply, .stl) with --modes
+    /// faces), or a mesh (.obj, .off, .ply, .stl) or solid (.mesh, .veg, .msh, .node, .ele) with --modes; check without a
+    /// q takes any of them as a mesh
     #[arg(value_name = "MODEL")]
     pub path: PathBuf,
     /// The modes U of a mesh: .npy (3V x r, V x 3 x r, r x V x 3), .npz, a VegaFEM modal matrix (.U, .float, ...), or
@@ -687,6 +689,27 @@ pub struct Json {
     pub json: bool,
 }
 
+/// Joins `--weld on` and `--weld off` to one argument. The value of `--weld` is optional, so the parser would take a word
+/// after it for the name of a file.
+pub fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut has_ended = false;
+    for word in typed {
+        let is_value = word == "on" || word == "off";
+        match joined.last_mut() {
+            Some(last) if !has_ended && is_value && last == "--weld" => {
+                last.push("=");
+                last.push(word);
+            }
+            _ => {
+                has_ended |= word == "--";
+                joined.push(word);
+            }
+        }
+    }
+    joined
+}
+
 fn parse_epsilon(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(epsilon) if epsilon > 0.0 && epsilon < 1.0 => Ok(epsilon),
@@ -698,6 +721,22 @@ fn parse_epsilon(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
     use clap::CommandFactory;
+
+    #[test]
+    fn the_value_of_weld_may_follow_a_blank() {
+        let weld = |words: &str| {
+            let words = with_joined_switches(words.split(' ').map(OsString::from));
+            match Cli::try_parse_from(words).map(|cli| cli.command) {
+                Ok(Command::Check(check)) => Some((check.options.weld, check.meshes)),
+                _ => None,
+            }
+        };
+        assert_eq!(weld("sscc check a.obj --weld off"), Some((Some(Switch::Off), vec![])));
+        assert_eq!(weld("sscc check --weld on a.obj"), Some((Some(Switch::On), vec![])));
+        assert_eq!(weld("sscc check --weld=off a.obj"), Some((Some(Switch::Off), vec![])));
+        assert_eq!(weld("sscc check a.obj --weld b.obj"), Some((Some(Switch::On), vec!["b.obj".into()])));
+        assert_eq!(weld("sscc check a.obj -- off"), Some((None, vec!["off".into()])));
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

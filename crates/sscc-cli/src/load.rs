@@ -8,14 +8,16 @@ use sscc::{Certificates, CertifyOptions, Neighbours, ReducedModel};
 use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
 use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads, read_configuration};
 
-use crate::output::note;
+use crate::output::{note, warn};
 use crate::progress::Bar;
 use crate::{args, interrupt};
 
-/// Loads a model.
+/// Loads a model, and prints warnings about its file.
 pub fn model(files: &args::Model) -> Result<LoadedModel> {
     let options = LoadOptions::new(files.modes.as_deref(), files.mesh_name.as_deref());
-    Ok(sscc_io::load_model_with(&files.path, &options)?)
+    let loaded = sscc_io::load_model_with(&files.path, &options)?;
+    loaded.warnings.iter().for_each(|warning| warn(&files.path, warning));
+    Ok(loaded)
 }
 
 /// Returns the number of threads: that of `--threads`, else all cores.

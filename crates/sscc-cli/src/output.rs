@@ -81,6 +81,11 @@ pub fn note(text: impl Display) {
     write_stderr(format_args!("note: {text}"));
 }
 
+/// Writes a warning about a file to standard error.
+pub fn warn(path: &Path, warning: impl Display) {
+    write_stderr(format_args!("warning: {}: {warning}", path.display()));
+}
+
 /// Returns the name of a file without its folder.
 pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()

@@ -47,7 +47,7 @@ pub use groups::GroupRules;
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
     Components, Fix, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,
-    elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model,
+    elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model, read_surface,
 };
 pub use nearest::nearest;
 pub use outputs::{Outputs, SoundTrack};

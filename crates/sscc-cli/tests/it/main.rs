@@ -15,6 +15,7 @@ mod help;
 mod interrupt;
 mod modes;
 mod picture;
+mod readers;
 mod readme;
 mod real_data;
 mod resolve;

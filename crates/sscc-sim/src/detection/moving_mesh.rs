@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec3;
 use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
-use sscc_io::{FormatError, FrameReader, IoError, load_mesh, splits_vertices};
+use sscc_io::{FormatError, FrameReader, IoError, LoadedMesh, load_mesh_with_warnings, splits_vertices};
 
 use super::request::{AnimationMotion, Detection};
 use super::weld_classes::WeldClasses;
@@ -80,7 +80,8 @@ impl<'w> MovingMesh<'w> {
         motion: impl FnOnce(&TriMesh, Option<&mut WeldClasses>) -> Result<Motion>,
     ) -> Result<Self> {
         let name = request.mesh_name.as_deref().filter(|_| request.meshes.iter().any(|mesh| mesh == file));
-        let mesh = load_mesh(file, name)?;
+        let LoadedMesh { mesh, warnings, .. } = load_mesh_with_warnings(file, name)?;
+        warnings.iter().for_each(|warning| watch.warn(&format!("{}: {warning}", file.display())));
         let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
         let mut classes = weld.then(|| WeldClasses::at(mesh.rest_positions()));
         let motion = motion(&mesh, classes.as_mut())?;

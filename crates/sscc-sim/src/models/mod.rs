@@ -18,4 +18,5 @@ pub use new_model::{Components, NewModel, SolidFacts};
 pub use pca::pca_model;
 pub use polynomial::polynomial_model;
 pub(crate) use source::read_embedded;
+pub use source::read_surface;
 pub use source::{SolidSource, is_solid};

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
-use sscc_io::{read_mesh, read_volume_mesh};
+use sscc_io::mesh::is_mesh_name;
+use sscc_io::{IoError, VolumeOrSurface, read_mesh_with_warnings, read_volume_mesh, read_volume_or_surface};
 use sscc_modes::EmbeddedSurface;
 use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid, VolumeMesh};
 
@@ -23,6 +24,8 @@ pub enum SolidSource {
         embedded: EmbeddedSurface,
         /// Where its material comes from.
         material: MaterialOrigin,
+        /// Lines about content of its file whose meaning is not clear.
+        warnings: Vec<String>,
     },
     /// A surface embedded in a solid from another file.
     Within {
@@ -36,6 +39,8 @@ pub enum SolidSource {
         left_out: usize,
         /// Where its material comes from.
         material: MaterialOrigin,
+        /// Lines about content of the surface's file whose meaning is not clear.
+        warnings: Vec<String>,
     },
     /// A solid from a file, with its boundary.
     Whole {
@@ -50,8 +55,7 @@ pub enum SolidSource {
 
 /// Whether a file has a volumetric mesh, by its extension.
 pub fn is_solid(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    ["mesh", "veg", "msh", "node", "ele"].contains(&ending.as_str())
+    sscc_io::solid::is_solid_name(path)
 }
 
 impl SolidSource {
@@ -66,7 +70,8 @@ impl SolidSource {
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
         let embedded = EmbeddedSurface::new(&mesh, cells, Material::new(material)?, progress)?;
-        Ok(Self::Around { mesh, embedded, material: MaterialOrigin::new(material, &[]) })
+        let material = MaterialOrigin::new(material, &[]);
+        Ok(Self::Around { mesh, embedded, material, warnings: Vec::new() })
     }
 
     /// Embeds a surface in a solid, which may be coarser: its vertices move with the elements that contain them, or with
@@ -84,7 +89,7 @@ impl SolidSource {
         let MeshedSolid { solid, vertices, stated, outside } = solid.solid(material)?;
         let material = MaterialOrigin::new(material, &stated);
         let embedded = EmbeddedSurface::within(&mesh, solid, progress)?;
-        Ok(Self::Within { mesh, embedded, vertices, left_out: outside, material })
+        Ok(Self::Within { mesh, embedded, vertices, left_out: outside, material, warnings: Vec::new() })
     }
 
     /// Takes a solid with its boundary. Numbers of `material` override those of the solid.
@@ -108,8 +113,9 @@ impl SolidSource {
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
-        let mesh = read_embedded(surface)?;
-        Self::embedded(mesh, &read_volume_mesh(solid)?, material, progress).in_file(solid)
+        let (mesh, warnings) = read_embedded(surface)?;
+        let source = Self::embedded(mesh, &read_volume_mesh(solid)?, material, progress).in_file(solid)?;
+        Ok(source.with_warnings(warnings))
     }
 
     /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
@@ -124,14 +130,29 @@ impl SolidSource {
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
+        let surface = |(mesh, warnings): (TriMesh, Vec<String>)| -> Result<Self, SimError> {
+            Ok(Self::around(mesh, resolution, material, progress)?.with_warnings(warnings))
+        };
         if !is_solid(path) {
-            return Self::around(read_mesh(path)?, resolution, material, progress);
+            return surface(read_surface(path)?);
         }
-        let file = read_volume_mesh(path)?;
+        let file = match read_volume_or_surface(path)? {
+            VolumeOrSurface::Surface { mesh, warnings } => return surface((mesh, warnings)),
+            VolumeOrSurface::Volume(file) => file,
+        };
         if resolution.is_some() {
             return Err(SimError::refused("--resolution is for surfaces", "this file has its own elements"));
         }
         Self::whole(&file, material)
+    }
+
+    /// Adds lines about the file of its surface.
+    #[must_use]
+    fn with_warnings(mut self, lines: Vec<String>) -> Self {
+        if let Self::Around { warnings, .. } | Self::Within { warnings, .. } = &mut self {
+            *warnings = lines;
+        }
+        self
     }
 
     /// Returns the solid.
@@ -151,16 +172,23 @@ impl SolidSource {
         }
     }
 
-    /// Returns a note on elements that were left out and on vertices of the surface outside the solid, if there are any.
+    /// Returns a note on elements that were left out, on vertices of the surface outside the solid, and on content of the
+    /// surface's file whose meaning is not clear, if there are any.
     pub fn note(&self) -> Option<String> {
-        let (left_out, outside) = match self {
-            Self::Around { .. } => (0, None),
-            Self::Within { embedded, left_out, .. } => (*left_out, embedded.outside()),
-            Self::Whole { meshed, .. } => (meshed.outside, None),
+        let (left_out, outside, warnings) = match self {
+            Self::Around { warnings, .. } => (0, None, &warnings[..]),
+            Self::Within { embedded, left_out, warnings, .. } => {
+                (*left_out, embedded.outside(), &warnings[..])
+            }
+            Self::Whole { meshed, .. } => (meshed.outside, None, &[][..]),
         };
         let left_out = (left_out > 0)
             .then(|| format!("{left_out} tetrahedra outside the surface of the file are left out"));
-        let notes: Vec<String> = left_out.into_iter().chain(outside.map(ToString::to_string)).collect();
+        let notes: Vec<String> = left_out
+            .into_iter()
+            .chain(outside.map(ToString::to_string))
+            .chain(warnings.iter().cloned())
+            .collect();
         (!notes.is_empty()).then(|| notes.join("; "))
     }
 
@@ -240,10 +268,23 @@ impl SolidSource {
 ///
 /// # Errors
 /// When the file is a solid itself, or cannot be read.
-pub(crate) fn read_embedded(path: &Path) -> Result<TriMesh, SimError> {
+pub(crate) fn read_embedded(path: &Path) -> Result<(TriMesh, Vec<String>), SimError> {
     if is_solid(path) {
         let cause = "only a surface (.obj, .off, .ply, .stl) can be embedded in another solid";
         return Err(SimError::refused("it is a solid itself", cause));
     }
-    Ok(read_mesh(path)?)
+    Ok(read_mesh_with_warnings(path)?)
+}
+
+/// Reads a surface for modes, with lines about content of its file whose meaning is not clear.
+///
+/// # Errors
+/// When the ending is that of no mesh file; as [`sscc_io::read_mesh`].
+pub fn read_surface(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
+    if path.exists() && !is_mesh_name(path) {
+        let (what, supported) =
+            ("surface or solid", ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele");
+        return Err(IoError::Unsupported { path: path.to_owned(), what, supported });
+    }
+    read_mesh_with_warnings(path)
 }

@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use sscc::{Progress, TriMesh};
-use sscc_io::{read_mesh, read_volume_mesh};
+use sscc_io::{read_mesh, read_mesh_with_warnings, read_volume_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
@@ -93,7 +93,12 @@ impl Shape {
             Self::Spring { rings, around } => {
                 return surface(spring_of(*rings, *around), "embedded spring".into(), None);
             }
-            Self::File(path) if !is_solid(path) => return surface(read_mesh(path)?, file_name(path), None),
+            Self::File(path) if !is_solid(path) => {
+                let (mesh, warnings) = read_mesh_with_warnings(path)?;
+                let source = file_name(path);
+                let note = (!warnings.is_empty()).then(|| format!("{source}: {}", warnings.join("; ")));
+                return surface(mesh, source, note);
+            }
             Self::File(path) => {
                 let file = read_volume_mesh(path)?;
                 let factor = resize.factor(file.vertices()).in_file(path)?;
@@ -101,7 +106,7 @@ impl Shape {
                 return solid(SolidSource::whole(&file, material).in_file(path)?, file_name(path), factor);
             }
             Self::Embedded { surface, solid: path } => {
-                let mesh = read_embedded(surface).in_file(surface)?;
+                let (mesh, _) = read_embedded(surface).in_file(surface)?;
                 let factor = resize.factor(mesh.rest_positions()).in_file(surface)?;
                 let file = read_volume_mesh(path)?.scaled(factor).in_file(path)?;
                 let found = SolidSource::embedded(scaled(mesh, factor)?, &file, material, progress);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::gltf::SkinWeights;
-use sscc_io::write_whole;
+use sscc_io::{splits_vertices, write_whole};
 use sscc_sim::{
     AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect,
 };
@@ -13,6 +13,7 @@ use sscc_view::MeshReport;
 
 use super::printer::Printer;
 use super::shapes;
+use super::soup_hint::SoupHint;
 use crate::args::{Check, Switch, Weights};
 use crate::load;
 use crate::stages::Stages;
@@ -32,8 +33,13 @@ pub fn check(args: &Check) -> Result<bool> {
     printer.needs_last = args.curves.is_some() || args.pose.is_some();
     let mut report = MeshReport::default();
     let mut answers = 0;
+    let mut hint = SoupHint::default();
     detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
         answers += 1;
+        // Pairs of two meshes are never neighbours.
+        if request.against.is_none() && !is_welded(&request, found.file) {
+            hint.add(found);
+        }
         if let (Some(path), Some(shape)) = (&args.pose, found.shape)
             && answers == found.queries
         {
@@ -50,7 +56,15 @@ pub fn check(args: &Check) -> Result<bool> {
     if let Some(path) = &args.report {
         write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
     }
-    printer.finish()
+    let colliding = printer.finish()?;
+    hint.print(&args.model.path);
+    Ok(colliding)
+}
+
+/// Whether equal vertices of a file are welded, or the user has decided.
+fn is_welded(request: &Detection, file: &Path) -> bool {
+    let is_animated = matches!(request.motion, MeshMotion::Animation(_));
+    request.weld.is_some() || is_animated || splits_vertices(file)
 }
 
 /// Refuses flags for models, and flags that have no effect together.

@@ -4,6 +4,7 @@ mod answer;
 mod meshes;
 mod printer;
 mod shapes;
+mod soup_hint;
 mod text;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -16,6 +17,7 @@ use crate::outcome::Outcome;
 use crate::progress::Bar;
 use crate::{interrupt, load};
 use printer::Printer;
+use soup_hint::SoupHint;
 
 pub fn run(args: &Check) -> Result<Outcome> {
     let is_at_q = args.at.q.is_some() || args.at.trajectory.is_some();
@@ -56,7 +58,12 @@ fn check_model(args: &Check) -> Result<bool> {
     let mut query = query.cancelled_by(&interrupt::Interrupt);
     let bar = Bar::new("checking").beside_output();
     printer.needs_last = args.curves.is_some();
+    let mut hint = SoupHint::default();
+    let is_welded = request.weld == Some(true);
     let take = |found: &DetectionAnswer<'_>| {
+        if !is_welded {
+            hint.add(found);
+        }
         shapes::write_curves(args.curves.as_deref(), found)?;
         printer.answer(found)
     };
@@ -74,7 +81,9 @@ fn check_model(args: &Check) -> Result<bool> {
         let positions = model.positions(&rows.data).with_context(|| path.display().to_string())?;
         shapes::write_pose(path, model.mesh(), &positions, query.pairs())?;
     }
-    printer.finish()
+    let colliding = printer.finish()?;
+    hint.print(&args.model.path);
+    Ok(colliding)
 }
 
 fn method(typed: args::Method) -> Method {

@@ -11,12 +11,16 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use sscc_io::{IoError, LoadOptions, LoadedModel, load_model_with, read_certificates, read_mesh, read_model};
+use sscc::TriMesh;
+use sscc_io::{
+    IoError, LoadOptions, LoadedMesh, LoadedModel, VolumeOrSurface, load_mesh_with_warnings, load_model_with,
+    read_certificates, read_model, read_volume_or_surface,
+};
 use sscc_sim::is_solid;
 
 use crate::args::Info;
 use crate::outcome::Outcome;
-use crate::output::Output;
+use crate::output::{Output, warn};
 use certificates::CertificatesInfo;
 use meshes::Meshes;
 use model::Model;
@@ -52,15 +56,29 @@ impl Report {
             "safetensors" => {}
             "glb" | "gltf" => return Ok(Self::Gltf(Meshes::of(path)?)),
             "npz" => {
-                let LoadedModel { model, info, .. } = load_model_with(path, &LoadOptions::default())?;
-                return Ok(Self::Model(Model::of(&model, info)));
+                let LoadedModel { model, info, mode_weights, .. } =
+                    load_model_with(path, &LoadOptions::default())?;
+                return Ok(Self::Model(Model::of(&model, info).with_weights(mode_weights)));
             }
-            _ if is_solid(path) => return Ok(Self::Solid(Solid::of(path)?)),
-            _ => return Ok(Self::Mesh(Surface::of(&read_mesh(path)?))),
+            _ if is_solid(path) => match read_volume_or_surface(path)? {
+                VolumeOrSurface::Volume(file) => return Ok(Self::Solid(Solid::of(&file))),
+                VolumeOrSurface::Surface { mesh, warnings } => {
+                    return Ok(Self::surface(path, &mesh, &warnings));
+                }
+            },
+            _ => {
+                let LoadedMesh { mesh, warnings, .. } = load_mesh_with_warnings(path, None)?;
+                return Ok(Self::surface(path, &mesh, &warnings));
+            }
         }
         // The content decides. The name only selects the error for a file that is neither.
         let by_name = path.file_name().is_some_and(|n| n.to_string_lossy().ends_with(".sscc.safetensors"));
         Self::read(path, by_name).or_else(|error| Self::read(path, !by_name).or(Err(error)))
+    }
+
+    fn surface(path: &Path, mesh: &TriMesh, warnings: &[String]) -> Self {
+        warnings.iter().for_each(|warning| warn(path, warning));
+        Self::Mesh(Surface::of(mesh))
     }
 
     fn read(path: &Path, as_certificates: bool) -> Result<Self, IoError> {

@@ -30,6 +30,9 @@ pub struct Model {
     /// The reason why a model with a stiffness has no frequencies.
     #[serde(skip)]
     no_frequencies: String,
+    /// One number for each mode from a `.npz` file, such as variances; absent without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mode_weights: Option<Vec<f64>>,
     units: String,
     provenance: String,
     /// The digest of certificates with default options.
@@ -55,10 +58,16 @@ impl Model {
                 _ => String::new(),
             },
             frequencies_hz: frequencies.and_then(Result::ok),
+            mode_weights: None,
             units: info.units,
             provenance: info.provenance,
             digest: hexadecimal(Digest::of(model, &Scope::of(model))),
         }
+    }
+
+    /// Adds one number for each mode.
+    pub fn with_weights(self, mode_weights: Option<Vec<f64>>) -> Self {
+        Self { mode_weights, ..self }
     }
 
     pub fn lines(&self) -> Vec<String> {
@@ -71,6 +80,17 @@ impl Model {
             format!("default metric {} ({}), {}", self.metric, self.metric_form, range(&self.metric_scales)),
         ]);
         lines.extend(self.elasticity());
+        if let Some(all) = &self.mode_weights {
+            let shown: Vec<String> = all.iter().take(MAX_SHOWN).map(|weight| length(*weight)).collect();
+            let more = if all.len() > MAX_SHOWN { ", ..." } else { "" };
+            lines.push(format!("mode weights   {}{more}", shown.join(", ")));
+            // Of principal components these are variances, and archives have no word on the unit of q.
+            lines.push(
+                "unit of q      q_k = 1 adds the k-th mode once as stored; where mode weights are variances, their square \
+                 roots are the standard deviations of q"
+                    .to_owned(),
+            );
+        }
         lines.extend([
             format!("units          {}", stated(&self.units)),
             format!("provenance     {}", stated(&self.provenance)),

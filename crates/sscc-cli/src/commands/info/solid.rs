@@ -1,17 +1,12 @@
 //! The contents of a solid file.
 
-use std::path::Path;
-
-use anyhow::Result;
 use glam::DVec3;
 use serde::Serialize;
-use sscc_io::{IoError, read_volume_mesh};
 use sscc_sim::SolidSource;
-use sscc_solid::{NamedMaterial, PartialMaterial};
+use sscc_solid::{NamedMaterial, PartialMaterial, VolumeMesh};
 
 use super::surface::{Surface, size};
 use crate::output::{counted, grouped, note, one_line};
-use crate::progress::Bar;
 
 /// Maximum number of materials in the text; the JSON has all.
 const MAX_SHOWN: usize = 8;
@@ -41,21 +36,25 @@ struct Material {
     youngs_modulus: Option<f64>,
     poisson_ratio: Option<f64>,
     density: Option<f64>,
+    /// Kind of a material whose stiffness is not computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unsupported: Option<String>,
 }
 
 impl Solid {
-    pub fn of(path: &Path) -> Result<Self, IoError> {
-        let file = read_volume_mesh(path)?;
+    pub fn of(file: &VolumeMesh) -> Self {
         let mut elements = vec![0; file.materials().len()];
         file.element_material().iter().for_each(|material| elements[*material as usize] += 1);
-        let material = |(NamedMaterial { name, stated }, elements): (&NamedMaterial, usize)| Material {
-            name: name.clone(),
-            elements,
-            youngs_modulus: stated.youngs_modulus,
-            poisson_ratio: stated.poisson_ratio,
-            density: stated.density,
-        };
-        let surface = SolidSource::read(path, None, &PartialMaterial::default(), &Bar::new("surface"));
+        let material =
+            |(NamedMaterial { name, stated, unsupported }, elements): (&NamedMaterial, usize)| Material {
+                name: name.clone(),
+                elements,
+                youngs_modulus: stated.youngs_modulus,
+                poisson_ratio: stated.poisson_ratio,
+                density: stated.density,
+                unsupported: unsupported.clone(),
+            };
+        let surface = SolidSource::whole(file, &PartialMaterial::default());
         let (boundary, refusal) = match surface {
             Ok(source) => {
                 source.note().into_iter().for_each(note);
@@ -64,7 +63,7 @@ impl Solid {
             Err(error) => (None, Some(error.to_string())),
         };
         let points = || file.vertices().iter().copied();
-        Ok(Self {
+        Self {
             vertices: file.vertices().len(),
             tetrahedra: file.tets().len(),
             cubes: file.cubes().len(),
@@ -74,7 +73,7 @@ impl Solid {
             upper: points().reduce(DVec3::max).unwrap_or_default().to_array(),
             boundary,
             refusal,
-        })
+        }
     }
 
     pub fn lines(&self) -> Vec<String> {
@@ -110,6 +109,10 @@ impl Material {
             .filter_map(|(name, value)| value.map(|value| format!("{name}={value}")))
             .collect();
         let stated = if stated.is_empty() { "no numbers stated".to_owned() } else { stated.join(",") };
+        let stated = match &self.unsupported {
+            Some(kind) => format!("{stated}; the stiffness of the kind {} is not computed", one_line(kind)),
+            None => stated,
+        };
         let name = one_line(&self.name);
         format!("material       {name}: {stated}; {}", counted(self.elements as u64, "element"))
     }

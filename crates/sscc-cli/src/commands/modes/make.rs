@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use sscc_io::{read_frames, read_mesh};
+use sscc_io::read_frames;
 use sscc_sim::{
     Fix, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
-    polynomial_model,
+    polynomial_model, read_surface,
 };
 
 use super::material;
 use crate::args;
 use crate::load::in_file;
-use crate::output::{file_name, note};
+use crate::output::{file_name, note, warn};
 use crate::progress::Bar;
 
 /// Makes the model. Errors name the source.
@@ -62,7 +62,8 @@ fn needs_solid(args: &args::Modes) -> bool {
 
 fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
     refuse_rank_and_fix(args)?;
-    let mesh = read_mesh(&args.source)?;
+    let (mesh, warnings) = read_surface(&args.source)?;
+    warnings.iter().for_each(|warning| warn(&args.source, warning));
     let made = polynomial_model(mesh, &file_name(&args.source));
     made.with_context(|| args.source.display().to_string())
 }
@@ -82,6 +83,7 @@ fn principal_components(args: &args::Modes) -> Result<NewModel> {
     );
     ensure!(!args.source.is_file(), "{shown}: is a file; --kind pca needs a folder of meshes (the frames)");
     let frames = read_frames(&args.source)?;
+    frames.warnings.iter().for_each(|warning| warn(&frames.paths[0], warning));
     let rank = args.rank.map(|rank| rank as usize);
     let name = format!("meshes in {}", file_name(&args.source));
     let made = pca_model(&frames.mesh, &frames.positions, rank, &name, &Bar::new("modes"));
