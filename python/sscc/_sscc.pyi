@@ -43,10 +43,11 @@ class Model:
     ) -> Model: ...
     @classmethod
     def load(cls, path: _Path, modes: _Path | None = None, *, mesh_name: str | None = None) -> Model:
-        """Reads ``*.model.safetensors``, ``.glb`` or ``.gltf`` with morph targets, a complete ``.npz``, or a mesh (OBJ,
-        PLY, OFF, STL) with its ``modes`` (``.npy``, ``.npz``, VegaFEM's matrices, a folder of target meshes).
+        """Reads ``*.model.safetensors``, ``.glb``, ``.gltf`` or ``.vrm`` with morph targets, a complete ``.npz``, or a
+        mesh (OBJ, PLY, OFF, STL) with its ``modes`` (``.npy``, ``.npz``, VegaFEM's matrices, a folder of target meshes).
 
-        ``mesh_name`` chooses one of several meshes of a glTF file. Raises FileNotFoundError, OSError, ValueError.
+        ``mesh_name``, or ``FILE#NAME`` as the path, chooses one of several meshes of a glTF file. The model is in the
+        coordinates of its mesh: nodes do not move it. Primitives that lack morph targets are warned about. Raises FileNotFoundError, OSError, ValueError.
         """
     def save(self, path: _Path) -> None:
         """Writes ``*.model.safetensors``, whole or not at all."""

@@ -164,7 +164,7 @@ impl ModesKind {
 /// The files of a model.
 #[derive(Debug, Args)]
 pub struct Model {
-    /// The model: *.model.safetensors, a .glb or .gltf with morph targets, a complete .npz (mean, components,
+    /// The model: *.model.safetensors, a .glb, .gltf or .vrm with morph targets, a complete .npz (mean, components,
     /// faces), or a mesh (.obj, .off, .ply, .stl) or solid (.mesh, .veg, .msh, .node, .ele) with --modes; check without a
     /// q takes any of them as a mesh
     #[arg(value_name = "MODEL")]
@@ -173,7 +173,7 @@ pub struct Model {
     /// a folder of target meshes
     #[arg(long, value_name = "FILE")]
     pub modes: Option<PathBuf>,
-    /// The mesh of a glTF file that has several (sscc info lists them)
+    /// The mesh of a glTF file that has several (sscc info lists them); FILE#NAME in place of FILE does the same
     #[arg(long, value_name = "NAME")]
     pub mesh_name: Option<String>,
 }
@@ -311,6 +311,7 @@ pub struct Certify {
         "sscc check mesh.obj --frames frames.npy --ignore-rest"
         "sscc check character.glb --animation wave --fps 60 --report wave.html"
         "sscc check face.obj --against bunny.obj --curves cut.obj"
+        "sscc check character.glb#shirt --against character.glb#body"
         "sscc check bunny.obj --depths --json"
     ),
     after_help = "\
@@ -394,10 +395,13 @@ pub struct Motion {
     /// Another mesh: list the pairs (triangle of MODEL, triangle of this mesh) that collide
     #[arg(long, value_name = "MESH", conflicts_with_all = ["trajectory", "q", "animation", "meshes"])]
     pub against: Option<PathBuf>,
+    /// The other mesh where its glTF file has several, as --mesh-name for MODEL
+    #[arg(long, value_name = "NAME", requires = "against")]
+    pub against_mesh: Option<String>,
     /// Frames of the other mesh, as many as those of --frames
     #[arg(long, value_name = "FRAMES", requires = "against")]
     pub against_frames: Option<PathBuf>,
-    /// The animation of a .glb or .gltf, by name or number, as a player would show it: nodes, morph targets, skins
+    /// The animation of a .glb, .gltf or .vrm, by name or number, as a player would show it: nodes, morph targets, skins
     #[arg(long, value_name = "NAME", conflicts_with_all = ["trajectory", "q", "mesh_name"])]
     pub animation: Option<String>,
     /// Check the animation N times a second, from 0 to its last key frame [default: 30]
@@ -545,7 +549,7 @@ pub struct Audit {
     )
 )]
 pub struct Info {
-    /// A model (*.model.safetensors, .glb, .gltf, .npz), certificates (*.sscc.safetensors), a mesh (.obj, .off, .ply,
+    /// A model (*.model.safetensors, .glb, .gltf, .vrm, .npz), certificates (*.sscc.safetensors), a mesh (.obj, .off, .ply,
     /// .stl) or a solid (.mesh, .veg, .msh, .node, .ele)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,

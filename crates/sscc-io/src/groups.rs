@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::file::ending;
+use crate::mesh_path::named_file;
 use crate::named_groups::{GroupsBy, NamedGroups};
 use crate::{IoError, gltf, mesh, read_vector, read_whole};
 
@@ -10,29 +11,34 @@ use crate::{IoError, gltf, mesh, read_vector, read_whole};
 /// of a glTF file that [`gltf::read`] chooses by `mesh_name`.
 ///
 /// # Errors
-/// When the ending is none of `.obj`, `.glb`, `.gltf`; when the mesh cannot be read; when there are more than 65,536
-/// groups.
+/// When the ending is none of `.obj`, `.glb`, `.gltf`, `.vrm`; when the mesh cannot be read; when there are more than
+/// 65,536 groups.
 pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, IoError> {
+    let (file, mesh_name) = named_file(path, mesh_name)?;
+    let path = file.as_path();
     match ending(path).as_str() {
         "obj" => mesh::obj::groups(&read_whole(path)?, by).map_err(|error| error.of(path)),
-        "glb" | "gltf" => gltf::read_groups(path, mesh_name, by),
+        _ if gltf::is_gltf(path) => gltf::read_groups(path, mesh_name.as_deref(), by),
         _ => {
-            let cause = "files of this kind have no groups of triangles: use a .obj, .glb or .gltf, or a file of one number \
-                         for each triangle";
+            let cause = "files of this kind have no groups of triangles: use a .obj, .glb, .gltf or .vrm, or a file of \
+                         one number for each triangle";
             Err(IoError::Request { path: path.to_owned(), cause: cause.into() })
         }
     }
 }
 
-/// As [`read_groups`], of the mesh that [`load_mesh`](crate::load_mesh) reads: that of a glTF file needs no morph targets.
+/// As [`read_groups`], of the mesh that [`load_mesh`](crate::load_mesh) reads, at its first place: that of a glTF file needs
+/// no morph targets.
 ///
 /// # Errors
 /// As [`read_groups`].
 pub fn read_base_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, IoError> {
-    match ending(path).as_str() {
-        "glb" | "gltf" => gltf::read_base_groups(path, mesh_name, by),
-        _ => read_groups(path, mesh_name, by),
+    let (file, name) = named_file(path, mesh_name)?;
+    if !gltf::is_gltf(&file) {
+        return read_groups(path, mesh_name, by);
     }
+    let placed = gltf::read_placed_mesh(&file, name.as_deref())?;
+    placed.groups(0, by).map_err(|error| error.of(&file))
 }
 
 /// Reads the group of each triangle as numbers from 0 (`.npy` or text). Their names are the numbers.

@@ -39,7 +39,7 @@
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
-//! | the mesh of any file, without modes; the surface of a solid | [`load_mesh`] |
+//! | the mesh of any file, without modes, where nodes put it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
@@ -68,6 +68,7 @@ mod groups;
 mod load;
 pub mod mesh;
 mod mesh_modes;
+mod mesh_path;
 pub mod modes;
 mod named_groups;
 mod natural_order;
@@ -94,6 +95,7 @@ pub use load::{
 };
 pub use mesh::{read_mesh, read_mesh_with_warnings};
 pub use mesh_modes::read_modes_for;
+pub use mesh_path::split_mesh_name;
 pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
 pub use named_groups::{GroupsBy, NamedGroups};
 pub use npy::write_npy;

@@ -1,17 +1,21 @@
 //! Loads a model from its files, in any supported format.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sscc::{Modes, ReducedModel, TriMesh};
 
 use crate::file::{check_exists, ending, unsupported};
 use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
+use crate::mesh_path::named_file;
 use crate::solid::{is_solid_name, read_volume_or_surface};
-use crate::{IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model};
+use crate::{
+    IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model,
+    split_mesh_name,
+};
 
 /// Endings of the files that have a mesh.
-const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf; models: .npz, \
-                         .model.safetensors";
+const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf, .vrm; models: \
+                         .npz, .model.safetensors";
 
 /// Cause of the error for a mesh without modes.
 const NO_MODES: &str = "a mesh has no modes: add --modes FILE, or compute modes with sscc modes; sscc check without a \
@@ -48,8 +52,24 @@ pub struct LoadedModel {
     pub mode_names: Vec<String>,
     /// One number per mode from a `.npz` file (r), such as variances.
     pub mode_weights: Option<Vec<f64>>,
-    /// Lines about content of the mesh whose meaning is not clear ([`read_mesh_with_warnings`]).
+    /// Lines about content of the file whose meaning is not clear ([`read_mesh_with_warnings`]), or that it lacks by its
+    /// standard.
     pub warnings: Vec<String>,
+    /// The glTF file, and the name of the mesh.
+    scene: Option<(PathBuf, Option<String>)>,
+}
+
+impl LoadedModel {
+    /// Reads where the nodes of a glTF file put the model: [`gltf::PlacedMesh::place`] moves its positions, which are in the
+    /// coordinates of the mesh, to the world. None for other files, whose positions are where they are.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or its nodes or skins are malformed.
+    pub fn placement(&self) -> Result<Option<gltf::PlacedMesh>, IoError> {
+        let read =
+            |(path, name): &(PathBuf, Option<String>)| gltf::read_model_placement(path, name.as_deref());
+        self.scene.as_ref().map(read).transpose()
+    }
 }
 
 /// A mesh with lines about its file.
@@ -71,20 +91,24 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
     Ok((loaded.model, loaded.info))
 }
 
-/// Loads a model from a `*.model.safetensors` file, from a `.glb` or `.gltf` file with morph targets, from a complete
+/// Loads a model from a `*.model.safetensors` file, from a glTF file ([`gltf::is_gltf`]) with morph targets, from a complete
 /// `.npz` file, or from a mesh file or a solid with its modes ([`read_modes_for`]). The metric is that of the file, else
-/// displacement.
+/// displacement. `FILE#NAME` ([`split_mesh_name`]) names the mesh as [`LoadOptions::mesh_name`] does.
+///
+/// A model of a glTF file is in the coordinates of its mesh: see [`LoadedModel::placement`].
 ///
 /// # Errors
 /// When modes are missing for a mesh, or given for a model that contains modes; when a mesh is named for a file other
-/// than glTF; when a file cannot be read or is malformed; when the modes belong to another mesh.
+/// than glTF, or twice; when a file cannot be read or is malformed; when the modes belong to another mesh.
 pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedModel, IoError> {
+    let (file, mesh_name) = named_file(path, options.mesh_name)?;
+    let (path, mesh_name) = (file.as_path(), mesh_name.as_deref());
     let refused = |cause: &str| IoError::Request { path: path.to_owned(), cause: cause.into() };
     // A missing file is reported first.
     check_exists(path)?;
     let format = ending(path);
-    let is_gltf = matches!(format.as_str(), "glb" | "gltf");
-    if options.mesh_name.is_some() && !is_gltf {
+    let is_gltf = gltf::is_gltf(path);
+    if mesh_name.is_some() && !is_gltf {
         return Err(named_mesh_error(path));
     }
     match (format.as_str(), options.modes) {
@@ -92,18 +116,19 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             let (model, info) = read_model(path)?;
             Ok(loaded(model, info, Vec::new()))
         }
-        ("glb" | "gltf", None) => {
-            let read = gltf::read(path, options.mesh_name)?;
+        (_, None) if is_gltf => {
+            let read = gltf::read(path, mesh_name)?;
             let provenance = format!("mesh {:?} of {}", read.mesh_name, name(path));
             let loaded = assemble(path, read.mesh, read.modes, provenance, read.target_names)?;
-            Ok(LoadedModel { default_q: Some(read.default_weights), ..loaded })
+            let scene = Some((path.to_owned(), mesh_name.map(str::to_owned)));
+            Ok(LoadedModel { default_q: Some(read.default_weights), warnings: read.notes, scene, ..loaded })
         }
         ("npz", None) => {
             let NpzModel { mesh, modes, weights } = read_npz_model(path)?;
             let loaded = assemble(path, mesh, modes, format!("arrays of {}", name(path)), Vec::new())?;
             Ok(LoadedModel { mode_weights: weights, ..loaded })
         }
-        ("safetensors" | "glb" | "gltf" | "npz", Some(_)) => {
+        (format, Some(_)) if is_gltf || matches!(format, "safetensors" | "npz") => {
             Err(refused("a model file has its own modes: leave out --modes"))
         }
         (_, None) => {
@@ -120,12 +145,14 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
     }
 }
 
-/// Loads a mesh at rest from a file of any format: a mesh file, a `.glb` or `.gltf` file
-/// ([`gltf::read_base_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
-/// vertices of the file, in a Medit or gmsh file without elements that of the faces.
+/// Loads a mesh at rest from a file of any format: a mesh file, a glTF file at the first place of its mesh
+/// ([`gltf::read_placed_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
+/// vertices of the file, in a Medit or gmsh file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`]) names
+/// the mesh as `mesh_name` does.
 ///
 /// # Errors
-/// When a mesh is named for a file other than glTF, the file cannot be read or is malformed, or has no triangles.
+/// When a mesh is named for a file other than glTF, or twice; when the file cannot be read or is malformed, or has no
+/// triangles.
 pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoError> {
     load_mesh_with_warnings(path, mesh_name).map(|loaded| loaded.mesh)
 }
@@ -135,13 +162,18 @@ pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoErro
 /// # Errors
 /// As [`load_mesh`].
 pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<LoadedMesh, IoError> {
+    let (file, mesh_name) = named_file(path, mesh_name)?;
+    let path = file.as_path();
     let format = ending(path);
-    if mesh_name.is_some() && !matches!(format.as_str(), "glb" | "gltf") {
+    if mesh_name.is_some() && !gltf::is_gltf(path) {
         check_exists(path)?;
         return Err(named_mesh_error(path));
     }
     let (mesh, warnings) = match format.as_str() {
-        "glb" | "gltf" => (gltf::read_base_mesh(path, mesh_name)?, Vec::new()),
+        _ if gltf::is_gltf(path) => {
+            let placed = gltf::read_placed_mesh(path, mesh_name.as_deref())?;
+            (placed.to_mesh(0).map_err(|error| error.of(path))?, Vec::new())
+        }
         "safetensors" => (read_model(path)?.0.mesh().clone(), Vec::new()),
         "npz" => (read_npz_model(path)?.mesh, Vec::new()),
         _ if is_mesh_name(path) => read_mesh_with_warnings(path)?,
@@ -162,7 +194,8 @@ fn named_mesh_error(path: &Path) -> IoError {
 /// Whether the format splits vertices along seams, so that adjacent triangles share no vertex: STL and glTF. For
 /// adjacency in such files, vertices of equal position and equal modes should be welded.
 pub fn splits_vertices(path: &Path) -> bool {
-    matches!(ending(path).as_str(), "stl" | "glb" | "gltf")
+    let (file, _) = split_mesh_name(path);
+    gltf::is_gltf(&file) || ending(&file) == "stl"
 }
 
 /// Builds the model. `at` is the file to name in the error if mesh and modes do not fit.
@@ -180,7 +213,15 @@ fn assemble(
 
 /// Returns a model without further data.
 fn loaded(model: ReducedModel, info: ModelInfo, mode_names: Vec<String>) -> LoadedModel {
-    LoadedModel { model, info, default_q: None, mode_names, mode_weights: None, warnings: Vec::new() }
+    LoadedModel {
+        model,
+        info,
+        default_q: None,
+        mode_names,
+        mode_weights: None,
+        warnings: Vec::new(),
+        scene: None,
+    }
 }
 
 fn name(path: &Path) -> String {

@@ -67,6 +67,8 @@ fn scenes_use_little_memory() {
     for (parts, is_valid) in [
         (format!(r#""nodes":[{}]"#, many("{}")), true),
         (format!(r#""nodes":[{}]"#, many(r#"{"mesh":0}"#)), true),
+        (format!(r#""nodes":[{{}}],"scenes":[{}]"#, many("{}")), true),
+        (format!(r#""nodes":[{{}}],"scenes":[{{"nodes":[{}]}}]"#, many("0")), true),
         (format!(r#""nodes":[{}]"#, many(r#"{"children":[0]}"#)), false),
         (format!(r#""nodes":[{{"weights":[{}]}}]"#, many("0")), true),
         (format!(r#""nodes":[{{}}],"skins":[{}]"#, many(r#"{"joints":[0]}"#)), true),
@@ -78,13 +80,15 @@ fn scenes_use_little_memory() {
                 r#""nodes":[{{}}],"animations":[{{"channels":[{}],"samplers":[{sampler}]}}]"#,
                 many(channel)
             ),
-            false,
+            true,
         ),
     ] {
         let text = gltf_text(&format!("{accessor},{zeros}"), mesh);
         let text = format!("{},{parts}}}", text.strip_suffix('}').unwrap());
         let peak = peak(|| assert_eq!(gltf::parse_scene(text.as_bytes()).is_ok(), is_valid));
         assert!(peak < 100 * text.len() as u64, "{peak} for {}: {}", text.len(), &parts[..80]);
+        let placed = self::peak(|| drop(gltf::parse_placed_mesh(text.as_bytes(), None)));
+        assert!(placed < 100 * text.len() as u64, "{placed} for {}: {}", text.len(), &parts[..80]);
     }
 }
 

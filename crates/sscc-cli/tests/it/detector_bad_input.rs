@@ -83,7 +83,7 @@ fn invalid_frames_and_animations() {
     }
     refused(
         &["mesh.obj", "--animation=0"],
-        "mesh.obj: only .glb and .gltf files have animations: give --frames",
+        "mesh.obj: only .glb, .gltf and .vrm files have animations: give --frames",
     );
     refused(&["mesh.obj", "--mesh-name=a"], "only a glTF file can have several meshes");
     // The answers before the error are printed.

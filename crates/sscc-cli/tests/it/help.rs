@@ -127,7 +127,8 @@ fn write_frames(folder: &Path) {
         .flat_map(|p| p.to_array())
         .collect();
     write_npy(&folder.join("frames.npy"), &[2, 2 * STRIP, 3], &positions.repeat(2)).unwrap();
-    fs::write(folder.join("character.glb"), crate::detector::flag()).unwrap();
+    let flag = crate::detector::flag().replace(r#"{"mesh":0}"#, r#"{"mesh":0,"name":"body"}"#);
+    fs::write(folder.join("character.glb"), flag.replace("moved", "shirt")).unwrap();
 }
 
 /// Writes a bar of 2 x 2 x 6 cubes that begins at z = 0.

@@ -40,6 +40,11 @@ impl<'a> Buffers<'a> {
         }
         let buffer = self.declared.get(index).ok_or_else(|| refused("there is no such buffer".into()))?;
         let source = match &buffer.uri {
+            None if buffer.extensions.is_fallback() => {
+                let cause = "its bytes exist only compressed by the extension meshopt_compression, which is not supported: \
+                             save the file without it";
+                return Err(refused(cause.into()));
+            }
             None if index == 0 && self.chunk.is_some() => Source::Chunk,
             None => return Err(refused("it has no uri, and the file has no binary chunk for it".into())),
             Some(uri) if has_scheme(uri, "data:") => Source::Embedded(embedded(uri).map_err(refused)?),

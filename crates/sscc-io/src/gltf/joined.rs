@@ -14,6 +14,8 @@ use crate::FormatError;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PrimitiveRange {
+    /// Number of the primitive in its mesh. Primitives without triangles have no range.
+    pub number: usize,
     /// Vertices.
     pub vertices: Range<u32>,
     /// Triangles.
@@ -30,38 +32,35 @@ pub(super) struct JoinedPrimitives {
 }
 
 impl JoinedPrimitives {
-    /// Starts without primitives. Each must have `rank` morph targets.
+    /// Starts without primitives. The first `rank` morph targets of each are read; missing ones move nothing.
     pub fn new(rank: usize) -> Self {
         Self { rank, positions: Vec::new(), faces: Vec::new(), displacements: Vec::new() }
     }
 
-    /// Appends a primitive. `part` is its name in messages.
+    /// Appends a primitive. `number` is its number in the mesh, `part` its name in messages.
     pub fn push(
         &mut self,
         accessors: &mut Accessors<'_>,
+        number: usize,
         primitive: &Primitive,
         part: &str,
     ) -> Result<PrimitiveRange, FormatError> {
         let refused = |cause: String| FormatError::part(part, cause);
-        primitive.extensions.check(|| part.into())?;
         let topology = Topology::from_mode(primitive.mode)
             .map_err(|kind| refused(format!("a primitive of triangles was expected, this one has {kind}")))?;
-        if primitive.targets.len() != self.rank {
-            let cause = format!(
-                "it has {} morph targets, the first primitive {}: all need the same number",
-                primitive.targets.len(),
-                self.rank
-            );
-            return Err(refused(cause));
-        }
         let Some(base) = primitive.attributes.position else {
             return Err(refused("it has no positions".into()));
         };
+        if primitive.extensions.is_compressed() {
+            for accessor in [base].into_iter().chain(primitive.indices) {
+                accessors.check_uncompressed(accessor, part)?;
+            }
+        }
         let count = accessors.count(base)?;
         take(accessors, count, 24 * (1 + self.rank as u64), part)?;
         let positions = vectors(&accessors.read(base, Role::Positions)?);
         let mut columns = Vec::new();
-        for (k, target) in primitive.targets.iter().enumerate() {
+        for (k, target) in primitive.targets.iter().take(self.rank).enumerate() {
             // A target without positions only changes normals or colours.
             let Some(accessor) = target.position else {
                 columns.push(Vec::new());
@@ -83,10 +82,12 @@ impl JoinedPrimitives {
                 from + more
             ))),
         };
-        let ranges = PrimitiveRange { vertices: range(v, count)?, triangles: range(t, faces.len())? };
+        let (vertices, triangles) = (range(v, count)?, range(t, faces.len())?);
+        let ranges = PrimitiveRange { number, vertices, triangles };
         let first = ranges.vertices.start;
         self.faces.extend(faces.iter().map(|face| face.map(|vertex| first + vertex)));
         self.positions.extend(&positions);
+        columns.resize(self.rank, Vec::new());
         let columns = &columns;
         let rows =
             (0..count).flat_map(|v| columns.iter().map(move |c| c.get(v).copied().unwrap_or_default()));

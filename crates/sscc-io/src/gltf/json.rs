@@ -3,8 +3,8 @@
 //! Fields that the format requires are required here, which also bounds memory: a list of empty entries would take a
 //! hundred times its bytes.
 
-use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
 
 use crate::FormatError;
 use crate::error::{cut, quoted};
@@ -12,15 +12,15 @@ use crate::error::{cut, quoted};
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Root {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub extensions_required: Vec<String>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub buffers: Vec<Buffer>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub buffer_views: Vec<BufferView>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub accessors: Vec<Accessor>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub meshes: Vec<Mesh>,
 }
 
@@ -29,28 +29,28 @@ pub(super) struct Root {
 pub(super) struct Buffer {
     pub uri: Option<String>,
     pub byte_length: usize,
+    #[serde(default, deserialize_with = "or_default")]
+    pub extensions: BufferExtensions,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct BufferView {
     pub buffer: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: usize,
     pub byte_length: usize,
     pub byte_stride: Option<usize>,
-    #[serde(default)]
-    pub extensions: Extensions,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
     pub buffer_view: Option<usize>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: usize,
     pub component_type: u32,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub normalized: bool,
     pub count: usize,
     #[serde(rename = "type")]
@@ -83,7 +83,7 @@ pub(super) struct Sparse {
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparseIndices {
     pub buffer_view: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: usize,
     pub component_type: u32,
 }
@@ -92,7 +92,7 @@ pub(super) struct SparseIndices {
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparseValues {
     pub buffer_view: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub byte_offset: usize,
 }
 
@@ -100,9 +100,9 @@ pub(super) struct SparseValues {
 pub(super) struct Mesh {
     pub name: Option<String>,
     pub primitives: Vec<Primitive>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub weights: Vec<f64>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub extras: Option<Extras>,
 }
 
@@ -111,9 +111,9 @@ pub(super) struct Primitive {
     pub attributes: Attributes,
     pub indices: Option<usize>,
     pub mode: Option<u32>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub targets: Vec<Attributes>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub extensions: Extensions,
 }
 
@@ -136,28 +136,48 @@ pub(super) enum Extras {
     Other(IgnoredAny),
 }
 
-/// Extensions with compressed geometry.
+/// Extensions that compress the geometry of a primitive or the bytes of a view. Where a file does not require them, it
+/// has the same data without compression, which the reader takes.
 #[derive(Default, Deserialize)]
 pub(super) struct Extensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
     draco: Option<IgnoredAny>,
-    #[serde(rename = "EXT_meshopt_compression")]
-    meshopt: Option<IgnoredAny>,
-    #[serde(rename = "KHR_meshopt_compression")]
-    khr_meshopt: Option<IgnoredAny>,
 }
 
 impl Extensions {
-    /// Returns an error for compressed geometry.
-    pub fn check(&self, part: impl FnOnce() -> String) -> Result<(), FormatError> {
-        let name = match self {
-            Self { draco: Some(_), .. } => "KHR_draco_mesh_compression",
-            Self { meshopt: Some(_), .. } => "EXT_meshopt_compression",
-            Self { khr_meshopt: Some(_), .. } => "KHR_meshopt_compression",
-            _ => return Ok(()),
-        };
-        Err(FormatError::part(part(), unsupported(name)))
+    /// Whether accessors of the primitive may lack their data, because they are compressed.
+    pub fn is_compressed(&self) -> bool {
+        self.draco.is_some()
     }
+}
+
+/// The mark of a buffer whose bytes a file may leave out, because all views of it are compressed.
+#[derive(Default, Deserialize)]
+pub(super) struct BufferExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    meshopt: Option<Fallback>,
+    #[serde(rename = "KHR_meshopt_compression")]
+    khr_meshopt: Option<Fallback>,
+}
+
+#[derive(Deserialize)]
+struct Fallback {
+    #[serde(default, deserialize_with = "or_default")]
+    fallback: bool,
+}
+
+impl BufferExtensions {
+    /// Whether all views of the buffer are compressed.
+    pub fn is_fallback(&self) -> bool {
+        [&self.meshopt, &self.khr_meshopt].into_iter().flatten().any(|mark| mark.fallback)
+    }
+}
+
+/// Takes `null` as a missing value: some exporters write it.
+pub(super) fn or_default<'de, D: Deserializer<'de>, T: Deserialize<'de> + Default>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or_default())
 }
 
 fn unsupported(extension: &str) -> String {
@@ -176,9 +196,9 @@ struct Asset {
     min_version: Option<String>,
 }
 
-/// Prefixes of supported extensions. They do not change positions (colours, images, light), or quantize numbers, which
-/// the reader decodes.
-const SUPPORTED_EXTENSIONS: [&str; 8] = [
+/// Prefixes of supported extensions. They do not change positions (colours, images, light, texts, faces of polygons,
+/// rigs of avatars), or quantize numbers, which the reader decodes.
+const SUPPORTED_EXTENSIONS: [&str; 14] = [
     "KHR_materials_",
     "KHR_texture_",
     "EXT_texture_",
@@ -187,6 +207,12 @@ const SUPPORTED_EXTENSIONS: [&str; 8] = [
     "EXT_lights_",
     "KHR_node_",
     "KHR_mesh_quantization",
+    "KHR_xmp",
+    "KHR_audio",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "FB_ngon_encoding",
+    "VRM",
 ];
 
 /// Parses those parts of the JSON that a type has.
@@ -200,7 +226,7 @@ impl Root {
         // The version is checked first: other versions have another structure.
         let Head { asset } = parse_parts(text)?;
         let is_supported = asset.min_version.as_ref().is_none_or(|minimum| minimum == "2.0");
-        if !asset.version.starts_with("2.") || !is_supported {
+        if !(asset.version == "2" || asset.version.starts_with("2.")) || !is_supported {
             let version =
                 quoted(asset.min_version.filter(|_| !is_supported).as_ref().unwrap_or(&asset.version));
             let cause =

@@ -1,9 +1,13 @@
-//! Reads morph targets ([`read`]), meshes at rest ([`read_base_mesh`]) and animated scenes ([`read_scene`]) from glTF 2.0 files (`.gltf` and `.glb`), and
-//! writes animated bodies as `.glb` ([`write_animation`]).
+//! Reads morph targets ([`read`]), meshes at rest ([`read_placed_mesh`]) and animated scenes ([`read_scene`]) from glTF 2.0
+//! files (`.gltf`, `.glb` and `.vrm`), and writes animated bodies as `.glb` ([`write_animation`]).
 //!
 //! A mesh with morph targets is a reduced model: rest positions are the base mesh, and mode k is the displacement of
-//! target k. [`read`] ignores nodes and their transforms, skins and animations. The transform of a node does not change
-//! which triangles collide: an affine map preserves intersections.
+//! target k. [`read`] ignores nodes and their transforms, skins and animations: models, and certificates about them, are
+//! in the coordinates of the mesh. An affine map, such as the transform of a node, does not change which triangles
+//! intersect. A mesh at rest ([`PlacedMesh`]) has world positions instead, for comparisons with other meshes.
+//!
+//! What no answer needs is not read, so an error there refuses no file: accessors, buffers, skins and nodes that the mesh
+//! does not use, materials, images, and extensions that a file uses but does not require.
 //!
 //! A scene ([`AnimatedScene`]) has world positions at any time of an animation, with node hierarchy, morph targets and
 //! skins.
@@ -13,7 +17,6 @@
 
 mod accessors;
 mod animation;
-mod base_mesh;
 mod buffers;
 mod component;
 mod glb;
@@ -31,27 +34,37 @@ use std::path::Path;
 use self::buffers::Buffers;
 use self::json::Root;
 use self::part_names::PartNames;
+use crate::file::ending;
 use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 use crate::{FormatError, IoError, read_whole};
 
 pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_animation};
-pub use base_mesh::{read_base_groups, read_base_mesh};
 pub use joined::PrimitiveRange;
 pub use morph::MorphModel;
-pub use scene::{AnimatedScene, AnimationInfo, MeshNode, ScenePose, SkinWeights, parse_scene, read_scene};
+pub use scene::{
+    AnimatedScene, AnimationInfo, MeshNode, PlacedMesh, ScenePose, SkinWeights, parse_placed_mesh,
+    parse_scene, read_model_placement, read_placed_mesh, read_scene,
+};
 pub use select::MeshInfo;
+
+/// Whether the ending of a file name is that of a glTF file: `.gltf`, `.glb` or `.vrm`, an avatar in binary glTF.
+pub fn is_gltf(path: &Path) -> bool {
+    matches!(ending(path).as_str(), "gltf" | "glb" | "vrm")
+}
 
 /// Reads a mesh with its morph targets: the mesh of that name (`#3` is the fourth), else the only one with targets.
 /// Buffers may be in the file, or in files in its folder or below; symbolic links are followed.
 ///
-/// - Primitives of triangles, strips and fans are joined in file order, indexed or not.
+/// - Primitives of triangles, strips and fans are joined in file order, indexed or not. Points, lines and primitives
+///   without positions are left out.
+/// - Where primitives have different numbers of morph targets, the missing ones move nothing ([`MorphModel::notes`]).
 /// - Positions are float32, or integers of 8 or 16 bits as in KHR_mesh_quantization, accessors plain or sparse.
 /// - A target without positions is a mode of zeros.
 ///
 /// # Errors
-/// When a file cannot be read or is malformed, has a version other than 2.x, compressed geometry or another
-/// required extension that could change positions; when a buffer is outside of the folder; when several
-/// meshes have morph targets and none is named, or the named one has none; when a primitive has no triangles;
+/// When a file cannot be read or is malformed, has a version other than 2.x, geometry that exists only compressed, or
+/// requires an extension that could change positions; when a buffer is outside of the folder; when several
+/// meshes have morph targets and none is named, or the named one has none;
 /// when the numbers would take more than 100 times the files' size and 64 MiB.
 pub fn read(path: &Path, mesh_name: Option<&str>) -> Result<MorphModel, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -106,8 +119,8 @@ fn groups_in(
     let names = PartNames::parse(chunks.json)?;
     let node = names.node_of_mesh(mesh);
     let mut groups = GroupCollector::default();
-    for (primitive, range) in model.primitives.iter().enumerate() {
-        groups.extend_to(range.triangles.end as usize, &names.group(by, node, mesh, primitive))?;
+    for range in &model.primitives {
+        groups.extend_to(range.triangles.end as usize, &names.group(by, node, mesh, range.number))?;
     }
     Ok(groups.finish())
 }

@@ -6,13 +6,14 @@ use super::accessors::Accessors;
 use super::buffers::Buffers;
 use super::joined::{JoinedPrimitives, PrimitiveRange};
 use super::json::{Extras, Mesh, Root};
+use super::triangles::{morph_targets, with_triangles};
 use crate::FormatError;
 
 /// A mesh with morph targets. Vertex and triangle numbers run through its primitives in file order.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MorphModel {
-    /// The base mesh, in its own coordinates: node transforms are not applied.
+    /// The base mesh, in its own coordinates: [`PlacedMesh`](super::PlacedMesh) applies node transforms.
     pub mesh: TriMesh,
     /// Mode k is the displacement of target k.
     pub modes: Modes,
@@ -22,8 +23,10 @@ pub struct MorphModel {
     pub target_names: Vec<String>,
     /// Name of the mesh; `#0` for an unnamed first mesh, and so on.
     pub mesh_name: String,
-    /// Ranges of the primitives, in file order.
+    /// Ranges of the primitives with triangles, in file order.
     pub primitives: Vec<PrimitiveRange>,
+    /// What the file lacks by the standard, and how it was understood: one line each.
+    pub notes: Vec<String>,
 }
 
 /// Joins the primitives of a mesh. `size` is the size of the file in bytes.
@@ -35,38 +38,50 @@ pub(super) fn model(
     size: u64,
 ) -> Result<MorphModel, FormatError> {
     let mesh = &root.meshes[index];
-    let rank = mesh.primitives.first().map_or(0, |p| p.targets.len());
-    let used = mesh.primitives.iter().flat_map(|p| {
+    let rank = morph_targets(mesh);
+    let used = with_triangles(mesh).flat_map(|(_, p)| {
         let targets = p.targets.iter().filter_map(|t| t.position);
         p.attributes.position.into_iter().chain(p.indices).chain(targets)
     });
     let mut accessors = Accessors::new(root, buffers, used, size)?;
     let mut joined = JoinedPrimitives::new(rank);
     let mut primitives = Vec::new();
-    for (number, primitive) in mesh.primitives.iter().enumerate() {
+    for (number, primitive) in with_triangles(mesh) {
         let part = format!("meshes[{index}].primitives[{number}]");
-        primitives.push(joined.push(&mut accessors, primitive, &part)?);
+        primitives.push(joined.push(&mut accessors, number, primitive, &part)?);
     }
     Ok(MorphModel {
         mesh: TriMesh::new(joined.positions, joined.faces)?,
         modes: Modes::new(rank, joined.displacements)?,
-        default_weights: default_weights(mesh, rank, index)?,
+        default_weights: fitted_weights(&mesh.weights, rank),
         target_names: target_names(mesh, rank),
         mesh_name,
         primitives,
+        notes: notes(mesh, index),
     })
 }
 
-/// Returns the weights of a mesh's morph targets, zeros if the file has none.
-pub(super) fn default_weights(mesh: &Mesh, rank: usize, index: usize) -> Result<Vec<f64>, FormatError> {
-    match mesh.weights.len() {
-        0 => Ok(vec![0.0; rank]),
-        n if n == rank => Ok(mesh.weights.clone()),
-        n => {
-            let cause = format!("{n} default weights for {rank} morph targets");
-            Err(FormatError::part(format!("meshes[{index}]"), cause))
-        }
-    }
+/// Returns notes on a mesh whose numbers of morph targets differ, or differ from that of its weights.
+pub(super) fn notes(mesh: &Mesh, index: usize) -> Vec<String> {
+    let rank = morph_targets(mesh);
+    let fewest = with_triangles(mesh).map(|(_, primitive)| primitive.targets.len()).min().unwrap_or(0);
+    let targets = (fewest < rank).then(|| {
+        format!(
+            "meshes[{index}]: its primitives have {fewest} to {rank} morph targets; the missing ones move nothing"
+        )
+    });
+    let weights = (!mesh.weights.is_empty() && mesh.weights.len() != rank).then(|| {
+        let found = mesh.weights.len();
+        format!(
+            "meshes[{index}]: it has {found} default weights for {rank} morph targets; missing ones are 0, others left out"
+        )
+    });
+    targets.into_iter().chain(weights).collect()
+}
+
+/// Returns as many of these stored weights as there are morph targets; missing ones are 0.
+pub(super) fn fitted_weights(stored: &[f64], rank: usize) -> Vec<f64> {
+    stored.iter().copied().chain(std::iter::repeat(0.0)).take(rank).collect()
 }
 
 fn target_names(mesh: &Mesh, rank: usize) -> Vec<String> {

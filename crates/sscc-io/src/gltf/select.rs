@@ -1,7 +1,7 @@
 //! Selection of a mesh in a glTF file.
 
 use super::json::{Mesh, Root};
-use super::triangles::Topology;
+use super::triangles::{morph_targets, with_triangles};
 use crate::FormatError;
 use crate::error::{cut, quoted};
 
@@ -22,17 +22,18 @@ pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
     let info = |(index, mesh): (usize, &Mesh)| MeshInfo {
         name: mesh.name.clone().unwrap_or_else(|| format!("#{index}")),
         primitives: mesh.primitives.len(),
-        targets: mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0),
+        targets: morph_targets(mesh),
     };
     root.meshes.iter().enumerate().map(info).collect()
 }
 
-/// Returns the index of the mesh of that name, else of the only one with morph targets. `#3` is the fourth mesh, unless
-/// a mesh has this name.
+/// Returns the index of the mesh of that name, else of the only one with morph targets. `#3` and `3` are the fourth mesh,
+/// unless a mesh has this name.
 pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
     let wanted = Wanted {
-        is_candidate: &|mesh| mesh.primitives.iter().any(|primitive| !primitive.targets.is_empty()),
+        is_candidate: &|mesh| morph_targets(mesh) > 0,
         content: "morph targets",
+        flags: "--mesh-name",
         none: "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes",
     };
     wanted.choose(root, name)
@@ -41,12 +42,13 @@ pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatErr
 /// As [`choose`], for meshes with triangles.
 pub(super) fn choose_base(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
     let none = "no mesh of the file has triangles";
-    Wanted { is_candidate: &has_triangles, content: "triangles", none }.choose(root, name)
+    let flags = "--mesh-name or --against-mesh";
+    Wanted { is_candidate: &has_triangles, content: "triangles", flags, none }.choose(root, name)
 }
 
-/// Whether a mesh has triangles. Players draw points and lines, but those cannot collide.
+/// Whether a mesh has triangles.
 pub(super) fn has_triangles(mesh: &Mesh) -> bool {
-    mesh.primitives.iter().any(|primitive| Topology::from_mode(primitive.mode).is_ok())
+    with_triangles(mesh).next().is_some()
 }
 
 /// The meshes that can be chosen.
@@ -54,6 +56,8 @@ struct Wanted<'a> {
     is_candidate: &'a dyn Fn(&Mesh) -> bool,
     /// What candidates have, in messages.
     content: &'a str,
+    /// Flags that name a mesh, in messages.
+    flags: &'a str,
     /// Message without a candidate.
     none: &'a str,
 }
@@ -72,14 +76,16 @@ impl Wanted<'_> {
                 [one] => Ok(one),
                 [] => Err(FormatError::whole(self.none)),
                 _ => Err(FormatError::whole(format!(
-                    "{} meshes have {content}: choose one with --mesh-name: {}",
+                    "{} meshes have {content}: choose one with {}, or as FILE#NAME: {}",
                     candidates.len(),
+                    self.flags,
                     names()
                 ))),
             };
         };
-        let by_number =
-            || -> Option<usize> { name.strip_prefix('#')?.parse().ok().filter(|index| *index < all.len()) };
+        let by_number = || -> Option<usize> {
+            name.strip_prefix('#').unwrap_or(name).parse().ok().filter(|index| *index < all.len())
+        };
         let named: Vec<usize> = (0..all.len()).filter(|i| all[*i].name == name).collect();
         let cause = match named[..] {
             [one] if is_candidate(one) => return Ok(one),
@@ -110,7 +116,7 @@ mod tests {
         let mesh = |(name, targets): &(Option<&str>, usize)| {
             let name = name.map_or(String::new(), |name| format!(r#""name":"{name}","#));
             let targets = vec!["{}"; *targets].join(",");
-            format!(r#"{{{name}"primitives":[{{"attributes":{{}},"targets":[{targets}]}}]}}"#)
+            format!(r#"{{{name}"primitives":[{{"attributes":{{"POSITION":0}},"targets":[{targets}]}}]}}"#)
         };
         let meshes: Vec<_> = meshes.iter().map(mesh).collect();
         Root::parse(format!(r#"{{"asset":{{"version":"2.0"}},"meshes":[{}]}}"#, meshes.join(",")).as_bytes())
@@ -131,13 +137,14 @@ mod tests {
         let many = root(&[(None, 1), (Some("b"), 1), (Some("b"), 3), (Some("#0"), 0)]);
         assert_eq!(
             message(&many, None),
-            "3 meshes have morph targets: choose one with --mesh-name: '#0', 'b', 'b'"
+            "3 meshes have morph targets: choose one with --mesh-name, or as FILE#NAME: '#0', 'b', 'b'"
         );
         assert_eq!(
             message(&many, Some("b")),
             "2 meshes have the name 'b': choose one by its number, such as #1"
         );
         assert_eq!(choose(&many, Some("#2")), Ok(2));
+        assert_eq!(choose(&many, Some("2")), Ok(2));
         assert!(message(&many, Some("#4")).starts_with("there is no mesh '#4'"));
         assert_eq!(
             message(&root(&[]), None),

@@ -100,8 +100,8 @@ fn primitives_are_joined() {
     assert_eq!(
         model.primitives,
         [
-            PrimitiveRange { vertices: 0..4, triangles: 0..2 },
-            PrimitiveRange { vertices: 4..7, triangles: 2..3 }
+            PrimitiveRange { number: 0, vertices: 0..4, triangles: 0..2 },
+            PrimitiveRange { number: 1, vertices: 4..7, triangles: 2..3 }
         ]
     );
     // Names in another number or form are ignored.
@@ -180,29 +180,10 @@ fn other_versions_and_extensions_are_rejected() {
             format!("extensionsRequired: the extension '{name}' is not supported: save the file without it")
         );
     }
-    let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;
-    assert!(with(r#""mode":5"#, draco).starts_with("meshes[0].primitives[0]: the extension 'KHR_draco_"));
-    let meshopt =
-        r#""byteLength":4,"extensions":{"EXT_meshopt_compression":{}}},{"buffer":0,"byteOffset":100"#;
-    let refused = with(
-        r#""byteLength":4},
-  {"buffer":0,"byteOffset":100"#,
-        meshopt,
-    );
-    assert!(refused.starts_with("bufferViews[2]: the extension 'EXT_meshopt_compression'"), "{refused}");
 }
 
 #[test]
 fn errors_name_the_part() {
-    assert_eq!(
-        with(r#""mode":5"#, r#""mode":1"#),
-        "meshes[0].primitives[0]: a primitive of triangles was expected, this one has lines"
-    );
-    assert_eq!(
-        with(r#"{},{"POSITION":4}"#, "{}"),
-        "meshes[0].primitives[1]: it has 1 morph targets, the first primitive 2: all need the same number"
-    );
-    assert_eq!(with(r#"[0.25,0]"#, "[0.25]"), "meshes[0]: 1 default weights for 2 morph targets");
     assert_eq!(with(r#""weights":[0.25,0]"#, r#""weights":[1e999,0]"#).split(':').next(), Some("JSON"));
     assert_eq!(with(r#"[{"POSITION":1}"#, r#"[{"POSITION":9}"#), "accessors[9]: there is no such accessor");
     assert_eq!(
@@ -211,13 +192,11 @@ fn errors_name_the_part() {
     );
     assert!(with(r#"[{"POSITION":1}"#, r#"[{"POSITION":2}"#).contains("must be VEC3 of float32"));
     assert!(with(r#""indices":2"#, r#""indices":0"#).contains("must be SCALAR of unsigned integers"));
-    assert!(with(r#"{"POSITION":0,"#, "{").ends_with("it has no positions"));
     assert!(with("5123", "5122").contains("sparse indices must be unsigned integers"));
     assert!(
         with(r#""byteStride":8"#, r#""byteStride":4"#)
             .contains("the stride of 4 bytes is shorter than an item of 6")
     );
-    assert!(with(r#""byteStride":8"#, r#""byteStride":0"#).contains("the stride of 0 bytes"));
     assert!(
         with(r#""byteOffset":96,"byteLength":4"#, r#""byteOffset":150,"byteLength":4"#)
             .contains("bufferViews[2]: 4 bytes from byte 150 on are not within buffers[0] of 152 bytes")
@@ -244,6 +223,120 @@ fn errors_name_the_part() {
     let mut bytes = binary();
     bytes[48..52].copy_from_slice(&f32::INFINITY.to_le_bytes());
     assert!(parse(&glb(JSON, &bytes), None).unwrap_err().to_string().starts_with("mode 0 of vertex 0 "));
+}
+
+/// What no answer needs refuses no file.
+#[test]
+fn needless_content_is_not_read() {
+    let whole = parse(&glb(JSON, &binary()), None).unwrap();
+    let view = r#""byteOffset":96,"byteLength":4}"#;
+    for (from, to) in [
+        // Extensions that are used, but not required, with the data that they compress.
+        (r#""mode":5"#, r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#),
+        (view, r#""byteOffset":96,"byteLength":4,"extensions":{"EXT_meshopt_compression":{"buffer":9}}}"#),
+        (
+            r#"{"byteLength":152}"#,
+            r#"{"byteLength":152},{"byteLength":9,"extensions":{"EXT_meshopt_compression":{"fallback":true}}}"#,
+        ),
+        (r#""mode":5"#, r#""mode":5,"extensions":{"X_unknown":7}"#),
+        (r#"["KHR_mesh_quantization"],"extensionsRequired""#, r#"["X_unknown","VRM"],"extensionsRequired""#),
+        (r#""extensionsRequired":["#, r#""extensionsRequired":["VRMC_vrm","KHR_xmp_json_ld","#),
+        // Accessors, views and buffers that no position needs.
+        (
+            r#""accessors":["#,
+            r#""images":[{"uri":7}],"samplers":[{"magFilter":"x"}],"textures":7,"materials":[{"name":"m","pbrMetallicRoughness":7}],"accessors":["#,
+        ),
+        (
+            r#"{"POSITION":0,"NORMAL":77}"#,
+            r#"{"POSITION":0,"NORMAL":"x","TANGENT":-1,"_ANY":{},"JOINTS_0":"x","WEIGHTS_0":null}"#,
+        ),
+        (r#""sparse":{"count":2,"#, r#""min":["x"],"max":null,"sparse":{"extras":[],"count":2,"#),
+        (r#""type":"VEC3","sparse""#, r#""type":"VEC3","name":7,"sparse""#),
+        // Primitives without triangles, in any place.
+        (
+            r#""primitives":["#,
+            r#""primitives":[{"attributes":{"POSITION":99},"mode":1},{"attributes":{"NORMAL":0}},{"attributes":{"POSITION":0},"mode":0},"#,
+        ),
+        // Empty values as null.
+        (r#""name":"face","#, r#""name":"face","extensions":null,"#),
+        (
+            r#"{"POSITION":3},"targets""#,
+            r#"{"POSITION":3},"extensions":null,"extras":null,"indices":null,"mode":null,"targets""#,
+        ),
+        (
+            r#""buffer":0,"byteOffset":0,"#,
+            r#""buffer":0,"byteOffset":null,"byteStride":0,"extensions":null,"#,
+        ),
+    ] {
+        assert_eq!(JSON.matches(from).count(), 1, "{from}");
+        let read = parse(&glb(&JSON.replace(from, to), &binary()), None);
+        let mut read = read.unwrap_or_else(|error| panic!("{to}: {error}"));
+        let first = read.primitives[0].number;
+        assert_eq!(first, if from == r#""primitives":["# { 3 } else { 0 });
+        read.primitives.iter_mut().for_each(|range| range.number -= first);
+        assert_eq!(read, whole, "{to}");
+    }
+    let two = JSON.replace(r#""version":"2.0""#, r#""version":"2""#);
+    assert_eq!(parse(&glb(&two, &binary()), None).unwrap(), whole);
+}
+
+/// Data that exist only compressed are never read as zeros.
+#[test]
+fn compressed_data_without_others_are_refused() {
+    let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;
+    let json = JSON.replace(r#""mode":5"#, draco);
+    for accessor in [
+        r#"{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min""#,
+        r#"{"bufferView":2,"componentType":5121"#,
+    ] {
+        let without = accessor.replace(r#""bufferView":0,"#, "").replace(r#""bufferView":2,"#, "");
+        let refused = message(&json.replace(accessor, &without));
+        assert_eq!(
+            refused,
+            "meshes[0].primitives[0]: its numbers exist only compressed by the extension KHR_draco_mesh_compression, which \
+             is not supported: save the file without it"
+        );
+    }
+    for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let buffer = format!(r#"{{"byteLength":152,"extensions":{{"{name}":{{"fallback":true}}}}}}"#);
+        let refused = with(r#"{"byteLength":152}"#, &buffer);
+        assert!(
+            refused.starts_with("buffers[0]: its bytes exist only compressed by the extension"),
+            "{refused}"
+        );
+    }
+}
+
+#[test]
+fn missing_morph_targets_move_nothing() {
+    let whole = parse(&glb(JSON, &binary()), None).unwrap();
+    assert!(whole.notes.is_empty());
+    let note = "meshes[0]: its primitives have 1 to 2 morph targets; the missing ones move nothing";
+    // The second target of the first primitive moves nothing in the file, nor does the first of the second.
+    let json = JSON.replace(r#"[{"POSITION":1},{"NORMAL":9}]"#, r#"[{"POSITION":1}]"#);
+    let read = parse(&glb(&json, &binary()), None).unwrap();
+    assert_eq!(read.notes, [note]);
+    assert_eq!(MorphModel { notes: Vec::new(), ..read }, whole);
+    let first = JSON.replace(r#"{"POSITION":3},"targets":[{},{"POSITION":4}]"#, r#"{"POSITION":3}"#);
+    let first = parse(&glb(&first, &binary()), None).unwrap();
+    assert_eq!(first.notes, [note.replace("1 to 2", "0 to 2")]);
+    assert_eq!(first.modes.of_vertex(0), whole.modes.of_vertex(0));
+    assert_eq!(first.modes.of_vertex(4), [DVec3::ZERO; 2]);
+    // Weights are those of the targets that there are.
+    for (weights, expected) in [("[0.25]", [0.25, 0.0]), ("[0.25,0.5,9]", [0.25, 0.5])] {
+        let read = parse(&glb(&JSON.replace("[0.25,0]", weights), &binary()), None).unwrap();
+        assert_eq!(read.default_weights, expected);
+        assert_eq!(read.notes.len(), 1);
+        assert!(read.notes[0].contains("default weights for 2 morph targets; missing ones are 0"));
+    }
+    // A mesh at rest needs no targets: they may have another number, and be damaged.
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("face.VRM");
+    let json = JSON.replace(r#"{},{"POSITION":4}"#, r#"{"POSITION":99}"#);
+    fs::write(&path, glb(&json, &binary())).unwrap();
+    let mesh = crate::load_mesh(&path, None).unwrap();
+    assert_eq!(mesh, whole.mesh);
+    assert!(is_gltf(&path));
 }
 
 /// Counts that exceed the bytes of the file are errors, without large allocations.

@@ -1,5 +1,7 @@
 //! Triangles of a primitive, from its list of corners.
 
+use super::json::{Mesh, Primitive};
+
 /// Topology of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Topology {
@@ -45,6 +47,21 @@ impl Topology {
             Self::Fan => Some(corners[1..].windows(2).map(|pair| [pair[0], pair[1], corners[0]]).collect()),
         }
     }
+}
+
+/// Whether a primitive has triangles. Points and lines cannot collide, and players draw no primitive without positions.
+pub(super) fn has_triangles(primitive: &Primitive) -> bool {
+    Topology::from_mode(primitive.mode).is_ok() && primitive.attributes.position.is_some()
+}
+
+/// The primitives of a mesh that have triangles, with their numbers in the mesh.
+pub(super) fn with_triangles(mesh: &Mesh) -> impl Iterator<Item = (usize, &Primitive)> {
+    mesh.primitives.iter().enumerate().filter(|(_, primitive)| has_triangles(primitive))
+}
+
+/// Number of morph targets of a mesh: the largest of its primitives'. Those with fewer do not move in the others.
+pub(super) fn morph_targets(mesh: &Mesh) -> usize {
+    with_triangles(mesh).map(|(_, primitive)| primitive.targets.len()).max().unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ fn parse_all(bytes: &[u8]) {
     one_line(&gltf::parse(bytes, None));
     one_line(&gltf::parse(bytes, Some("#0")));
     one_line(&gltf::parse_scene(bytes));
+    one_line(&gltf::parse_placed_mesh(bytes, None));
     one_line(&model_from_bytes(bytes));
     one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
@@ -204,6 +205,7 @@ proptest! {
     fn exchanged_numbers(text in swapped_gltf()) {
         one_line(&gltf::parse(text.as_bytes(), None));
         one_line(&gltf::parse_scene(text.as_bytes()));
+        one_line(&gltf::parse_placed_mesh(text.as_bytes(), None));
     }
 
     #[test]

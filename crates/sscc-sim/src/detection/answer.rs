@@ -12,8 +12,10 @@ pub struct DetectionAnswer<'a> {
     pub file: &'a Path,
     /// The mesh, at rest.
     pub mesh: &'a TriMesh,
-    /// Number of the node, in an animation.
+    /// Number of the node, in an animation, or where several nodes show the mesh and there is another mesh.
     pub node: Option<usize>,
+    /// Number of the node of the other mesh, where several show it.
+    pub other_node: Option<usize>,
     /// Number of the q, frame or time, counted from 0; of continuous queries that of the start.
     pub index: usize,
     /// Its time (s), in an animation.

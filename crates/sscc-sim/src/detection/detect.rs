@@ -8,20 +8,24 @@ use sscc::TriMesh;
 
 use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
+use super::mesh_source::MeshSource;
 use super::moving_mesh::MovingMesh;
-use super::request::{Detection, MeshMotion, OtherMesh};
+use super::request::{Detection, MeshMotion};
+use super::sides::Sides;
 use super::worker::{QueryResult, Worker};
 use crate::error::Result;
 use crate::watch::check_cancelled;
 use crate::{SimError, Stage, Watch, available_threads};
 
-/// Calls `take` with the answer to each query: mesh by mesh, node by node, frame by frame. `take` can end that early.
+/// Calls `take` with the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh), frame by
+/// frame. `take` can end that early.
 ///
 /// Frames from files are checked before the first answer. Memory is that of one mesh and a few frames for each thread;
 /// meshes of a folder of frames are kept up to 1 GiB.
 ///
 /// # Errors
-/// When a file cannot be read or does not fit its mesh; when a request is contradictory; when positions are not finite;
+/// When a file cannot be read or does not fit its mesh; when a request is contradictory, or would compare a mesh with
+/// itself; when positions are not finite;
 /// when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit; when `watch` cancels; when `take` fails.
 pub fn detect<E: From<SimError>>(
     request: &Detection,
@@ -34,28 +38,25 @@ pub fn detect<E: From<SimError>>(
         return at_rest(request, watch, take);
     }
     for (number, file) in request.meshes.iter().enumerate() {
-        let (meshes, other) = load(file, request, watch)?;
-        let frames = meshes.iter().chain(&other).map(MovingMesh::frames).max().unwrap_or(1);
+        let mut sides = Sides::load(file, request, watch)?;
+        let frames = sides.frames;
         let each = if request.is_continuous { frames - 1 } else { frames };
-        let queries = each * meshes.len();
+        let queries = each * sides.len();
         watch.begin(Stage::Detection);
-        for (before, mesh) in meshes.iter().enumerate() {
-            let is_last = number + 1 == request.meshes.len() && before + 1 == meshes.len();
+        for before in 0..sides.len() {
+            let (mesh, other) = sides.get(before)?;
+            let (mesh, other) = (&*mesh, other.as_deref());
+            let is_last = number + 1 == request.meshes.len() && before + 1 == sides.len();
             let last = is_last.then_some(each - 1);
             let taken = in_order(
                 each,
                 request.threads.unwrap_or_else(available_threads),
-                || Worker::new(request, mesh, other.as_ref(), last),
+                || Worker::new(request, mesh, other, last),
                 Worker::answer,
                 |index, found| {
                     check_cancelled(watch)?;
-                    let taken = take(&answer(
-                        mesh.into(),
-                        other.as_ref().map(AnswerSource::from),
-                        index,
-                        &found?,
-                        [queries, frames],
-                    ))?;
+                    let other = other.map(AnswerSource::from);
+                    let taken = take(&answer(mesh.into(), other, index, &found?, [queries, frames]))?;
                     watch.report(before * each + index + 1, queries);
                     Ok::<_, E>(taken)
                 },
@@ -77,7 +78,9 @@ fn at_rest<E: From<SimError>>(
     watch.begin(Stage::Detection);
     let count = request.meshes.len();
     let work = |(): &mut (), index: usize| {
-        let mesh = MovingMesh::at_rest(&request.meshes[index], request, watch)?;
+        let source = MeshSource::read(&request.meshes[index], request.mesh_name.as_deref(), watch)?;
+        source.warn_of_other_places(watch);
+        let mesh = MovingMesh::at_rest(&source, 0, request, watch)?;
         let last = (index + 1 == count).then_some(0);
         let found = Worker::new(request, &mesh, None, last).answer(0)?;
         // Its detector is no longer needed: it is far larger than the mesh.
@@ -131,6 +134,7 @@ fn answer<'a>(
         file: mesh.file,
         mesh: mesh.mesh,
         node: mesh.node,
+        other_node: other.and_then(|other| other.node),
         index,
         time: mesh.times.map(|times| times[index]),
         pairs: &found.pairs,
@@ -167,48 +171,4 @@ fn check_request(request: &Detection) -> Result<()> {
         return Err(SimError::refused(other.mesh.display(), cause));
     }
     Ok(())
-}
-
-/// Whether the file is glTF, or is missing, which its reader reports.
-fn can_be_animated(file: &Path) -> bool {
-    let ending = file.extension().map(|e| e.to_ascii_lowercase());
-    !file.exists() || ending.is_some_and(|ending| ending == "glb" || ending == "gltf")
-}
-
-/// Loads the meshes of a file, and the other mesh.
-fn load<'w>(
-    file: &Path,
-    request: &Detection,
-    watch: &'w dyn Watch,
-) -> Result<(Vec<MovingMesh<'w>>, Option<MovingMesh<'w>>)> {
-    let meshes = match &request.motion {
-        MeshMotion::Rest => vec![MovingMesh::at_rest(file, request, watch)?],
-        MeshMotion::Frames(frames) => vec![MovingMesh::with_frames(file, frames, request, watch)?],
-        MeshMotion::Animation(animated) if can_be_animated(file) => {
-            MovingMesh::animated(file, animated, request, watch)?
-        }
-        MeshMotion::Animation(_) => {
-            let cause = "only .glb and .gltf files have animations: give --frames";
-            return Err(SimError::refused(file.display(), cause));
-        }
-    };
-    let other = match &request.against {
-        None => None,
-        Some(OtherMesh { mesh, frames: None }) => Some(MovingMesh::at_rest(mesh, request, watch)?),
-        Some(OtherMesh { mesh, frames: Some(frames) }) => {
-            Some(MovingMesh::with_frames(mesh, frames, request, watch)?)
-        }
-    };
-    let counts = (meshes[0].frames(), other.as_ref().map_or(1, MovingMesh::frames));
-    match counts {
-        (1, 1) if request.is_continuous => {
-            Err(SimError::refused(file.display(), "there is one frame; a motion needs at least two"))
-        }
-        (n, m) if n != m && n > 1 && m > 1 => {
-            let cause =
-                format!("there are {n} frames, but {m} of the other mesh: as many are needed, or one");
-            Err(SimError::refused(file.display(), cause))
-        }
-        _ => Ok((meshes, other)),
-    }
 }

@@ -7,15 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec3;
 use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
-use sscc_io::{FormatError, FrameReader, IoError, LoadedMesh, load_mesh_with_warnings, splits_vertices};
+use sscc_io::{FormatError, FrameReader, IoError, splits_vertices};
 
+use super::mesh_source::{MAX_WEIGHT_ERROR, MeshSource};
 use super::request::{AnimationMotion, Detection};
 use super::weld_classes::WeldClasses;
 use crate::error::{At, Result};
 use crate::watch::{Stage, Watch, check_cancelled};
-
-/// Weights whose sums differ from 1 by more than this are no rounding.
-const MAX_WEIGHT_ERROR: f64 = 1e-2;
 
 /// A mesh that moves.
 pub(super) struct MovingMesh<'w> {
@@ -45,20 +43,25 @@ struct Evaluation {
 }
 
 impl<'w> MovingMesh<'w> {
-    /// Loads a mesh at rest.
-    pub fn at_rest(file: &Path, request: &Detection, watch: &'w dyn Watch) -> Result<Self> {
-        Self::with_motion(file, request, watch, |_, _| Ok(Motion::Rest))
+    /// Returns a mesh at rest, at one of its places.
+    pub fn at_rest(
+        source: &MeshSource,
+        place: usize,
+        request: &Detection,
+        watch: &'w dyn Watch,
+    ) -> Result<Self> {
+        Self::with_motion(source, place, request, watch, |_, _| Ok(Motion::Rest))
     }
 
-    /// Loads a mesh with frames, and checks all frames.
+    /// Returns a mesh with frames, and checks all frames. Nodes do not move frames, which have positions of their own.
     pub fn with_frames(
-        file: &Path,
+        source: &MeshSource,
         frames: &Path,
         request: &Detection,
         watch: &'w dyn Watch,
     ) -> Result<Self> {
-        Self::with_motion(file, request, watch, |mesh, mut classes| {
-            let mut reader = FrameReader::open(frames, mesh, file)?;
+        Self::with_motion(source, 0, request, watch, |mesh, mut classes| {
+            let mut reader = FrameReader::open(frames, mesh, &source.file)?;
             watch.begin(Stage::Reading);
             let mut positions = Vec::new();
             for frame in 0..reader.len() {
@@ -74,21 +77,21 @@ impl<'w> MovingMesh<'w> {
     }
 
     fn with_motion(
-        file: &Path,
+        source: &MeshSource,
+        place: usize,
         request: &Detection,
         watch: &'w dyn Watch,
         motion: impl FnOnce(&TriMesh, Option<&mut WeldClasses>) -> Result<Motion>,
     ) -> Result<Self> {
-        let name = request.mesh_name.as_deref().filter(|_| request.meshes.iter().any(|mesh| mesh == file));
-        let LoadedMesh { mesh, warnings, .. } = load_mesh_with_warnings(file, name)?;
-        warnings.iter().for_each(|warning| watch.warn(&format!("{}: {warning}", file.display())));
+        let file = source.file.as_path();
+        let mesh = source.mesh(place, watch)?;
         let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
-        let mut classes = weld.then(|| WeldClasses::at(mesh.rest_positions()));
+        let mut classes = weld.then(|| WeldClasses::at(source.own_positions()));
         let motion = motion(&mesh, classes.as_mut())?;
         // Every pair between two meshes counts.
         let groups = match request.against {
             Some(_) => None,
-            None => request.groups.of_mesh(file, name, mesh.faces().len())?,
+            None => request.groups.of_mesh(file, source.name.as_deref(), mesh.faces().len())?,
         };
         let filter = filter(request, weld, groups);
         let make = |filter: &ContactFilter| match &classes {
@@ -96,7 +99,8 @@ impl<'w> MovingMesh<'w> {
             None => Detector::with_filter(&mesh, filter),
         };
         let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
-        Ok(Self { file: file.to_owned(), node: None, mesh, detector, motion, watch })
+        let node = source.node(place).filter(|_| request.against.is_some());
+        Ok(Self { file: file.to_owned(), node, mesh, detector, motion, watch })
     }
 
     /// Loads the nodes of an animation.
@@ -107,6 +111,7 @@ impl<'w> MovingMesh<'w> {
         watch: &'w dyn Watch,
     ) -> Result<Vec<Self>> {
         let scene = Arc::new(read_scene(file)?);
+        scene.notes().iter().for_each(|note| watch.warn(&format!("{}: {note}", file.display())));
         let animation = scene.find_animation(&animated.animation).map_err(|error| in_file(error, file))?;
         let info = &scene.animations()[animation];
         if info.channels > 0 && info.extension_channels > 0 {
@@ -178,6 +183,7 @@ impl<'w> MovingMesh<'w> {
         let file = self.file.display();
         match (self.node, self.time(frame)) {
             (Some(node), Some(time)) => format!("{file}: node {node} at {time} s"),
+            (Some(node), None) => format!("{file}: node {node}"),
             _ if self.frames() > 1 => format!("{file}: frame {frame}"),
             _ => file.to_string(),
         }

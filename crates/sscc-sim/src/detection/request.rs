@@ -11,9 +11,10 @@ use crate::GroupRules;
 /// Meshes, their motion, and which pairs of triangles count.
 #[derive(Clone, Debug)]
 pub struct Detection {
-    /// Files of meshes; each is answered by itself. Frames and another mesh need exactly one.
+    /// Files of meshes; each is answered by itself. Frames and another mesh need exactly one. `FILE#NAME` names a mesh of
+    /// a glTF file ([`sscc_io::split_mesh_name`]).
     pub meshes: Vec<PathBuf>,
-    /// Name of the mesh in a glTF file with several meshes.
+    /// Name of the mesh in a glTF file with several meshes; of `meshes` alone, not of the other mesh.
     pub mesh_name: Option<String>,
     /// Motion of the meshes.
     pub motion: MeshMotion,
@@ -65,7 +66,8 @@ impl Default for Detection {
 /// Motion of a mesh.
 #[derive(Clone, Debug)]
 pub enum MeshMotion {
-    /// The mesh as it is in its file.
+    /// The mesh as it is in its file: of glTF at the first node that shows it. With another mesh, every node of both meshes
+    /// has an answer.
     Rest,
     /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
     Frames(PathBuf),
@@ -105,8 +107,10 @@ impl Default for Times {
 /// A mesh to collide with.
 #[derive(Clone, Debug)]
 pub struct OtherMesh {
-    /// File of the mesh.
+    /// File of the mesh; `FILE#NAME` names a mesh of a glTF file.
     pub mesh: PathBuf,
+    /// Name of the mesh in a glTF file with several meshes.
+    pub mesh_name: Option<String>,
     /// Its frames, as many as those of the mesh; none: it does not move.
     pub frames: Option<PathBuf>,
 }

@@ -86,6 +86,7 @@ pub fn check_rows<E: From<SimError>>(
                 file: Path::new(""),
                 mesh: requests.model.mesh(),
                 node: None,
+                other_node: None,
                 index,
                 time: None,
                 pairs: &found.pairs,

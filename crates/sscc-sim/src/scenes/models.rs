@@ -151,7 +151,8 @@ fn shape(model: &Section<'_>, folder: &Path, is_linear: Option<bool>) -> Result<
         (None, Some(file)) => folder.join(file),
     };
     let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let has_modes = modes.is_some() || ["safetensors", "glb", "gltf", "npz"].contains(&ending.as_str());
+    let has_modes =
+        modes.is_some() || ["safetensors", "glb", "gltf", "vrm", "npz"].contains(&ending.as_str());
     match (has_modes, solid) {
         (true, None) => Ok(Shape::Model(ModelFiles { path: file, modes, forces, is_linear })),
         (true, Some(_)) => Err(model.refused("solid", "the file has its modes already: leave this key out")),

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use sscc::{Certificates, Pair, Progress, Query, ReducedModel};
-use sscc_io::{LoadedModel, write_ply_pose};
+use sscc_io::gltf::PlacedMesh;
+use sscc_io::{IoError, LoadedModel, write_ply_pose};
 
 use super::sweep_row::SweepRow;
 use crate::error::{At, Result};
@@ -85,22 +86,35 @@ pub fn sweep_model(
     let sweeps = query.sweep_modes(&q, &ranges, request.threads, progress)?;
     let rows: Vec<SweepRow> =
         sweeps.into_iter().map(|sweep| SweepRow::new(sweep, &loaded.mode_names)).collect();
+    let Some(folder) = &request.pose else { return Ok(rows) };
+    let placement = loaded.placement()?;
     for row in &rows {
-        if let (Some(folder), Some(hit)) = (&request.pose, row.first_hit) {
+        if let Some(hit) = row.first_hit {
             let mut q = q.clone();
             q[row.mode] = hit;
             let path = folder.join(row.file_name());
-            write_pose(&path, &loaded.model, &q, &row.pairs)?;
+            write_pose(&path, &loaded.model, placement.as_ref(), &q, &row.pairs)?;
         }
     }
     Ok(rows)
 }
 
-/// Writes the shape at q with the triangles of these pairs marked.
-fn write_pose(path: &Path, model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> Result<()> {
+/// Writes the shape at q, where the file puts it, with the triangles of these pairs marked.
+fn write_pose(
+    path: &Path,
+    model: &ReducedModel,
+    placement: Option<&PlacedMesh>,
+    q: &[f64],
+    pairs: &[Pair],
+) -> Result<()> {
     let mut colliding = vec![false; model.mesh().faces().len()];
     pairs.iter().flat_map(|(i, j)| [*i, *j]).for_each(|t| colliding[t as usize] = true);
-    let positions = model.positions(q).in_file(path)?;
+    let mut positions = model.positions(q).in_file(path)?;
+    if let Some(placement) = placement {
+        placement
+            .place(0, &mut positions)
+            .map_err(|error| IoError::Format { path: path.to_owned(), error })?;
+    }
     Ok(write_ply_pose(path, model.mesh(), &positions, &colliding)?)
 }
 

@@ -90,9 +90,10 @@ impl MeshReport {
         }
         self.is_continuous = answer.times.is_some();
         self.is_between = answer.other.is_some();
-        for shape in [shape].into_iter().chain(answer.other) {
+        let nodes = [answer.node, answer.other_node];
+        for (shape, node) in [shape].into_iter().chain(answer.other).zip(nodes) {
             let file = one_line(&file_name(shape.file));
-            let name = match answer.node {
+            let name = match node {
                 Some(node) => format!("node {node}"),
                 None => file.clone(),
             };

@@ -43,6 +43,7 @@ fn answer<'a>(
         file,
         mesh,
         node: None,
+        other_node: None,
         index,
         time: None,
         pairs,

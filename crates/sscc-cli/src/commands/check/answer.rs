@@ -10,9 +10,12 @@ pub struct Answer<'a> {
     /// The mesh, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// The node and the time, in an animation.
+    /// The node and the time, in an animation; the node also where several show the mesh, with --against.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node: Option<usize>,
+    /// The node of the other mesh, where several show it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against_node: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     pub index: usize,
@@ -43,6 +46,7 @@ impl<'a> Answer<'a> {
         Self {
             file: has_files.then(|| found.file.display().to_string()),
             node: found.node,
+            against_node: found.other_node,
             time: found.time,
             index: found.index,
             norm: found.norm,

@@ -128,7 +128,11 @@ fn request(args: &Check) -> Detection {
         },
     });
     let frames = motion.frames.clone().map(MeshMotion::Frames);
-    let other = |mesh: &Path| OtherMesh { mesh: mesh.to_owned(), frames: motion.against_frames.clone() };
+    let other = |mesh: &Path| OtherMesh {
+        mesh: mesh.to_owned(),
+        mesh_name: motion.against_mesh.clone(),
+        frames: motion.against_frames.clone(),
+    };
     Detection {
         meshes: [&args.model.path].into_iter().chain(&args.meshes).cloned().collect(),
         mesh_name: args.model.mesh_name.clone(),

@@ -64,7 +64,7 @@ fn check_model(args: &Check) -> Result<bool> {
         if !is_welded {
             hint.add(found);
         }
-        shapes::write_curves(args.curves.as_deref(), found)?;
+        shapes::write_placed_curves(args.curves.as_deref(), found, &loaded)?;
         printer.answer(found)
     };
     let requests = RowQueries {
@@ -78,7 +78,10 @@ fn check_model(args: &Check) -> Result<bool> {
     check_rows(&mut query, &requests, &bar, take)?;
     drop(bar);
     if let Some(path) = &args.pose {
-        let positions = model.positions(&rows.data).with_context(|| path.display().to_string())?;
+        let mut positions = model.positions(&rows.data).with_context(|| path.display().to_string())?;
+        if let Some(placement) = loaded.placement()? {
+            placement.place(0, &mut positions).with_context(|| path.display().to_string())?;
+        }
         shapes::write_pose(path, model.mesh(), &positions, query.pairs())?;
     }
     let colliding = printer.finish()?;

@@ -6,11 +6,12 @@ use std::path::Path;
 use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
-use sscc_io::{write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
+use sscc_io::{LoadedModel, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
 use sscc_sim::{ContactOptions, DetectionAnswer};
 
 use crate::args::Check;
 use crate::load;
+use crate::output::note;
 
 /// Refuses files that cannot be written, before the first query.
 pub fn check(args: &Check) -> Result<()> {
@@ -49,6 +50,25 @@ pub fn write_pose(path: &Path, mesh: &TriMesh, positions: &[DVec3], pairs: &[Pai
     }
     let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
     Ok(write(path, mesh, positions, &colliding)?)
+}
+
+/// Writes the contact curves of an answer about a model, where the file puts the model. With a skin, which has no single
+/// transform, they stay in the coordinates of the mesh.
+pub fn write_placed_curves(
+    path: Option<&Path>,
+    found: &DetectionAnswer<'_>,
+    loaded: &LoadedModel,
+) -> Result<()> {
+    let (Some(path), Some(curves)) = (path, found.curves) else { return Ok(()) };
+    let Some(placement) = loaded.placement()? else { return write_curves(Some(path), found) };
+    let Some(transform) = placement.transform(0) else {
+        note("a skin deforms the model: the contact curves are in the coordinates of its mesh");
+        return write_curves(Some(path), found);
+    };
+    let mut placed = curves.clone();
+    let points = placed.curves.iter_mut().flat_map(|curve| &mut curve.points);
+    points.for_each(|point| point.position = transform.transform_point3(point.position));
+    write_curves(Some(path), &DetectionAnswer { curves: Some(&placed), ..*found })
 }
 
 /// Writes the contact curves of an answer that has them.

@@ -28,9 +28,10 @@ impl Answer<'_> {
     fn place(&self) -> String {
         let file = self.file.as_ref().map(|file| format!("{file}  ")).unwrap_or_default();
         let node = self.node.map(|node| format!("node {node:<4} ")).unwrap_or_default();
+        let against = self.against_node.map(|node| format!("against node {node:<4} ")).unwrap_or_default();
         let time = self.time.map(|time| format!("  {time:.4} s")).unwrap_or_default();
         let norm = self.norm.map(|norm| format!("  |z| {:<10}", length(norm))).unwrap_or_default();
-        format!("{file}{node}{:>6}{time}{norm}", self.index)
+        format!("{file}{node}{against}{:>6}{time}{norm}", self.index)
     }
 
     /// Returns the line of one of several queries.

@@ -54,7 +54,7 @@ impl Report {
     fn of(path: &Path) -> Result<Self, IoError> {
         match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
             "safetensors" => {}
-            "glb" | "gltf" => return Ok(Self::Gltf(Meshes::of(path)?)),
+            "glb" | "gltf" | "vrm" => return Ok(Self::Gltf(Meshes::of(path)?)),
             "npz" => {
                 let LoadedModel { model, info, mode_weights, .. } =
                     load_model_with(path, &LoadOptions::default())?;

@@ -1,11 +1,13 @@
 //! The scene of a glTF file: nodes, meshes, skins and animations.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::animation::{Animation, AnimationInfo};
 use super::mesh_node::MeshNode;
 use super::nodes::Nodes;
 use super::skin::Skin;
+use crate::FormatError;
 
 /// All nodes with a mesh, skins and animations of a glTF file. [`AnimatedScene::pose`] evaluates them at a time.
 ///
@@ -30,15 +32,23 @@ use super::skin::Skin;
 pub struct AnimatedScene {
     pub(super) nodes: Nodes,
     pub(super) mesh_nodes: Vec<MeshNode>,
-    pub(super) skins: Vec<Skin>,
-    pub(super) animations: Vec<Animation>,
+    /// Skins that nodes with a mesh use, by their numbers.
+    pub(super) skins: BTreeMap<usize, Skin>,
+    /// Animations; the errors of those that are malformed.
+    pub(super) animations: Vec<Result<Animation, FormatError>>,
     pub(super) infos: Vec<AnimationInfo>,
+    pub(super) notes: Vec<String>,
 }
 
 impl AnimatedScene {
     /// Nodes that show a mesh with triangles, in file order.
     pub fn mesh_nodes(&self) -> &[MeshNode] {
         &self.mesh_nodes
+    }
+
+    /// What the meshes lack by the standard, and how it was understood: one line each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Animations, in file order.

@@ -18,10 +18,18 @@ pub struct AnimationInfo {
     pub first_time: f64,
     /// Time of the last key frame of any channel (s).
     pub last_time: f64,
-    /// Number of channels that move nodes. An animation without any has the times 0, and cannot be evaluated.
+    /// Number of channels that move nodes. An animation without any, or a malformed one, has the times 0, and cannot be
+    /// evaluated.
     pub channels: usize,
     /// Number of channels of extensions, which are not evaluated.
     pub extension_channels: usize,
+}
+
+impl AnimationInfo {
+    /// Of an animation that cannot be evaluated.
+    pub(super) fn unreadable(name: Option<String>) -> Self {
+        Self { name, first_time: 0.0, last_time: 0.0, channels: 0, extension_channels: 0 }
+    }
 }
 
 /// Channels of an animation, sorted by node.

@@ -1,4 +1,4 @@
-//! Structure of a glTF file's JSON, as far as nodes, skins and animations need it.
+//! Structure of a glTF file's JSON, as far as nodes, scenes, skins and animations need it.
 //!
 //! Fields are boxed where most entries leave them out: the format allows empty nodes, which take 3 bytes of text.
 
@@ -7,22 +7,51 @@ use std::fmt;
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use crate::gltf::json::or_default;
+
+/// Nodes and scenes, for meshes at rest.
+#[derive(Deserialize)]
+pub(super) struct PlacedRoot {
+    #[serde(default, deserialize_with = "or_default")]
+    pub nodes: Vec<Node>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub scenes: Vec<Scene>,
+    /// The default scene.
+    pub scene: Option<usize>,
+}
+
+/// The root nodes of a scene.
+#[derive(Deserialize)]
+pub(super) struct Scene {
+    #[serde(default, deserialize_with = "or_default")]
+    pub nodes: Box<[u32]>,
+}
+
+/// Skins, for meshes at rest.
+#[derive(Default, Deserialize)]
+pub(super) struct SkinRoot {
+    #[serde(default, deserialize_with = "or_default")]
+    pub meshes: Vec<Mesh>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub skins: Vec<Skin>,
+}
+
 #[derive(Deserialize)]
 pub(super) struct SceneRoot {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub nodes: Vec<Node>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub meshes: Vec<Mesh>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub skins: Vec<Skin>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub animations: Vec<Animation>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Node {
     pub name: Option<Box<str>>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub children: Box<[u32]>,
     pub mesh: Option<u32>,
     pub skin: Option<u32>,
@@ -32,7 +61,7 @@ pub(super) struct Node {
     /// Quaternion x, y, z, w.
     pub rotation: Option<Box<[f64; 4]>>,
     pub scale: Option<Box<[f64; 3]>>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub weights: Box<[f64]>,
 }
 
@@ -40,6 +69,14 @@ pub(super) struct Node {
 #[derive(Deserialize)]
 pub(super) struct Mesh {
     pub primitives: Vec<Primitive>,
+}
+
+impl Mesh {
+    /// Returns the accessors of all joints and weights; some may not exist.
+    pub fn skin_accessors(&self) -> impl Iterator<Item = usize> {
+        let attributes = self.primitives.iter().map(|primitive| &primitive.attributes);
+        attributes.flat_map(|a| a.joints.iter().chain(&a.weights).map(|(_, accessor)| *accessor))
+    }
 }
 
 #[derive(Deserialize)]

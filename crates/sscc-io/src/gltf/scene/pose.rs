@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat3, DMat4, DVec3};
-use sscc::limits;
+use glam::{DMat4, DVec3};
 
 use super::animated_scene::AnimatedScene;
 use super::animation::NodeStates;
-use super::shape::SkinWeights;
+use super::mesh_node::MeshNode;
+use super::place::{Place, SkinWeights, check_positions};
 use crate::FormatError;
 
 /// A scene at one time of one animation: all node transforms and morph weights.
@@ -25,7 +25,7 @@ impl AnimatedScene {
     /// that key frame's. Costs O(nodes + channels log key frames).
     ///
     /// # Errors
-    /// When there is no such animation, it has no key frames, or the time is NaN.
+    /// When there is no such animation, it has no key frames or is malformed, or the time is NaN.
     pub fn pose(&self, animation: Option<usize>, time: f64) -> Result<ScenePose<'_>, FormatError> {
         let moved = match animation {
             None => NodeStates { transforms: Vec::new(), weights: BTreeMap::new() },
@@ -35,6 +35,7 @@ impl AnimatedScene {
                 let Some(animation) = self.animations.get(number) else {
                     return Err(refused(format!("there is no such animation; the file has {count}")));
                 };
+                let animation = animation.as_ref().map_err(FormatError::clone)?;
                 if self.infos[number].channels == 0 {
                     let cause = match self.infos[number].extension_channels {
                         0 => "it has no key frames",
@@ -72,16 +73,7 @@ impl ScenePose<'_> {
     /// Whether a scale of 0 flattens triangles of the mesh at a node to segments or points: its own, one of its ancestors',
     /// or one of a joint of its skin.
     pub fn is_flattened(&self, node: usize) -> bool {
-        let mesh_nodes = &self.scene.mesh_nodes;
-        let Ok(at) = mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node) else { return false };
-        let mesh_node = &mesh_nodes[at];
-        match (&mesh_node.shape.influences, mesh_node.skin) {
-            (Some(influences), Some(skin)) => {
-                let skin = &self.scene.skins[skin];
-                influences.joints.iter().any(|joint| is_flat(&skin.joint_transform(*joint, &self.world)))
-            }
-            _ => is_flat(&self.world[node]),
-        }
+        self.mesh_node(node).is_some_and(|mesh_node| self.place(mesh_node).is_flat())
     }
 
     /// Replaces `positions` by the world positions (V, double precision) of the mesh at a node, by its index in the
@@ -100,53 +92,24 @@ impl ScenePose<'_> {
         positions: &mut Vec<DVec3>,
     ) -> Result<(), FormatError> {
         positions.clear();
-        let refused = |cause: String| Err(FormatError::part(format!("nodes[{node}]"), cause));
-        let mesh_nodes = &self.scene.mesh_nodes;
-        let Ok(at) = mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node) else {
-            return refused("it shows no mesh with triangles, or does not exist".into());
+        let place = format!("nodes[{node}]");
+        let Some(mesh_node) = self.mesh_node(node) else {
+            return Err(FormatError::part(place, "it shows no mesh with triangles, or does not exist"));
         };
-        let mesh_node = &mesh_nodes[at];
-        let shape = &mesh_node.shape;
         let morph_weights = self.weights.get(&node).unwrap_or(&mesh_node.weights);
-        match (&shape.influences, mesh_node.skin) {
-            (Some(influences), Some(skin)) => {
-                let skin = &self.scene.skins[skin];
-                let transform = |joint: &u32| skin.joint_transform(*joint, &self.world);
-                let joints: Vec<DMat4> = influences.joints.iter().map(transform).collect();
-                shape.skinned(influences, morph_weights, &joints, weights, positions);
-            }
-            _ => shape.transformed(morph_weights, &self.world[node], positions),
-        }
-        match positions.iter().position(|x| !limits::contains(*x)) {
-            Some(vertex) => {
-                refused(format!("the position of vertex {vertex} (counted from 0) is not finite"))
-            }
-            None => Ok(()),
-        }
+        mesh_node.shape.morphed_positions(morph_weights, positions);
+        self.place(mesh_node).apply(weights, positions);
+        check_positions(positions, &place)
     }
-}
 
-/// Whether a transform maps space to a plane, a line or a point, up to rounding.
-fn is_flat(transform: &DMat4) -> bool {
-    let axes = DMat3::from_mat4(*transform);
-    let lengths = axes.x_axis.length() * axes.y_axis.length() * axes.z_axis.length();
-    axes.determinant().abs() <= 1e-14 * lengths
-}
+    fn mesh_node(&self, node: usize) -> Option<&MeshNode> {
+        let mesh_nodes = &self.scene.mesh_nodes;
+        let at = mesh_nodes.binary_search_by_key(&node, |mesh_node| mesh_node.node).ok()?;
+        Some(&mesh_nodes[at])
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DQuat;
-
-    #[test]
-    fn scales_of_zero_are_flat() {
-        let turn = DMat4::from_quat(DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(1.1));
-        let scaled = |x: f64, y: f64, z: f64| turn * DMat4::from_scale(DVec3::new(x, y, z)) * turn;
-        for (x, y, z) in [(0.0, 1.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1e-9, 1e-9, 0.0)] {
-            assert!(is_flat(&scaled(x, y, z)), "{x} {y} {z}");
-        }
-        for (x, y, z) in [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1e-9, 1e-9, 1e-9), (1e-3, 1.0, 1e3)] {
-            assert!(!is_flat(&scaled(x, y, z)), "{x} {y} {z}");
-        }
+    fn place<'b>(&self, mesh_node: &'b MeshNode) -> Place<'b> {
+        let skin = mesh_node.skin.and_then(|skin| self.scene.skins.get(&skin));
+        Place::new(mesh_node.node, skin.zip(mesh_node.shape.influences.as_ref()), &self.world)
     }
 }

@@ -1,23 +1,26 @@
 //! Reads the scene of a glTF file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
 use super::animated_scene::AnimatedScene;
+use super::animation::AnimationInfo;
 use super::animation_reader::AnimationReader;
 use super::json::{self, SceneRoot};
 use super::mesh_node::MeshNode;
 use super::nodes::Nodes;
-use super::shape::{Shape, morph_targets};
+use super::place::check_joints;
+use super::shape::Shape;
 use super::skin::Skin;
 use crate::gltf::accessors::Accessors;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::glb;
-use crate::gltf::json::{Mesh, Root, parse_parts};
-use crate::gltf::morph::default_weights;
+use crate::gltf::json::{Root, parse_parts};
+use crate::gltf::morph;
 use crate::gltf::part_names::PartNames;
 use crate::gltf::select::has_triangles;
+use crate::gltf::triangles::{morph_targets, with_triangles};
 use crate::{FormatError, IoError, read_whole};
 
 /// Memory of a node for each 3 bytes of text (`{},`), in bytes.
@@ -27,11 +30,12 @@ const NODE_SIZE: u64 = 512;
 /// in its folder or below; symbolic links are followed.
 ///
 /// # Errors
-/// When the file cannot be read or is malformed, has a version other than 2.x, compressed geometry or another required
-/// extension that could change positions; when a buffer is outside of the folder; when the node hierarchy has a cycle or
-/// a node with two parents; when joints, nodes, skins, meshes or samplers do not exist; when weights are negative; when
-/// an animation has no key frames, key frames out of order or another number of values; when a number is not finite;
-/// when the numbers would take more than 100 times the files' size and 64 MiB.
+/// When the file cannot be read or is malformed, has a version other than 2.x, geometry that exists only compressed, or
+/// requires an extension that could change positions; when a buffer is outside of the folder; when the node hierarchy has
+/// a cycle or a node with two parents; when joints, nodes, skins or meshes do not exist; when weights are negative; when a
+/// number is not finite; when the numbers would take more than 100 times the files' size and 64 MiB. An animation that is
+/// malformed (no key frames, key frames out of order, another number of values, nodes or samplers that do not exist) is an
+/// error where it is evaluated.
 pub fn read_scene(path: &Path) -> Result<AnimatedScene, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, Some(folder)).map_err(|error| error.of(path))
@@ -54,12 +58,8 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let refused = |cause| FormatError::part("nodes", cause);
     accessors.allowance.take(scene.nodes.len() as u64, NODE_SIZE).map_err(refused)?;
     let nodes = Nodes::new(&scene.nodes)?;
-    let skins = scene.skins.iter().enumerate();
-    let skins = skins
-        .map(|(number, skin)| Skin::read(&mut accessors, &nodes, number, skin))
-        .collect::<Result<Vec<_>, _>>()?;
     let names = Arc::new(PartNames::parse(chunks.json)?);
-    let mesh_nodes = mesh_nodes(&mut accessors, &root, &scene, &skins, &names)?;
+    let (mesh_nodes, skins) = mesh_nodes(&mut accessors, &root, &scene, &nodes, &names)?;
     let of_meshes: Vec<usize> = root.meshes.iter().map(morph_targets).collect();
     let targets = |node: &json::Node| of_meshes.get(node.mesh? as usize).copied();
     let targets: Vec<usize> = scene.nodes.iter().map(|node| targets(node).unwrap_or(0)).collect();
@@ -70,24 +70,24 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
         times: BTreeMap::new(),
     };
     let animations = scene.animations.iter().enumerate();
-    let animations: Vec<_> = animations
-        .map(|(number, animation)| reader.read(number, animation))
-        .collect::<Result<_, FormatError>>()?;
-    let (animations, infos) = animations.into_iter().unzip();
-    Ok(AnimatedScene { nodes, mesh_nodes, skins, animations, infos })
+    let animations = animations.map(|(number, animation)| match reader.read(number, animation) {
+        Ok((animation, info)) => (Ok(animation), info),
+        Err(error) => (Err(error), AnimationInfo::unreadable(animation.name.clone())),
+    });
+    let (animations, infos) = animations.unzip();
+    let shown: BTreeSet<usize> = mesh_nodes.iter().map(|mesh_node| mesh_node.mesh).collect();
+    let notes = shown.into_iter().flat_map(|mesh| morph::notes(&root.meshes[mesh], mesh)).collect();
+    Ok(AnimatedScene { nodes, mesh_nodes, skins, animations, infos, notes })
 }
 
 /// Returns the accessors that the scene uses; some may not exist.
 fn used<'a>(root: &'a Root, scene: &'a SceneRoot) -> impl Iterator<Item = usize> {
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let geometry = primitives.flat_map(|primitive| {
+    let primitives = root.meshes.iter().flat_map(with_triangles);
+    let geometry = primitives.flat_map(|(_, primitive)| {
         let targets = primitive.targets.iter().filter_map(|target| target.position);
         primitive.attributes.position.into_iter().chain(primitive.indices).chain(targets)
     });
-    let attributes =
-        scene.meshes.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| &primitive.attributes);
-    let influences =
-        attributes.flat_map(|a| a.joints.iter().chain(&a.weights).map(|(_, accessor)| *accessor));
+    let influences = scene.meshes.iter().flat_map(json::Mesh::skin_accessors);
     let matrices = scene.skins.iter().filter_map(|skin| skin.inverse_bind_matrices);
     let samplers = scene.animations.iter().flat_map(|animation| &animation.samplers);
     let keys = samplers.flat_map(|sampler| [sampler.input, sampler.output]);
@@ -100,52 +100,52 @@ fn mesh_nodes(
     accessors: &mut Accessors<'_>,
     root: &Root,
     scene: &SceneRoot,
-    skins: &[Skin],
+    nodes: &Nodes,
     names: &Arc<PartNames>,
-) -> Result<Vec<MeshNode>, FormatError> {
+) -> Result<(Vec<MeshNode>, BTreeMap<usize, Skin>), FormatError> {
+    let mut skins = BTreeMap::new();
     let has_triangles: Vec<bool> = root.meshes.iter().map(has_triangles).collect();
     let mut shapes: BTreeMap<(usize, bool), Arc<Shape>> = BTreeMap::new();
     let mut mesh_nodes = Vec::new();
-    for (number, node) in scene.nodes.iter().enumerate() {
-        let refused = |cause: String| FormatError::part(format!("nodes[{number}]"), cause);
+    for (node_number, node) in scene.nodes.iter().enumerate() {
+        let place = format!("nodes[{node_number}]");
+        let refused = |cause: String| FormatError::part(place.clone(), cause);
         let Some(index) = node.mesh.map(|mesh| mesh as usize) else { continue };
         let Some(mesh) = root.meshes.get(index) else {
             return Err(refused(format!("meshes[{index}] does not exist")));
         };
         let skin = node.skin.map(|skin| skin as usize);
-        if let Some(skin) = skin.filter(|skin| *skin >= skins.len()) {
-            return Err(refused(format!("skins[{skin}] does not exist")));
-        }
         if !has_triangles[index] {
             continue;
+        }
+        if let Some(number) = skin
+            && !skins.contains_key(&number)
+        {
+            let Some(skin) = scene.skins.get(number) else {
+                return Err(refused(format!("skins[{number}] does not exist")));
+            };
+            skins.insert(number, Skin::read(accessors, nodes, number, skin)?);
         }
         let shape = match shapes.get(&(index, skin.is_some())) {
             Some(shape) => Arc::clone(shape),
             None => {
                 let attributes = skin.and_then(|_| scene.meshes.get(index));
-                let shape = Arc::new(Shape::read(accessors, index, mesh, attributes)?);
+                let rank = morph_targets(mesh);
+                let shape = Arc::new(Shape::read(accessors, index, mesh, rank, attributes)?);
                 shapes.insert((index, skin.is_some()), Arc::clone(&shape));
                 shape
             }
         };
-        if let (Some(skin), Some(influences)) = (skin, &shape.influences) {
-            let joints = skins[skin].len();
-            let wrong = influences.joints.partition_point(|joint| (*joint as usize) < joints);
-            if let Some(joint) = influences.joints.get(wrong) {
-                let vertex = influences.first_vertex_of(wrong as u32);
-                return Err(refused(format!(
-                    "vertex {vertex} (counted from 0) of meshes[{index}] names joint {joint}, but skins[{skin}] \
-                     has {joints}"
-                )));
-            }
+        if let (Some(number), Some(influences)) = (skin, &shape.influences)
+            && let Some(skin) = skins.get(&number)
+        {
+            check_joints(influences, (number, skin), index, &place)?;
         }
-        let weights = stored_weights(node, mesh, index, shape.rank).map_err(|error| match error {
-            WeightsError::OfNode(cause) => refused(cause),
-            WeightsError::OfMesh(error) => error,
-        })?;
+        let stored = if node.weights.is_empty() { &mesh.weights[..] } else { &node.weights };
+        let weights = morph::fitted_weights(stored, shape.rank);
         accessors.allowance.take(1, size_of::<MeshNode>() as u64 + 8 * shape.rank as u64).map_err(refused)?;
         mesh_nodes.push(MeshNode {
-            node: number,
+            node: node_number,
             name: node.name.as_deref().map(str::to_owned),
             mesh: index,
             mesh_name: mesh.name.clone(),
@@ -155,24 +155,5 @@ fn mesh_nodes(
             names: Arc::clone(names),
         });
     }
-    Ok(mesh_nodes)
-}
-
-enum WeightsError {
-    OfNode(String),
-    OfMesh(FormatError),
-}
-
-/// Returns the weights of a node's morph targets: its own, else those of the mesh, else zeros.
-fn stored_weights(
-    node: &json::Node,
-    mesh: &Mesh,
-    index: usize,
-    rank: usize,
-) -> Result<Vec<f64>, WeightsError> {
-    match node.weights.len() {
-        0 => default_weights(mesh, rank, index).map_err(WeightsError::OfMesh),
-        n if n == rank => Ok(node.weights.to_vec()),
-        n => Err(WeightsError::OfNode(format!("{n} weights for {rank} morph targets"))),
-    }
+    Ok((mesh_nodes, skins))
 }

@@ -3,12 +3,13 @@
 use proptest::prelude::*;
 
 use super::file::{JSON, binary, changed, glb};
-use crate::gltf::{SkinWeights, parse_scene};
+use crate::gltf::{SkinWeights, parse_placed_mesh, parse_scene};
 
 #[test]
 fn every_truncation_is_rejected() {
     let bytes = changed(&[]);
     for len in 0..bytes.len() {
+        assert!(parse_placed_mesh(&bytes[..len], None).is_err());
         let error = parse_scene(&bytes[..len]).unwrap_err().to_string();
         assert!(!error.contains('\n') && error.len() < 400, "{len}: {error}");
     }
@@ -20,6 +21,17 @@ fn evaluate(bytes: &[u8]) {
         let error = error.to_string();
         assert!(!error.contains('\n') && error.len() < 400, "{error}");
     };
+    match parse_placed_mesh(bytes, None) {
+        Ok(placed) => {
+            for place in 0..placed.places() {
+                match placed.to_mesh(place) {
+                    Ok(mesh) => assert_eq!(mesh.rest_positions().len(), placed.rest_positions().len()),
+                    Err(error) => one_line(error),
+                }
+            }
+        }
+        Err(error) => one_line(error),
+    }
     let scene = match parse_scene(bytes) {
         Ok(scene) => scene,
         Err(error) => return one_line(error),

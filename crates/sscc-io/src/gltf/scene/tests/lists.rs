@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::file::{JSON, REST, binary, glb, positions, scene};
-use crate::gltf::{AnimationInfo, parse_scene, read_base_mesh};
+use crate::gltf::{AnimationInfo, parse_scene};
 
 #[test]
 fn nodes_and_animations_are_listed() {
@@ -81,21 +81,4 @@ fn animations_and_nodes_are_found_by_name_or_number() {
     assert_eq!(message, "no node of the file shows a mesh with triangles");
     let empty = parse_scene(br#"{"asset":{"version":"2.0"}}"#).unwrap();
     assert_eq!(empty.find_animation("0").unwrap_err().to_string(), "the file has no animations");
-}
-
-#[test]
-fn the_base_mesh_has_the_triangles_of_the_file() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("flag.glb");
-    std::fs::write(&path, glb(JSON, &binary())).unwrap();
-    for name in [None, Some("flag"), Some("#0")] {
-        let mesh = read_base_mesh(&path, name).unwrap();
-        assert_eq!(mesh.faces(), [[0, 1, 2], [1, 3, 2]]);
-        assert_eq!(mesh.rest_positions(), REST.map(|x| DVec3::from_array(x.map(f64::from))));
-    }
-    let message = read_base_mesh(&path, Some("pole")).unwrap_err().to_string();
-    assert!(message.ends_with("there is no mesh 'pole'; meshes with triangles: 'flag'"), "{message}");
-    std::fs::write(&path, glb(&JSON.replace(r#""mode":5"#, r#""mode":1"#), &binary())).unwrap();
-    let message = read_base_mesh(&path, None).unwrap_err().to_string();
-    assert!(message.ends_with("no mesh of the file has triangles"), "{message}");
 }

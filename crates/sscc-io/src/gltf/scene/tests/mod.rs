@@ -1,8 +1,10 @@
 //! Tests of small files made by hand.
 
+mod accuracy;
 mod bad_input;
 mod damaged;
 mod file;
 mod lists;
 mod number_types;
+mod places;
 mod positions;

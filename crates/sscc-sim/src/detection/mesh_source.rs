@@ -1,0 +1,152 @@
+//! A file with a mesh at rest, at each of its places.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use sscc::TriMesh;
+use sscc_io::gltf::{PlacedMesh, is_gltf, read_placed_mesh};
+use sscc_io::{IoError, LoadedMesh, load_mesh_with_warnings, split_mesh_name};
+
+use crate::SimError;
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// Weights whose sums differ from 1 by more than this are no rounding.
+pub(super) const MAX_WEIGHT_ERROR: f64 = 1e-2;
+
+/// A mesh of a file, read once. The nodes of a glTF file give it places; other meshes are where they are.
+pub(super) struct MeshSource {
+    /// The file as in the request, which may name the mesh (`FILE#NAME`).
+    pub file: PathBuf,
+    /// Name of the mesh beside the file.
+    pub name: Option<String>,
+    content: Content,
+}
+
+enum Content {
+    Plain(TriMesh),
+    Placed(Box<PlacedMesh>),
+}
+
+impl MeshSource {
+    /// Reads a mesh. `name` is that of a mesh of a glTF file.
+    pub fn read(file: &Path, name: Option<&str>, watch: &dyn Watch) -> Result<Self> {
+        let (path, name_of_path) = split_mesh_name(file);
+        // Both names at once are an error of the reader.
+        let content = match is_gltf(&path) && (name_of_path.is_none() || name.is_none()) {
+            true => Content::Placed(Box::new(read_placed_mesh(&path, name_of_path.as_deref().or(name))?)),
+            false => {
+                let LoadedMesh { mesh, warnings, .. } = load_mesh_with_warnings(file, name)?;
+                warnings.iter().for_each(|warning| watch.warn(&format!("{}: {warning}", file.display())));
+                Content::Plain(mesh)
+            }
+        };
+        let source = Self { file: file.to_owned(), name: name.map(str::to_owned), content };
+        source.warn(watch);
+        Ok(source)
+    }
+
+    /// Warns of a mesh that stands nowhere, and of skin weights that break the standard.
+    fn warn(&self, watch: &dyn Watch) {
+        let Content::Placed(placed) = &self.content else { return };
+        let warn = |text: &str| watch.warn(&format!("{}: {text}", self.file.display()));
+        if placed.node(0).is_none() {
+            warn("no node shows the mesh: it is checked in its own coordinates");
+        }
+        let error = placed.largest_weight_error();
+        if error > MAX_WEIGHT_ERROR {
+            warn(&format!(
+                "the sums of skin weights differ from 1 by up to {error:.3}; they were normalized"
+            ));
+        }
+    }
+
+    /// Warns if the first place does not stand for all: skins deform a mesh, and a scale of 0 flattens it.
+    pub fn warn_of_other_places(&self, watch: &dyn Watch) {
+        let Content::Placed(placed) = &self.content else { return };
+        // Places with the same skin are one.
+        let is_other = |place: &usize| match placed.skin(*place) {
+            None => placed.skin(0).is_some() || placed.is_flattened(*place),
+            skin => skin != placed.skin(0),
+        };
+        let other = (1..placed.places()).find(is_other);
+        if let Some((first, other)) = placed.node(0).zip(other.and_then(|other| placed.node(other))) {
+            watch.warn(&format!(
+                "{}: node {first} alone is checked; node {other} shows the mesh with another skin, or flattened",
+                self.file.display()
+            ));
+        }
+    }
+
+    /// Number of places, at least 1.
+    pub fn places(&self) -> usize {
+        match &self.content {
+            Content::Plain(_) => 1,
+            Content::Placed(placed) => placed.places(),
+        }
+    }
+
+    /// Number of the node at a place, where there are several places.
+    pub fn node(&self, place: usize) -> Option<usize> {
+        match &self.content {
+            Content::Placed(placed) if placed.places() > 1 => placed.node(place),
+            _ => None,
+        }
+    }
+
+    /// Returns the mesh at a place. `watch` is warned if the place flattens it.
+    pub fn mesh(&self, place: usize, watch: &dyn Watch) -> Result<TriMesh> {
+        match &self.content {
+            Content::Plain(mesh) => Ok(mesh.clone()),
+            Content::Placed(placed) => {
+                if let Some(node) = placed.node(place).filter(|_| placed.is_flattened(place)) {
+                    watch.warn(&format!(
+                        "{}: node {node}: a scale of 0 flattens the mesh, so that its triangles touch",
+                        self.file.display()
+                    ));
+                }
+                let in_file = |error| IoError::Format { path: self.file.clone(), error };
+                Ok(placed.to_mesh(place).map_err(in_file)?)
+            }
+        }
+    }
+
+    /// Positions in the mesh's own coordinates, by which vertices are welded: rounding at a place joins and parts none.
+    pub fn own_positions(&self) -> &[DVec3] {
+        match &self.content {
+            Content::Plain(mesh) => mesh.rest_positions(),
+            Content::Placed(placed) => placed.rest_positions(),
+        }
+    }
+
+    /// Refuses to compare a mesh with itself at the same place.
+    pub fn check_differs(&self, other: &Self) -> Result<()> {
+        let real = |source: &Self| fs::canonicalize(split_mesh_name(&source.file).0).ok();
+        if real(self) != real(other) {
+            return Ok(());
+        }
+        let file = other.file.display();
+        let cause = match (&self.content, &other.content) {
+            (Content::Placed(a), Content::Placed(b)) => {
+                let nodes = |placed: &PlacedMesh| -> BTreeSet<Option<usize>> {
+                    (0..placed.places()).map(|place| placed.node(place)).collect()
+                };
+                if a.mesh() != b.mesh() || nodes(a).is_disjoint(&nodes(b)) {
+                    return Ok(());
+                }
+                let (path, _) = split_mesh_name(&self.file);
+                format!(
+                    "the same mesh is on both sides: name a mesh for each, as in {0}#A --against {0}#B, or with --mesh-name \
+                     and --against-mesh (sscc info lists the meshes)",
+                    path.display()
+                )
+            }
+            _ => "the same mesh is on both sides: give another one; its collisions with itself are found without \
+                  --against"
+                .to_owned(),
+        };
+        Err(SimError::refused(file, cause))
+    }
+}

@@ -1,0 +1,197 @@
+//! The meshes of one file of a request, and the other mesh, pair by pair.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use sscc_io::gltf::is_gltf;
+use sscc_io::split_mesh_name;
+
+use super::mesh_source::MeshSource;
+use super::moving_mesh::MovingMesh;
+use super::request::{Detection, MeshMotion, OtherMesh};
+use crate::SimError;
+use crate::error::Result;
+use crate::watch::Watch;
+
+/// Maximum number of pairs of places of two meshes. More are a mistake, or a hostile file.
+const MAX_PLACES: usize = 1_000_000;
+
+/// A mesh, and the other one.
+pub(super) type MeshPair<'w> = (Arc<MovingMesh<'w>>, Option<Arc<MovingMesh<'w>>>);
+
+/// The meshes of one file, each with each place of the other mesh. At most two meshes with their detectors are in memory,
+/// apart from those of an animation.
+pub(super) struct Sides<'r, 'w> {
+    request: &'r Detection,
+    watch: &'w dyn Watch,
+    mesh: Side<'w>,
+    other: Option<Side<'w>>,
+    /// Number of frames of the motion, at least 1.
+    pub frames: usize,
+    /// The mesh of the last pair, with its number.
+    last: Option<(usize, Arc<MovingMesh<'w>>)>,
+}
+
+enum Side<'w> {
+    /// A mesh at rest, at this number of places.
+    Places(Box<MeshSource>, usize),
+    /// Meshes that move.
+    Moving(Vec<Arc<MovingMesh<'w>>>),
+}
+
+impl<'w> Side<'w> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Places(_, places) => *places,
+            Self::Moving(meshes) => meshes.len(),
+        }
+    }
+
+    fn frames(&self) -> usize {
+        match self {
+            Self::Places(..) => 1,
+            Self::Moving(meshes) => meshes.first().map_or(1, |mesh| mesh.frames()),
+        }
+    }
+
+    fn get(&self, number: usize, request: &Detection, watch: &'w dyn Watch) -> Result<Arc<MovingMesh<'w>>> {
+        match self {
+            Self::Places(source, _) => Ok(Arc::new(MovingMesh::at_rest(source, number, request, watch)?)),
+            Self::Moving(meshes) => Ok(Arc::clone(&meshes[number])),
+        }
+    }
+}
+
+impl<'r, 'w> Sides<'r, 'w> {
+    /// Loads the meshes of a file, and the other mesh.
+    pub fn load(file: &Path, request: &'r Detection, watch: &'w dyn Watch) -> Result<Self> {
+        let mesh = match &request.motion {
+            MeshMotion::Animation(animated) => {
+                check_animated(file)?;
+                let meshes = MovingMesh::animated(file, animated, request, watch)?;
+                Side::Moving(meshes.into_iter().map(Arc::new).collect())
+            }
+            MeshMotion::Rest | MeshMotion::Frames(_) => {
+                let source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
+                let frames = match &request.motion {
+                    MeshMotion::Frames(frames) => Some(frames.as_path()),
+                    _ => None,
+                };
+                let other = request.against.as_ref();
+                let other = other.map(|other| other_source(other, &source, frames, watch)).transpose()?;
+                let mesh = side(source, frames, request, watch)?;
+                let other = match (other, &request.against) {
+                    (Some(source), Some(OtherMesh { frames, .. })) => {
+                        Some(side(source, frames.as_deref(), request, watch)?)
+                    }
+                    _ => None,
+                };
+                return Self::new(file, mesh, other, request, watch);
+            }
+        };
+        Self::new(file, mesh, None, request, watch)
+    }
+
+    fn new(
+        file: &Path,
+        mesh: Side<'w>,
+        other: Option<Side<'w>>,
+        request: &'r Detection,
+        watch: &'w dyn Watch,
+    ) -> Result<Self> {
+        let (n, m) = (mesh.frames(), other.as_ref().map_or(1, Side::frames));
+        if n.max(m) == 1 && request.is_continuous {
+            return Err(SimError::refused(file.display(), "there is one frame; a motion needs at least two"));
+        }
+        if n != m && n > 1 && m > 1 {
+            let cause =
+                format!("there are {n} frames, but {m} of the other mesh: as many are needed, or one");
+            return Err(SimError::refused(file.display(), cause));
+        }
+        let sides = Self { request, watch, mesh, other, frames: n.max(m), last: None };
+        if request.against.is_some() && sides.len() > MAX_PLACES {
+            let cause = format!(
+                "{} nodes show the mesh, and {} the other one: name one of them, as in FILE#NODE",
+                sides.mesh.len(),
+                sides.others()
+            );
+            return Err(SimError::refused(file.display(), cause));
+        }
+        if request.against.is_some() && request.has_positions && sides.len() > 1 {
+            let cause = "several nodes show the meshes, and a report shows one of each: name the nodes, as in FILE#NODE";
+            return Err(SimError::refused(file.display(), cause));
+        }
+        Ok(sides)
+    }
+
+    /// Number of pairs: of meshes, without another mesh.
+    pub fn len(&self) -> usize {
+        self.mesh.len().saturating_mul(self.others())
+    }
+
+    fn others(&self) -> usize {
+        self.other.as_ref().map_or(1, Side::len)
+    }
+
+    /// Returns a pair, by its number: mesh by mesh, each with all places of the other one.
+    pub fn get(&mut self, number: usize) -> Result<MeshPair<'w>> {
+        let (of_mesh, of_other) = (number / self.others(), number % self.others());
+        let mesh = match self.last.take().filter(|(last, _)| *last == of_mesh) {
+            Some((_, mesh)) => mesh,
+            None => self.mesh.get(of_mesh, self.request, self.watch)?,
+        };
+        self.last = Some((of_mesh, Arc::clone(&mesh)));
+        let other = self.other.as_ref().map(|other| other.get(of_other, self.request, self.watch));
+        Ok((mesh, other.transpose()?))
+    }
+}
+
+/// Reads the other mesh, which must be another one than `mesh` or have other frames.
+fn other_source(
+    other: &OtherMesh,
+    mesh: &MeshSource,
+    frames: Option<&Path>,
+    watch: &dyn Watch,
+) -> Result<MeshSource> {
+    let source = MeshSource::read(&other.mesh, other.mesh_name.as_deref(), watch)?;
+    let real = |frames: &Path| fs::canonicalize(frames).ok();
+    if frames.map(real) == other.frames.as_deref().map(real) {
+        mesh.check_differs(&source)?;
+    }
+    Ok(source)
+}
+
+fn side<'w>(
+    source: MeshSource,
+    frames: Option<&Path>,
+    request: &Detection,
+    watch: &'w dyn Watch,
+) -> Result<Side<'w>> {
+    Ok(match frames {
+        Some(frames) => {
+            Side::Moving(vec![Arc::new(MovingMesh::with_frames(&source, frames, request, watch)?)])
+        }
+        None if request.against.is_some() => {
+            let places = source.places();
+            Side::Places(Box::new(source), places)
+        }
+        None => {
+            // An affine map does not change which triangles of a mesh intersect, so its first place stands for all.
+            source.warn_of_other_places(watch);
+            Side::Places(Box::new(source), 1)
+        }
+    })
+}
+
+/// Refuses a file without animations. A missing file is left to its reader.
+fn check_animated(file: &Path) -> Result<()> {
+    if is_gltf(file) || !file.exists() && split_mesh_name(file).1.is_none() {
+        return Ok(());
+    }
+    let cause = match split_mesh_name(file) {
+        (_, Some(_)) => "an animation moves every node: leave out the name after #; --node selects a node",
+        _ => "only .glb, .gltf and .vrm files have animations: give --frames",
+    };
+    Err(SimError::refused(file.display(), cause))
+}
