@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use sscc::{Certificates, CertifyOptions, ContactFilter, Neighbours, Query};
+use sscc::{Certificates, CertifyOptions, Query};
 use sscc_examples::{exit_code, mouth_glb};
 use sscc_io::{LoadOptions, load_model_with, write_ply_pose};
 
@@ -32,11 +32,10 @@ fn run() -> Result<(), Box<dyn Error>> {
     let model = loaded.model;
     println!("{}: {} triangles", loaded.info.provenance, model.mesh().faces().len());
 
-    // A glTF file splits vertices along seams. Without welding, triangles on the two sides of a seam would share no
-    // vertex, so they would always collide. Pairs that collide at rest (closed lips, eyes in their sockets) are
-    // ignored.
-    let filter = ContactFilter::new(Neighbours::Exclude, true);
-    let options = CertifyOptions { filter, ignore_rest: true, ..CertifyOptions::default() };
+    // A glTF file splits vertices along seams. The mesh knows it, so that its equal vertices are welded: otherwise triangles
+    // on the two sides of a seam would share no vertex, and always collide. Pairs that collide at rest (closed lips, eyes
+    // in their sockets) are ignored.
+    let options = CertifyOptions { ignore_rest: true, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model, &options, &())?;
     println!("ignored because they collide at rest: {} pairs", certificates.rest_collisions());
 

@@ -60,16 +60,17 @@ impl CertifyArguments<'_, '_> {
             return Err(value("scheme 'paper' stores no pair tree: leave budget out"));
         }
         let budget = if scheme == Some(Scheme::Paper) { 0 } else { budget.unwrap_or(default.budget) };
-        let rules = [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|rule| (rule.name(), rule));
+        let rules = Neighbours::ALL.map(|rule| (rule.name(), rule));
         let neighbours = choice(self.neighbours, "neighbours", &rules)?.unwrap_or_default();
-        let weld = switch(self.weld, "weld")?.unwrap_or(loaded.is_split);
+        neighbours.check_models().map_err(|error| refused(&error, "neighbours"))?;
+        let weld = switch(self.weld, "weld")?.unwrap_or(ContactFilter::of(model.mesh()).weld);
         let filter = ContactFilter::new(neighbours, weld);
         let triangles = model.mesh().faces().len();
         Ok(CertifyOptions {
             epsilon,
             metric: read_metric(model, self.metric)?,
             center,
-            filter: with_groups(filter, triangles, self.groups, self.ignore_groups)?,
+            filter: Some(with_groups(filter, triangles, self.groups, self.ignore_groups)?),
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,

@@ -19,14 +19,12 @@ pub struct LoadedModel {
     pub info: ModelInfo,
     pub default_q: Option<Vec<f64>>,
     pub mode_names: Vec<String>,
-    /// Whether its vertices are split along seams; then certificates weld them by default.
-    pub is_split: bool,
 }
 
 impl LoadedModel {
     /// Returns a model without an initial q and without names of modes.
-    pub fn new(model: ReducedModel, info: ModelInfo, is_split: bool) -> Self {
-        Self { model, info, default_q: None, mode_names: Vec::new(), is_split }
+    pub fn new(model: ReducedModel, info: ModelInfo) -> Self {
+        Self { model, info, default_q: None, mode_names: Vec::new() }
     }
 }
 

@@ -3,10 +3,10 @@
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple, PyType};
-use sscc::{Modes, ReducedModel};
+use sscc::{ContactFilter, Modes, ReducedModel};
 use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
-use sscc_io::{LoadOptions, ModelInfo, load_model_with, splits_vertices, write_model};
+use sscc_io::{LoadOptions, ModelInfo, load_model_with, write_model};
 
 use crate::answer::Reduction;
 use crate::arguments::{check_ending, path};
@@ -37,7 +37,7 @@ impl Model {
             }
             None => model,
         };
-        Ok(Self::of(LoadedModel::new(model, ModelInfo::default(), false)))
+        Ok(Self::of(LoadedModel::new(model, ModelInfo::default())))
     }
 
     #[classmethod]
@@ -58,7 +58,7 @@ impl Model {
         Ok(Self::of(LoadedModel {
             default_q: read.default_q,
             mode_names: read.mode_names,
-            ..LoadedModel::new(read.model, read.info, splits_vertices(&path))
+            ..LoadedModel::new(read.model, read.info)
         }))
     }
 
@@ -173,12 +173,18 @@ impl Model {
         table(py, self.core().rank(), elasticity.stiffness().entries().to_vec()).map(Some)
     }
 
+    #[getter]
+    fn weld(&self) -> bool {
+        ContactFilter::of(self.core().mesh()).weld
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduction<'py, Bound<'py, PyTuple>>> {
         let py = slf.py();
         let loaded = &slf.get().loaded;
         let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;
-        let arguments = (PyBytes::new(py, &bytes), &loaded.default_q, &loaded.mode_names, loaded.is_split)
-            .into_pyobject(py)?;
+        let is_split = loaded.model.mesh().has_split_vertices();
+        let arguments =
+            (PyBytes::new(py, &bytes), &loaded.default_q, &loaded.mode_names, is_split).into_pyobject(py)?;
         Ok((py.import("sscc._sscc")?.getattr("_model")?, arguments))
     }
 
@@ -202,7 +208,8 @@ pub fn _model(
     is_split: bool,
 ) -> PyResult<Model> {
     let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
-    Ok(Model::of(LoadedModel { default_q, mode_names, ..LoadedModel::new(model, info, is_split) }))
+    let model = if is_split { model.with_split_vertices() } else { model };
+    Ok(Model::of(LoadedModel { default_q, mode_names, ..LoadedModel::new(model, info) }))
 }
 
 /// Returns modes for this number of vertices from an array in one of the shapes that the command accepts.

@@ -8,7 +8,7 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sscc::{Progress, TriMesh};
-use sscc_io::{read_frames, splits_vertices};
+use sscc_io::read_frames;
 use sscc_sim::{
     ModesKind, NewModel, SimError, SolidSource, elastic_model, is_solid, pca_model, polynomial_model,
     read_surface,
@@ -181,7 +181,7 @@ fn compute(
         run(py, progress, "modes", move |progress| on_threads(threads, || make(&of_worker, progress)))?;
     let (model, note) = model.map_err(|error| source.refused(&error))?;
     warn(py, note.as_slice())?;
-    Ok(Model::of(LoadedModel::new(model.model, model.info, model.is_split)))
+    Ok(Model::of(LoadedModel::new(model.model, model.info)))
 }
 
 fn read_material([youngs, poisson, density]: &[Option<Bound<'_, PyAny>>; 3]) -> PyResult<PartialMaterial> {
@@ -218,27 +218,27 @@ pub fn _pca(
 ) -> PyResult<Model> {
     let rank = count(rank, "rank", 1..=usize::MAX)?;
     let threads = pool::threads(threads)?;
-    let (mesh, frames, name, is_split) = if let Ok(folder) = shapes.extract::<PathBuf>() {
+    let (mesh, frames, name) = if let Ok(folder) = shapes.extract::<PathBuf>() {
         if faces.is_some() {
             return Err(value("faces: the meshes of a folder have their own: leave faces out"));
         }
         let frames = py.detach(|| read_frames(&folder)).map_err(|error| file(&error))?;
         warn(py, &frames.warnings)?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        (frames.mesh, frames.positions, format!("meshes in {name}"), splits_vertices(&frames.paths[0]))
+        (frames.mesh, frames.positions, format!("meshes in {name}"))
     } else {
         let Some(faces) = faces else {
             return Err(kind("faces is missing: (F, 3) vertex numbers of the shapes"));
         };
         let frames = read_shapes(shapes)?;
         let Some(first) = frames.first() else { return Err(value("shapes is empty")) };
-        (mesh_of(first.clone(), "shapes", faces)?, frames, "shapes in memory".into(), false)
+        (mesh_of(first.clone(), "shapes", faces)?, frames, "shapes in memory".into())
     };
     let found = run(py, progress, "principal components", move |progress| {
         on_threads(threads, || pca_model(&mesh, &frames, rank, &name, progress))
     })?;
     let found = found.map_err(|error| value(format!("shapes: {error}")))?;
-    Ok(Model::of(LoadedModel::new(found.model, found.info, is_split)))
+    Ok(Model::of(LoadedModel::new(found.model, found.info)))
 }
 
 /// Returns the shapes in an array (n, V, 3) or (n, 3V).

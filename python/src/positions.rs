@@ -110,7 +110,7 @@ pub fn contact_filter(
     ignored: Option<&Bound<'_, PyAny>>,
     faces: usize,
 ) -> PyResult<ContactFilter> {
-    let choices = [Neighbours::Exclude, Neighbours::IncludeOneVertex].map(|choice| (choice.name(), choice));
+    let choices = Neighbours::ALL.map(|choice| (choice.name(), choice));
     let neighbours = choice(neighbours, "neighbours", &choices)?.unwrap_or_default();
     let filter = ContactFilter::new(neighbours, matches!(weld, Weld::ByPosition));
     let Some(ignored) = ignored else { return Ok(filter) };

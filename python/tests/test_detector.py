@@ -502,8 +502,8 @@ ARGUMENTS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"weld": 1}, ValueError, "weld has shape []: True, False or (V,) integers were expected"),
     ({"weld": [0.5] * 6}, TypeError, "weld is an array of float64: integers were expected"),
     ({"weld": [0] * 5}, ValueError, "weld has 5 entries, but {} has 6 vertices"),
-    ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' was expected"),
-    ({"neighbours": 1}, TypeError, "neighbours is a int: 'exclude' or 'include-one-vertex' was expected"),
+    ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' or 'include-folded' was expected"),
+    ({"neighbours": 1}, TypeError, "neighbours is a int: 'exclude' or 'include-one-vertex' or 'include-folded' was expected"),
 ]
 
 

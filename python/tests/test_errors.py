@@ -86,7 +86,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"scheme": 1}, TypeError, "scheme is a int: 'full' or 'paper' was expected"),
     ({"scheme": "paper", "budget": 1}, ValueError, "scheme 'paper' stores no pair tree: leave budget out"),
     ({"budget": -1}, ValueError, "budget is -1"),
-    ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' was expected"),
+    ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' or 'include-folded' was expected"),
     ({"weld": "on"}, TypeError, "weld is a str: True or False was expected"),
     ({"ignore_rest": 1}, TypeError, "ignore_rest is a int: True or False was expected"),
     ({"max_exceptions": -1}, ValueError, "max_exceptions is -1: a whole number of at least 0 was expected"),

@@ -14,6 +14,8 @@ export interface RecordedFrame {
     pairs: number | null;
     /** The largest number in one step since the previous frame. */
     since: number;
+    /** The pairs that were not tested: ", apart from ...", or nothing. */
+    apart: string;
     /**
      * Of a continuous check, whose pairs are those of the step to the next frame: the earliest time of impact (0 to 1),
      * null without pairs.

@@ -9,6 +9,9 @@ interface Verdict {
     text: string;
 }
 
+/** The sentences of reports of earlier versions, which do not say what was left out. */
+const EARLIER = { root: "free: proven by the root's certificate", tests: "free: proven" };
+
 /** The verdict on the displayed q. An answer counts only for its own q. */
 export function verdict(app: App): Verdict {
     const { checker, pose, recorded } = app;
@@ -21,10 +24,11 @@ export function verdict(app: App): Verdict {
         const first = typeof impact === "number" ? `, first at ${impact.toFixed(4)} of the step` : "";
         if (pairs > 0)
             return { kind: "colliding", text: `COLLIDING ${count(pairs, "pair")}${step}${first} (as recorded)` };
-        return { kind: "free", text: `free${step} (as recorded)` };
+        return { kind: "free", text: `free${step} (as recorded)${recorded.apart}` };
     }
+    const { root, tests } = app.shape.model.free ?? EARLIER;
     // Decided in the frame that draws the shape. The answer agrees, and adds the cost of the query.
-    if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: "free, proven by the root's certificate" };
+    if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: root };
     if (!checker) return { kind: "unknown", text: "not checked: this is a report" };
     if (checker.error) return { kind: "unknown", text: "unknown: no answer" };
     const answer = checker.answer;
@@ -33,8 +37,8 @@ export function verdict(app: App): Verdict {
         const pairs = `${answer.complete ? "" : "at least "}${count(answer.count, "pair")}`;
         return { kind: "colliding", text: `COLLIDING ${pairs}` };
     }
-    if (answer.root_certified) return { kind: "root", text: "free, proven by the root's certificate" };
-    return { kind: "free", text: "free, proven" };
+    if (answer.root_certified) return { kind: "root", text: root };
+    return { kind: "free", text: tests };
 }
 
 /** The largest number of pairs in one step between the previous frame and this one, as text. */

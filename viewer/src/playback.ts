@@ -159,7 +159,11 @@ export class Playback {
     show(frame: number): void {
         const { app } = this;
         const pairs = this.pairs;
-        const recorded = { pairs: pairs?.[frame] ?? null, since: this.since?.[frame] ?? 0 };
+        const recorded = {
+            pairs: pairs?.[frame] ?? null,
+            since: this.since?.[frame] ?? 0,
+            apart: this.data.apart ?? "",
+        };
         if (this.posed) {
             // A live page checks each frame again.
             if (app.checker) app.motion.propose(this.row(0, frame));

@@ -35,6 +35,8 @@ export interface Model {
     resolved_up_to: number | null;
     metric: string;
     exceptions: number;
+    /** The sentences for a free shape, by what proves it; reports of earlier versions have none. */
+    free?: { root: string; tests: string };
     nodes: number;
     levels: Level[];
     extremal: { name: string; q: number[] }[];
@@ -90,6 +92,8 @@ export interface PlaybackData {
      * this one; null without such steps. Earlier versions counted these steps in the `pairs` of bodies instead.
      */
     pairs_since?: number[] | null;
+    /** The pairs that were not tested: ", apart from ...", or nothing; reports of earlier versions do not say. */
+    apart?: string;
     colliding: { offsets: string; triangles: string } | null;
     /** Pairs and curves of meshes; reports of earlier versions have none. */
     contacts?: ContactsData | null;

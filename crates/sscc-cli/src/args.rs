@@ -242,13 +242,16 @@ pub enum Switch {
     Off,
 }
 
-/// Which pairs of triangles with a common vertex count. Triangles with a common edge never count.
+/// Which pairs of triangles with common vertices count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Neighbours {
     /// None
     Exclude,
     /// Those with exactly one common vertex, where they have another common point
     IncludeOneVertex,
+    /// Those with one, two or three, where they have another common point than these vertices and the edges between them, and
+    /// doubled faces. For meshes without modes; not with --continuous
+    IncludeFolded,
 }
 
 /// The number of threads.

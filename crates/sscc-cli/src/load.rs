@@ -31,6 +31,9 @@ pub fn request(
     files: &args::Model,
     typed: &args::Options,
 ) -> Result<CertificateRequest> {
+    if let Some(typed) = typed.neighbours {
+        neighbours(typed).check_models()?;
+    }
     let center =
         typed.center.as_deref().map(|typed| read_configuration("--center", typed, loaded)).transpose()?;
     Ok(CertificateRequest {
@@ -58,6 +61,7 @@ pub fn neighbours(typed: args::Neighbours) -> Neighbours {
     match typed {
         args::Neighbours::Exclude => Neighbours::Exclude,
         args::Neighbours::IncludeOneVertex => Neighbours::IncludeOneVertex,
+        args::Neighbours::IncludeFolded => Neighbours::IncludeFolded,
     }
 }
 

@@ -49,7 +49,8 @@
 //! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
 //! | contact curves as polylines | [`write_ply_curves`], [`write_obj_curves`] |
 //!
-//! STL and glTF split vertices along seams ([`splits_vertices`]): compute the certificates of such models with `weld`.
+//! STL and glTF split vertices along seams. Their readers say so ([`sscc::TriMesh::has_split_vertices`]), and detectors and
+//! certificates weld them by default.
 //!
 //! All readers accept untrusted bytes. They report an error of one line with the file, the place and the cause. They
 //! never panic, and never allocate by a number that the size of the file does not confirm. Files are read as a whole,
@@ -91,7 +92,6 @@ pub use forces::{parse_reduced_forces, read_reduced_forces};
 pub use groups::{read_base_groups, read_group_numbers, read_groups};
 pub use load::{
     LoadOptions, LoadedMesh, LoadedModel, load_mesh, load_mesh_with_warnings, load_model, load_model_with,
-    splits_vertices,
 };
 pub use mesh::{read_mesh, read_mesh_with_warnings};
 pub use mesh_modes::read_modes_for;

@@ -8,10 +8,7 @@ use crate::file::{check_exists, ending, unsupported};
 use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
 use crate::mesh_path::named_file;
 use crate::solid::{is_solid_name, read_volume_or_surface};
-use crate::{
-    IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model,
-    split_mesh_name,
-};
+use crate::{IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model};
 
 /// Endings of the files that have a mesh.
 const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf, .vrm; models: \
@@ -93,7 +90,7 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
 
 /// Loads a model from a `*.model.safetensors` file, from a glTF file ([`gltf::is_gltf`]) with morph targets, from a complete
 /// `.npz` file, or from a mesh file or a solid with its modes ([`read_modes_for`]). The metric is that of the file, else
-/// displacement. `FILE#NAME` ([`split_mesh_name`]) names the mesh as [`LoadOptions::mesh_name`] does.
+/// displacement. `FILE#NAME` ([`split_mesh_name`](crate::split_mesh_name)) names the mesh as [`LoadOptions::mesh_name`] does.
 ///
 /// A model of a glTF file is in the coordinates of its mesh: see [`LoadedModel::placement`].
 ///
@@ -147,7 +144,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
 
 /// Loads a mesh at rest from a file of any format: a mesh file, a glTF file at the first place of its mesh
 /// ([`gltf::read_placed_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
-/// vertices of the file, in a Medit or gmsh file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`]) names
+/// vertices of the file, in a Medit or gmsh file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`](crate::split_mesh_name)) names
 /// the mesh as `mesh_name` does.
 ///
 /// # Errors
@@ -191,13 +188,6 @@ fn named_mesh_error(path: &Path) -> IoError {
     IoError::Request { path: path.to_owned(), cause }
 }
 
-/// Whether the format splits vertices along seams, so that adjacent triangles share no vertex: STL and glTF. For
-/// adjacency in such files, vertices of equal position and equal modes should be welded.
-pub fn splits_vertices(path: &Path) -> bool {
-    let (file, _) = split_mesh_name(path);
-    gltf::is_gltf(&file) || ending(&file) == "stl"
-}
-
 /// Builds the model. `at` is the file to name in the error if mesh and modes do not fit.
 fn assemble(
     at: &Path,
@@ -230,6 +220,8 @@ fn name(path: &Path) -> String {
 
 #[cfg(test)]
 mod tests {
+    use sscc::ContactFilter;
+
     use super::*;
     use crate::{write_model, write_npy};
 
@@ -286,12 +278,15 @@ mod tests {
             load_model_with(&path(mesh), &LoadOptions::new(Some(&path(modes)), None)).unwrap()
         };
         let first = load("a.obj", "a.npy");
-        for (mesh, modes) in
+        for (mesh_name, modes) in
             [("a.obj", "a.npz"), ("a.obj", "targets"), ("a.STL", "a.npy"), ("a.STL", "targets")]
         {
-            let other = load(mesh, modes);
-            assert_eq!((other.model.mesh(), other.model.modes()), (first.model.mesh(), first.model.modes()));
-            assert_eq!(other.info.provenance, format!("mesh {mesh}, modes {modes}"));
+            let other = load(mesh_name, modes);
+            let (mesh, of_first) = (other.model.mesh(), first.model.mesh());
+            assert_eq!((mesh.faces(), mesh.rest_positions()), (of_first.faces(), of_first.rest_positions()));
+            assert_eq!(other.model.modes(), first.model.modes());
+            assert_eq!(mesh.has_split_vertices(), mesh_name.ends_with("STL"));
+            assert_eq!(other.info.provenance, format!("mesh {mesh_name}, modes {modes}"));
             let names: &[&str] = if modes == "targets" { &["smile"] } else { &[] };
             assert_eq!(other.mode_names, names);
         }
@@ -334,12 +329,13 @@ mod tests {
         assert_eq!(load_mesh_with_warnings(&path("bent.obj"), None).unwrap().warnings, warned);
         assert!(warned[0].contains("are not plane") && warned[0].ends_with("(faces, counted from 0: 0)"));
         for mesh in ["a.obj", "a.STL"] {
-            assert_eq!(load_mesh(&path(mesh), None).unwrap(), *first.model.mesh());
+            let read = load_mesh(&path(mesh), None).unwrap();
+            assert_eq!(read.rest_positions(), first.model.mesh().rest_positions());
+            // What a format needs comes with its mesh.
+            assert_eq!(ContactFilter::of(&read).weld, mesh == "a.STL");
         }
         let named = load_mesh(&path("a.obj"), Some("x")).unwrap_err().to_string();
         assert!(named.ends_with("leave out --mesh-name"), "{named}");
-        assert!(splits_vertices(Path::new("a.STL")) && splits_vertices(Path::new("a.glb")));
-        assert!(!splits_vertices(Path::new("a.obj")));
     }
 
     #[test]

@@ -90,7 +90,7 @@ pub fn pca_modes(
         }
     }
     Ok(Pca {
-        mesh: TriMesh::new(mean, mesh.faces().to_vec())?,
+        mesh: mesh.with_rest_positions(mean)?,
         modes: Modes::new(rank, displacements)?,
         deviations: variances.iter().map(|x| x.sqrt() / root).collect(),
         shares: variances.iter().map(|x| x / total).collect(),

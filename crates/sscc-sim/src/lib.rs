@@ -22,6 +22,7 @@ mod detection;
 mod error;
 mod files;
 mod groups;
+mod left_out;
 mod machine;
 mod models;
 mod nearest;
@@ -44,6 +45,7 @@ pub use detection::{
 };
 pub use error::SimError;
 pub use groups::GroupRules;
+pub use left_out::{FreeProof, LeftOut, free_sentence};
 pub use machine::{PeakMemory, available_threads, machine_description};
 pub use models::{
     Components, Fix, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,

@@ -1,6 +1,7 @@
 //! Reports of animations: one shape, with its q and its colliding pairs in every frame.
 
 use sscc::{Certificates, ReducedModel};
+use sscc_sim::LeftOut;
 
 use crate::{
     Arrays, Axis, Body, Clock, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series,
@@ -72,6 +73,7 @@ impl Animation<'_> {
                 pairs: Some(self.pairs.iter().map(|pairs| pairs.len() as u64).collect()),
             }],
             pairs_since: None,
+            apart: LeftOut::of(certificates.filter()).apart(),
             colliding: Some(Colliding {
                 offsets: arrays.add_u32("colliding-offsets", offsets),
                 triangles: arrays.add_u32("colliding-triangles", triangles),

@@ -16,6 +16,8 @@ pub struct Playback {
     /// For each frame the number of self-colliding triangle pairs of all bodies, as the maximum over the steps strictly
     /// between the previous frame and this one; 0 for the first frame. `None` if the motion has no such steps.
     pub pairs_since: Option<Vec<u64>>,
+    /// The pairs that were not tested, for the end of a sentence: ", apart from ..."; empty if all were.
+    pub apart: String,
     /// The colliding triangles, where known.
     pub colliding: Option<Colliding>,
     /// The colliding pairs, where known; the page then needs no `colliding`.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::default_ranges;
+use sscc_sim::{FreeProof, LeftOut, default_ranges, free_sentence};
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
@@ -39,9 +39,26 @@ pub(crate) struct ReducedFacts {
     resolved_up_to: Option<f64>,
     metric: &'static str,
     exceptions: usize,
+    free: FreeSentences,
     nodes: usize,
     levels: Vec<Level>,
     extremal: Vec<Extremal>,
+}
+
+/// The sentences for a shape that is free, by what proves it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct FreeSentences {
+    root: String,
+    tests: String,
+}
+
+impl FreeSentences {
+    fn new(certificates: &Certificates) -> Self {
+        let left_out = LeftOut::of(certificates.filter());
+        let root = FreeProof::Root { exceptions: certificates.exceptions().len() };
+        let [root, tests] = [root, FreeProof::Tests].map(|proof| free_sentence(proof, "", &left_out));
+        Self { root, tests }
+    }
 }
 
 impl ReducedFacts {
@@ -62,6 +79,7 @@ impl ReducedFacts {
             resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
             metric: metric.kind().name(),
             exceptions: certificates.exceptions().len(),
+            free: FreeSentences::new(certificates),
             nodes: certificates.hierarchy().nodes().len(),
             levels: levels(certificates),
             extremal: extremal(certificates),

@@ -56,6 +56,15 @@ pub enum Error {
         /// How many triangles there are.
         triangles: usize,
     },
+    /// Folded neighbours where only distances can be bounded.
+    #[error(
+        "include-folded is for discrete queries of meshes without modes: triangles with a common edge have distance 0 in \
+         every shape, so that {queries} cannot tell when they fold; use include-one-vertex"
+    )]
+    FoldedNeighbours {
+        /// The queries that cannot decide them.
+        queries: &'static str,
+    },
     /// A search for a free configuration from a colliding one.
     #[error("the start collides; give a free q, or leave it out")]
     ResolveStart,

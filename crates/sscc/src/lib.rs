@@ -79,9 +79,11 @@
 //! count:
 //!
 //! - [`Neighbours`]: by default triangles that share a vertex never count. Optionally, triangles that share exactly
-//!   one vertex count if they have another point in common.
+//!   one vertex count if they have another point in common; of meshes without modes also those that share an edge or all
+//!   vertices, if they are folded onto each other.
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
-//!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide.
+//!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide. Readers of
+//!   such files say so ([`TriMesh::with_split_vertices`]), and then it is the default.
 //! - *Ignored* pairs never count.
 //! - *Groups* ([`TriangleGroups`]): pairs of triangles within or between groups count or not by a table.
 //!
@@ -109,9 +111,10 @@
 //!
 //! let plain = CertifyOptions::default();
 //! assert!(collide(&plain, 0.0)?); // they touch in the corner
-//! let welded = CertifyOptions { filter: ContactFilter::new(Neighbours::Exclude, true), ..plain };
+//! let welded = CertifyOptions { filter: Some(ContactFilter::new(Neighbours::Exclude, true)), ..plain };
 //! assert!(!collide(&welded, 0.0)? && !collide(&welded, 1.0)?); // neighbours never count
-//! let strict = CertifyOptions { filter: ContactFilter::new(Neighbours::IncludeOneVertex, true), ..welded };
+//! let one_vertex = ContactFilter::new(Neighbours::IncludeOneVertex, true);
+//! let strict = CertifyOptions { filter: Some(one_vertex), ..welded };
 //! assert!(!collide(&strict, 0.0)? && collide(&strict, 1.0)?); // folded, they meet beside the corner
 //! # Ok(())
 //! # }
@@ -287,8 +290,8 @@ pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
 pub use geometry::{
     Aabb, Feature, Intersection, IntersectionPoint, MovingTriangle, Penetration, impact_edge_edge,
-    impact_triangle_triangle, impact_vertex_face, intersect_shared_vertex_pair, intersect_triangle_triangle,
-    intersection_triangle_triangle, orient2d, penetration_triangle_triangle,
+    impact_triangle_triangle, impact_vertex_face, intersect_shared_edge_pair, intersect_shared_vertex_pair,
+    intersect_triangle_triangle, intersection_triangle_triangle, orient2d, penetration_triangle_triangle,
 };
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape, SweptShape};

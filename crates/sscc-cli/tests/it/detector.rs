@@ -110,7 +110,11 @@ fn meshes_at_rest() {
     assert_eq!(counts(&lines(folder, &["flag.gltf", "--mesh-name", "#0", "--weld=off"], "")), [1]);
     let text = check(folder, &["touching.obj"]);
     assert!(text.stdout.starts_with("COLLIDING: 1 pair of triangles\n"), "{text:?}");
-    assert!(check(folder, &["mesh.obj"]).stdout.starts_with("free: proven\n"));
+    assert!(
+        check(folder, &["mesh.obj"])
+            .stdout
+            .starts_with("free: proven, apart from pairs with common vertices\n")
+    );
 
     let all = ["mesh.obj", "touching.obj", "flag.gltf", "frames/10.obj"];
     for threads in ["1", "2", "7"] {
@@ -157,8 +161,11 @@ fn frames_from_arrays_and_folders() {
     assert!(printed[4].starts_with("4 frames: 3 free, 1 colliding; median "), "{text:?}");
     // The mesh at rest only names faces; ignoring its own pairs leaves none here.
     fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
-    let ignored = lines(folder, &["touching.obj", "--frames", "frames", "--ignore-rest"], "");
+    let ignored =
+        lines(folder, &["touching.obj", "--frames", "frames", "--ignore-rest"], "ignored, left_out");
     assert_eq!(counts(&ignored), [0; 4]);
+    assert!(ignored.iter().all(|line| line["ignored"] == json!(1)));
+    assert_eq!(ignored[0]["left_out"], json!("1 ignored pair and pairs with common vertices"));
 }
 
 /// Two triangles of an STL file with a common corner at rest, which parts: they are adjacent only while all frames have it.

@@ -10,6 +10,7 @@ mod detector_bad_input;
 mod detector_models;
 mod detector_report;
 mod exact_poses;
+mod folded;
 mod formats;
 mod guide;
 mod help;

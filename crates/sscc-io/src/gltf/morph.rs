@@ -51,7 +51,7 @@ pub(super) fn model(
         primitives.push(joined.push(&mut accessors, number, primitive, &part)?);
     }
     Ok(MorphModel {
-        mesh: TriMesh::new(joined.positions, joined.faces)?,
+        mesh: TriMesh::new(joined.positions, joined.faces)?.with_split_vertices(),
         modes: Modes::new(rank, joined.displacements)?,
         default_weights: fitted_weights(&mesh.weights, rank),
         target_names: target_names(mesh, rank),

@@ -1,7 +1,7 @@
 //! Reader for stereolithography files (STL), binary and text.
 //!
-//! STL has no shared vertices: corner `c` of triangle `t` becomes vertex `3 t + c`. For adjacency, vertices of equal
-//! position must be welded.
+//! STL has no shared vertices: corner `c` of triangle `t` becomes vertex `3 t + c`. So meshes have split vertices
+//! ([`TriMesh::with_split_vertices`]): those of equal position are welded by default.
 //!
 //! The module has its own parser: it names the places of errors, and the crate `stl_io` welds equal vertices. Many
 //! binary files begin with `solid`, so the size decides between the forms.
@@ -47,7 +47,8 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
         )));
     };
     let faces = (0..vertices / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    Ok(Soup { warnings: warning.into_iter().collect(), ..Soup::of_triangles(positions, faces) })
+    let warnings = warning.into_iter().collect();
+    Ok(Soup { warnings, has_split_vertices: true, ..Soup::of_triangles(positions, faces) })
 }
 
 fn is_text(bytes: &[u8]) -> bool {

@@ -62,7 +62,7 @@ impl Polygons {
                 let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
                 Err(FormatError::new(place, cause))
             }
-            _ => Ok(Soup { positions, fans: self.triangles, larger: self.larger, warnings: Vec::new() }),
+            _ => Ok(Soup { larger: self.larger, ..Soup::of_triangles(positions, self.triangles) }),
         }
     }
 }

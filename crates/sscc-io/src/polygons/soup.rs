@@ -13,6 +13,8 @@ pub(crate) struct Soup {
     pub fans: Vec<[u32; 3]>,
     /// The polygons of more than 3 corners, in the order of the file.
     pub larger: Vec<LargerPolygon>,
+    /// Whether the format splits vertices along seams.
+    pub has_split_vertices: bool,
     /// Lines about content that breaks a rule of the format, and how it was understood.
     pub warnings: Vec<String>,
 }
@@ -20,7 +22,13 @@ pub(crate) struct Soup {
 impl Soup {
     /// Returns the soup of triangles without polygons.
     pub fn of_triangles(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
-        Self { positions, fans: triangles, larger: Vec::new(), warnings: Vec::new() }
+        Self {
+            positions,
+            fans: triangles,
+            larger: Vec::new(),
+            has_split_vertices: false,
+            warnings: Vec::new(),
+        }
     }
 
     /// Returns the mesh; it must have a triangle.
@@ -30,12 +38,13 @@ impl Soup {
 
     /// Returns the mesh, and lines about polygons whose triangles may not be what the file means.
     pub fn into_mesh_with_warnings(self) -> Result<(TriMesh, Vec<String>), FormatError> {
-        let Self { positions, mut fans, larger, mut warnings } = self;
+        let Self { positions, mut fans, larger, has_split_vertices, mut warnings } = self;
         // Invalid positions are an error of the mesh.
         if !larger.is_empty() && positions.iter().all(|p| limits::contains(*p)) {
             warnings.extend(triangulate(&positions, &mut fans, &larger)?);
         }
-        Ok((TriMesh::new(positions, fans)?, warnings))
+        let mesh = TriMesh::new(positions, fans)?;
+        Ok((if has_split_vertices { mesh.with_split_vertices() } else { mesh }, warnings))
     }
 
     /// Whether these triangles are those of this file's polygons, for any positions: each triangle of the file is in its

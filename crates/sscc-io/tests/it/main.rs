@@ -2,6 +2,7 @@
 //! of their own.
 #![allow(clippy::unwrap_used)]
 
+mod default_filter;
 mod hostile;
 mod real_data;
 mod real_solids;

@@ -6,7 +6,7 @@ use sscc::{
     Certificates, CertifyOptions, ContactFilter, KineticQuery, Neighbours, Query, ReducedModel, Sweep,
     SweepOutcome,
 };
-use sscc_io::{LoadOptions, load_model, load_model_with, splits_vertices};
+use sscc_io::{LoadOptions, load_model, load_model_with};
 use sscc_testing::{cases, models};
 
 /// Nothing that queries find is below `first_free`, and the brackets are narrow. The first queries are of another method:
@@ -44,8 +44,7 @@ fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &
 }
 
 fn certify(model: &ReducedModel, path: &Path, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
-    let filter = ContactFilter::new(Neighbours::Exclude, splits_vertices(path));
-    let options = CertifyOptions { filter, ignore_rest, center, budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions { ignore_rest, center, budget: 0, ..CertifyOptions::default() };
     Certificates::compute(model, &options, &()).unwrap()
 }
 

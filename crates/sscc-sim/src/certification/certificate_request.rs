@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use sscc::{CertifyOptions, ContactFilter, Neighbours, ReducedModel, Scope};
-use sscc_io::splits_vertices;
 
 use super::metric::metric;
 use crate::error::{At, Result};
@@ -25,7 +24,7 @@ pub struct CertificateRequest {
     pub center: Option<Vec<f64>>,
     /// Which triangles that share a vertex count (`--neighbours`).
     pub neighbours: Option<Neighbours>,
-    /// Whether to weld equal vertices (`--weld`); by default where the format splits vertices.
+    /// Whether to weld equal vertices (`--weld`); none: as the mesh has it ([`ContactFilter::of`]).
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count (`--ignore-rest`).
     pub ignore_rest: bool,
@@ -60,7 +59,7 @@ impl CertificateRequest {
             epsilon: self.epsilon.unwrap_or(CertifyOptions::default().epsilon),
             metric: self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?,
             center: self.center.clone(),
-            filter: self.filter(model)?,
+            filter: Some(self.filter(model)?),
             ignore_rest: self.ignore_rest,
             max_exceptions: self.max_exceptions,
             budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
@@ -73,11 +72,12 @@ impl CertificateRequest {
     /// # Errors
     /// As [`CertificateRequest::options`].
     pub fn scope(&self, model: &ReducedModel) -> Result<Scope> {
-        let CertifyOptions { metric, center, mut filter, .. } = self.options(model)?;
+        let CertifyOptions { metric, center, filter, .. } = self.options(model)?;
+        let default = Scope::of(model);
+        let mut filter = filter.unwrap_or(default.filter);
         if self.ignore_rest {
             filter = filter.ignoring_rest(model).in_file(&self.model)?;
         }
-        let default = Scope::of(model);
         Ok(Scope {
             metric: metric.unwrap_or(default.metric),
             center: center.unwrap_or(default.center),
@@ -88,8 +88,9 @@ impl CertificateRequest {
 
     /// Returns the contact filter; but `ignore_rest` is not part of it.
     fn filter(&self, model: &ReducedModel) -> Result<ContactFilter> {
-        let weld = self.weld.unwrap_or_else(|| splits_vertices(&self.model));
-        let filter = ContactFilter::new(self.neighbours.unwrap_or_default(), weld);
+        let default = ContactFilter::of(model.mesh());
+        let weld = self.weld.unwrap_or(default.weld);
+        let filter = ContactFilter::new(self.neighbours.unwrap_or(default.neighbours), weld);
         let triangles = model.mesh().faces().len();
         Ok(match self.groups.of_model(&self.model, self.mesh_name.as_deref(), triangles)? {
             Some(groups) => filter.with_groups(groups),

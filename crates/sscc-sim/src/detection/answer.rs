@@ -5,6 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{ContactCurves, Impact, Pair, Penetration, TriMesh};
 
+use crate::LeftOut;
+
 /// The answer to one query of a [`Detection`](super::Detection), or at one q of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct DetectionAnswer<'a> {
@@ -37,6 +39,10 @@ pub struct DetectionAnswer<'a> {
     pub norm: Option<f64>,
     /// Whether the root's certificate held, of a model.
     pub root_certified: Option<bool>,
+    /// Number of pairs that no certificate covers, so that each query tests them, of a model.
+    pub exceptions: usize,
+    /// The pairs that the run does not test.
+    pub left_out: &'a LeftOut,
     /// Nodes and node pairs that the query opened.
     pub opened: u64,
     /// Pairs of AABBs that it compared.

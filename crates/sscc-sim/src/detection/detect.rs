@@ -15,7 +15,7 @@ use super::sides::Sides;
 use super::worker::{QueryResult, Worker};
 use crate::error::Result;
 use crate::watch::check_cancelled;
-use crate::{SimError, Stage, Watch, available_threads};
+use crate::{LeftOut, SimError, Stage, Watch, available_threads};
 
 /// Calls `take` with the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh), frame by
 /// frame. `take` can end that early.
@@ -84,7 +84,7 @@ fn at_rest<E: From<SimError>>(
         let last = (index + 1 == count).then_some(0);
         let found = Worker::new(request, &mesh, None, last).answer(0)?;
         // Its detector is no longer needed: it is far larger than the mesh.
-        Ok((mesh.mesh, found))
+        Ok((mesh.mesh, mesh.left_out, found))
     };
     let taken = in_order(
         count,
@@ -93,8 +93,9 @@ fn at_rest<E: From<SimError>>(
         work,
         |index, result: Result<_>| {
             check_cancelled(watch)?;
-            let (mesh, found) = result?;
-            let mesh = AnswerSource { file: &request.meshes[index], mesh: &mesh, node: None, times: None };
+            let (mesh, left_out, found) = result?;
+            let file = &request.meshes[index];
+            let mesh = AnswerSource { file, mesh: &mesh, node: None, times: None, left_out: &left_out };
             let taken = take(&answer(mesh, None, 0, &found, [1, 1]))?;
             watch.report(index + 1, count);
             Ok(taken)
@@ -110,11 +111,13 @@ struct AnswerSource<'a> {
     mesh: &'a TriMesh,
     node: Option<usize>,
     times: Option<&'a [f64]>,
+    left_out: &'a LeftOut,
 }
 
 impl<'a> From<&'a MovingMesh<'_>> for AnswerSource<'a> {
     fn from(mesh: &'a MovingMesh<'_>) -> Self {
-        Self { file: &mesh.file, mesh: &mesh.mesh, node: mesh.node, times: mesh.times() }
+        let MovingMesh { file, mesh: faces, node, left_out, .. } = mesh;
+        Self { file, mesh: faces, node: *node, times: mesh.times(), left_out }
     }
 }
 
@@ -145,6 +148,8 @@ fn answer<'a>(
         microseconds: found.microseconds,
         norm: None,
         root_certified: None,
+        exceptions: 0,
+        left_out: mesh.left_out,
         opened: found.statistics.opened,
         box_tests: found.statistics.box_tests,
         triangle_tests: found.statistics.triangle_tests,
@@ -157,6 +162,9 @@ fn answer<'a>(
 }
 
 fn check_request(request: &Detection) -> Result<()> {
+    if request.is_continuous {
+        request.neighbours.check_continuous()?;
+    }
     let needs_one = match (&request.motion, &request.against) {
         (_, Some(other)) => Some(other.mesh.as_path()),
         (MeshMotion::Frames(frames), None) => Some(frames.as_path()),

@@ -7,11 +7,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::DVec3;
 use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
-use sscc_io::{FormatError, FrameReader, IoError, splits_vertices};
+use sscc_io::{FormatError, FrameReader, IoError};
 
 use super::mesh_source::{MAX_WEIGHT_ERROR, MeshSource};
 use super::request::{AnimationMotion, Detection};
 use super::weld_classes::WeldClasses;
+use crate::LeftOut;
 use crate::error::{At, Result};
 use crate::watch::{Stage, Watch, check_cancelled};
 
@@ -21,6 +22,8 @@ pub(super) struct MovingMesh<'w> {
     pub node: Option<usize>,
     pub mesh: TriMesh,
     pub detector: Detector<'w>,
+    /// The pairs that its answers leave out.
+    pub left_out: LeftOut,
     motion: Motion,
     watch: &'w dyn Watch,
 }
@@ -85,7 +88,7 @@ impl<'w> MovingMesh<'w> {
     ) -> Result<Self> {
         let file = source.file.as_path();
         let mesh = source.mesh(place, watch)?;
-        let weld = request.weld.unwrap_or_else(|| splits_vertices(file));
+        let weld = request.weld.unwrap_or(ContactFilter::of(&mesh).weld);
         let mut classes = weld.then(|| WeldClasses::at(source.own_positions()));
         let motion = motion(&mesh, classes.as_mut())?;
         // Every pair between two meshes counts.
@@ -98,9 +101,14 @@ impl<'w> MovingMesh<'w> {
             Some(classes) => Detector::with_weld_classes(&mesh, classes.numbers(), filter),
             None => Detector::with_filter(&mesh, filter),
         };
-        let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
+        let (detector, left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
+        let left_out = match request.against {
+            Some(_) => LeftOut::between_meshes(),
+            None if request.meshes.len() > 1 => left_out.and_between_files(),
+            None => left_out,
+        };
         let node = source.node(place).filter(|_| request.against.is_some());
-        Ok(Self { file: file.to_owned(), node, mesh, detector, motion, watch })
+        Ok(Self { file: file.to_owned(), node, mesh, detector, left_out, motion, watch })
     }
 
     /// Loads the nodes of an animation.
@@ -142,7 +150,13 @@ impl<'w> MovingMesh<'w> {
                 false => Detector::with_filter(&mesh, filter),
             };
             let filter = filter(request, is_welded, groups);
-            let detector = detector(&mesh, filter, request, watch, make).in_file(file)?;
+            let (detector, mut left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
+            if nodes.len() > 1 {
+                left_out = left_out.and_between_nodes();
+            }
+            if request.meshes.len() > 1 {
+                left_out = left_out.and_between_files();
+            }
             let motion = Motion::Animation(Evaluation {
                 scene: Arc::clone(&scene),
                 animation,
@@ -151,7 +165,8 @@ impl<'w> MovingMesh<'w> {
                 times: Arc::clone(&times),
                 is_warned: AtomicBool::new(false),
             });
-            Ok(Self { file: file.to_owned(), node: Some(node.node()), mesh, detector, motion, watch })
+            let node = Some(node.node());
+            Ok(Self { file: file.to_owned(), node, mesh, detector, left_out, motion, watch })
         };
         nodes.iter().zip(groups).map(mesh).collect()
     }
@@ -232,20 +247,21 @@ fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> Co
     }
 }
 
-/// Makes a detector under a filter, which ignores pairs that collide at rest if the request says so.
+/// Makes a detector under a filter, which ignores pairs that collide at rest if the request says so. Returns also what the
+/// filter leaves out.
 fn detector<'w>(
     mesh: &TriMesh,
     filter: ContactFilter,
     request: &Detection,
     watch: &'w dyn Watch,
     make: impl Fn(&ContactFilter) -> Result<Detector<'w>, sscc::Error>,
-) -> Result<Detector<'w>, sscc::Error> {
-    let mut detector = make(&filter)?.cancelled_by(watch);
+) -> Result<(Detector<'w>, LeftOut), sscc::Error> {
+    let (mut detector, mut filter) = (make(&filter)?.cancelled_by(watch), filter);
     if request.ignore_rest {
-        let pairs = detector.discrete(mesh.rest_positions())?.to_vec();
-        detector = make(&filter.ignoring(pairs))?.cancelled_by(watch);
+        filter = filter.ignoring(detector.discrete(mesh.rest_positions())?.to_vec());
+        detector = make(&filter)?.cancelled_by(watch);
     }
-    Ok(detector)
+    Ok((detector, LeftOut::of(&filter)))
 }
 
 fn in_file(error: FormatError, file: &Path) -> IoError {

@@ -23,7 +23,8 @@ pub struct Detection {
     /// Which triangles that share a vertex count.
     pub neighbours: Neighbours,
     /// Whether equal vertices are one vertex for adjacency: those of equal position at rest and in all frames; in animations
-    /// those of equal rest position, morph displacements and influences. None: in formats that split vertices ([`sscc_io::splits_vertices`]).
+    /// those of equal rest position, morph displacements and influences. None: as the
+    /// mesh has it ([`sscc::ContactFilter::of`]); in animations they are.
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: bool,

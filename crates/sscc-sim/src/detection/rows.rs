@@ -10,8 +10,8 @@ use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
 use super::contacts::{ContactOptions, Contacts};
-use crate::SimError;
 use crate::watch::check_cancelled;
+use crate::{LeftOut, SimError};
 
 /// Queries of a model with modes.
 pub struct RowQueries<'a> {
@@ -53,6 +53,7 @@ pub fn check_rows<E: From<SimError>>(
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
     let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
     let (mut next, mut block, mut most_pairs) = (0, 1, 1);
+    let (left_out, exceptions) = (LeftOut::of(&query.scope().filter), query.scope().exceptions.len());
     // Rows before this one are answered one by one.
     let mut single = 0;
     while next < queries {
@@ -97,6 +98,8 @@ pub fn check_rows<E: From<SimError>>(
                 microseconds,
                 norm: Some(found.norm),
                 root_certified: Some(found.statistics.root_certified),
+                exceptions,
+                left_out: &left_out,
                 opened: found.statistics.opened,
                 box_tests: found.statistics.box_tests,
                 triangle_tests: found.statistics.triangle_tests,

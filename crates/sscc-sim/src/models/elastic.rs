@@ -107,12 +107,10 @@ pub fn elastic_model(
         kind.name(),
     );
     let frequencies = found.frequencies();
-    let is_split = source.is_split();
     let metric = found.energy_metric()?;
     Ok(NewModel {
         model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
         info: ModelInfo::new("", provenance).with_elasticity(found.elasticity).with_mass(mass),
-        is_split,
         solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
         components: None,
     })

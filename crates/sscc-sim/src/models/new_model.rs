@@ -12,8 +12,6 @@ pub struct NewModel {
     pub model: ReducedModel,
     /// Provenance; for a solid also the stiffness and the forces.
     pub info: ModelInfo,
-    /// Whether vertices are split along seams, so that certificates should weld them.
-    pub is_split: bool,
     /// Size and frequencies of a solid.
     pub solid: Option<SolidFacts>,
     /// Variance of principal components.

@@ -26,7 +26,6 @@ pub fn pca_model(
     Ok(NewModel {
         model: ReducedModel::new(found.mesh, found.modes)?,
         info: ModelInfo::new("", format!("mean and principal components of {count} {name}")),
-        is_split: false,
         solid: None,
         components: Some(Components { frames: count, explained, deviations: found.deviations }),
     })

@@ -17,7 +17,6 @@ pub fn polynomial_model(mesh: TriMesh, name: &str) -> Result<NewModel, SimError>
     Ok(NewModel {
         model: ReducedModel::new(mesh, modes)?,
         info: ModelInfo::new("", format!("mesh {name}, polynomial modes")),
-        is_split: false,
         solid: None,
         components: None,
     })

@@ -192,11 +192,6 @@ impl SolidSource {
         (!notes.is_empty()).then(|| notes.join("; "))
     }
 
-    /// Whether vertices of the surface are split along seams.
-    pub fn is_split(&self) -> bool {
-        matches!(self, Self::Around { embedded, .. } if embedded.is_split())
-    }
-
     /// Whether the surface is embedded: in a lattice or another solid.
     pub fn is_embedded(&self) -> bool {
         !matches!(self, Self::Whole { .. })
@@ -210,9 +205,10 @@ impl SolidSource {
         }
     }
 
-    /// Returns the surface alone.
+    /// Returns the surface alone. One that is closed only when equal vertices are one has split vertices.
     pub fn into_mesh(self) -> TriMesh {
         match self {
+            Self::Around { mesh, embedded, .. } if embedded.is_split() => mesh.with_split_vertices(),
             Self::Around { mesh, .. } | Self::Within { mesh, .. } => mesh,
             Self::Whole { boundary, .. } => boundary.mesh,
         }

@@ -51,5 +51,5 @@ pub fn scaled(mesh: TriMesh, factor: f64) -> Result<TriMesh, SimError> {
         return Ok(mesh);
     }
     let points = mesh.rest_positions().iter().map(|p| *p * factor).collect();
-    Ok(TriMesh::new(points, mesh.faces().to_vec())?)
+    Ok(mesh.with_rest_positions(points)?)
 }

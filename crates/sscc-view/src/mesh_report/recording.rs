@@ -1,6 +1,7 @@
 //! The recording of several bodies as the data of the page.
 
 use glam::DVec3;
+use sscc_sim::LeftOut;
 
 use super::recorded_body::RecordedBody;
 use crate::{Arrays, Body, Clock, Contacts, Curves, ModelScene, Playback, Track};
@@ -18,6 +19,8 @@ pub(super) struct Recording {
     pub is_continuous: bool,
     /// Whether the pairs are those of the first body with the second one.
     pub is_between: bool,
+    /// The pairs that were not tested.
+    pub left_out: LeftOut,
 }
 
 impl Recording {
@@ -67,6 +70,7 @@ impl Recording {
             clock: if self.is_timed() { Clock::FrameAndTime } else { Clock::Frame },
             bodies: self.bodies.iter().enumerate().map(body).collect(),
             pairs_since: None,
+            apart: self.left_out.apart(),
             colliding: None,
             contacts: Some(self.contacts(arrays)),
             curves: Some(self.curves(arrays)),

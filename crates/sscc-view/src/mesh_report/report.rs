@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{Surface, TriMesh};
 use sscc_sim::text::{counted, grouped, one_line};
-use sscc_sim::{DetectionAnswer, ShapeInMotion};
+use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
 
 use super::contact_segments::contact_segments;
 use super::recorded_body::RecordedBody;
@@ -37,6 +37,7 @@ pub struct MeshReport {
     microseconds: Vec<f64>,
     is_continuous: bool,
     is_between: bool,
+    left_out: LeftOut,
     /// Size of the recorded positions and of those to come, in the report (bytes).
     planned_bytes: u64,
 }
@@ -90,6 +91,7 @@ impl MeshReport {
         }
         self.is_continuous = answer.times.is_some();
         self.is_between = answer.other.is_some();
+        self.left_out = std::mem::take(&mut self.left_out).and(answer.left_out);
         let nodes = [answer.node, answer.other_node];
         for (shape, node) in [shape].into_iter().chain(answer.other).zip(nodes) {
             let file = one_line(&file_name(shape.file));
@@ -126,6 +128,7 @@ impl MeshReport {
             frames,
             is_continuous: self.is_continuous,
             is_between: self.is_between,
+            left_out: self.left_out,
         };
         let mut arrays = Arrays::default();
         let mut scene = Scene::new(self.files.join(if self.is_between { " against " } else { ", " }));
@@ -186,6 +189,10 @@ fn summary(recording: &Recording) -> Vec<(String, String)> {
         row("checked", checked.into()),
         row("colliding", format!("{} of {}", all, counted(queries as u64, noun))),
     ];
+    let left_out = recording.left_out.to_string();
+    if !left_out.is_empty() {
+        rows.push(row("not tested", left_out));
+    }
     if recording.times.is_some() && !recording.is_timed() {
         rows.push(row(
             "note",

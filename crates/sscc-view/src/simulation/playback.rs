@@ -5,7 +5,7 @@ use std::ops::Range;
 use sscc::{Error, Progress, Query};
 use sscc_io::gltf::key_frames;
 use sscc_io::{WavFormat, wav_to_bytes};
-use sscc_sim::{FinishedRun, History, SoundTrack};
+use sscc_sim::{FinishedRun, History, LeftOut, SoundTrack};
 
 use super::plots::costs;
 use crate::{Arrays, Body, Clock, Colliding, Playback, Track};
@@ -76,10 +76,13 @@ pub fn playback(
     notes.extend(note);
     let (sound, note) = sound(run, arrays);
     notes.extend(note);
+    let filters = prepared.models.iter().map(|model| model.certified.full.certificates.filter());
+    let left_out = filters.fold(LeftOut::default(), |all, filter| all.and(&LeftOut::of(filter)));
     let playback = Playback {
         times: frames.iter().map(|state| run.time(*state)).collect(),
         bodies: tracks,
         pairs_since: Some(pairs_since(history, &frames)),
+        apart: left_out.apart(),
         clock: Clock::Time,
         colliding,
         contacts: None,

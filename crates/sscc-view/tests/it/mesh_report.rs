@@ -1,13 +1,14 @@
 //! Reports of meshes without modes: their data, and their refusals.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use serde_json::{Value, json};
-use sscc::{Pair, TriMesh};
-use sscc_sim::{DetectionAnswer, ShapeInMotion};
+use sscc::{ContactFilter, Pair, TriMesh};
+use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
 use sscc_view::{MeshReport, Report};
 
 /// A coordinate at which single precision has steps of 8.
@@ -38,6 +39,7 @@ fn answer<'a>(
     pairs: &'a [Pair],
     x: [&'a [DVec3]; 2],
 ) -> DetectionAnswer<'a> {
+    static LEFT_OUT: LazyLock<LeftOut> = LazyLock::new(|| LeftOut::of(&ContactFilter::default()));
     let file = Path::new("folder/mesh.obj");
     DetectionAnswer {
         file,
@@ -54,6 +56,8 @@ fn answer<'a>(
         microseconds: 2000.0,
         norm: None,
         root_certified: None,
+        exceptions: 0,
+        left_out: &LEFT_OUT,
         opened: 0,
         box_tests: 0,
         triangle_tests: 0,

@@ -26,7 +26,7 @@ impl Certificates {
         if scope.exceptions.iter().chain(scope.filter.ignored()).any(|(_, b)| *b as usize >= triangles) {
             return damaged("a pair names a triangle that does not exist");
         }
-        scope.filter.check_groups(triangles)?;
+        scope.filter.check_model(triangles)?;
         model.check_coordinates(self.center()).map(|_| ())
     }
 

@@ -30,6 +30,8 @@ impl Digest {
             match scope.filter.neighbours {
                 Neighbours::Exclude => "exclude-adjacent",
                 Neighbours::IncludeOneVertex => "include-one-vertex",
+                // No certificates have it; a forged file is refused by the digest, too.
+                Neighbours::IncludeFolded => "include-folded",
             },
             0,
         );

@@ -21,8 +21,8 @@ pub struct CertifyOptions {
     pub metric: Option<Metric>,
     /// The configuration from which radii are measured (r entries); none: q = 0, the rest pose.
     pub center: Option<Vec<f64>>,
-    /// Which pairs of triangles count.
-    pub filter: ContactFilter,
+    /// Which pairs of triangles count; none: the default of the model's mesh ([`ContactFilter::of`]).
+    pub filter: Option<ContactFilter>,
     /// Whether the contact filter also ignores the pairs that collide at rest (q = 0): queries never list them.
     pub ignore_rest: bool,
     /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
@@ -47,7 +47,7 @@ impl Default for CertifyOptions {
             epsilon: 0.1,
             metric: None,
             center: None,
-            filter: ContactFilter::default(),
+            filter: None,
             ignore_rest: false,
             max_exceptions: None,
             budget: Self::DEFAULT_BUDGET,

@@ -20,12 +20,12 @@ pub struct Scope {
 }
 
 impl Scope {
-    /// The default scope of a model: its own metric, centre q = 0, all pairs of triangles that share no vertex.
+    /// The default scope of a model: its own metric, centre q = 0, the contact filter of its mesh ([`ContactFilter::of`]).
     pub fn of(model: &ReducedModel) -> Self {
         Self {
             metric: model.metric().clone(),
             center: vec![0.0; model.rank()],
-            filter: ContactFilter::default(),
+            filter: ContactFilter::of(model.mesh()),
             exceptions: Vec::new(),
         }
     }

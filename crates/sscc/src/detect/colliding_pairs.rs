@@ -26,7 +26,7 @@ pub(crate) fn colliding_pairs(
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let reach = model.check_coordinates(q)?;
-    filter.check_groups(model.mesh().faces().len())?;
+    filter.check_model(model.mesh().faces().len())?;
     let context = Context::new(model, Cow::Borrowed(hierarchy), filter, &[], Some(Needs::REFIT));
     let context = Context { progress, ..context };
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);

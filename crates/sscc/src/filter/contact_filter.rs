@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::TriangleGroups;
-use crate::Error;
+use crate::{Error, TriMesh};
 
 /// Two triangles, the lower number first.
 pub type Pair = (u32, u32);
 
-/// Whether triangles that share a vertex count. Triangles that share two or three vertices never count, because they
-/// always touch.
+/// Whether triangles that share vertices count. Which vertices two triangles share is decided once, at rest, by vertex numbers
+/// and welds; positions never change it. They share as many vertices as they have numbers in common, or welded vertices, if
+/// these are more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Neighbours {
     /// They do not count (paper, section 3).
@@ -17,32 +18,60 @@ pub enum Neighbours {
     Exclude,
     /// Shared-vertex pairs, which share exactly one vertex, count when they have another point in common than that vertex.
     IncludeOneVertex,
+    /// Pairs that share one, two or three vertices count when they have another point in common than these vertices and the
+    /// edges between them: a triangle folded onto its neighbour. Doubled faces, which have all their vertices in common, always
+    /// count. For discrete queries of meshes without modes: neighbours in one plane touch at no distance that a radius or a
+    /// time of impact could measure, so certificates, models and continuous queries refuse it.
+    IncludeFolded,
 }
 
 impl Neighbours {
+    /// All values.
+    pub const ALL: [Self; 3] = [Self::Exclude, Self::IncludeOneVertex, Self::IncludeFolded];
+
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Exclude => "exclude",
             Self::IncludeOneVertex => "include-one-vertex",
+            Self::IncludeFolded => "include-folded",
         }
     }
 
     /// The value of that name; none for any other name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Exclude, Self::IncludeOneVertex].into_iter().find(|neighbours| neighbours.name() == name)
+        Self::ALL.into_iter().find(|neighbours| neighbours.name() == name)
+    }
+
+    /// Refuses [`Neighbours::IncludeFolded`] for certificates and queries of models.
+    ///
+    /// # Errors
+    /// [`Error::FoldedNeighbours`].
+    pub fn check_models(self) -> Result<(), Error> {
+        self.check_not_folded("certificates and queries of models")
+    }
+
+    /// Refuses [`Neighbours::IncludeFolded`] for continuous queries.
+    ///
+    /// # Errors
+    /// [`Error::FoldedNeighbours`].
+    pub fn check_continuous(self) -> Result<(), Error> {
+        self.check_not_folded("continuous queries")
+    }
+
+    fn check_not_folded(self, queries: &'static str) -> Result<(), Error> {
+        if self == Self::IncludeFolded { Err(Error::FoldedNeighbours { queries }) } else { Ok(()) }
     }
 }
 
-/// Which pairs of triangles count as collisions when they have a point in common. By default: all that share
-/// no vertex.
+/// Which pairs of triangles count as collisions when they have a point in common. By default: all that share no vertex.
+/// [`ContactFilter::of`] is the default of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ContactFilter {
     /// Whether triangles that share a vertex count.
     pub neighbours: Neighbours,
     /// Whether vertices of exactly equal rest position and modes (of a [`Detector`](crate::Detector): rest position) are
-    /// welded, for adjacency only: vertex numbers and positions stay the file's. For files that split vertices along seams
-    /// (STL, glTF).
+    /// welded, for adjacency only: vertex numbers and positions stay the file's. For meshes whose vertices are split along seams.
     pub weld: bool,
     ignored: Vec<Pair>,
     /// None if all pairs of groups count.
@@ -50,6 +79,12 @@ pub struct ContactFilter {
 }
 
 impl ContactFilter {
+    /// The default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes from a
+    /// format that splits them ([`TriMesh::has_split_vertices`]).
+    pub fn of(mesh: &TriMesh) -> Self {
+        Self::new(Neighbours::default(), mesh.has_split_vertices())
+    }
+
     /// A filter that ignores no pair and has no groups.
     pub fn new(neighbours: Neighbours, weld: bool) -> Self {
         Self { neighbours, weld, ignored: Vec::new(), groups: None }
@@ -81,6 +116,12 @@ impl ContactFilter {
     /// The groups of triangles; none if all pairs of groups count.
     pub fn groups(&self) -> Option<&Arc<TriangleGroups>> {
         self.groups.as_ref()
+    }
+
+    /// Refuses groups of another mesh, and folded neighbours, which no certificate and no continuous query can decide.
+    pub(crate) fn check_model(&self, triangles: usize) -> Result<(), Error> {
+        self.check_groups(triangles)?;
+        self.neighbours.check_models()
     }
 
     /// Refuses groups of another mesh.

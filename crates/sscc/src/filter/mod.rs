@@ -1,12 +1,15 @@
 //! Which pairs of triangles count as collisions: adjacency, welded vertices, shared-vertex pairs, ignored pairs,
 //! groups.
 
+mod common_corners;
 mod contact_filter;
 mod pair_filter;
+mod simplex_pairs;
 mod triangle_groups;
 mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair};
-pub(crate) use pair_filter::{PairFilter, Relation, SimplexPair};
+pub(crate) use pair_filter::{PairFilter, Relation};
+pub(crate) use simplex_pairs::SimplexPair;
 pub use triangle_groups::TriangleGroups;
 pub(crate) use weld::{weld_classes, weld_classes_of_positions};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::TriangleGroups;
+use super::common_corners::{ClassedCorners, intersect_beyond_common_corners};
 use super::contact_filter::{ContactFilter, Neighbours, Pair};
 use super::weld::weld_classes;
 use crate::{ReducedModel, intersect_shared_vertex_pair, intersect_triangle_triangle};
@@ -16,6 +17,9 @@ pub(crate) enum Relation {
     NonAdjacent,
     /// They share the vertex of this class alone, and such pairs count when they have another point in common.
     SharedVertex(u32),
+    /// They share one, two or three vertices, and such pairs count when they have a point in common beyond these and the edges
+    /// between them. Of meshes without modes, in discrete queries alone.
+    Foldable,
     /// They never count: they are adjacent, or of two groups that do not count.
     Adjacent,
 }
@@ -23,21 +27,14 @@ pub(crate) enum Relation {
 /// A contact filter applied to one mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct PairFilter {
-    faces: Vec<[u32; 3]>,
+    pub(super) faces: Vec<[u32; 3]>,
     /// The vertex class of each corner: the lowest vertex that it is welded to; without welding the vertex itself.
-    classes: Vec<[u32; 3]>,
+    pub(super) classes: Vec<[u32; 3]>,
     neighbours: Neighbours,
     /// Sorted.
     excluded: Vec<Pair>,
     /// Group numbers, one for each face; none if all pairs of groups count.
     groups: Option<Arc<TriangleGroups>>,
-}
-
-/// A simplex of triangle a and one of triangle b: the triangle itself or an edge of it, with one vertex twice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SimplexPair<T> {
-    pub(crate) a: [T; 3],
-    pub(crate) b: [T; 3],
 }
 
 impl PairFilter {
@@ -78,6 +75,11 @@ impl PairFilter {
         self.groups.as_deref()
     }
 
+    /// Which triangles that share vertices count.
+    pub(crate) fn neighbours(&self) -> Neighbours {
+        self.neighbours
+    }
+
     /// Vertex classes are numbers below this.
     pub(crate) fn class_count(&self) -> usize {
         self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
@@ -105,19 +107,27 @@ impl PairFilter {
         }
         let (classes_a, classes_b) = (self.classes[a as usize], self.classes[b as usize]);
         if classes_a.iter().any(|class| classes_b.contains(class)) {
-            self.relation_of_neighbours(classes_a, classes_b)
+            self.relation_of_neighbours(a, b)
         } else {
             Relation::NonAdjacent
         }
     }
 
-    fn relation_of_neighbours(&self, classes_a: [u32; 3], classes_b: [u32; 3]) -> Relation {
-        let mut shared = classes_a.into_iter().filter(|class| classes_b.contains(class));
-        match (shared.next(), self.neighbours) {
-            (Some(class), Neighbours::IncludeOneVertex) if shared.all(|other| other == class) => {
-                Relation::SharedVertex(class)
+    /// The relation of two triangles that share a vertex class. It depends on numbers and classes alone: positions that are
+    /// given later never change it.
+    fn relation_of_neighbours(&self, a: u32, b: u32) -> Relation {
+        match self.neighbours {
+            Neighbours::Exclude => Relation::Adjacent,
+            Neighbours::IncludeFolded => Relation::Foldable,
+            Neighbours::IncludeOneVertex => {
+                let [class, second] = first_common(self.classes[a as usize], self.classes[b as usize]);
+                // Two vertices of one class are two common ones: they may move apart later.
+                let [_, second_number] = first_common(self.faces[a as usize], self.faces[b as usize]);
+                match (class, second.or(right_or!(second_number, VertexNumbersForgotten, None))) {
+                    (Some(class), None) => Relation::SharedVertex(class),
+                    _ => Relation::Adjacent,
+                }
             }
-            _ => Relation::Adjacent,
         }
     }
 
@@ -148,13 +158,19 @@ impl PairFilter {
             Relation::SharedVertex(class) if self.is_vertex_shared(class, pair, corners_a, corners_b) => {
                 self.collide_as_shared_vertex_pair(class, pair, corners_a, corners_b)
             }
-            Relation::SharedVertex(_) => intersect_triangle_triangle(corners_a, corners_b),
+            Relation::SharedVertex(_) | Relation::Foldable => {
+                let classed = |triangle: u32, positions| ClassedCorners {
+                    positions,
+                    classes: self.classes[triangle as usize],
+                };
+                intersect_beyond_common_corners(classed(pair.0, corners_a), classed(pair.1, corners_b))
+            }
         }
     }
 
     /// Whether all corners of that class of two triangles are at one position. Vertices that are welded by rest positions
     /// can move apart where positions are given.
-    pub(crate) fn is_vertex_shared(
+    pub(super) fn is_vertex_shared(
         &self,
         class: u32,
         (a, b): Pair,
@@ -188,52 +204,11 @@ impl PairFilter {
             _ => false,
         }
     }
+}
 
-    /// The simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
-    /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
-    /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
-    /// two.
-    pub(crate) fn simplex_pairs(&self, a: u32, b: u32) -> impl Iterator<Item = SimplexPair<u32>> {
-        let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
-        self.simplex_pairs_of_corners(a, b).map(move |corners| SimplexPair {
-            a: corners.a.map(|i| face_a[i]),
-            b: corners.b.map(|i| face_b[i]),
-        })
-    }
-
-    /// The same, by the corners (0 to 2) of each triangle.
-    pub(crate) fn simplex_pairs_of_corners(
-        &self,
-        a: u32,
-        b: u32,
-    ) -> impl Iterator<Item = SimplexPair<usize>> {
-        let triangle = [0, 1, 2];
-        let edge = |[i, j]: [usize; 2]| [i, j, j];
-        let pairs = match self.relation(a, b) {
-            Relation::Adjacent => [None, None],
-            Relation::NonAdjacent => [Some(SimplexPair { a: triangle, b: triangle }), None],
-            Relation::SharedVertex(class) => {
-                match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
-                    (Some(edge_a), Some(edge_b)) => [
-                        Some(SimplexPair { a: edge(edge_a), b: triangle }),
-                        right_or!(
-                            Some(SimplexPair { a: triangle, b: edge(edge_b) }),
-                            OneSimplexPairOfTwo,
-                            None
-                        ),
-                    ],
-                    _ => [None, None],
-                }
-            }
-        };
-        pairs.into_iter().flatten()
-    }
-
-    /// The corners (0 to 2) of a face that are not of the class: two, or one twice.
-    fn opposite_edge(&self, face: u32, class: u32) -> Option<[usize; 2]> {
-        let classes = self.classes[face as usize];
-        let mut others = (0..3).filter(|&i| classes[i] != class);
-        let first = others.next()?;
-        Some([first, others.next().unwrap_or(first)])
-    }
+/// The first value that two lists have in common, and the first other one.
+fn first_common(a: [u32; 3], b: [u32; 3]) -> [Option<u32>; 2] {
+    let mut common = a.into_iter().filter(|x| b.contains(x));
+    let first = common.next();
+    [first, common.find(|x| Some(*x) != first)]
 }

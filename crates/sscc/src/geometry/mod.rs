@@ -21,6 +21,7 @@ mod orientation;
 mod planar;
 mod segment_segment;
 mod segment_triangle;
+mod shared_edge;
 mod shared_vertex;
 mod triangle_triangle;
 mod two_triangles;
@@ -35,6 +36,7 @@ pub use intersection::{
 };
 pub(crate) use nearest_point::{nearest_to_origin, nearest_within};
 pub use orientation::orient2d;
+pub use shared_edge::intersect_shared_edge_pair;
 pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_triangle::intersect_triangle_triangle;
 pub(crate) use two_triangles::TwoTriangles;

@@ -15,6 +15,7 @@ use crate::{Error, limits};
 pub struct TriMesh {
     rest_positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
+    has_split_vertices: bool,
 }
 
 impl TriMesh {
@@ -40,7 +41,34 @@ impl TriMesh {
                 return Err(Error::FaceIndex { face, vertex, vertices: rest_positions.len() });
             }
         }
-        Ok(Self { rest_positions, faces })
+        Ok(Self { rest_positions, faces, has_split_vertices: false })
+    }
+
+    /// The same mesh, of a format or a source that splits vertices along seams: adjacent triangles may share no vertex number,
+    /// only positions. Detectors and certificates weld its equal vertices by default
+    /// ([`ContactFilter::of`](crate::ContactFilter::of)). Readers of such formats call it.
+    #[must_use]
+    pub fn with_split_vertices(mut self) -> Self {
+        self.has_split_vertices = true;
+        self
+    }
+
+    /// Whether vertices may be split along seams ([`TriMesh::with_split_vertices`]).
+    pub fn has_split_vertices(&self) -> bool {
+        self.has_split_vertices
+    }
+
+    /// The same mesh at other rest positions, as many as it has vertices (model unit).
+    ///
+    /// # Errors
+    /// When there are fewer or more, or one is not finite or beyond [`limits::LARGEST`].
+    pub fn with_rest_positions(&self, rest_positions: Vec<DVec3>) -> Result<Self, Error> {
+        let (found, vertices) = (rest_positions.len(), self.rest_positions.len());
+        if found != vertices {
+            return Err(Error::PositionCount { found, vertices });
+        }
+        let mesh = Self::new(rest_positions, self.faces.clone())?;
+        Ok(Self { has_split_vertices: self.has_split_vertices, ..mesh })
     }
 
     /// Rest positions, one for each vertex of the file, unused ones included (model unit).

@@ -51,6 +51,13 @@ impl ReducedModel {
         &self.mesh
     }
 
+    /// The same model, whose vertices are split along seams ([`TriMesh::with_split_vertices`]).
+    #[must_use]
+    pub fn with_split_vertices(mut self) -> Self {
+        self.mesh = self.mesh.with_split_vertices();
+        self
+    }
+
     /// The deformation modes.
     pub fn modes(&self) -> &Modes {
         &self.modes

@@ -12,6 +12,12 @@ mutants! {
     NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// Vertices that are welded at rest are taken to be at one position always.
     WeldedVerticesStayTogether: CaughtBy("it detector::welded_vertices_can_move_apart");
+    /// Two vertices of one weld class, both common by their numbers, are one common vertex.
+    VertexNumbersForgotten: CaughtBy("it folded::adjacency_does_not_change_with_positions");
+    /// A pair with a common edge is tested as if it were in one plane.
+    HingesAreFlat: CaughtBy("it folded::folded_pairs_are_those_of_exact_fractions");
+    /// Triangles with three common vertices have no other common point.
+    DoubledFacesAreFree: CaughtBy("it folded::a_triangle_folded_onto_its_neighbour_is_found");
     /// A search for all that can meet in a kinetic region compares radii with |z| at its start.
     KineticRegionAtCenter: CaughtBy("lib query::kinetic::tests::radii_are_crossed_inside_a_region");
     /// The rounding bound of positions about a centre omits the displacement of the centre.

@@ -72,7 +72,7 @@ impl<'a> Query<'a> {
     ) -> Result<Self, Error> {
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         model.check_coordinates(&scope.center)?;
-        scope.filter.check_groups(model.mesh().faces().len())?;
+        scope.filter.check_model(model.mesh().faces().len())?;
         let hierarchy = Cow::Owned(Hierarchy::build(model, &scope.metric));
         let method = if method == Method::Certified { Method::BdTree } else { method };
         Ok(Self::build(model, None, Cow::Owned(scope), hierarchy, method))

@@ -204,7 +204,7 @@ fn all_methods_find_the_same_pairs() {
         let mut options = random_options(seed, &model);
         let one_vertex = !seed.is_multiple_of(10);
         options.budget = budget(seed);
-        options.filter.neighbours =
+        options.filter.as_mut().unwrap().neighbours =
             if one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
         let Some(certificates) = certify(&model, &options) else {
             skipped += 1;

@@ -40,7 +40,7 @@ fn sample(seed: u64) -> (ReducedModel, CertifyOptions, TriangleGroups) {
 }
 
 fn with_groups(options: &CertifyOptions, groups: &TriangleGroups) -> CertifyOptions {
-    let filter = options.filter.clone().with_groups(groups.clone());
+    let filter = options.filter.clone().map(|filter| filter.with_groups(groups.clone()));
     CertifyOptions { filter, ..options.clone() }
 }
 
@@ -56,7 +56,8 @@ fn all_methods_list_the_pairs_that_count() {
         let is_counted =
             |(a, b): Pair| groups.is_pair_counted(a, b) && ignored.binary_search(&(a, b)).is_err();
         // The oracle knows neither groups nor ignored pairs.
-        let plain = Scope { filter: options.filter.clone(), exceptions: Vec::new(), ..scope.clone() };
+        let plain =
+            Scope { filter: options.filter.clone().unwrap(), exceptions: Vec::new(), ..scope.clone() };
         let mut oracle = Query::without_certificates(&model, plain, Method::BruteForce).unwrap();
         let methods =
             [Method::Certified, Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce];
@@ -129,7 +130,7 @@ fn pairs_that_do_not_count_limit_no_radius() {
         let count = model.mesh().faces().len() as u32;
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
         let one_by_one: Vec<Pair> = pairs.filter(|&(a, b)| !groups.is_pair_counted(a, b)).collect();
-        let filter = options.filter.clone().ignoring(one_by_one);
+        let filter = options.filter.clone().map(|filter| filter.ignoring(one_by_one));
         let ignoring = certify(&CertifyOptions { filter, ..options.clone() });
         assert_eq!(grouped.exceptions(), ignoring.exceptions(), "model {seed}");
         let smallest = (1.0 - options.epsilon) * (1.0 - 1e-9);
@@ -175,7 +176,7 @@ fn parts_that_cross_each_other_can_be_left_out() {
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let certify = |groups: TriangleGroups| {
         let options = CertifyOptions {
-            filter: ContactFilter::default().with_groups(groups),
+            filter: Some(ContactFilter::default().with_groups(groups)),
             max_exceptions: Some(0),
             ..CertifyOptions::default()
         };
@@ -210,7 +211,7 @@ fn other_groups_are_refused() {
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let filter = |groups: TriangleGroups| ContactFilter::default().with_groups(groups);
     let options = |filter| CertifyOptions {
-        filter,
+        filter: Some(filter),
         max_exceptions: Some(0),
         budget: 0,
         epsilon: 0.9,

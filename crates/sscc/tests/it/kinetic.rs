@@ -165,10 +165,10 @@ fn coils_of_several_clusters() {
         let options = CertifyOptions {
             epsilon: 0.5,
             center: (seed % 5 == 1).then(|| (0..rank).map(|_| random.signed() * 0.05).collect()),
-            filter: ContactFilter::new(
+            filter: Some(ContactFilter::new(
                 [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2],
                 seed % 3 == 0 && seed % 2 == 0,
-            ),
+            )),
             budget: [1 << 12, 64][usize::from(seed % 7 == 3)],
             ..CertifyOptions::default()
         };

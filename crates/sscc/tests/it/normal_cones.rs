@@ -141,7 +141,7 @@ fn small_models_of_every_kind_agree() {
     let mut fewer = 0;
     for seed in 0..cases(400) {
         let model = random_model(seed);
-        let filter = random_options(seed, &model).filter;
+        let filter = random_options(seed, &model).filter.unwrap();
         let [mut oracle, mut plain, mut exact] =
             [Method::BruteForce, Method::Traditional, Method::NormalCones]
                 .map(|method| of(&model, filter.clone(), method));

@@ -24,7 +24,7 @@ fn traversal_agrees_with_brute_force() {
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize % 2];
         let options = CertifyOptions {
             epsilon: 0.5,
-            filter: ContactFilter::new(neighbours, seed.is_multiple_of(3)),
+            filter: Some(ContactFilter::new(neighbours, seed.is_multiple_of(3))),
             budget: [512, 40, 4][seed as usize / 2 % 3],
             ..CertifyOptions::default()
         };

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sscc::Pair;
-use sscc_sim::DetectionAnswer;
+use sscc_sim::{DetectionAnswer, LeftOut};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]
@@ -35,6 +35,17 @@ pub struct Answer<'a> {
     pub directions: Option<Vec<[f64; 3]>>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
+    /// Pairs that no certificate covers, where there are any.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub exceptions: usize,
+    /// The number of ignored pairs; and the names of all pairs that are left out, where pairs are ignored or do not count by
+    /// their groups.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub ignored: usize,
+    #[serde(rename = "left_out", skip_serializing_if = "Option::is_none")]
+    pub listed_left_out: Option<String>,
+    #[serde(skip)]
+    pub left_out: &'a LeftOut,
     pub opened: u64,
     pub box_tests: u64,
     pub triangle_tests: u64,
@@ -61,9 +72,17 @@ impl<'a> Answer<'a> {
                 .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
+            exceptions: found.exceptions,
+            ignored: found.left_out.ignored(),
+            listed_left_out: found.left_out.has_exclusions().then(|| found.left_out.to_string()),
+            left_out: found.left_out,
             opened: found.opened,
             box_tests: found.box_tests,
             triangle_tests: found.triangle_tests,
         }
     }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }

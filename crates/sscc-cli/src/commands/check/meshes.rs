@@ -1,11 +1,11 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use sscc::TriMesh;
 use sscc_io::gltf::SkinWeights;
-use sscc_io::{splits_vertices, write_whole};
+use sscc_io::write_whole;
 use sscc_sim::{
     AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect,
 };
@@ -37,7 +37,7 @@ pub fn check(args: &Check) -> Result<bool> {
     detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
         answers += 1;
         // Pairs of two meshes are never neighbours.
-        if request.against.is_none() && !is_welded(&request, found.file) {
+        if request.against.is_none() && !is_welded(&request, found.mesh) {
             hint.add(found);
         }
         if let (Some(path), Some(shape)) = (&args.pose, found.shape)
@@ -61,10 +61,10 @@ pub fn check(args: &Check) -> Result<bool> {
     Ok(colliding)
 }
 
-/// Whether equal vertices of a file are welded, or the user has decided.
-fn is_welded(request: &Detection, file: &Path) -> bool {
+/// Whether equal vertices of a mesh are welded, or the user has decided.
+fn is_welded(request: &Detection, mesh: &TriMesh) -> bool {
     let is_animated = matches!(request.motion, MeshMotion::Animation(_));
-    request.weld.is_some() || is_animated || splits_vertices(file)
+    request.weld.is_some() || is_animated || mesh.has_split_vertices()
 }
 
 /// Refuses flags for models, and flags that have no effect together.

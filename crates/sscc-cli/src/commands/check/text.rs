@@ -1,5 +1,7 @@
 //! The answers of `sscc check` as text.
 
+use sscc_sim::{FreeProof, LeftOut, free_sentence};
+
 use super::answer::Answer;
 use crate::output::{counted, duration, grouped, length};
 
@@ -68,14 +70,12 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
         grouped(answer.box_tests),
         counted(answer.triangle_tests, "triangle pair")
     );
-    if answer.is_root_certified() && !answer.colliding {
-        return vec![
-            format!("free: proven by the root's certificate alone{norm}"),
-            duration(answer.microseconds),
-        ];
-    }
     if !answer.colliding {
-        return vec![format!("free: proven{norm}"), cost];
+        let (proof, cost) = match answer.is_root_certified() {
+            true => (FreeProof::Root { exceptions: answer.exceptions }, duration(answer.microseconds)),
+            false => (FreeProof::Tests, cost),
+        };
+        return vec![free_sentence(proof, &norm, answer.left_out), cost];
     }
     let pairs = answer.counted();
     let mut lines = vec![format!("COLLIDING: {pairs} of triangles{norm}"), cost];
@@ -97,16 +97,32 @@ pub struct Summary {
     root_certified: Option<usize>,
     pub colliding: usize,
     microseconds: Vec<f64>,
+    /// The pairs that the free answers leave out, mesh by mesh.
+    left_out: LeftOut,
+    last: Option<(Option<String>, Option<usize>)>,
 }
 
 impl Summary {
     pub fn new(noun: &'static str) -> Self {
-        Self { noun, root_certified: None, colliding: 0, microseconds: Vec::new() }
+        Self {
+            noun,
+            root_certified: None,
+            colliding: 0,
+            microseconds: Vec::new(),
+            left_out: LeftOut::default(),
+            last: None,
+        }
     }
 
     pub fn add(&mut self, answer: &Answer<'_>) {
         if let Some(is_certified) = answer.root_certified {
             *self.root_certified.get_or_insert(0) += usize::from(is_certified && !answer.colliding);
+        }
+        // The frames of one mesh leave out the same pairs.
+        let mesh = Some((answer.file.clone(), answer.node));
+        if self.last != mesh {
+            self.left_out = std::mem::take(&mut self.left_out).and(answer.left_out);
+            self.last = mesh;
         }
         self.colliding += usize::from(answer.colliding);
         self.microseconds.push(answer.microseconds);
@@ -115,14 +131,17 @@ impl Summary {
     pub fn line(&mut self) -> String {
         let all = self.microseconds.len();
         self.microseconds.sort_by(f64::total_cmp);
+        let is_free = self.colliding < all && self.left_out != LeftOut::default();
+        let apart = if is_free { format!("; free{}", self.left_out.apart()) } else { String::new() };
         let certified = self.root_certified.map(|n| format!(" ({n} by the root's certificate alone)"));
         format!(
-            "{}: {} free{}, {} colliding; median {}",
+            "{}: {} free{}, {} colliding; median {}{}",
             counted(all as u64, self.noun),
             all - self.colliding,
             certified.unwrap_or_default(),
             self.colliding,
-            duration(self.microseconds[all / 2])
+            duration(self.microseconds[all / 2]),
+            apart
         )
     }
 }

@@ -43,7 +43,7 @@ fn every_scope_round_trips() {
                 .unwrap(),
         ),
         center: Some(vec![0.5, -0.25, 1.0]),
-        filter: ContactFilter::new(Neighbours::IncludeOneVertex, true),
+        filter: Some(ContactFilter::new(Neighbours::IncludeOneVertex, true)),
         budget: 16,
         ..CertifyOptions::default()
     };
@@ -65,7 +65,7 @@ fn grouped(table: impl Fn(TriangleGroups) -> TriangleGroups) -> Certificates {
     let model = model();
     let of_triangle: Vec<u32> = (0..model.mesh().faces().len() as u32).map(|t| t / 6).collect();
     let filter = ContactFilter::default().with_groups(table(TriangleGroups::new(&of_triangle).unwrap()));
-    let options = CertifyOptions { filter, budget: 16, ..CertifyOptions::default() };
+    let options = CertifyOptions { filter: Some(filter), budget: 16, ..CertifyOptions::default() };
     Certificates::compute(&model, &options, &()).unwrap()
 }
 

@@ -175,7 +175,7 @@ impl PlacedMesh {
     pub fn to_mesh(&self, place: usize) -> Result<TriMesh, FormatError> {
         let mut positions = self.shape.rest.clone();
         self.place(place, &mut positions)?;
-        Ok(TriMesh::new(positions, self.shape.faces.clone())?)
+        Ok(TriMesh::new(positions, self.shape.faces.clone())?.with_split_vertices())
     }
 
     /// Replaces positions of all vertices (V) in the mesh's own coordinates by those in the world, at a place. Skin

@@ -46,8 +46,8 @@ impl Preparation {
         let rest = vec![0.0; model.rank()];
         let center = options.center.clone().unwrap_or_else(|| rest.clone());
         model.check_coordinates(&center)?;
-        let mut filter = options.filter.clone();
-        filter.check_groups(model.mesh().faces().len())?;
+        let mut filter = options.filter.clone().unwrap_or_else(|| ContactFilter::of(model.mesh()));
+        filter.check_model(model.mesh().faces().len())?;
         let collide_at_rest = || {
             let hierarchy = Hierarchy::build(model, &metric);
             let at_rest = colliding_pairs(model, &hierarchy, &filter, &rest, progress);

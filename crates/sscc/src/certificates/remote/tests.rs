@@ -40,7 +40,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
         CertifyOptions {
             budget: 4,
             center,
-            filter: ContactFilter::new(Default::default(), true),
+            filter: Some(ContactFilter::new(Default::default(), true)),
             ..Default::default()
         },
     ]

@@ -57,10 +57,11 @@ pub struct Detector<'a> {
 }
 
 impl<'a> Detector<'a> {
-    /// A detector for a mesh, under the default contact filter: pairs count that share no vertex. The rest positions choose the
-    /// hierarchy and nothing else. About as much work as two answers.
+    /// A detector for a mesh, under its default contact filter ([`ContactFilter::of`]): pairs count that share no vertex, where
+    /// equal vertices of formats that split them are welded. Otherwise the rest positions choose the hierarchy and nothing else.
+    /// About as much work as two answers.
     pub fn new(mesh: &TriMesh) -> Self {
-        Self::build(mesh, None, &ContactFilter::default())
+        Self::welded(mesh, &ContactFilter::of(mesh))
     }
 
     /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position,
@@ -70,8 +71,7 @@ impl<'a> Detector<'a> {
     /// When the filter's groups are of another mesh.
     pub fn with_filter(mesh: &TriMesh, filter: &ContactFilter) -> Result<Self, Error> {
         filter.check_groups(mesh.faces().len())?;
-        let classes = filter.weld.then(|| weld_classes_of_positions(mesh.rest_positions()));
-        Ok(Self::build(mesh, classes.as_deref(), filter))
+        Ok(Self::welded(mesh, filter))
     }
 
     /// A detector whose vertices are welded by the given classes: vertices with the same number are one vertex for adjacency,
@@ -87,6 +87,11 @@ impl<'a> Detector<'a> {
         let vertices = classes.iter().enumerate();
         let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
         Ok(Self::build(mesh, Some(&classes), filter))
+    }
+
+    fn welded(mesh: &TriMesh, filter: &ContactFilter) -> Self {
+        let classes = filter.weld.then(|| weld_classes_of_positions(mesh.rest_positions()));
+        Self::build(mesh, classes.as_deref(), filter)
     }
 
     fn build(mesh: &TriMesh, classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
@@ -171,8 +176,9 @@ impl<'a> Detector<'a> {
     /// sorted by pair, each with its time of impact: the same promise as [`Query::continuous`](crate::Query::continuous).
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for both; when the filter has [`Neighbours::IncludeFolded`](crate::Neighbours).
     pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
+        self.context.filter.neighbours().check_continuous()?;
         let motion = self.check([x_t0, x_t1])?;
         self.mask_adjacent();
         self.begin_swept(&motion, x_t0);

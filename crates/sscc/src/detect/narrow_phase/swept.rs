@@ -36,16 +36,12 @@ impl NarrowPhase<2> for SweptHits {
         let time = match relation {
             Relation::Adjacent => None,
             Relation::NonAdjacent => time(&a, &b),
-            Relation::SharedVertex(class)
-                if filter.is_vertex_shared(class, pair, a_t0, b_t0)
-                    && filter.is_vertex_shared(class, pair, a_t1, b_t1) =>
-            {
-                filter
-                    .simplex_pairs_of_corners(pair.0, pair.1)
-                    .filter_map(|simplices| time(&a.simplex(simplices.a), &b.simplex(simplices.b)))
-                    .reduce(f64::min)
-            }
-            Relation::SharedVertex(_) => time(&a, &b),
+            Relation::SharedVertex(class) => filter
+                .moving_simplex_pairs(class, pair, [a_t0, a_t1], [b_t0, b_t1])
+                .filter_map(|simplices| time(&a.simplex(simplices.a), &b.simplex(simplices.b)))
+                .reduce(f64::min),
+            // Continuous queries refuse filters with foldable pairs.
+            Relation::Foldable => time(&a, &b),
         };
         time.map(|time| Impact { pair, time })
     }

@@ -142,7 +142,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
         let options = CertifyOptions {
             epsilon: 0.5,
             center: Some(center),
-            filter: ContactFilter::new(neighbours, case % 7 == 1),
+            filter: Some(ContactFilter::new(neighbours, case % 7 == 1)),
             budget: [0, 8, 256][case % 3],
             ..CertifyOptions::default()
         };

@@ -369,10 +369,10 @@ pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     });
     CertifyOptions {
         center,
-        filter: ContactFilter::new(
+        filter: Some(ContactFilter::new(
             [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
             random.below(2) == 0,
-        ),
+        )),
         ignore_rest: random.below(3) == 0,
         max_exceptions: [None, Some(0), Some(1000)][random.below(3)],
         // More than by default: these models are small.

@@ -1,0 +1,100 @@
+//! Simplex pairs: edges and triangles that replace a triangle pair in bounds and in continuous tests.
+
+use glam::DVec3;
+
+use super::contact_filter::Pair;
+use super::pair_filter::{PairFilter, Relation};
+
+/// A simplex of triangle a and one of triangle b: the triangle itself or an edge of it, with one vertex twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SimplexPair<T> {
+    pub(crate) a: [T; 3],
+    pub(crate) b: [T; 3],
+}
+
+/// All corners of a triangle.
+const TRIANGLE: [usize; 3] = [0, 1, 2];
+
+/// Both triangles as they are.
+const TRIANGLES: [Option<SimplexPair<usize>>; 2] = [Some(SimplexPair { a: TRIANGLE, b: TRIANGLE }), None];
+
+impl PairFilter {
+    /// The simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
+    /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
+    /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
+    /// two.
+    pub(crate) fn simplex_pairs(&self, a: u32, b: u32) -> impl Iterator<Item = SimplexPair<u32>> {
+        let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
+        self.simplex_pairs_of_corners(a, b).map(move |corners| SimplexPair {
+            a: corners.a.map(|i| face_a[i]),
+            b: corners.b.map(|i| face_b[i]),
+        })
+    }
+
+    /// The same, by the corners (0 to 2) of each triangle.
+    pub(crate) fn simplex_pairs_of_corners(
+        &self,
+        a: u32,
+        b: u32,
+    ) -> impl Iterator<Item = SimplexPair<usize>> {
+        let pairs = match self.relation(a, b) {
+            Relation::Adjacent => [None, None],
+            // Models and continuous queries refuse filters with foldable pairs.
+            Relation::NonAdjacent | Relation::Foldable => TRIANGLES,
+            Relation::SharedVertex(class) => self.opposite_to_class(class, (a, b)),
+        };
+        pairs.into_iter().flatten()
+    }
+
+    /// The simplex pairs of a shared-vertex pair that moves on straight lines between these corners. Welded vertices may have
+    /// moved apart: then the pair has a common vertex where two corners of the class are at one position at both ends, thus
+    /// always.
+    pub(crate) fn moving_simplex_pairs(
+        &self,
+        class: u32,
+        pair: Pair,
+        [a_t0, a_t1]: [&[DVec3; 3]; 2],
+        [b_t0, b_t1]: [&[DVec3; 3]; 2],
+    ) -> impl Iterator<Item = SimplexPair<usize>> {
+        let pairs = if self.is_vertex_shared(class, pair, a_t0, b_t0)
+            && self.is_vertex_shared(class, pair, a_t1, b_t1)
+        {
+            self.opposite_to_class(class, pair)
+        } else {
+            let (classes_a, classes_b) = (self.classes[pair.0 as usize], self.classes[pair.1 as usize]);
+            let mut corners = (0..9).map(|n| (n / 3, n % 3));
+            let common = corners.find(|&(i, j)| {
+                let is_together = || a_t0[i] == b_t0[j] && a_t1[i] == b_t1[j];
+                classes_a[i] == class && classes_b[j] == class && is_together()
+            });
+            let edge = |corner: usize| [(corner + 1) % 3, (corner + 2) % 3];
+            common.map_or(TRIANGLES, |(i, j)| edges_and_triangles(edge(i), edge(j)))
+        };
+        pairs.into_iter().flatten()
+    }
+
+    /// The edges opposite to a vertex class, each with the other triangle; none for a face that is the vertex alone.
+    fn opposite_to_class(&self, class: u32, (a, b): Pair) -> [Option<SimplexPair<usize>>; 2] {
+        match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
+            (Some(edge_a), Some(edge_b)) => edges_and_triangles(edge_a, edge_b),
+            _ => [None, None],
+        }
+    }
+
+    /// The corners (0 to 2) of a face that are not of the class: two, or one twice.
+    pub(super) fn opposite_edge(&self, face: u32, class: u32) -> Option<[usize; 2]> {
+        let classes = self.classes[face as usize];
+        let mut others = (0..3).filter(|&i| classes[i] != class);
+        let first = others.next()?;
+        Some([first, others.next().unwrap_or(first)])
+    }
+}
+
+/// An edge of each triangle with the whole other one.
+fn edges_and_triangles(edge_a: [usize; 2], edge_b: [usize; 2]) -> [Option<SimplexPair<usize>>; 2] {
+    let edge = |[i, j]: [usize; 2]| [i, j, j];
+    [
+        Some(SimplexPair { a: edge(edge_a), b: TRIANGLE }),
+        right_or!(Some(SimplexPair { a: TRIANGLE, b: edge(edge_b) }), OneSimplexPairOfTwo, None),
+    ]
+}

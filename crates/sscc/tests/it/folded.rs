@@ -1,0 +1,373 @@
+//! Triangles that share one, two or three vertices, under `include-folded`: against an oracle in exact fractions, which knows
+//! neither signs nor cases.
+
+use glam::DVec3;
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+use sscc::{
+    Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, Neighbours, Pair, Query, Scope,
+    TriMesh, intersect_shared_edge_pair, intersect_triangle_triangle,
+};
+use sscc_testing::{cases, threshold};
+
+use crate::common::{Random, random_mesh, random_model};
+
+type Exact = [BigRational; 3];
+
+fn exact(x: DVec3) -> Exact {
+    x.to_array().map(|x| BigRational::from_float(x).unwrap())
+}
+
+fn minus(p: &Exact, q: &Exact) -> Exact {
+    std::array::from_fn(|k| &p[k] - &q[k])
+}
+
+fn dot(p: &Exact, q: &Exact) -> BigRational {
+    p.iter().zip(q).map(|(p, q)| p * q).sum()
+}
+
+fn cross(p: &Exact, q: &Exact) -> Exact {
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        &p[i] * &q[j] - &p[j] * &q[i]
+    })
+}
+
+fn is_zero(p: &Exact) -> bool {
+    p.iter().all(Zero::is_zero)
+}
+
+/// The point `p + t (q - p)`.
+fn along(p: &Exact, q: &Exact, t: &BigRational) -> Exact {
+    std::array::from_fn(|k| &p[k] + t * (&q[k] - &p[k]))
+}
+
+/// Whether x is in the convex hull of these points, of which there may be one, two or three.
+fn is_in_hull(x: &Exact, hull: &[Exact]) -> bool {
+    let is_between = |p: &Exact, q: &Exact| {
+        let (from_p, from_q) = (minus(x, p), minus(x, q));
+        is_zero(&cross(&from_p, &from_q)) && !dot(&from_p, &from_q).is_positive()
+    };
+    let pairs = || hull.iter().flat_map(|p| hull.iter().map(move |q| (p, q)));
+    if pairs().any(|(p, q)| is_between(p, q)) {
+        return true;
+    }
+    let [p, q, r] = hull else { return false };
+    let normal = cross(&minus(q, p), &minus(r, p));
+    let is_inside = |(s, t): (&Exact, &Exact)| {
+        let turn = dot(&normal, &cross(&minus(t, s), &minus(x, s)));
+        !turn.is_negative()
+    };
+    !is_zero(&normal)
+        && dot(&normal, &minus(x, p)).is_zero()
+        && [(p, q), (q, r), (r, p)].into_iter().all(is_inside)
+}
+
+/// All points at which an edge of one triangle can leave or enter the other one: corners, and single common points of two
+/// edges, or of an edge and a plane. Among them are all corners of the common points of the two triangles.
+fn candidates(a: &[Exact; 3], b: &[Exact; 3]) -> Vec<Exact> {
+    let mut found: Vec<Exact> = a.iter().chain(b).cloned().collect();
+    let edges = |t: &[Exact; 3]| [0, 1, 2].map(|i| [t[i].clone(), t[(i + 1) % 3].clone()]);
+    for (s, t) in [(a, b), (b, a)] {
+        let normal = cross(&minus(&t[1], &t[0]), &minus(&t[2], &t[0]));
+        for [p, q] in edges(s) {
+            let along_edge = dot(&normal, &minus(&q, &p));
+            if !along_edge.is_zero() {
+                found.push(along(&p, &q, &(dot(&normal, &minus(&t[0], &p)) / along_edge)));
+            }
+            for [r, w] in edges(t) {
+                let both = cross(&minus(&q, &p), &minus(&w, &r));
+                if !is_zero(&both) {
+                    let t = dot(&cross(&minus(&r, &p), &minus(&w, &r)), &both) / dot(&both, &both);
+                    found.push(along(&p, &q, &t));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Whether two triangles with common vertices have a common point beyond these and the edges between them: some corner of the
+/// convex set of common points is beyond the convex hull of the common vertices. `faces`: vertex numbers, or classes.
+fn oracle(faces: [[u32; 3]; 2], corners: [[DVec3; 3]; 2]) -> bool {
+    let [a, b] = corners.map(|t| t.map(exact));
+    let is_common = |face: [u32; 3], v: &u32| face.contains(v);
+    if faces[0].iter().all(|v| is_common(faces[1], v)) && faces[1].iter().all(|v| is_common(faces[0], v)) {
+        return true;
+    }
+    let common: Vec<Exact> =
+        (0..3).filter(|&i| is_common(faces[1], &faces[0][i])).map(|i| a[i].clone()).collect();
+    candidates(&a, &b).iter().any(|x| is_in_hull(x, &a) && is_in_hull(x, &b) && !is_in_hull(x, &common))
+}
+
+fn folded() -> ContactFilter {
+    ContactFilter::new(Neighbours::IncludeFolded, false)
+}
+
+/// The answer for a mesh of two triangles.
+fn listed(faces: [[u32; 3]; 2], x: &[DVec3], filter: &ContactFilter) -> bool {
+    let mesh = TriMesh::new(x.to_vec(), faces.to_vec()).unwrap();
+    !Detector::with_filter(&mesh, filter).unwrap().discrete(x).unwrap().is_empty()
+}
+
+/// Five vertices of two triangles: on a coarse grid, in a plane, on a line, folded onto each other up to rounding.
+fn vertices(random: &mut Random, kind: usize) -> Vec<DVec3> {
+    let size = [1.2, 2.2, 4.2][random.below(3)];
+    let grid = |random: &mut Random| (random.vector() * size).round();
+    let mut x: Vec<DVec3> = (0..5).map(|_| grid(random)).collect();
+    match kind % 8 {
+        0 => x.iter_mut().for_each(|x| x.z = 1.0),
+        1 => {
+            let (start, step) = (x[0], grid(random));
+            x.iter_mut().for_each(|x| *x = start + step * x.x);
+        }
+        // One triangle is a segment or a point.
+        2 => x[2] = x[0] + (x[1] - x[0]) * 2.0_f64.powi(random.below(4) as i32 - 2),
+        3 => x[3] = x[random.below(3)],
+        4 => x[1] = x[0],
+        // Folded about the first edge, onto the same side or the other one, exactly or nearly in one plane.
+        5 | 6 => {
+            x[0] = random.vector() * random.power(-3.0, 3.0);
+            (1..3).for_each(|i| x[i] = x[0] + random.vector());
+            for i in 3..5 {
+                let [s, t] = [random.signed(), random.signed()];
+                x[i] = x[0] + (x[1] - x[0]) * s + (x[2] - x[0]) * t;
+            }
+            if kind % 8 == 6 {
+                x.iter_mut().for_each(|x| *x = x.as_vec3().as_dvec3());
+                x[3] = x[0] + (x[1] - x[0]) * 0.25 + (x[2] - x[0]) * 0.5;
+            }
+        }
+        _ => {}
+    }
+    if random.below(3) == 0 {
+        // A corner moves by a last place.
+        let i = random.below(5);
+        x[i].y = if random.below(2) == 0 { x[i].y.next_up() } else { x[i].y.next_down() };
+    }
+    let scale = 2.0_f64.powi(if random.below(12) == 0 { [190, -400, -1050][random.below(3)] } else { 0 });
+    x.iter().map(|x| *x * scale).collect()
+}
+
+#[test]
+fn folded_pairs_are_those_of_exact_fractions() {
+    let random = &mut Random::new(45);
+    let mut counts = [[0; 2]; 4];
+    let cases = cases(6_000);
+    for case in 0..cases {
+        let x = vertices(random, case);
+        let shared = [[0, 3, 4], [0, 1, 3], [0, 1, 2], [0, 1, 3]][random.below(4)];
+        let (turn, is_flipped) = (random.below(3), random.below(2) == 0);
+        let mut faces = [[0, 1, 2], shared];
+        faces[1].rotate_left(turn);
+        if is_flipped {
+            faces[1].swap(0, 1);
+        }
+        if random.below(12) == 0 {
+            faces[random.below(2)][1] = faces[0][random.below(2)];
+        }
+        let is_shared = faces[1].iter().any(|v| faces[0].contains(v));
+        let corners = faces.map(|face| face.map(|v: u32| x[v as usize]));
+        let expected = if is_shared {
+            oracle(faces, corners)
+        } else {
+            intersect_triangle_triangle(&corners[0], &corners[1])
+        };
+        assert_eq!(listed(faces, &x, &folded()), expected, "case {case}: {faces:?} {corners:?}");
+        assert_eq!(
+            listed([faces[1], faces[0]], &x, &folded()),
+            expected,
+            "case {case}: {faces:?} {corners:?}"
+        );
+        // The same with corners on vertices of their own, welded. Vertices at one position are one then.
+        let (mut split, mut split_x) = (faces, x.clone());
+        for corner in split.iter_mut().flatten() {
+            if random.below(2) == 0 {
+                split_x.push(x[*corner as usize]);
+                *corner = split_x.len() as u32 - 1;
+            }
+        }
+        let welded = ContactFilter::new(Neighbours::IncludeFolded, true);
+        let first = |v: u32| x.iter().position(|y| *y == x[v as usize]).unwrap() as u32;
+        let classes = faces.map(|face| face.map(first));
+        let is_shared = classes[1].iter().any(|v| classes[0].contains(v));
+        let of_welded = if is_shared {
+            oracle(classes, corners)
+        } else {
+            intersect_triangle_triangle(&corners[0], &corners[1])
+        };
+        assert_eq!(listed(split, &split_x, &welded), of_welded, "case {case}: {split:?} {split_x:?}");
+        let common = faces[0].iter().filter(|v| faces[1].contains(v)).count();
+        counts[common][usize::from(expected)] += 1;
+        if common < 2 {
+            // One common vertex: as the older rule has it.
+            let one = ContactFilter::new(Neighbours::IncludeOneVertex, false);
+            let is_repeated = faces.iter().any(|f| f[0] == f[1] || f[1] == f[2] || f[2] == f[0]);
+            assert!(is_repeated || listed(faces, &x, &one) == expected, "case {case}: {faces:?} {corners:?}");
+        }
+    }
+    let enough = |n: usize| n > cases / 60;
+    let both = counts[1..3].iter().flatten().all(|n| enough(*n));
+    assert!(both && enough(counts[3][1]), "{counts:?}");
+}
+
+#[test]
+fn shared_edges_do_not_depend_on_the_order_of_corners() {
+    let random = &mut Random::new(46);
+    let (mut found, mut free) = (0, 0);
+    for case in 0..cases(40_000) {
+        let x = vertices(random, case);
+        let [u, w, a, b] = [x[0], x[1], x[2], x[3]];
+        let answer = intersect_shared_edge_pair([u, w], a, b);
+        let others = [
+            intersect_shared_edge_pair([w, u], a, b),
+            intersect_shared_edge_pair([u, w], b, a),
+            intersect_shared_edge_pair([w, u], b, a),
+        ];
+        assert_eq!(others, [answer; 3], "{u} {w} {a} {b}");
+        found += usize::from(answer);
+        free += usize::from(!answer);
+    }
+    assert!(found > threshold(4000) && free > threshold(4000), "{found} {free}");
+}
+
+/// All pairs of a mesh, by the oracle where they share a vertex.
+fn brute_force(x: &[DVec3], faces: &[[u32; 3]]) -> Vec<Pair> {
+    let corners: Vec<[DVec3; 3]> = faces.iter().map(|face| face.map(|v| x[v as usize])).collect();
+    let mut pairs = Vec::new();
+    for a in 0..faces.len() {
+        for b in a + 1..faces.len() {
+            let is_shared = faces[a].iter().any(|v| faces[b].contains(v));
+            let is_listed = match is_shared {
+                true => oracle([faces[a], faces[b]], [corners[a], corners[b]]),
+                false => intersect_triangle_triangle(&corners[a], &corners[b]),
+            };
+            if is_listed {
+                pairs.push((a as u32, b as u32));
+            }
+        }
+    }
+    pairs
+}
+
+#[test]
+fn detectors_list_all_folded_pairs() {
+    let random = &mut Random::new(47);
+    let (mut shared, mut apart) = (0, 0);
+    for case in 0..cases(24) {
+        let (rest, faces) = random_mesh(random);
+        let mesh = TriMesh::new(rest.clone(), faces.clone()).unwrap();
+        let mut detector = Detector::with_filter(&mesh, &folded()).unwrap();
+        // The second search masks adjacent triangles.
+        for frame in 0..3 {
+            let step = random.power(-1.0, 0.5);
+            let x: Vec<DVec3> = match frame {
+                0 => rest.clone(),
+                1 => rest.iter().map(|x| (x / step).round() * step).collect(),
+                _ => rest.iter().map(|x| DVec3::new(x.x, x.y, 0.0)).collect(),
+            };
+            let expected = brute_force(&x, &faces);
+            assert_eq!(detector.discrete(&x).unwrap(), expected, "case {case} frame {frame}");
+            let answers = detector.batch(&[&x, &x], None, &()).unwrap();
+            assert!(answers.iter().all(|answer| answer.pairs == expected), "case {case} frame {frame}");
+            assert_eq!(detector.discrete_at_most(&x, 1).unwrap().len(), expected.len().min(1));
+            let is_shared = |(a, b): &&Pair| mesh.are_adjacent(*a, *b);
+            shared += expected.iter().filter(is_shared).count();
+            apart += expected.len() - expected.iter().filter(is_shared).count();
+            // What is ignored, or of groups that do not count, is left out as ever.
+            let ignored = expected.first().copied();
+            let mut ignoring = Detector::with_filter(&mesh, &folded().ignoring(ignored)).unwrap();
+            assert_eq!(ignoring.discrete(&x).unwrap(), &expected[ignored.iter().len()..]);
+        }
+    }
+    assert!(shared > threshold(300) && apart > threshold(100), "{shared} {apart}");
+}
+
+/// A strip of quads, one of which lies on its neighbour; and a doubled face.
+#[test]
+fn a_triangle_folded_onto_its_neighbour_is_found() {
+    let at = DVec3::new;
+    let x = [at(0.0, 0.0, 0.0), at(2.0, 0.0, 0.0), at(0.0, 2.0, 0.0), at(0.5, 0.5, 0.0), at(2.0, 2.0, 0.0)];
+    let mesh = TriMesh::new(x.to_vec(), vec![[0, 1, 2], [1, 0, 3], [2, 1, 4], [2, 0, 1]]).unwrap();
+    let pairs = |neighbours| {
+        let filter = ContactFilter::new(neighbours, false);
+        Detector::with_filter(&mesh, &filter).unwrap().discrete(&x).unwrap().to_vec()
+    };
+    assert_eq!(pairs(Neighbours::Exclude), []);
+    assert_eq!(pairs(Neighbours::IncludeOneVertex), []);
+    assert_eq!(pairs(Neighbours::IncludeFolded), [(0, 1), (0, 3), (1, 3)]);
+    // A hinge that is nearly closed is free, as is an open one.
+    let mut open = x;
+    open[3].z = 1e-300;
+    let mut detector = Detector::with_filter(&mesh, &folded()).unwrap();
+    assert_eq!(detector.discrete(&open).unwrap(), [(0, 3)]);
+}
+
+/// Distances prove nothing about triangles that always touch.
+#[test]
+fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
+    let model = random_model(3);
+    let refused = |error: Error| {
+        let message = error.to_string();
+        assert!(matches!(error, Error::FoldedNeighbours { .. }), "{message}");
+        assert!(
+            message.contains("discrete queries of meshes without modes") && !message.contains('\n'),
+            "{message}"
+        );
+        assert!(message.ends_with("use include-one-vertex"), "{message}");
+    };
+    let options = CertifyOptions { filter: Some(folded()), ..CertifyOptions::default() };
+    refused(Certificates::compute(&model, &options, &()).unwrap_err());
+    let scope = || Scope { filter: folded(), ..Scope::of(&model) };
+    for method in [Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce] {
+        refused(Query::without_certificates(&model, scope(), method).err().unwrap());
+    }
+    refused(folded().ignoring_rest(&model).unwrap_err());
+    let mut forged = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap().parts().clone();
+    forged.scope = scope();
+    forged.digest = sscc::Digest::of(&model, &forged.scope);
+    let forged = Certificates::from_parts(forged).unwrap();
+    refused(Query::new(&model, &forged).err().unwrap());
+    let rest = model.mesh().rest_positions();
+    let mut detector = Detector::with_filter(model.mesh(), &folded()).unwrap();
+    refused(detector.continuous(rest, rest).unwrap_err());
+    // Between two meshes every pair counts, and there are no neighbours.
+    let mut other = Detector::new(model.mesh());
+    assert!(!detector.continuous_against([rest, rest], &mut other, [rest, rest]).unwrap().is_empty());
+}
+
+/// Which vertices are common is decided at rest, by numbers and welds. Positions that are given later never change it.
+#[test]
+fn adjacency_does_not_change_with_positions() {
+    let at = DVec3::new;
+    // At rest vertices 0 and 1 are at one position, and welded.
+    let rest =
+        [at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(-1.0, 1.0, 0.0), at(-1.0, -1.0, 0.0)];
+    let opened =
+        [at(-1.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0), at(0.0, -1.0, 1.0), at(-2.0, -1.0, 1.0)];
+    let answers = |faces: [[u32; 3]; 2], neighbours, x: &[DVec3]| {
+        let mesh = TriMesh::new(rest.to_vec(), faces.to_vec()).unwrap();
+        let mut detector = Detector::with_filter(&mesh, &ContactFilter::new(neighbours, true)).unwrap();
+        let discrete = !detector.discrete(x).unwrap().is_empty();
+        let is_swept = neighbours != Neighbours::IncludeFolded;
+        let swept = is_swept && !detector.continuous(x, x).unwrap().is_empty();
+        [discrete, swept]
+    };
+    let one = Neighbours::IncludeOneVertex;
+    // A hinge: two common numbers. It opens without another common point, or closes: it never counts.
+    let hinge = [[0, 1, 2], [1, 0, 3]];
+    let mut closed = opened;
+    closed[3] = at(0.0, 0.5, 0.0);
+    for x in [rest, opened, closed] {
+        assert_eq!(answers(hinge, one, &x), [false; 2], "{x:?}");
+        assert_eq!(answers(hinge, Neighbours::Exclude, &x), [false; 2], "{x:?}");
+    }
+    assert_eq!(answers(hinge, Neighbours::IncludeFolded, &opened), [false; 2]);
+    assert_eq!(answers(hinge, Neighbours::IncludeFolded, &closed), [true, false]);
+    // One common number, of a vertex whose welded partner moves away: the vertex stays the common one.
+    let corner = [[0, 1, 2], [0, 3, 4]];
+    assert_eq!(answers(corner, one, &opened), [false; 2]);
+    let mut through = opened;
+    through[3] = at(1.0, 0.5, 0.0);
+    assert_eq!(answers(corner, one, &through), [true; 2]);
+}
