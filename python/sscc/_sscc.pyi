@@ -91,7 +91,7 @@ class Model:
         """Rest positions, (V, 3); a copy."""
     @property
     def weld(self) -> bool:
-        """Whether ``certify`` welds vertices of equal position and modes by default: where the format splits them (STL, glTF)."""
+        """Whether ``certify`` welds equal vertices by default: the file's format splits them (STL, glTF)."""
     @property
     def faces(self) -> _U32:
         """Vertex numbers, (F, 3); a copy."""
@@ -383,9 +383,9 @@ class Detector:
     weld: True: vertices of equal rest position are one vertex, for adjacency (needs ``rest``). (V,) integers:
         vertices with the same number are one. False (default): every vertex number is a vertex of its own.
     neighbours: "exclude" (default): triangles that share a vertex do not count; "include-one-vertex": triangles that
-        share one vertex count where they have another common point; "include-folded": those that share one, two or three
-        vertices, where they have another common point than these and the edges between them, and doubled faces.
-        ``continuous`` refuses it.
+        share one vertex count where they have another common point; "include-folded": those that share one, two or
+        three vertices, where they have another common point than these and the edges between them, and doubled
+        faces. ``continuous`` refuses it.
     ignored: (n, 2), pairs of triangles that never count.
     groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
     ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.

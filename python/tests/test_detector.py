@@ -92,6 +92,20 @@ def test_the_contact_filter() -> None:
         assert not detector.check(folded).colliding and detector.ignored.tolist() == [[0, 1]]
 
 
+def test_folded_neighbours_and_doubled_faces_are_found_on_request() -> None:
+    """A triangle folded onto its neighbour, a hinge that is open, and a face that is there twice."""
+    faces = [[0, 1, 2], [1, 0, 3], [0, 4, 1], [2, 0, 1]]
+    closed = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0.5, 0.5, 0], [0, -1, 1]], float)
+    opened = closed + np.array([[0], [0], [0], [1], [0]]) * [0, 0, 1]
+    assert sscc.self_intersections(closed, faces).tolist() == []
+    assert sscc.self_intersections(closed, faces, neighbours="include-one-vertex").tolist() == []
+    assert sscc.self_intersections(closed, faces, neighbours="include-folded").tolist() == [[0, 1], [0, 3], [1, 3]]
+    detector = sscc.Detector(faces, neighbours="include-folded")
+    assert [answer.count for answer in detector.check_many(np.array([closed, opened]))] == [3, 1]
+    with pytest.raises(ValueError, match="include-folded is for discrete queries of meshes without modes"):
+        detector.continuous(opened, closed)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_pairs_equal_brute_force(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -490,6 +504,8 @@ def test_first_positions_must_have_the_vertices_of_the_faces() -> None:
     check_refused(lambda: late.check(X), ValueError, "positions: there are 6 positions, but the mesh has 12")
 
 
+RULES = "'exclude' or 'include-one-vertex' or 'include-folded'"
+
 ARGUMENTS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"faces": FACES[:, :2]}, ValueError, "faces has shape [2, 2]: (F, 3) was expected"),
     ({"faces": FACES.astype(float)}, TypeError, "faces is an array of float64: integers were expected"),
@@ -502,8 +518,8 @@ ARGUMENTS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"weld": 1}, ValueError, "weld has shape []: True, False or (V,) integers were expected"),
     ({"weld": [0.5] * 6}, TypeError, "weld is an array of float64: integers were expected"),
     ({"weld": [0] * 5}, ValueError, "weld has 5 entries, but {} has 6 vertices"),
-    ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' or 'include-folded' was expected"),
-    ({"neighbours": 1}, TypeError, "neighbours is a int: 'exclude' or 'include-one-vertex' or 'include-folded' was expected"),
+    ({"neighbours": "all"}, ValueError, f"neighbours is 'all': {RULES} was expected"),
+    ({"neighbours": 1}, TypeError, f"neighbours is a int: {RULES} was expected"),
 ]
 
 

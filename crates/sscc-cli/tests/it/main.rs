@@ -15,6 +15,7 @@ mod formats;
 mod guide;
 mod help;
 mod interrupt;
+mod left_out;
 mod modes;
 mod picture;
 mod places;

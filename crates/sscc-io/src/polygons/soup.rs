@@ -101,6 +101,7 @@ mod tests {
             positions: vec![DVec3::ZERO; 8],
             fans: vec![[5, 6, 7], [0, 1, 2], [0, 2, 3], [0, 3, 4], [1, 2, 3]],
             larger: vec![LargerPolygon { start: 1, triangles: 3 }],
+            has_split_vertices: false,
             warnings: Vec::new(),
         };
         let with = |polygon: [[u32; 3]; 3]| {

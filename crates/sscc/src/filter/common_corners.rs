@@ -31,6 +31,8 @@ impl ClassedCorners<'_> {
 
 /// Whether two closed triangles have a point in common beyond their common corners and the edges between them, exactly.
 /// Triangles all of whose corners are common have: they are one face twice.
+#[cold] // By default no pair comes here, and the test of pairs without common vertices stays small.
+#[inline(never)]
 pub(super) fn intersect_beyond_common_corners(a: ClassedCorners<'_>, b: ClassedCorners<'_>) -> bool {
     let (common_a, common_b) = (a.common_with(&b), b.common_with(&a));
     if common_a == [true; 3] && common_b == [true; 3] {

@@ -8,7 +8,7 @@ use crate::{Error, limits};
 ///
 /// Any triangle soup is valid: closed, open, or with edges of more than two triangles. Special cases:
 /// - a vertex that no face uses is not part of the shape: it never collides, and no AABB contains it;
-/// - two faces with the same three vertices are adjacent (they share a vertex), so they never collide;
+/// - two faces with the same three vertices are adjacent (they share a vertex), so by default they never collide;
 /// - a face of zero area (a repeated index, or collinear corners) is the closed segment or point that its corners span,
 ///   and collides as such.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc::TriMesh;
