@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sscc::{Pair, Statistics};
+use sscc_sim::text::{counted, length};
 
 use crate::arrays::{CachedArray, cached, pairs};
 use crate::errors::{kind, value};
@@ -88,12 +89,18 @@ impl Answer {
     }
 
     fn __repr__(&self) -> String {
-        let norm = self.core.norm;
-        match (self.core.pairs.len(), self.core.statistics.complete) {
-            (0, _) => format!("<sscc.Answer: free, norm {norm:.4}>"),
-            (count, true) => format!("<sscc.Answer: colliding, {count} pairs, norm {norm:.4}>"),
-            (count, false) => format!("<sscc.Answer: colliding, at least {count} pairs, norm {norm:.4}>"),
-        }
+        let result = result(self.core.pairs.len(), self.core.statistics.complete);
+        format!("<sscc.Answer: {result}, norm {}>", length(self.core.norm))
+    }
+}
+
+/// Returns the text for the number of pairs of an answer: a lower bound if a limit stopped the search.
+pub fn result(count: usize, is_complete: bool) -> String {
+    let pairs = counted(count as u64, "pair");
+    match (count, is_complete) {
+        (0, _) => "free".into(),
+        (_, true) => format!("colliding, {pairs}"),
+        (_, false) => format!("colliding, at least {pairs}"),
     }
 }
 

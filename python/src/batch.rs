@@ -4,6 +4,7 @@ use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
+use sscc_sim::text::{counted, grouped};
 
 use crate::answer::{Answer, PickledAnswer, Reduction, pickled, unpickled};
 use crate::arguments::count;
@@ -129,8 +130,12 @@ impl Batch {
     }
 
     fn __repr__(&self) -> String {
-        let colliding = self.answers.iter().filter(|answer| !answer.pairs.is_empty()).count();
-        format!("<sscc.Batch: {} answers, {colliding} colliding>", self.answers.len())
+        let colliding = self.answers.iter().filter(|answer| !answer.pairs.is_empty()).count() as u64;
+        format!(
+            "<sscc.Batch: {}, {} colliding>",
+            counted(self.answers.len() as u64, "answer"),
+            grouped(colliding)
+        )
     }
 }
 

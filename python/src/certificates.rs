@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
 use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
 use sscc_io::{read_certificates, write_certificates};
+use sscc_sim::text::{counted, length};
 
 use crate::answer::{Answer, Reduction};
 use crate::arguments::{check_ending, count, path};
@@ -279,10 +280,10 @@ impl Certificates {
 
     fn __repr__(&self) -> String {
         format!(
-            "<sscc.Certificates: root radius {:.4}, {} nodes, {} pairs, metric {}>",
-            self.root_radius(),
-            self.nodes(),
-            self.pairs(),
+            "<sscc.Certificates: root radius {}, {}, {}, metric {}>",
+            length(self.root_radius()),
+            counted(self.nodes() as u64, "node"),
+            counted(self.pairs() as u64, "node pair"),
             self.metric()
         )
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use sscc::{Error, FrameAnswer, TriMesh};
+use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arguments::{count, switch};
@@ -291,10 +292,12 @@ impl Detector {
     }
 
     fn __repr__(&self) -> String {
-        let faces = self.pool.mesh.faces.len();
+        let triangles = counted(self.pool.mesh.faces.len() as u64, "triangle");
         match self.pool.known() {
-            Some(built) => format!("<sscc.Detector: {faces} triangles, {} vertices>", built.rest.len()),
-            None => format!("<sscc.Detector: {faces} triangles, positions not yet known>"),
+            Some(built) => {
+                format!("<sscc.Detector: {triangles}, {} vertices>", grouped(built.rest.len() as u64))
+            }
+            None => format!("<sscc.Detector: {triangles}, positions not yet known>"),
         }
     }
 }

@@ -9,8 +9,9 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyList};
 use sscc::{DetectorStatistics, FrameAnswer, Impact, Pair, Penetration};
+use sscc_sim::text::counted;
 
-use crate::answer::{Reduction, pair_bytes, pairs_of_bytes};
+use crate::answer::{Reduction, pair_bytes, pairs_of_bytes, result};
 use crate::arrays::{CachedArray, cached, frozen, line, pairs, table};
 use crate::contacts::{Contacts, Curve, PickledContacts};
 use crate::errors::{kind, value};
@@ -160,11 +161,8 @@ impl DetectorAnswer {
     }
 
     fn __repr__(&self) -> String {
-        match (self.found.frame.pairs.len(), self.found.frame.statistics.complete) {
-            (0, _) => "<sscc.DetectorAnswer: free>".into(),
-            (count, true) => format!("<sscc.DetectorAnswer: colliding, {count} pairs>"),
-            (count, false) => format!("<sscc.DetectorAnswer: colliding, at least {count} pairs>"),
-        }
+        let frame = &self.found.frame;
+        format!("<sscc.DetectorAnswer: {}>", result(frame.pairs.len(), frame.statistics.complete))
     }
 }
 
@@ -264,7 +262,8 @@ impl DetectorImpacts {
         match self.time_of_impact() {
             None => "<sscc.DetectorImpacts: free from start to end>".into(),
             Some(time) => {
-                format!("<sscc.DetectorImpacts: {} pairs, the first at {time:.4}>", self.times.len())
+                let pairs = counted(self.times.len() as u64, "pair");
+                format!("<sscc.DetectorImpacts: {pairs}, the first at {time:.4}>")
             }
         }
     }

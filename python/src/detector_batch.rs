@@ -4,6 +4,7 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use sscc::FrameAnswer;
+use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arrays::{CachedArray, cached, line, table};
@@ -127,8 +128,9 @@ impl DetectorBatch {
     }
 
     fn __repr__(&self) -> String {
-        let colliding = self.frames.iter().filter(|found| !found.frame.pairs.is_empty()).count();
-        format!("<sscc.DetectorBatch: {} answers, {colliding} colliding>", self.frames.len())
+        let colliding = self.frames.iter().filter(|found| !found.frame.pairs.is_empty()).count() as u64;
+        let frames = counted(self.frames.len() as u64, "answer");
+        format!("<sscc.DetectorBatch: {frames}, {} colliding>", grouped(colliding))
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use sscc::hierarchy::Node;
+use sscc_sim::text::counted;
 
 use crate::arrays::line;
 use crate::pool::Pool;
@@ -78,9 +79,9 @@ impl Hierarchy {
 
     fn __repr__(&self) -> String {
         format!(
-            "<sscc.Hierarchy: {} nodes, {} levels>",
-            self.core().nodes().len(),
-            self.core().levels().len()
+            "<sscc.Hierarchy: {}, {}>",
+            counted(self.core().nodes().len() as u64, "node"),
+            counted(self.core().levels().len() as u64, "level")
         )
     }
 }

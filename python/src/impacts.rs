@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use sscc::{Impact, Pair, Statistics};
+use sscc_sim::text::counted;
 
 use crate::answer::{PickledAnswer, Reduction, pickled, unpickled};
 use crate::arrays::{CachedArray, cached, line, pairs};
@@ -101,7 +102,10 @@ impl Impacts {
     fn __repr__(&self) -> String {
         match self.time_of_impact() {
             None => "<sscc.Impacts: free from q0 to q1>".into(),
-            Some(time) => format!("<sscc.Impacts: {} pairs, the first at {time:.4}>", self.times.len()),
+            Some(time) => {
+                let pairs = counted(self.times.len() as u64, "pair");
+                format!("<sscc.Impacts: {pairs}, the first at {time:.4}>")
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use sscc::Error;
+use sscc_sim::text::counted;
 
 use crate::answer::Answer;
 use crate::arrays::vector;
@@ -39,5 +40,11 @@ impl KineticQuery {
             )
         })?;
         found.map_err(|error: Error| refused(&error, "q"))
+    }
+
+    fn __repr__(&self) -> String {
+        let model = &self.kinetic.borrow_owner().borrow_owner().loaded.model;
+        let (triangles, rank) = (model.mesh().faces().len() as u64, model.rank() as u64);
+        format!("<sscc.KineticQuery: {}, {}>", counted(triangles, "triangle"), counted(rank, "mode"))
     }
 }

@@ -7,6 +7,7 @@ use sscc::{ContactFilter, Modes, ReducedModel};
 use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{LoadOptions, ModelInfo, load_model_with, write_model};
+use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arguments::{check_ending, path};
@@ -191,10 +192,10 @@ impl Model {
     fn __repr__(&self) -> String {
         let mesh = self.core().mesh();
         format!(
-            "<sscc.Model: {} triangles, {} vertices, {} modes>",
-            mesh.faces().len(),
-            mesh.rest_positions().len(),
-            self.core().rank()
+            "<sscc.Model: {}, {} vertices, {}>",
+            counted(mesh.faces().len() as u64, "triangle"),
+            grouped(mesh.rest_positions().len() as u64),
+            counted(self.core().rank() as u64, "mode")
         )
     }
 }

@@ -96,13 +96,22 @@ pub fn _elastic(
         options.fixed = vertex_numbers(fix)?;
     }
     if let Some(corners) = fix_box {
-        let corners = points(&floats(corners, "fix_box")?, "fix_box")?;
-        let [a, b] = corners[..] else {
-            return Err(value(format!("fix_box has {} rows: two corners were expected", corners.len())));
-        };
-        options.fixed_box = Some([a, b]);
+        options.fixed_box = Some(two_corners(corners)?);
     }
     compute(py, source, threads, progress, move |source, progress| elastic(source, kind, options, progress))
+}
+
+/// Returns the two corners of a box from an array (2, 3).
+fn two_corners(corners: &Bound<'_, PyAny>) -> PyResult<[DVec3; 2]> {
+    let array = floats(corners, "fix_box")?;
+    let wrong = || {
+        let shape = array.shape();
+        value(format!("fix_box has shape {shape:?}: (2, 3) was expected, two corners of a box"))
+    };
+    if array.shape() != [2, 3] {
+        return Err(wrong());
+    }
+    points(&array, "fix_box")?.try_into().map_err(|_| wrong())
 }
 
 /// Polynomial modes of a surface. A solid in a file adds its stiffness.

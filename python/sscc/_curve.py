@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sscc._text import counted
+
 
 class Curve(NamedTuple):
     """A polyline in which a mesh intersects itself or another one. Its arrays are read-only."""
@@ -17,3 +19,7 @@ class Curve(NamedTuple):
     """The pair of triangles of each segment, from a point to the next: (n - 1, 2); of a closed curve (n, 2)."""
     closed: bool
     """Whether the last point is joined to the first."""
+
+    def __repr__(self) -> str:
+        kind = "closed" if self.closed else "open"
+        return f"<sscc.Curve: {kind}, {counted(len(self.points), 'point')}, {counted(len(self.pairs), 'segment')}>"

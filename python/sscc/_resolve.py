@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sscc._text import counted, number
+
 
 class Resolved(NamedTuple):
     """A free q near a colliding one, from ``Certificates.resolve``."""
@@ -19,6 +21,15 @@ class Resolved(NamedTuple):
     """Its distance from the given q in the metric, ``|S (resolved q - q)|``; infinite if none was found."""
     safe_scale_change: float
     """The distance of the last free q on the straight way from the start; 0 where q is free."""
+
+    def __repr__(self) -> str:
+        if self.q is None:
+            return "<sscc.Resolved: not resolved>"
+        if self.change == 0:
+            return f"<sscc.Resolved: free as it is, q of shape ({len(self.q)},)>"
+        back = number(self.safe_scale_change)
+        change = f"change {number(self.change)} (stepping back: {back})"
+        return f"<sscc.Resolved: resolved, {change}, q of shape ({len(self.q)},)>"
 
 
 class FreeSamples(NamedTuple):
@@ -39,3 +50,8 @@ class FreeSamples(NamedTuple):
     def acceptance(self) -> float:
         """The share of draws that were free; NaN without draws."""
         return self.free / self.drawn if self.drawn else float("nan")
+
+    def __repr__(self) -> str:
+        rows, rank = self.q.shape
+        draws = f"{counted(self.drawn, 'draw')} ({self.free:,} of them free)"
+        return f"<sscc.FreeSamples: {counted(rows, 'free configuration')} from {draws}, q of shape ({rows}, {rank})>"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from sscc._sscc import _simulate
+from sscc._text import counted, quoted
 
 
 class Simulation(NamedTuple):
@@ -19,6 +20,11 @@ class Simulation(NamedTuple):
     """The folder of the results."""
     files: list[Path]
     """The written files: motions (``.npz``), an animation (``.glb``), a report (``.html``), sound."""
+
+    def __repr__(self) -> str:
+        steps, colliding = counted(self.summary["steps"], "step"), self.summary["colliding_steps"]
+        scene, files = quoted(self.summary["scene"]), counted(len(self.files), "file")
+        return f"<sscc.Simulation: {scene}, {steps}, {colliding:,} colliding, {files} in {quoted(self.folder)}>"
 
 
 def simulate(

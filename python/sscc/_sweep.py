@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sscc._text import counted, number, quoted
+
 
 class Sweep(NamedTuple):
     """How far the weight of one mode can go, with all others fixed, until the shape touches itself."""
@@ -27,3 +29,19 @@ class Sweep(NamedTuple):
     """The pairs that collide at ``first_hit``: (n, 2), i < j, sorted, read-only."""
     note: str | None
     """What is unusual: a collision at ``start``, a grazing contact, or why ``first_hit`` is farther away or None."""
+
+    def __repr__(self) -> str:
+        name = f"mode {self.mode}" if self.name == str(self.mode) else f"mode {self.mode} {quoted(self.name)}"
+        return f"<sscc.Sweep: {name} from {number(self.start)} to {number(self.end)}: {self._result()}>"
+
+    def _result(self) -> str:
+        pairs = counted(len(self.pairs), "pair")
+        if self.first_free is None:
+            return f"colliding at the start, {pairs}"
+        if self.first_free == self.end:
+            return "free"
+        if self.first_hit is None:
+            return f"free up to {number(self.first_free)}, not proven beyond"
+        if self.note is None:
+            return f"touches at {number(self.first_hit)}, {pairs}"
+        return f"free up to {number(self.first_free)}, touches at {number(self.first_hit)}, {pairs} (see note)"

@@ -26,6 +26,7 @@ from sscc._sscc import (
     _configurations,
     _joined,
 )
+from sscc._text import counted
 from sscc._worker import as_given, certify_whole, check_chunk, content_of, do_job, key_of_chunk, key_of_model
 
 try:
@@ -47,7 +48,7 @@ _JOBS = 4
 _LARGE = {"distributed.admin.large-graph-warning-threshold": "1TB"}
 
 
-@dataclass
+@dataclass(repr=False)
 class Library:
     """Results of a library of models, by name, in the given order."""
 
@@ -55,6 +56,9 @@ class Library:
     certificates: dict[str, Certificates] = field(default_factory=dict)
     #: Errors of the other models. Messages begin with the name.
     failures: dict[str, Exception] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<sscc.batch.Library: {counted(len(self.certificates), 'model')} certified, {len(self.failures):,} failed>"
 
 
 def certify(

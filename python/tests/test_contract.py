@@ -198,12 +198,3 @@ def test_results_have_no_truth_value(certs: sscc.Certificates) -> None:
     for result in (certs.check(np.zeros(6)), certs.continuous(np.zeros(6), np.zeros(6))):
         with pytest.raises(TypeError, match=r"use \.colliding"):
             bool(result)
-
-
-def test_representations(model: sscc.Model, certs: sscc.Certificates) -> None:
-    assert repr(model) == "<sscc.Model: 576 triangles, 288 vertices, 6 modes>"
-    assert repr(certs).startswith("<sscc.Certificates: root radius 0.")
-    assert repr(certs.check(np.zeros(6))) == "<sscc.Answer: free, norm 0.0000>"
-    assert repr(certs.check_many(np.zeros((2, 6)))) == "<sscc.Batch: 2 answers, 0 colliding>"
-    assert repr(certs.continuous(np.zeros(6), np.zeros(6))) == "<sscc.Impacts: free from q0 to q1>"
-    assert repr(certs.hierarchy).startswith("<sscc.Hierarchy: ")

@@ -299,12 +299,12 @@ def test_attributes_and_representations() -> None:
     assert repr(late) == "<sscc.Detector: 2 triangles, 6 vertices>"
     flat = X * [1, 1, 0]
     assert repr(detector.check(X)) == "<sscc.DetectorAnswer: free>"
-    assert repr(detector.check(flat)) == "<sscc.DetectorAnswer: colliding, 1 pairs>"
+    assert repr(detector.check(flat)) == "<sscc.DetectorAnswer: colliding, 1 pair>"
     crossing, three = soup(200, np.random.default_rng(2))
     assert repr(sscc.Detector(three).check(crossing, 3)) == "<sscc.DetectorAnswer: colliding, at least 3 pairs>"
     assert repr(detector.check_many([X, flat])) == "<sscc.DetectorBatch: 2 answers, 1 colliding>"
     assert repr(detector.continuous(X, X)) == "<sscc.DetectorImpacts: free from start to end>"
-    assert repr(detector.continuous(X, FALLEN)) == "<sscc.DetectorImpacts: 1 pairs, the first at 0.5000>"
+    assert repr(detector.continuous(X, FALLEN)) == "<sscc.DetectorImpacts: 1 pair, the first at 0.5000>"
     for result in (detector.check(X), detector.continuous(X, X)):
         with pytest.raises(TypeError, match=r"use \.colliding"):
             bool(result)

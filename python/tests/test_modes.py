@@ -100,6 +100,8 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
     vertices, faces, _ = torus(12, 8, 1)
     text: Any = "x"
     not_a_pair: Any = vertices
+    one_corner = r"^fix_box has shape \[1, 3\]: \(2, 3\) was expected, two corners of a box$"
+    three_corners = r"^fix_box has shape \[3, 2\]: \(2, 3\) was expected"
     cases: list[tuple[Callable[[], object], type[Exception], str]] = [
         (lambda: sscc.modes.linear((vertices, faces[1:]), 3), ValueError, "^source: "),
         (lambda: sscc.modes.linear(not_a_pair, 3), TypeError, "^source is a ndarray: the name of a file or"),
@@ -108,7 +110,8 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[96]), ValueError, "^source: fix: there is no vertex 96"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[[1]]), ValueError, r"^fix has shape \[1, 1\]"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[-1]), ValueError, r"^fix\[0\] is -1"),
-        (lambda: sscc.modes.linear((vertices, faces), 3, fix_box=[[0, 0, 0]]), ValueError, "^fix_box has 1 rows"),
+        (lambda: sscc.modes.linear((vertices, faces), 3, fix_box=[[0, 0, 0]]), ValueError, one_corner),
+        (lambda: sscc.modes.linear((vertices, faces), 3, fix_box=np.zeros((3, 2))), ValueError, three_corners),
         (lambda: sscc.modes.linear((vertices, faces), 3, youngs=-1), ValueError, "^source: "),
         (lambda: sscc.modes.linear((vertices, faces), 3, poisson=text), TypeError, "^poisson is a str"),
         (lambda: sscc.modes.nonlinear((vertices, faces), 3, threads=-1), ValueError, "^threads is -1"),

@@ -43,7 +43,7 @@ fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &
     }
 }
 
-fn certify(model: &ReducedModel, path: &Path, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
+fn certify(model: &ReducedModel, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
     let options = CertifyOptions { ignore_rest, center, budget: 0, ..CertifyOptions::default() };
     Certificates::compute(model, &options, &()).unwrap()
 }
@@ -59,7 +59,7 @@ fn morph_targets_of_gltf_files() {
         let path = folder.join("morph").join(file);
         let loaded = load_model_with(&path, &LoadOptions::new(None, mesh)).unwrap();
         let model = &loaded.model;
-        let certificates = certify(model, &path, true, None);
+        let certificates = certify(model, true, None);
         let query = Query::new(model, &certificates).unwrap();
         let q = vec![0.0; model.rank()];
         for (range, hits) in [([0.0, 1.0], false), ([-3.0, 3.0], true)] {
@@ -82,7 +82,7 @@ fn expressions_of_a_face() {
     let weights = cases(10_000) / 25;
     // With the pairs of closed lips and lids ignored.
     let rest = vec![0.0; 30];
-    let certificates = certify(&model, &path, true, None);
+    let certificates = certify(&model, true, None);
     let query = Query::new(&model, &certificates).unwrap();
     let sweeps = query.sweep_modes(&rest, &ranges, None, &()).unwrap();
     check(&model, &certificates, &rest, &sweeps, weights);
@@ -91,13 +91,13 @@ fn expressions_of_a_face() {
     // About the open mouth, which is free.
     let mut open = rest.clone();
     open[0] = 1.0;
-    let certificates = certify(&model, &path, false, Some(open.clone()));
+    let certificates = certify(&model, false, Some(open.clone()));
     let query = Query::new(&model, &certificates).unwrap();
     let sweeps = query.sweep_modes(&open, &ranges, None, &()).unwrap();
     assert!(sweeps[0].to == 0.0 && sweeps[0].first_hit.is_some_and(|hit| hit > 0.0), "{:?}", sweeps[0]);
     check(&model, &certificates, &open, &sweeps, weights);
     // At rest it collides.
-    let all = certify(&model, &path, false, None);
+    let all = certify(&model, false, None);
     let sweep = Query::new(&model, &all).unwrap().sweep(&rest, 0, 1.0).unwrap();
     assert_eq!((sweep.outcome, sweep.pairs.len()), (SweepOutcome::CollidingAtStart, 124));
 }
