@@ -27,7 +27,7 @@ export function checkRows(rows: number[][], rank: number): number[][] {
     const bad = rows.findIndex((row) => row.length !== rank);
     if (bad >= 0)
         throw new Error(
-            `row ${bad + 1} has ${count(rows[bad].length, "number")}, the model has ${count(rank, "mode")}`,
+            `row ${bad} (counted from 0) has ${count(rows[bad].length, "number")}, the model has ${count(rank, "mode")}`,
         );
     if (rows.some((row) => row.some((v) => !Number.isFinite(v)))) throw new Error("every number must be finite");
     return rows;

@@ -97,9 +97,9 @@ export class Shape {
         return exceptions === 0 && norm !== null && norm * ROUNDING < (radius ?? Number.POSITIVE_INFINITY);
     }
 
-    /** The name of a mode, else its number. */
+    /** The name of a mode, else its number from 0. */
     modeName(k: number): string {
-        return this.model.mode_names?.[k] || `mode ${k + 1}`;
+        return this.model.mode_names?.[k] || `mode ${k}`;
     }
 
     /** The range of a mode's slider: 0 to 1 for morph targets. */

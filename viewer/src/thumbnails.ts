@@ -8,7 +8,7 @@ const HEIGHT = 108;
 export function thumbnails(app: App): HTMLElement {
     const { extremal } = app.shape.model;
     // "mode 3 +", with the name of the mode.
-    const named = (text: string): string => text.replace(/^mode (\d+)/, (_, k) => app.shape.modeName(Number(k) - 1));
+    const named = (text: string): string => text.replace(/^mode (\d+)/, (_, k) => app.shape.modeName(Number(k)));
     const pictures = extremal.map(({ name, q }) => {
         const canvas = h("canvas", { width: 2 * WIDTH, height: 2 * HEIGHT, "aria-hidden": "true" });
         const show = (): void => {

@@ -126,7 +126,7 @@ export function report({ sound = false, playback = true, flight = 1, change = ()
                 nodes: 1365,
                 levels,
                 extremal: [0, 1, 2, 3].map((k) => ({
-                    name: `mode ${k + 1}`,
+                    name: `mode ${k} +`,
                     q: [0, 1, 2, 3].map((i) => (i === k ? 0.8 : 0)),
                 })),
             },

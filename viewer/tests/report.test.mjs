@@ -109,7 +109,7 @@ describe("the shape", () => {
 
     test("vibrates until it is stopped", () =>
         look({ playback: false }, async (page) => {
-            const button = page.getByRole("button", { name: "vibrate mode 1" });
+            const button = page.getByRole("button", { name: "vibrate mode 0" });
             await button.click();
             assert.equal(await button.getAttribute("aria-pressed"), "true");
             await page.waitForFunction(() => globalThis.sscc.pose.q[0] > 0.05);
@@ -504,6 +504,8 @@ describe("the page", () => {
             await page.getByRole("tab", { name: "Certificates" }).click();
             const pictures = page.locator(".thumbnail");
             assert.equal(await pictures.count(), 4);
+            // Modes are numbered from 0, as in the command.
+            assert.equal(await pictures.nth(2).innerText(), "mode 2 +");
             await settled(page);
             const box = drawnBox(await pixels(page, ".thumbnail:nth-child(1) canvas"));
             assert.ok(box.count > 200, `${box.count} pixels`);

@@ -12,7 +12,7 @@ const SHRINK: f64 = 1.0 - 1e-9;
 /// A q just inside the root's radius, along one mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Extremal {
-    /// The mode's number, counted from 1, and the sign of the direction.
+    /// The mode's number, counted from 0, and the sign of the direction.
     pub name: String,
     /// The q (r numbers).
     pub q: Vec<f64>,
@@ -29,7 +29,7 @@ pub fn extremal(certificates: &Certificates) -> Vec<Extremal> {
         unit[k] = 1.0;
         let mut q = center.to_vec();
         q[k] += sign * SHRINK * radius / certificates.metric().norm(&unit);
-        Extremal { name: format!("mode {} {}", k + 1, if sign > 0.0 { "+" } else { "-" }), q }
+        Extremal { name: format!("mode {k} {}", if sign > 0.0 { "+" } else { "-" }), q }
     };
     (0..center.len().min(MAX_MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).collect()
 }

@@ -1,9 +1,7 @@
 //! Sweeps of real blendshapes, against exact queries at many weights.
 
-use std::path::Path;
-
 use sscc::{
-    Certificates, CertifyOptions, ContactFilter, KineticQuery, Neighbours, Query, ReducedModel, Sweep,
+    Certificates, CertifyOptions, KineticQuery, Query, ReducedModel, Sweep,
     SweepOutcome,
 };
 use sscc_io::{LoadOptions, load_model, load_model_with};

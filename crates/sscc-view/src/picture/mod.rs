@@ -59,7 +59,7 @@ impl Picture {
             let offset = certificates.metric().unscaled(&scaled);
             let q: Vec<f64> = certificates.center().iter().zip(offset).map(|(c, x)| c + x).collect();
             let caption = match is_dense {
-                true => format!("z{} = {}", k + 1, short(z)),
+                true => format!("z{k} = {}", short(z)),
                 false => format!("weight {}", short(q[k])),
             };
             Ok(View { positions: model.positions(&q)?, caption })
@@ -85,9 +85,9 @@ impl Picture {
         };
         let [width, height] = camera.size();
         let name = |k: usize| match names.get(k) {
-            _ if is_dense => format!("direction {}", k + 1),
+            _ if is_dense => format!("direction {k}"),
             Some(name) if !name.is_empty() => name.clone(),
-            _ => format!("mode {}", k + 1),
+            _ => format!("mode {k}"),
         };
         let headings: Vec<Vec<String>> = (0..modes).map(|k| wrapped(&name(k), width)).collect();
         let heading = headings.iter().map(Vec::len).max().unwrap_or(0) * LINE;

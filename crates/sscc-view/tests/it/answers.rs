@@ -186,6 +186,8 @@ fn the_scene_and_its_arrays_describe_the_model() {
         // Along each mode, just inside the root's radius.
         let extremal = shape["extremal"].as_array().unwrap();
         assert_eq!(extremal.len(), 6);
+        // Modes are numbered from 0, as in the command.
+        assert_eq!((&extremal[0]["name"], &extremal[5]["name"]), (&json!("mode 0 +"), &json!("mode 2 -")));
         for extremal in extremal {
             let answer = check(client, &json!({"q": extremal["q"]}));
             assert_eq!(answer["root_certified"], json!(true));
