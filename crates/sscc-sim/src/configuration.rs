@@ -5,11 +5,8 @@ use std::path::Path;
 use sscc_io::{LoadedModel, read_vector};
 
 use crate::error::{At, Result};
-use crate::text::one_line;
+use crate::text::quoted;
 use crate::{SimError, nearest};
-
-/// The longest name that an error repeats.
-const MAX_SHOWN: usize = 60;
 
 /// Returns the q that a flag states: r numbers with commas; `NAME=WEIGHT,NAME=WEIGHT`, where modes that are not named are 0;
 /// or a file of r numbers. A mode can also be named by its number from 0.
@@ -74,16 +71,6 @@ fn mode_of(name: &str, loaded: &LoadedModel) -> std::result::Result<usize, Strin
         None => format!("the modes of this model have no names; use numbers from 0 to {}", rank - 1),
     };
     Err(format!("there is no mode {}: {advice}", quoted(name)))
-}
-
-/// Returns the beginning of a text on one line, in quotes.
-fn quoted(text: &str) -> String {
-    let mut shown: String = one_line(text.trim()).chars().take(MAX_SHOWN + 1).collect();
-    if shown.chars().count() > MAX_SHOWN {
-        shown.pop();
-        shown += "...";
-    }
-    format!("'{shown}'")
 }
 
 #[cfg(test)]

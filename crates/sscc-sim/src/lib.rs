@@ -51,7 +51,7 @@ pub use models::{
     Components, Fix, MaterialOrigin, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidFacts, SolidSource,
     elastic_model, has_equal_vertices, is_solid, pca_model, polynomial_model, read_surface,
 };
-pub use nearest::nearest;
+pub use nearest::{did_you_mean, nearest};
 pub use outputs::{Outputs, SoundTrack};
 pub use recipes::{
     Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, Resize,

@@ -5,6 +5,20 @@ pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
     names.into_iter().min_by_key(|name| edits(typed, name))
 }
 
+/// Returns "; did you mean 'NAME'?" with the nearest name that has about half of its characters in common with `typed`, else
+/// an empty text.
+pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let typed: String = typed.chars().take(MAX_COMPARED).collect();
+    let is_near = |name: &&str| 2 * edits(&typed, name) <= name.chars().count().max(typed.chars().count());
+    match nearest(&typed, names).filter(is_near) {
+        Some(name) => format!("; did you mean '{name}'?"),
+        None => String::new(),
+    }
+}
+
+/// Number of characters that are compared with a name: more are no name that was mistyped.
+const MAX_COMPARED: usize = 100;
+
 /// Returns the number of characters to insert, delete or replace (Levenshtein distance).
 fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
@@ -29,5 +43,14 @@ mod tests {
         assert_eq!(["", "spring", "sprnig", "string"].map(|name| edits(name, "spring")), [6, 0, 2, 1]);
         assert_eq!(nearest("sprng", ["bunny", "spring"]), Some("spring"));
         assert_eq!(nearest("x", []), None);
+    }
+
+    #[test]
+    fn only_near_names_are_meant() {
+        let names = ["poisson", "youngs", "steel"];
+        assert_eq!(did_you_mean("possion", names), "; did you mean 'poisson'?");
+        assert_eq!(did_you_mean("Steel", names), "; did you mean 'steel'?");
+        assert_eq!(did_you_mean("E", names), "");
+        assert_eq!(did_you_mean(&"steel".repeat(1_000_000), names), "");
     }
 }

@@ -16,6 +16,19 @@ pub fn one_line(text: &str) -> String {
     line
 }
 
+/// The longest text that an error repeats.
+const MAX_SHOWN: usize = 60;
+
+/// Returns the beginning of a text on one line, in quotes.
+pub fn quoted(text: &str) -> String {
+    let mut shown: String = one_line(text.trim()).chars().take(MAX_SHOWN + 1).collect();
+    if shown.chars().count() > MAX_SHOWN {
+        shown.pop();
+        shown += "...";
+    }
+    format!("'{shown}'")
+}
+
 /// Formats a radius or a length with four digits; "unlimited" if it is infinite.
 pub fn length(value: f64) -> String {
     match value {

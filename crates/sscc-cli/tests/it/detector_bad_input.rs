@@ -69,10 +69,16 @@ fn invalid_frames_and_animations() {
     let against = ["mesh.obj", "--frames=two.npy", "--against=frames/2.obj", "--against-frames=frames.npy"];
     refused(&against, "there are 2 frames, but 4 of the other mesh: as many are needed, or one");
     for (args, named) in [
-        (&["--animation=run"][..], "there is no animation 'run'; the file has 0 'wave', 1 'still'"),
-        (&["--animation=2"], "there is no animation '2'; the file has 0 'wave', 1 'still'"),
+        (
+            &["--animation=run"][..],
+            "there is no animation 'run'; the animations of the file, by number: 0 'wave', 1 'still'",
+        ),
+        (
+            &["--animation=2"],
+            "there is no animation '2'; the animations of the file, by number: 0 'wave', 1 'still'",
+        ),
         (&["--animation=still"], "animations[1]: it has no key frames"),
-        (&["--animation=0", "--node=0"], "node 0 shows no mesh with triangles; these do: 1, 2 'moved'"),
+        (&["--animation=0", "--node=0"], "node 0 shows no mesh with triangles; these nodes do: 1, 2 'moved'"),
         (&["--animation=0", "--fps=0"], "0 frames per second: a number above 0 was expected"),
         (&["--animation=0", "--fps=1e9"], "1e9 frames in 1 s: at most 1e7 are allowed"),
         (&["--animation=0", "--times=0,nan"], "the time NaN is not finite"),

@@ -233,7 +233,11 @@ fn refusals() {
         ),
         (
             &["box.obj", "--resolution", "4", "--material", "stel"],
-            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber)",
+            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber); did you mean 'steel'?",
+        ),
+        (
+            &["box.obj", "--resolution", "4", "--material", "youngs=1e6,possion=0.3"],
+            "--material: there is no 'possion': youngs=E, poisson=NU or density=RHO was expected; did you mean 'poisson'?",
         ),
         (
             &["inverted.veg"],

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::error::{Result, SimError};
-use crate::nearest::nearest;
+use crate::nearest::{did_you_mean, nearest};
 use crate::text::one_line;
 
 /// Text of a file, from which errors compute the line.
@@ -157,7 +157,8 @@ impl<'a> Section<'a> {
             Some((_, meaning)) => Ok(Some(*meaning)),
             None => {
                 let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-                self.expected(key, &format!("one of {}", names.join(", ")))
+                let meant = did_you_mean(typed, names.iter().copied());
+                Err(self.refused(key, format_args!("one of {} was expected{meant}", names.join(", "))))
             }
         }
     }

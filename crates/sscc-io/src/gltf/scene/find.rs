@@ -21,15 +21,13 @@ impl AnimatedScene {
             count => {
                 let cause =
                     format!("{count} animations have the name {}: choose one by its number", quoted(name));
-                return Err(FormatError::whole(format!("{cause}: {}", self.animation_list())));
+                return Err(FormatError::whole(format!("{cause}; {}", self.animation_list())));
             }
         };
         let Some(number) = found else {
             let cause = match self.infos.len() {
                 0 => "the file has no animations".to_owned(),
-                _ => {
-                    format!("there is no animation {}; the file has {}", quoted(name), self.animation_list())
-                }
+                _ => format!("there is no animation {}; {}", quoted(name), self.animation_list()),
             };
             return Err(FormatError::whole(cause));
         };
@@ -52,17 +50,18 @@ impl AnimatedScene {
             Ok(at) => Ok(&all[at..=at]),
             Err(_) => {
                 let list: Vec<String> = all.iter().map(|node| listed(node.node, node.name())).collect();
-                let cause =
-                    format!("node {node} shows no mesh with triangles; these do: {}", list.join(", "));
+                let list = list.join(", ");
+                let cause = format!("node {node} shows no mesh with triangles; these nodes do: {list}");
                 Err(FormatError::whole(cut(&cause, MAX_LIST)))
             }
         }
     }
 
+    /// Returns the number and the name of each animation.
     fn animation_list(&self) -> String {
         let listed = |(number, info): (usize, &super::AnimationInfo)| listed(number, info.name.as_deref());
         let list: Vec<String> = self.infos.iter().enumerate().map(listed).collect();
-        cut(&list.join(", "), MAX_LIST)
+        cut(&format!("the animations of the file, by number: {}", list.join(", ")), MAX_LIST)
     }
 }
 

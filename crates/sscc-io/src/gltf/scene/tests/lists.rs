@@ -62,11 +62,11 @@ fn animations_and_nodes_are_found_by_name_or_number() {
     let scene = scene(&[]);
     assert_eq!((scene.find_animation("wave"), scene.find_animation("0")), (Ok(0), Ok(0)));
     let message = scene.find_animation("1").unwrap_err().to_string();
-    assert_eq!(message, "there is no animation '1'; the file has 0 'wave'");
+    assert_eq!(message, "there is no animation '1'; the animations of the file, by number: 0 'wave'");
     assert_eq!(scene.find_mesh_nodes(None).unwrap().len(), 2);
     assert_eq!(scene.find_mesh_nodes(Some(4)).unwrap()[0].node(), 4);
     let message = scene.find_mesh_nodes(Some(0)).unwrap_err().to_string();
-    assert_eq!(message, "node 0 shows no mesh with triangles; these do: 3 'skinned', 4");
+    assert_eq!(message, "node 0 shows no mesh with triangles; these nodes do: 3 'skinned', 4");
     let none = parse_scene(
         br#"{"asset":{"version":"2.0"},"animations":[
         {"name":"0","channels":[],"samplers":[]},{"name":"a","channels":[],"samplers":[]},
@@ -74,7 +74,10 @@ fn animations_and_nodes_are_found_by_name_or_number() {
     );
     let none = none.unwrap();
     let message = |name| none.find_animation(name).unwrap_err().to_string();
-    assert_eq!(message("a"), "2 animations have the name 'a': choose one by its number: 0 '0', 1 'a', 2 'a'");
+    assert_eq!(
+        message("a"),
+        "2 animations have the name 'a': choose one by its number; the animations of the file, by number: 0 '0', 1 'a', 2 'a'"
+    );
     // A name is preferred to a number. Animations without key frames cannot be evaluated.
     assert_eq!(message("0"), "animations[0]: it has no key frames");
     let message = none.find_mesh_nodes(None).unwrap_err().to_string();
