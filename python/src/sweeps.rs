@@ -4,7 +4,7 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 use sscc::{Sweep, SweepOutcome};
-use sscc_sim::{default_ranges, nearest};
+use sscc_sim::{SweepRange, nearest};
 
 use crate::arguments::count;
 use crate::arrays::{copied, floats, frozen, pairs, vector};
@@ -55,7 +55,8 @@ impl<'py> SweepArguments<'_, 'py> {
     /// Returns the range of each mode.
     fn ranges(&self, loaded: &LoadedModel, q: &[f64]) -> PyResult<Vec<[f64; 2]>> {
         let Some(range) = self.range else {
-            return Ok(default_ranges(&loaded.model, &loaded.mode_names, q));
+            let range = SweepRange::of_modes(&loaded.mode_names, loaded.info.deviations.as_deref());
+            return Ok(range.ends(&loaded.model, q));
         };
         let array = floats(range, "range")?;
         let entries = copied(&array, "range")?;

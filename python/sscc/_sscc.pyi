@@ -162,8 +162,8 @@ class Certificates:
     ) -> list[Sweep]:
         """For each mode, up and then down, the first weight at which the shape touches itself.
 
-        range: (2,) or (r, 2), the ends of the weights; None: 0 to 1 for morph targets, else as far as moves some vertex
-            by half the diagonal of the AABB.
+        range: (2,) or (r, 2), the ends of the weights; None: 0 to 1 for morph targets, three standard deviations for
+            principal components, else as far as moves some vertex by half the diagonal of the AABB.
         q: the weights at the start (r,), at which the other modes stay; None: the centre.
         modes: numbers or names; None: all.
         threads, progress: as in ``Model.certify``.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -43,3 +45,12 @@ def test_starts_and_ranges() -> None:
         certs.sweep(q=[1, 2])
     with pytest.raises(ValueError, match="the modes of this model have no names"):
         certs.sweep(modes=["smile"])
+
+
+def test_principal_components_go_to_three_standard_deviations() -> None:
+    vertices, faces, modes = two_triangles()
+    shapes = [vertices + modes[:, :, 0] * offset for offset in (0.9, 1.0, 1.1, 1.2)]
+    certs = sscc.modes.pca(shapes, faces, 1).certify()
+    assert [sweep.end for sweep in certs.sweep()] == [3.0, -3.0]
+    again = pickle.loads(pickle.dumps(certs))
+    assert [sweep.end for sweep in again.sweep()] == [3.0, -3.0]

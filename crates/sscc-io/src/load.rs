@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sscc::{Modes, ReducedModel, TriMesh};
+use sscc::{ReducedModel, TriMesh};
 
 use crate::file::{check_exists, ending, unsupported};
 use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
@@ -116,13 +116,15 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         (_, None) if is_gltf => {
             let read = gltf::read(path, mesh_name)?;
             let provenance = format!("mesh {:?} of {}", read.mesh_name, name(path));
-            let loaded = assemble(path, read.mesh, read.modes, provenance, read.target_names)?;
+            let modes = NamedModes { modes: read.modes, names: read.target_names, deviations: None };
+            let loaded = assemble(path, read.mesh, modes, provenance)?;
             let scene = Some((path.to_owned(), mesh_name.map(str::to_owned)));
             Ok(LoadedModel { default_q: Some(read.default_weights), warnings: read.notes, scene, ..loaded })
         }
         ("npz", None) => {
-            let NpzModel { mesh, modes, weights } = read_npz_model(path)?;
-            let loaded = assemble(path, mesh, modes, format!("arrays of {}", name(path)), Vec::new())?;
+            let NpzModel { mesh, modes, weights, deviations } = read_npz_model(path)?;
+            let modes = NamedModes { modes, names: Vec::new(), deviations };
+            let loaded = assemble(path, mesh, modes, format!("arrays of {}", name(path)))?;
             Ok(LoadedModel { mode_weights: weights, ..loaded })
         }
         (format, Some(_)) if is_gltf || matches!(format, "safetensors" | "npz") => {
@@ -135,9 +137,9 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
         }
         (_, Some(modes_path)) => {
             let LoadedMesh { mesh, warnings } = load_mesh_with_warnings(path, None)?;
-            let NamedModes { modes, names } = read_modes_for(modes_path, &mesh, path)?;
+            let modes = read_modes_for(modes_path, &mesh, path)?;
             let provenance = format!("mesh {}, modes {}", name(path), name(modes_path));
-            Ok(LoadedModel { warnings, ..assemble(modes_path, mesh, modes, provenance, names)? })
+            Ok(LoadedModel { warnings, ..assemble(modes_path, mesh, modes, provenance)? })
         }
     }
 }
@@ -189,16 +191,12 @@ fn named_mesh_error(path: &Path) -> IoError {
 }
 
 /// Builds the model. `at` is the file to name in the error if mesh and modes do not fit.
-fn assemble(
-    at: &Path,
-    mesh: TriMesh,
-    modes: Modes,
-    provenance: String,
-    mode_names: Vec<String>,
-) -> Result<LoadedModel, IoError> {
+fn assemble(at: &Path, mesh: TriMesh, modes: NamedModes, provenance: String) -> Result<LoadedModel, IoError> {
+    let NamedModes { modes, names: mode_names, deviations } = modes;
     let model = ReducedModel::new(mesh, modes)
         .map_err(|error| IoError::Request { path: at.to_owned(), cause: error.to_string() })?;
-    Ok(loaded(model, ModelInfo::new("", provenance), mode_names))
+    let info = ModelInfo { deviations, ..ModelInfo::new("", provenance) };
+    Ok(loaded(model, info, mode_names))
 }
 
 /// Returns a model without further data.

@@ -8,7 +8,7 @@ use crate::file::{ending, read_whole};
 use crate::modes::{NamedModes, folder, read_modes};
 use crate::{IoError, npz};
 
-/// Reads the modes of a mesh, with names if the files have names. Supports the formats of [`read_modes`], a `.npz`
+/// Reads the modes of a mesh, with names and standard deviations if the files have them. Supports the formats of [`read_modes`], a `.npz`
 /// archive ([`npz`]) and a folder of target meshes ([`folder`]). `mesh_path` is the file of the mesh.
 ///
 /// # Errors
@@ -16,8 +16,8 @@ use crate::{IoError, npz};
 pub fn read_modes_for(path: &Path, mesh: &TriMesh, mesh_path: &Path) -> Result<NamedModes, IoError> {
     let modes = match ending(path).as_str() {
         _ if path.is_dir() => return folder::read(path, mesh, mesh_path),
-        "npz" => npz::parse_modes(&read_whole(path)?, mesh).map_err(|error| error.of(path)),
+        "npz" => return npz::parse_modes(&read_whole(path)?, mesh).map_err(|error| error.of(path)),
         _ => read_modes(path, mesh.rest_positions().len()),
     };
-    Ok(NamedModes { modes: modes?, names: Vec::new() })
+    Ok(NamedModes { modes: modes?, names: Vec::new(), deviations: None })
 }

@@ -64,6 +64,6 @@ pub use run::{
 };
 pub use scenes::{BodySpec, GENTLE, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};
-pub use sweeps::{SweepRequest, SweepRow, default_ranges, sweep_model, sweep_table};
+pub use sweeps::{SweepRange, SweepRequest, SweepRow, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::{FreeProof, LeftOut, default_ranges, free_sentence};
+use sscc_sim::{FreeProof, LeftOut, SweepRange, free_sentence};
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
@@ -14,6 +14,8 @@ pub struct ModelDetails {
     pub frequencies: Option<Vec<f64>>,
     /// Name of each mode; empty where unknown.
     pub mode_names: Vec<String>,
+    /// Standard deviation of each entry of q, of principal components.
+    pub deviations: Option<Vec<f64>>,
     /// The initial q of the page; `None`: the centre.
     pub default_q: Option<Vec<f64>>,
 }
@@ -69,7 +71,8 @@ impl ReducedFacts {
             rank: model.rank(),
             frequencies: details.frequencies,
             limits: (0..model.rank()).map(|k| model.weight_limit(k)).collect(),
-            ranges: default_ranges(model, &details.mode_names, center),
+            ranges: SweepRange::of_modes(&details.mode_names, details.deviations.as_deref())
+                .ends(model, center),
             mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
             scales: metric.dense_factor().is_none().then(|| metric.scales()),
             center: center.to_vec(),

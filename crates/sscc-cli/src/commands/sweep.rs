@@ -27,10 +27,14 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let mut out = Output::new();
     match args.json.json {
         true => rows.iter().try_for_each(|row| out.json(row))?,
-        false => sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?,
+        false => {
+            out.line(request.ranges(&loaded)?)?;
+            sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?;
+        }
     }
     out.finish()?;
-    if rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
+    // The table says so itself.
+    if args.json.json && rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
         note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
     }
     let is_free = rows.iter().all(|row| row.outcome == SweepOutcome::Free);

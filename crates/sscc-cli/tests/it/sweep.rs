@@ -75,3 +75,81 @@ fn weights_have_names() {
         assert!(sscc(folder, &args).refusal().contains(named));
     }
 }
+
+/// Principal components know their standard deviations: those of `sscc modes --kind pca`, and of archives with variances.
+#[test]
+fn principal_components_go_to_three_standard_deviations() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let frame =
+        |z: f64| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nf 1 2 3\nf 4 5 6\n");
+    fs::create_dir(folder.join("frames")).unwrap();
+    for (number, z) in [1.9, 2.0, 2.1, 2.2, 1.8].into_iter().enumerate() {
+        fs::write(folder.join(format!("frames/{number}.obj")), frame(z)).unwrap();
+    }
+    let made = sscc(
+        folder,
+        &["modes", "frames", "-o", "p.model.safetensors", "--kind", "pca", "--rank=1", "--json"],
+    );
+    let deviation = made.json()[0]["deviations"][0].as_f64().unwrap();
+    let ends = |args: &[&str]| -> Vec<f64> {
+        let run = sscc(folder, &[&["sweep"], args, &["--json"]].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run.json().iter().map(|row| row["to"].as_f64().unwrap()).collect()
+    };
+    assert_eq!(ends(&["p.model.safetensors"]), [3.0, -3.0]);
+    // The same component of unit length.
+    let mean: Vec<f64> = sscc_io::read_model(&folder.join("p.model.safetensors"))
+        .unwrap()
+        .0
+        .positions(&[0.0])
+        .unwrap()
+        .iter()
+        .flat_map(|p| p.to_array())
+        .collect();
+    let unit = 1.0 / 3.0_f64.sqrt();
+    let component: Vec<f64> = (0..18).map(|i| if i > 8 && i % 3 == 2 { unit } else { 0.0 }).collect();
+    let array = |name: &'static str, shape: &[usize], values: &[f64]| (name, shape.to_vec(), values.to_vec());
+    let arrays = [
+        array("mean", &[6, 3], &mean),
+        array("components", &[1, 18], &component),
+        array("explained_variance", &[1], &[deviation * deviation]),
+    ];
+    let npz = |names: &[&str]| {
+        let named: Vec<sscc_io::NamedArray<'_>> = arrays
+            .iter()
+            .filter(|(name, ..)| names.contains(name))
+            .map(|(name, shape, values)| sscc_io::NamedArray { name, shape: shape.clone(), values })
+            .collect();
+        sscc_io::write_npz(&folder.join("p.npz"), &named).unwrap();
+    };
+    fs::write(folder.join("mean.obj"), frame(2.0)).unwrap();
+    npz(&["mean", "components", "explained_variance"]);
+    let found = ends(&["mean.obj", "--modes", "p.npz"]);
+    assert!((found[0] - 3.0 * deviation).abs() < 1e-12 && found[1] == -found[0], "{found:?}");
+    npz(&["mean", "components"]);
+    let half_diagonal = ends(&["mean.obj", "--modes", "p.npz"])[0];
+    assert!((half_diagonal * unit - 6.0_f64.sqrt() / 2.0).abs() < 1e-12, "{half_diagonal}");
+
+    let text =
+        |args: &[&str]| sscc(folder, &[&["sweep"], args].concat()).stdout.lines().next().unwrap().to_owned();
+    assert_eq!(text(&["p.model.safetensors"]), "each weight from -3 to 3 standard deviations, the unit of q");
+    assert_eq!(text(&["p.model.safetensors", "--range=-1,0.5"]), "each weight from -1 to 0.5, in units of q");
+    assert!(
+        text(&["mean.obj", "--modes", "p.npz"])
+            .ends_with("half the diagonal of the AABB, listed in units of q")
+    );
+}
+
+/// One line says that the start collides, for any number of modes.
+#[test]
+fn a_start_that_collides_is_one_line() {
+    let directory = strips();
+    let folder = directory.path();
+    let run = sscc(folder, &["sweep", MODEL, "--certificates", CERTIFICATES, "--q=1,0", "--range=-2,2"]);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!((run.code, run.stderr.as_str(), lines.len()), (Some(1), "", 5), "{run:?}");
+    assert_eq!(lines[0], "each weight from -2 to 2, in units of q");
+    assert!(lines[2].starts_with("all ") && lines[2].contains("COLLIDING at the start  "), "{run:?}");
+    assert!(lines[4].starts_with("4 sweeps: 0 free, 4 not; "), "{run:?}");
+}

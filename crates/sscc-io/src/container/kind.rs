@@ -14,9 +14,9 @@ pub struct Kind {
     pub version: u32,
 }
 
-/// Mesh with its modes: `*.model.safetensors`. Version 1 has no mass properties; files without them are still written in
-/// version 1.
-pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 2 };
+/// Mesh with its modes: `*.model.safetensors`. Version 1 has no mass properties, version 2 no standard deviations of q;
+/// files without them are still written in the older version.
+pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 3 };
 
 /// Certificates of a model: `*.sscc.safetensors`. Version 1 has no ignored pairs, centre, contact filter or exceptions;
 /// version 2 has no pair tree. The pair tree of version 3 includes pairs within buckets and is not read. Version 4 has

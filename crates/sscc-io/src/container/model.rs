@@ -12,12 +12,13 @@
 //! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with the former: of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
 //! | `mass_properties` | F64 | 13 | optional: mass, centre of mass, inertia about it (3 x 3) at rest |
 //! | `mode_moments` | F64 | r x 3 | with the former: the integral of each mode over the mass |
+//! | `deviations` | F64 | r | optional: the standard deviation of each entry of q, of principal components |
 //!
 //! Text: `metric` (the kind of the metric), `units`, `provenance`. A file with a stiffness also has the text `mass`
 //! with the value "identity": the modes are mass-orthonormal, and `M~` is the identity. The natural frequencies in Hz
 //! are then the square roots of the stiffness's eigenvalues over 2 pi, if the unit of time is the second. A file with
 //! mass properties has the text `support`: "held" if vertices of the body are fixed, else "free". Mass properties are new
-//! in version 2; files without them are written in version 1.
+//! in version 2 and deviations in version 3. A file is written in the first version that has all of its contents.
 
 use std::path::Path;
 
@@ -27,7 +28,7 @@ use sscc_solid::{Elasticity, MassData};
 
 use super::{ANY, Container, ContainerWriter, Kind, MODEL, elasticity, mass_data, metric};
 use crate::file::{read_whole, write_whole};
-use crate::{FormatError, IoError};
+use crate::{FormatError, IoError, Place};
 
 /// Additional data of a model file. Texts are free, and empty if unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,13 +42,20 @@ pub struct ModelInfo {
     pub elasticity: Option<Elasticity>,
     /// Mass and support, if known.
     pub mass: Option<MassData>,
+    /// The standard deviation of each entry of q (r), for modes from principal components.
+    pub deviations: Option<Vec<f64>>,
 }
 
-/// Files without mass properties are written in this version, which earlier builds read.
+/// The tensor of the standard deviations.
+const DEVIATIONS: &str = "deviations";
+
+/// Files with neither mass properties nor deviations are written in the first of these versions, files without
+/// deviations in the second one. Earlier builds read them.
 const VERSION_WITHOUT_MASS: u32 = 1;
+const VERSION_WITHOUT_DEVIATIONS: u32 = 2;
 
 impl ModelInfo {
-    /// Creates the data from these texts, without forces and mass.
+    /// Creates the data from these texts, without forces, mass and deviations.
     pub fn new(units: impl Into<String>, provenance: impl Into<String>) -> Self {
         Self { units: units.into(), provenance: provenance.into(), ..Self::default() }
     }
@@ -68,7 +76,8 @@ impl ModelInfo {
 /// Writes a model. Reading returns the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, elastic forces or mass data are of another rank, or the file cannot be written.
+/// When the texts are beyond 1 MiB, elastic forces, mass data or deviations are of another rank, or the file cannot be
+/// written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -84,7 +93,7 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// Returns the bytes of a model file.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, or elastic forces or mass data are of another rank.
+/// When the texts are beyond 1 MiB, or elastic forces, mass data or deviations are of another rank.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());
@@ -94,7 +103,11 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
         .chunks_exact(rank)
         .flat_map(|of_vertex| (0..3).flat_map(move |axis| of_vertex.iter().map(move |u| u[axis])))
         .collect();
-    let version = if info.mass.is_some() { MODEL.version } else { VERSION_WITHOUT_MASS };
+    let version = match (&info.deviations, &info.mass) {
+        (Some(_), _) => MODEL.version,
+        (None, Some(_)) => VERSION_WITHOUT_DEVIATIONS,
+        (None, None) => VERSION_WITHOUT_MASS,
+    };
     let mut writer = ContainerWriter::new(Kind { version, ..MODEL });
     metric::write(&mut writer, model.metric());
     if let Some(forces) = &info.elasticity {
@@ -102,6 +115,13 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
     }
     if let Some(mass) = &info.mass {
         mass_data::write(&mut writer, mass, rank)?;
+    }
+    if let Some(deviations) = &info.deviations {
+        if deviations.len() != rank {
+            let cause = format!("{} numbers, the model has {rank} modes", deviations.len());
+            return Err(FormatError::new(Place::Tensor(DEVIATIONS.into()), cause));
+        }
+        writer.f64(DEVIATIONS, &[rank], deviations);
     }
     writer
         .text("units", &info.units)
@@ -119,6 +139,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
 pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), FormatError> {
     let file = Container::parse(bytes, MODEL)?;
     file.only(&[
+        DEVIATIONS,
         "faces",
         elasticity::CUBIC,
         elasticity::QUADRATIC,
@@ -143,8 +164,24 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     // The model has a vertex, so the size of its modes bounds the rank.
     let elasticity = elasticity::read(&file, rank)?;
     let mass = mass_data::read(&file, rank)?;
+    let deviations = read_deviations(&file, rank)?;
     let info = ModelInfo::new(file.text("units")?, file.text("provenance")?);
-    Ok((model, ModelInfo { elasticity, mass, ..info }))
+    Ok((model, ModelInfo { elasticity, mass, deviations, ..info }))
+}
+
+/// Reads the standard deviations of a model of rank r; none if the file has none.
+fn read_deviations(file: &Container<'_>, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
+    if !file.names().iter().any(|name| name == DEVIATIONS) {
+        return Ok(None);
+    }
+    let deviations = file.f64(DEVIATIONS)?.shaped(&[rank])?.values;
+    match deviations.iter().find(|deviation| !(deviation.is_finite() && **deviation >= 0.0)) {
+        None => Ok(Some(deviations)),
+        Some(wrong) => {
+            let cause = format!("a number is {wrong}: finite numbers of at least 0 were expected");
+            Err(FormatError::new(Place::Tensor(DEVIATIONS.into()), cause))
+        }
+    }
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     let by_vertex = (0..vertices).flat_map(|v| columns.iter().map(move |column| column[v])).collect();
     let modes = Modes::new(columns.len(), by_vertex).map_err(|error| request(error.to_string()))?;
     let name = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(NamedModes { modes, names: paths.iter().map(name).collect() })
+    Ok(NamedModes { modes, names: paths.iter().map(name).collect(), deviations: None })
 }
 
 /// Returns the mesh files of a folder without the neutral one (its canonical path), in any order; at least one. `what`
@@ -121,13 +121,13 @@ mod tests {
         fs::create_dir(folder.join("folder.obj")).unwrap();
         let path = folder.join("neutral.obj");
         let mesh = crate::read_mesh(&path).unwrap();
-        let NamedModes { modes, names } = read(folder, &mesh, &path).unwrap();
+        let NamedModes { modes, names, .. } = read(folder, &mesh, &path).unwrap();
         assert_eq!(names, ["10", "B", "b"]);
         assert_eq!(modes.of_vertex(0), [DVec3::ZERO; 3]);
         assert_eq!(modes.of_vertex(1), [DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0]);
 
         // In another folder the neutral mesh is an ordinary target.
-        let NamedModes { modes, names } = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
+        let NamedModes { modes, names, .. } = read(folder, &mesh, Path::new("elsewhere.obj")).unwrap();
         assert_eq!((modes.rank(), names[3].as_str()), (4, "neutral"));
     }
 

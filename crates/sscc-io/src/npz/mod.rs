@@ -10,6 +10,9 @@
 //! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
 //! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
 //!
+//! Variances (`explained_variance`, and `eigenvalues` of `components`) state how far each entry of q goes in the samples
+//! of the model: [`NpzModel::deviations`].
+//!
 //! If a shape fits two forms, the one further left applies. Two names for one part are an error. Arrays are floats or
 //! integers, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
 //! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB.
@@ -17,6 +20,7 @@
 //! [`write_npz`] writes arrays of any names.
 
 mod archive;
+mod deviations;
 mod names;
 mod parts;
 mod write;
@@ -27,6 +31,7 @@ use sscc::{Modes, TriMesh};
 
 use self::names::Part;
 use self::parts::Parts;
+use crate::modes::NamedModes;
 use crate::{FormatError, IoError, read_whole};
 
 pub use write::{NamedArray, write_npz};
@@ -40,6 +45,8 @@ pub struct NpzModel {
     pub modes: Modes,
     /// The numbers that the file has for each mode (r), such as variances. Their meaning depends on the array's name.
     pub weights: Option<Vec<f64>>,
+    /// The standard deviation of each entry of q (r), if the file has the variances of principal components.
+    pub deviations: Option<Vec<f64>>,
 }
 
 /// Reads a complete model.
@@ -61,18 +68,22 @@ pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     let mesh = parts.mesh()?;
     let modes = parts.modes(mesh.rest_positions().len())?;
     let weights = parts.weights(modes.rank())?;
-    Ok(NpzModel { mesh, modes, weights })
+    let deviations = parts.deviations(&modes);
+    Ok(NpzModel { mesh, modes, weights, deviations })
 }
 
-/// Parses the modes of a mesh; faces and other arrays are skipped. If the archive has a mean, it must equal the rest
+/// Parses the modes of a mesh, with the standard deviations of q if the file has their variances; faces and other arrays
+/// are skipped. If the archive has a mean, it must equal the rest
 /// positions of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
 ///
 /// # Errors
 /// As [`parse_model`], and when the modes or the mean belong to another mesh.
-pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<Modes, FormatError> {
-    let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components])?;
+pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<NamedModes, FormatError> {
+    let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components, Part::Weights])?;
     let positions = mesh.rest_positions();
     let modes = parts.modes(positions.len())?;
+    let deviations = parts.deviations(&modes);
+    let modes = NamedModes { modes, names: Vec::new(), deviations };
     let Some(mean) = parts.mean()? else {
         return Ok(modes);
     };

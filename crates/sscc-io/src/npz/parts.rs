@@ -6,6 +6,7 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh};
 
 use super::archive;
+use super::deviations::deviations;
 use super::names::Part;
 use crate::modes::array;
 use crate::npy::{self, Array};
@@ -97,6 +98,19 @@ impl Parts {
             }
         });
         Ok(weights?.flatten())
+    }
+
+    /// Returns the standard deviation of each entry of q, if an array has one variance for each of these modes.
+    pub fn deviations(&self, modes: &Modes) -> Option<Vec<f64>> {
+        let (name, _) = self.0.get(&Part::Weights)?;
+        let is_variance = match name.as_str() {
+            "explained_variance" | "explained_variance_" => true,
+            // Eigenvalues beside other modes may be those of vibrations.
+            "eigenvalues" => self.0.contains_key(&Part::Components),
+            _ => false,
+        };
+        let variances = self.weights(modes.rank()).ok().flatten().filter(|_| is_variance)?;
+        deviations(&variances, modes)
     }
 }
 

@@ -66,14 +66,14 @@ fn message(entries: &[(&str, Vec<u8>)]) -> String {
 #[test]
 fn stored_and_deflated() {
     let model = parse_model(&stored(&good())).unwrap();
-    let NpzModel { mesh, modes, weights } = &model;
+    let NpzModel { mesh, modes, weights, deviations } = &model;
     assert_eq!(mesh.faces(), [[0, 1, 2], [3, 2, 1]]);
     assert_eq!(mesh.rest_positions()[1], DVec3::new(3.0, 4.0, 5.0));
     assert_eq!(modes.of_vertex(1)[1], DVec3::new(7.0, 9.0, 11.0));
-    assert_eq!(*weights, None);
+    assert_eq!((weights, deviations), (&None, &None));
     let deflated = archive(&good(), CompressionMethod::Deflated);
     assert_eq!(parse_model(&deflated).unwrap(), model);
-    assert_eq!(parse_modes(&deflated, mesh).unwrap(), *modes);
+    assert_eq!(parse_modes(&deflated, mesh).unwrap().modes, *modes);
 }
 
 #[test]
@@ -106,6 +106,43 @@ fn all_names_and_shapes() {
         let weights = parse_model(&stored(&with(name, numbers(&[2])))).unwrap().weights;
         assert_eq!(weights, Some(vec![0.0, 1.0]));
     }
+}
+
+#[test]
+fn variances_state_the_standard_deviations_of_q() {
+    // Two components of unit length that move one coordinate each, and the same times their standard deviations.
+    let components = |scales: [f64; 2]| {
+        let mut rows = [0.0; 24];
+        (rows[4], rows[12 + 8]) = (scales[0], scales[1]);
+        to_bytes(&[2, 12], &rows).unwrap()
+    };
+    let array = |values: &[f64]| to_bytes(&[values.len()], values).unwrap();
+    let read = |components: Vec<u8>, name: &'static str, variances: Vec<u8>| {
+        let entries = [
+            ("mean", numbers(&[4, 3])),
+            ("components", components),
+            ("faces", faces("<i4", &[0, 1, 2, 3, 2, 1])),
+            (name, variances),
+        ];
+        let model = parse_model(&stored(&entries)).unwrap();
+        let as_modes = parse_modes(&stored(&entries), &model.mesh).unwrap();
+        assert_eq!(as_modes.deviations, model.deviations, "{name}");
+        model.deviations
+    };
+    for name in ["explained_variance", "explained_variance_", "eigenvalues"] {
+        assert_eq!(read(components([1.0, 1.0]), name, array(&[4.0, 0.25])), Some(vec![2.0, 0.5]));
+        assert_eq!(read(components([2.0, 0.5]), name, array(&[4.0, 0.25])), Some(vec![1.0, 1.0]));
+        assert_eq!(read(components([1.0, 1.0]), name, array(&[4.0, -1e-18])), Some(vec![2.0, 0.0]));
+        assert_eq!(read(components([1.0, 1.0]), name, array(&[4.0, f64::NAN])), None);
+    }
+    assert_eq!(read(components([1.0, 1.0]), "weights", array(&[4.0, 0.25])), None);
+    // Eigenvalues beside other modes may be those of vibrations.
+    let vibrations = parse_model(&stored(&with("eigenvalues", numbers(&[2])))).unwrap();
+    assert_eq!(vibrations.deviations, None);
+    // Variances of another number of components state nothing about these.
+    let mesh = parse_model(&stored(&good())).unwrap().mesh;
+    let more = parse_modes(&stored(&with("explained_variance", numbers(&[5]))), &mesh).unwrap();
+    assert_eq!(more.deviations, None);
 }
 
 #[test]
@@ -158,7 +195,7 @@ fn errors_name_the_array() {
 fn modes_of_another_mesh_are_rejected() {
     let NpzModel { mesh, modes, .. } = parse_model(&stored(&good())).unwrap();
     let alone = stored(&good()[1..2]);
-    assert_eq!(parse_modes(&alone, &mesh).unwrap(), modes);
+    assert_eq!(parse_modes(&alone, &mesh).unwrap().modes, modes);
     let moved = |by: f64| {
         let positions = mesh.rest_positions().iter().map(|p| p + DVec3::Z * by).collect();
         TriMesh::new(positions, mesh.faces().to_vec()).unwrap()

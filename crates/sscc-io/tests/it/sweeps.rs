@@ -1,9 +1,6 @@
 //! Sweeps of real blendshapes, against exact queries at many weights.
 
-use sscc::{
-    Certificates, CertifyOptions, KineticQuery, Query, ReducedModel, Sweep,
-    SweepOutcome,
-};
+use sscc::{Certificates, CertifyOptions, KineticQuery, Query, ReducedModel, Sweep, SweepOutcome};
 use sscc_io::{LoadOptions, load_model, load_model_with};
 use sscc_testing::{cases, models};
 

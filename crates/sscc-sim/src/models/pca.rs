@@ -23,9 +23,12 @@ pub fn pca_model(
     let found = pca_modes(mesh, frames, rank, progress)?;
     let count = frames.len();
     let explained = found.shares.iter().sum();
+    let mut info = ModelInfo::new("", format!("mean and principal components of {count} {name}"));
+    // The modes are scaled by their deviations.
+    info.deviations = Some(vec![1.0; found.modes.rank()]);
     Ok(NewModel {
         model: ReducedModel::new(found.mesh, found.modes)?,
-        info: ModelInfo::new("", format!("mean and principal components of {count} {name}")),
+        info,
         solid: None,
         components: Some(Components { frames: count, explained, deviations: found.deviations }),
     })

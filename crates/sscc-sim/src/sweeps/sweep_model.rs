@@ -6,16 +6,17 @@ use sscc::{Certificates, Pair, Progress, Query, ReducedModel};
 use sscc_io::gltf::PlacedMesh;
 use sscc_io::{IoError, LoadedModel, write_ply_pose};
 
+use super::sweep_range::SweepRange;
 use super::sweep_row::SweepRow;
 use crate::error::{At, Result};
-use crate::{SimError, make_folder, read_configuration};
+use crate::{make_folder, read_configuration};
 
 /// Options of [`sweep_model`].
 #[derive(Clone, Debug, Default)]
 pub struct SweepRequest {
     /// The weights at which the sweeps begin (`--q`); none: the centre of the certificates.
     pub q: Option<String>,
-    /// The range of all weights (`--range`), two numbers; none: [`default_ranges`].
+    /// The range of all weights (`--range`), two numbers; none: [`SweepRange::of_model`].
     pub range: Option<String>,
     /// The folder for the poses at the hits (`--pose`).
     pub pose: Option<PathBuf>,
@@ -24,6 +25,14 @@ pub struct SweepRequest {
 }
 
 impl SweepRequest {
+    /// Returns how far the weights go: the range of `--range`, else the default of the model.
+    ///
+    /// # Errors
+    /// When the range is not two finite numbers in ascending order.
+    pub fn ranges(&self, loaded: &LoadedModel) -> Result<SweepRange> {
+        self.range.as_deref().map_or_else(|| Ok(SweepRange::of_model(loaded)), SweepRange::parse)
+    }
+
     /// Returns the weights at the start and the range of each mode, and makes the folder for poses: all that can be
     /// refused before long work.
     ///
@@ -34,38 +43,10 @@ impl SweepRequest {
             .q
             .as_deref()
             .map_or_else(|| Ok(center.to_vec()), |typed| read_configuration("--q", typed, loaded))?;
-        let ranges = match &self.range {
-            Some(typed) => vec![range(typed)?; loaded.model.rank()],
-            None => default_ranges(&loaded.model, &loaded.mode_names, &q),
-        };
+        let ranges = self.ranges(loaded)?.ends(&loaded.model, &q);
         self.pose.as_deref().map_or(Ok(()), make_folder)?;
         Ok((q, ranges))
     }
-}
-
-/// Returns the range of `--range`.
-fn range(typed: &str) -> Result<[f64; 2]> {
-    let refused = |cause: &str| Err(SimError::refused(format!("--range {typed}"), cause));
-    let numbers: std::result::Result<Vec<f64>, _> =
-        typed.split(',').map(|text| text.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok([low, high]) if !(high - low).is_finite() => refused("both ends must be finite"),
-        Ok([low, high]) if low >= high => {
-            refused("the range is empty: the first number must be the smaller one")
-        }
-        Ok([low, high]) => Ok([*low, *high]),
-        _ => refused("two numbers were expected, as in --range=-1,1"),
-    }
-}
-
-/// Returns the default range of each weight: 0 to 1 for morph targets, whose modes have names; else as far below and above
-/// the weight in q as moves some vertex by half the diagonal of the AABB.
-pub fn default_ranges(model: &ReducedModel, mode_names: &[String], q: &[f64]) -> Vec<[f64; 2]> {
-    let range = |(k, q): (usize, &f64)| {
-        let limit = model.weight_limit(k);
-        if mode_names.is_empty() { [q - limit, q + limit] } else { [0.0, 1.0] }
-    };
-    q.iter().enumerate().map(range).collect()
 }
 
 /// Sweeps every mode up and down from its weight at the start, and writes the shape at each hit with its pairs marked. All
@@ -116,24 +97,4 @@ fn write_pose(
             .map_err(|error| IoError::Format { path: path.to_owned(), error })?;
     }
     Ok(write_ply_pose(path, model.mesh(), &positions, &colliding)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_are_two_numbers_in_order() {
-        assert_eq!(range("-1, 2.5").unwrap(), [-1.0, 2.5]);
-        let message = |typed: &str| range(typed).unwrap_err().to_string();
-        let empty = "--range 1,1: the range is empty: the first number must be the smaller one";
-        assert_eq!(message("1,1"), empty);
-        assert!(message("1,0").contains("is empty"));
-        for typed in ["", "1", "1,2,3", "a,b"] {
-            assert!(message(typed).ends_with("two numbers were expected, as in --range=-1,1"), "{typed}");
-        }
-        for typed in ["nan,1", "0,inf", "-1e308,1e308"] {
-            assert!(message(typed).ends_with("both ends must be finite"), "{typed}");
-        }
-    }
 }

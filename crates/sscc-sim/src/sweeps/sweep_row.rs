@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sscc::{Pair, Sweep, SweepOutcome};
 
-use crate::text::{counted, one_line};
+use crate::text::{counted, length, one_line};
 
 /// The result of one sweep: the keys of its JSON line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,40 +73,82 @@ impl SweepRow {
     }
 }
 
-/// Returns the rows as the lines of a table, and a summary.
+/// Longest name of a line, in characters.
+const MAX_NAME: usize = 40;
+
+/// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs are one line.
 pub fn sweep_table(rows: &[SweepRow]) -> Vec<String> {
-    let cells: Vec<[String; 3]> =
-        rows.iter().map(|row| [one_line(&row.name), weight(row.from), weight(row.to)]).collect();
+    let lines = listed(rows);
+    let cells: Vec<[String; 3]> = lines.iter().map(|same| cells(same, rows.len())).collect();
     let width = |column: usize| {
         let widths = cells.iter().map(|row| row[column].chars().count());
-        widths.fold(4, usize::max).min(40)
+        widths.fold(4, usize::max).min(MAX_NAME)
     };
     let [name, from, to] = [0, 1, 2].map(width);
-    let mut lines = vec![format!("{:<name$}  {:>from$}  {:>to$}  result", "mode", "from", "to")];
-    for (row, [n, f, t]) in rows.iter().zip(&cells) {
-        lines.push(format!("{n:<name$}  {f:>from$}  {t:>to$}  {}", row.result()));
+    let mut table = vec![format!("{:<name$}  {:>from$}  {:>to$}  result", "mode", "from", "to")];
+    for (same, [n, f, t]) in lines.iter().zip(&cells) {
+        table.push(format!("{n:<name$}  {f:>from$}  {t:>to$}  {}", same[0].result()));
     }
     if let Some(row) = rows.iter().find(|row| row.outcome == SweepOutcome::CollidingAtStart) {
-        lines.push(format!("{} (--q, --ignore-rest)", row.outcome));
+        table.push(format!("{} (--q, --ignore-rest)", row.outcome));
     }
     let free = rows.iter().filter(|row| row.outcome == SweepOutcome::Free).count();
     let proven = "free means proven free at every weight";
-    lines.push(format!(
+    table.push(format!(
         "{}: {free} free, {} not; {proven}",
         counted(rows.len() as u64, "sweep"),
         rows.len() - free
     ));
+    table
+}
+
+/// Returns the rows of each line, in the order of their first rows: those that collide at the start with the same pairs
+/// together, and each other row alone.
+fn listed(rows: &[SweepRow]) -> Vec<Vec<&SweepRow>> {
+    let mut lines: Vec<Vec<&SweepRow>> = Vec::new();
+    for row in rows {
+        let is_same = |line: &&mut Vec<&SweepRow>| {
+            row.outcome == SweepOutcome::CollidingAtStart
+                && line[0].outcome == row.outcome
+                && line[0].pairs == row.pairs
+        };
+        match lines.iter_mut().find(is_same) {
+            Some(line) => line.push(row),
+            None => lines.push(vec![row]),
+        }
+    }
     lines
 }
 
-/// Returns a weight with seven digits.
-fn weight(w: f64) -> String {
-    if w == 0.0 || (1e-4..1e7).contains(&w.abs()) {
-        let text = format!("{w:.7}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{w:.6e}")
+/// Returns the name and the ends of a line of the table. `all`: number of all rows.
+fn cells(same: &[&SweepRow], all: usize) -> [String; 3] {
+    match same {
+        [row] => [one_line(&row.name), weight(row.from), weight(row.to)],
+        _ if same.len() == all => ["all".into(), String::new(), String::new()],
+        _ => {
+            let mut names: Vec<&str> = same.iter().map(|row| row.name.as_str()).collect();
+            names.dedup();
+            let mut name = one_line(&names.join(", "));
+            if name.chars().count() > MAX_NAME {
+                name = name.chars().take(MAX_NAME - 3).collect::<String>() + "...";
+            }
+            [name, String::new(), String::new()]
+        }
     }
+}
+
+/// Returns a weight with four digits, without zeros at the end.
+pub(super) fn weight(w: f64) -> String {
+    let text = length(w);
+    match text.split_once('e') {
+        None if text.contains('.') => trimmed(&text).to_owned(),
+        None => text,
+        Some((digits, exponent)) => format!("{}e{exponent}", trimmed(digits)),
+    }
+}
+
+fn trimmed(digits: &str) -> &str {
+    digits.trim_end_matches('0').trim_end_matches('.')
 }
 
 #[cfg(test)]
@@ -135,8 +177,37 @@ mod tests {
         assert_eq!(lines[1], "smile\\u{7} L/R     0  -1.5  touches at -0.25  2 pairs, first 3 9");
         assert_eq!(lines[2], "smile\\u{7} L/R     0  -1.5  free");
         assert_eq!(lines[3], "smile\\u{7} L/R     0  -1.5  COLLIDING at the start  1 pair, first 0 7");
-        assert!(lines[4].contains("free up to -1.000000e-9; beyond it triangles 1 and 2"), "{}", lines[4]);
+        assert!(lines[4].contains("free up to -1e-9; beyond it triangles 1 and 2"), "{}", lines[4]);
         assert!(lines[5].starts_with("the shape collides at the start: start elsewhere"), "{}", lines[5]);
         assert_eq!(lines[6], "4 sweeps: 1 free, 3 not; free means proven free at every weight");
+    }
+
+    #[test]
+    fn weights_have_four_digits() {
+        let weights = [0.0, 1.0, -0.25, 5.658_984_5, 0.012_308_7, 1200.0, 123_456.7, 1e-9, -1.234_56e12];
+        let texts = ["0", "1", "-0.25", "5.659", "0.01231", "1200", "123457", "1e-9", "-1.235e12"];
+        assert_eq!(weights.map(weight), texts);
+    }
+
+    #[test]
+    fn a_start_that_collides_is_one_line() {
+        let at_start = |mode: usize, pairs: &[Pair]| SweepRow {
+            mode,
+            name: format!("target {mode}"),
+            ..row(SweepOutcome::CollidingAtStart, None, Some(0.0), pairs)
+        };
+        let rows: Vec<SweepRow> = (0..67).map(|k| at_start(k / 2, &[(0, 7), (1, 9)])).collect();
+        let lines = sweep_table(&rows);
+        assert_eq!(lines.len(), 4, "{lines:?}");
+        assert_eq!(lines[1], "all                COLLIDING at the start  2 pairs, first 0 7");
+        assert_eq!(lines[3], "67 sweeps: 0 free, 67 not; free means proven free at every weight");
+        // Sweeps from elsewhere have lines of their own.
+        let mut mixed = rows.clone();
+        mixed[5] = row(SweepOutcome::Free, Some(-1.5), None, &[]);
+        mixed[6] = at_start(3, &[(5, 6)]);
+        let lines = sweep_table(&mixed);
+        assert_eq!(lines.len(), 6, "{lines:?}");
+        assert!(lines[1].starts_with("target 0, target 1, target 2, target ...  "), "{}", lines[1]);
+        assert!(lines[2].ends_with("  free") && lines[3].ends_with("1 pair, first 5 6"), "{lines:?}");
     }
 }

@@ -37,6 +37,7 @@ pub fn run(args: &View) -> Result<Outcome> {
     let details = ModelDetails {
         frequencies: loaded.info.elasticity.as_ref().and_then(|known| mode_frequencies(known.stiffness())),
         mode_names: loaded.mode_names.clone(),
+        deviations: loaded.info.deviations.clone(),
         default_q: loaded.default_q.clone(),
     };
     let name = file_name(path);

@@ -65,6 +65,28 @@ fn mass_and_support_are_kept_in_a_version_of_their_own() {
 }
 
 #[test]
+fn deviations_are_kept_in_a_version_of_their_own() {
+    let with_deviations = |deviations: &[f64]| ModelInfo {
+        deviations: Some(deviations.to_vec()),
+        ..ModelInfo::new("m", "").with_mass(mass())
+    };
+    let info = with_deviations(&[1.0, 0.0, 2.5]);
+    let bytes = model_to_bytes(&model(), &info).unwrap();
+    assert_eq!(Container::parse(&bytes, MODEL).unwrap().version(), 3);
+    assert_eq!(model_from_bytes(&bytes).unwrap().1, info);
+    assert!((0..bytes.len()).all(|length| model_from_bytes(&bytes[..length]).is_err()));
+    let refused = model_to_bytes(&model(), &with_deviations(&[1.0])).unwrap_err();
+    assert_eq!(refused.to_string(), "tensor 'deviations': 1 numbers, the model has 3 modes");
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let bytes = model_to_bytes(&model(), &with_deviations(&[1.0, wrong, 1.0])).unwrap();
+        let refused = model_from_bytes(&bytes).unwrap_err().to_string();
+        let expected =
+            format!("tensor 'deviations': a number is {wrong}: finite numbers of at least 0 were expected");
+        assert_eq!(refused, expected);
+    }
+}
+
+#[test]
 fn invalid_mass_data_are_rejected() {
     let message = |mass: f64, moment: f64, support: &str, moments: usize| {
         let mut writer = ContainerWriter::new(MODEL);
