@@ -307,7 +307,7 @@ pub struct Certify {
         "sscc check face.obj --modes face.U.float --method traditional --q=0.5,0,-1.25"
         "sscc check head.glb --first --q=1,0,0"
         "sscc check face.obj --modes targets/ --q=0,0.5 --pose smile.ply"
-        "sscc check spring.model.safetensors --trajectory q.npy --json | grep '\"colliding\":true'"
+        "sscc check spring.model.safetensors --trajectory q.npy --only colliding --json"
         "sscc check bunny.obj"
         "sscc check bunny.obj face.obj --json"
         "sscc check mesh.obj --frames frames/ --continuous"
@@ -334,6 +334,8 @@ pub struct Check {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
+    #[command(flatten)]
+    pub only: Only,
     #[command(flatten)]
     pub motion: Motion,
     /// Answer continuous queries (CCD) from each q of the trajectory, frame or time to the next, every vertex on a straight
@@ -379,6 +381,28 @@ pub struct At {
     /// One q: r numbers, weights by the names of modes, as in jawOpen=0.5,smile=0.2 (the others are 0), or a file
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub q: Option<String>,
+}
+
+/// Which answers to print.
+#[derive(Debug, Args)]
+pub struct Only {
+    /// Print these answers only; the summary and the exit code are those of all [default: print all]
+    #[arg(long, value_enum, value_name = "ANSWERS")]
+    pub only: Option<Answers>,
+}
+
+impl Only {
+    /// Whether free answers are not printed.
+    pub fn is_colliding(&self) -> bool {
+        self.only == Some(Answers::Colliding)
+    }
+}
+
+/// Kinds of answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Answers {
+    /// Those of q, frames and meshes that collide
+    Colliding,
 }
 
 impl Check {
@@ -470,7 +494,8 @@ pub struct Sweep {
     /// Certificates of this model, from `sscc certify`; without them they are computed first
     #[arg(long, value_name = "FILE")]
     pub certificates: Option<PathBuf>,
-    /// The range of every weight [default: 0,1 for morph targets; else as far as moves a vertex by half the AABB's diagonal]
+    /// The range of every weight [default: 0,1 for morph targets; 3 standard deviations for principal components; else as
+    /// far as moves a vertex by half the AABB's diagonal]
     #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub range: Option<String>,
     /// The weights at the start: r numbers, by name, as in jawOpen=0.5, or a file [default: the centre]
@@ -503,6 +528,8 @@ pub struct Resolve {
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
     pub at: At,
+    #[command(flatten)]
+    pub only: Only,
     /// The free q from which the search begins: r numbers, weights by name, or a file [default: the centre]
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub from: Option<String>,

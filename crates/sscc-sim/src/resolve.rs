@@ -30,16 +30,22 @@ impl From<Resolved> for ResolveReport {
     }
 }
 
+impl ResolveReport {
+    /// Whether the given q is its own result.
+    pub fn is_free_as_given(&self) -> bool {
+        self.resolved && self.change == 0.0
+    }
+}
+
 impl fmt::Display for ResolveReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { q, change, safe_scale_change, .. } = self;
         match q {
             None => f.write_str("NOT RESOLVED: the centre collides"),
-            Some(_) if *change == 0.0 => f.write_str("free as it is"),
-            Some(q) => {
-                let numbers: Vec<String> = q.iter().map(f64::to_string).collect();
+            Some(_) if self.is_free_as_given() => f.write_str("free as it is"),
+            Some(_) => {
                 let (change, back) = (length(*change), length(*safe_scale_change));
-                write!(f, "resolved  change {change} (stepping back: {back})  --q={}", numbers.join(","))
+                write!(f, "resolved  change {change} (stepping back: {back})")
             }
         }
     }

@@ -23,6 +23,7 @@ mod readers;
 mod readme;
 mod real_data;
 mod resolve;
+mod rows;
 mod scopes;
 mod simulate;
 mod sweep;

@@ -31,6 +31,7 @@ pub fn check(args: &Check) -> Result<bool> {
     };
     let mut printer = Printer::new(noun, args.json.json, None);
     printer.has_files = request.meshes.len() > 1;
+    printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some() || args.pose.is_some();
     let mut report = MeshReport::default();
     let mut answers = 0;

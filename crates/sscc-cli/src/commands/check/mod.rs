@@ -57,6 +57,7 @@ fn check_model(args: &Check) -> Result<bool> {
     let mut printer = Printer::new(noun, args.json.json, root_radius);
     let mut query = query.cancelled_by(&interrupt::Interrupt);
     let bar = Bar::new("checking").beside_output();
+    printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some();
     let mut hint = SoupHint::default();
     let is_welded = request.weld == Some(true);

@@ -15,7 +15,10 @@ pub struct Printer {
     summary: Summary,
     is_json: bool,
     root_radius: Option<f64>,
+    noun: &'static str,
     answers: usize,
+    /// Whether free answers are not printed.
+    pub only_colliding: bool,
     /// Whether the run has several files.
     pub has_files: bool,
     /// Whether the last answer is needed even if no one reads the output.
@@ -30,7 +33,9 @@ impl Printer {
             summary: Summary::new(noun),
             is_json,
             root_radius,
+            noun,
             answers: 0,
+            only_colliding: false,
             has_files: false,
             needs_last: false,
         }
@@ -41,13 +46,16 @@ impl Printer {
         let answer = Answer::new(found, self.has_files);
         self.summary.add(&answer);
         self.answers += 1;
-        if self.is_json {
-            self.out.json(&answer)?;
-        } else if found.queries == 1 && !self.has_files {
-            let lines = text::single(&answer, self.root_radius);
-            lines.into_iter().try_for_each(|line| self.out.line(line))?;
-        } else {
-            self.out.line(answer.line())?;
+        let is_listed = answer.colliding || !self.only_colliding;
+        match (is_listed, self.is_json) {
+            // The summary counts it.
+            (false, _) => {}
+            (true, true) => self.out.json(&answer)?,
+            (true, false) if found.queries == 1 && !self.has_files => {
+                let lines = text::single(&answer, self.root_radius);
+                lines.into_iter().try_for_each(|line| self.out.line(line))?;
+            }
+            (true, false) => self.out.line(answer.line(self.noun))?,
         }
         let is_over = self.out.is_closed() && !self.needs_last;
         Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
@@ -56,7 +64,7 @@ impl Printer {
     /// Prints the summary of several answers. Returns whether any of them has a collision: the exit code is that of the
     /// answers so far.
     pub fn finish(mut self) -> Result<bool> {
-        if !self.is_json && self.answers > 1 {
+        if !self.is_json && (self.answers > 1 || self.only_colliding) {
             self.out.line(self.summary.line())?;
         }
         self.out.finish()?;

@@ -26,24 +26,25 @@ impl Answer<'_> {
         first.map(|(time, (i, j))| format!("{i} {j} at t = {time:.4}"))
     }
 
-    /// Returns the place of the query: file, node, number, time and norm.
-    fn place(&self) -> String {
+    /// Returns the place of the query: file, node, number, time and norm. `noun` names a query.
+    fn place(&self, noun: &str) -> String {
         let file = self.file.as_ref().map(|file| format!("{file}  ")).unwrap_or_default();
         let node = self.node.map(|node| format!("node {node:<4} ")).unwrap_or_default();
         let against = self.against_node.map(|node| format!("against node {node:<4} ")).unwrap_or_default();
         let time = self.time.map(|time| format!("  {time:.4} s")).unwrap_or_default();
         let norm = self.norm.map(|norm| format!("  |z| {:<10}", length(norm))).unwrap_or_default();
-        format!("{file}{node}{against}{:>6}{time}{norm}", self.index)
+        let number = numbered(noun).map(|label| format!("{label} {:>5}", self.index)).unwrap_or_default();
+        format!("{file}{node}{against}{number}{time}{norm}")
     }
 
-    /// Returns the line of one of several queries.
-    pub fn line(&self) -> String {
+    /// Returns the line of one of several queries. `noun` names a query.
+    pub fn line(&self, noun: &str) -> String {
         let result = match self.first() {
             Some(first) => format!("COLLIDING  {}, first {first}", self.counted()),
             None if self.is_root_certified() => "free       by the root's certificate".to_owned(),
             None => "free".to_owned(),
         };
-        format!("{} {:>9}  {result}", self.place(), duration(self.microseconds))
+        format!("{} {:>9}  {result}", self.place(noun), duration(self.microseconds))
     }
 
     /// Returns the time or the depth of a pair; empty without both.
@@ -57,6 +58,15 @@ impl Answer<'_> {
 
     fn is_root_certified(&self) -> bool {
         self.root_certified == Some(true)
+    }
+}
+
+/// Returns the word before the number of a query, which counts from 0. Files have names instead.
+fn numbered(noun: &str) -> Option<&str> {
+    match noun {
+        "configuration" => Some("row"),
+        "file" => None,
+        other => Some(other),
     }
 }
 
@@ -90,16 +100,26 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     lines
 }
 
-/// Counts and times of all queries of a run.
+/// Counts and times of all queries of a run, and the worst one.
 pub struct Summary {
     /// The noun for a query: `step`, `configuration`, ...
     noun: &'static str,
     root_certified: Option<usize>,
     pub colliding: usize,
+    /// Whether an answer does not have all of its pairs. Then none is the worst.
+    is_limited: bool,
+    worst: Option<Worst>,
     microseconds: Vec<f64>,
     /// The pairs that the free answers leave out, mesh by mesh.
     left_out: LeftOut,
     last: Option<(Option<String>, Option<usize>)>,
+}
+
+/// The answer with the deepest pair, or the most pairs.
+struct Worst {
+    /// Depth (0 without depths) and number of pairs.
+    size: (f64, usize),
+    text: String,
 }
 
 impl Summary {
@@ -108,6 +128,8 @@ impl Summary {
             noun,
             root_certified: None,
             colliding: 0,
+            is_limited: false,
+            worst: None,
             microseconds: Vec::new(),
             left_out: LeftOut::default(),
             last: None,
@@ -125,7 +147,25 @@ impl Summary {
             self.last = mesh;
         }
         self.colliding += usize::from(answer.colliding);
+        self.is_limited |= !answer.complete;
         self.microseconds.push(answer.microseconds);
+        let size = (answer.depths.iter().flatten().copied().fold(0.0, f64::max), answer.count);
+        if answer.colliding && self.worst.as_ref().is_none_or(|worst| worst.size < size) {
+            self.worst = Some(Worst { size, text: self.describe(answer, size.0) });
+        }
+    }
+
+    /// Returns an answer's place, its number of pairs and the largest depth.
+    fn describe(&self, answer: &Answer<'_>, depth: f64) -> String {
+        let number = numbered(self.noun).map(|label| format!("{label} {}", answer.index));
+        let place = match (&answer.file, number) {
+            (Some(file), Some(number)) => format!("{file}, {number}"),
+            (Some(file), None) => file.clone(),
+            (None, number) => number.unwrap_or_default(),
+        };
+        let node = answer.node.map(|node| format!(" of node {node}")).unwrap_or_default();
+        let depth = answer.depths.as_ref().map(|_| format!(", deepest {}", length(depth)));
+        format!("{place}{node} ({}{})", answer.counted(), depth.unwrap_or_default())
     }
 
     pub fn line(&mut self) -> String {
@@ -134,13 +174,18 @@ impl Summary {
         let is_free = self.colliding < all && self.left_out != LeftOut::default();
         let apart = if is_free { format!("; free{}", self.left_out.apart()) } else { String::new() };
         let certified = self.root_certified.map(|n| format!(" ({n} by the root's certificate alone)"));
+        let worst = self.worst.as_ref().filter(|_| !self.is_limited);
+        let worst = worst.map(|worst| format!("; worst: {}", worst.text));
+        let counts = numbered(self.noun).map(|label| format!("; {label}s are counted from 0"));
         format!(
-            "{}: {} free{}, {} colliding; median {}{}",
+            "{}: {} free{}, {} colliding; median {}{}{}{}",
             counted(all as u64, self.noun),
             all - self.colliding,
             certified.unwrap_or_default(),
             self.colliding,
             duration(self.microseconds[all / 2]),
+            worst.unwrap_or_default(),
+            counts.unwrap_or_default(),
             apart
         )
     }
