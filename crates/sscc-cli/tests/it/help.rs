@@ -55,7 +55,7 @@ fn pages_are_as_wide_as_the_terminal() {
 fn words(command: &str) -> Vec<String> {
     let command = command.split(" | ").next().unwrap();
     assert!(
-        !command.contains(['\'', '"', '\\', '$', '#', '>', ';', '&', '*']),
+        !command.contains(['\'', '"', '\\', '$', '>', ';', '&', '*']) && !command.contains(" #"),
         "{command}: the test knows no shell syntax"
     );
     command.split_whitespace().skip(1).map(str::to_owned).collect()

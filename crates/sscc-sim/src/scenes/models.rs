@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use sscc_dynamics::{Damping, MATERIALS};
+use sscc_io::gltf::is_gltf;
+use sscc_io::split_mesh_name;
 use sscc_solid::PartialMaterial;
 
 use super::section::Section;
@@ -151,8 +153,9 @@ fn shape(model: &Section<'_>, folder: &Path, is_linear: Option<bool>) -> Result<
         (None, Some(file)) => folder.join(file),
     };
     let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let has_modes =
-        modes.is_some() || ["safetensors", "glb", "gltf", "vrm", "npz"].contains(&ending.as_str());
+    let has_modes = modes.is_some()
+        || is_gltf(&split_mesh_name(&file).0)
+        || ["safetensors", "npz"].contains(&ending.as_str());
     match (has_modes, solid) {
         (true, None) => Ok(Shape::Model(ModelFiles { path: file, modes, forces, is_linear })),
         (true, Some(_)) => Err(model.refused("solid", "the file has its modes already: leave this key out")),

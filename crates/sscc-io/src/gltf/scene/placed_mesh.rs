@@ -127,6 +127,8 @@ fn parse_in(
         skins.insert(number, skin);
     }
     let shown = shown.into_iter().map(|node| (node, skin_of(&node))).collect();
+    // Most of the memory of a file of empty nodes.
+    drop(placed);
     let (world, names) = (nodes.world_transforms(&[]), PartNames::parse(chunks.json)?);
     Ok(PlacedMesh { mesh: index, shape, nodes: shown, skins, world, names })
 }
