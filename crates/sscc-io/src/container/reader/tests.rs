@@ -147,7 +147,7 @@ fn other_kinds_and_versions_are_rejected() {
     let newer = ContainerWriter::new(Kind { version: 7, ..MODEL }).finish().unwrap();
     assert_eq!(
         message(&newer),
-        "written by a newer sscc (format version 7, this build reads up to 2): update sscc"
+        "written by a newer sscc (format version 7, this build reads up to 3): update sscc"
     );
     for version in ["0", "01", "+1", "-1", "x", ""] {
         let header = header_of(&TEXTS.replace(r#"n":"1""#, &format!(r#"n":"{version}""#)), "");
