@@ -20,7 +20,7 @@ use super::cone_rate::bound_rate_in_cone;
 use super::pair_corners::PairCorners;
 use super::strain::{StrainGram, bound_rate, strain_gram};
 use crate::model::RoundingBound;
-use crate::model::rounding::{ROUND_UP, radius_down};
+use crate::model::rounding::{ROUND_UP, larger_or_nan, radius_down};
 
 /// An affine map of some points' modes and how fast it moves points apart. Owns its memory.
 pub(super) struct AffineBound {
@@ -108,7 +108,7 @@ impl AffineBound {
         let mut squared_residual = 0.0_f64;
         for i in 0..3 {
             for j in 3..6 {
-                squared_residual = squared_residual.max(self.squared_residual(i, j));
+                squared_residual = larger_or_nan(squared_residual, self.squared_residual(i, j));
             }
         }
         self.bound(AffinePair { differences, rest_distance, squared_residual }, sufficient, rounding)

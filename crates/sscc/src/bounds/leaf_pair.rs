@@ -7,6 +7,7 @@ use super::affine_bound::{AffineBound, AffinePair, is_near};
 use super::separating_direction::{bound_points_along, bound_rest_distance};
 use crate::geometry::nearest_to_origin;
 use crate::model::mode_rows::project;
+use crate::model::rounding::larger_or_nan;
 use crate::model::{ScaledModel, scale_direction};
 use crate::vectors::{InstructionSet, Kernel, Vectors};
 
@@ -106,7 +107,7 @@ impl<'m> LeafPair<'m> {
             return 0.0;
         }
         let squared_residuals = self.vertex_pairs(a, b).map(|at| self.squared_residuals[at]);
-        let squared_residual = squared_residuals.into_iter().fold(0.0, f64::max);
+        let squared_residual = squared_residuals.into_iter().fold(0.0, larger_or_nan);
         let sufficient = if is_near(&differences, rest_distance) { sufficient } else { 0.0 };
         let pair = AffinePair { differences: &differences, rest_distance, squared_residual };
         self.affine.bound(pair, sufficient, &self.model.rounding)

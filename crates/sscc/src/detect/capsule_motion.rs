@@ -59,7 +59,8 @@ pub(crate) struct CapsuleMotion<'q> {
     radius: f64,
     rounding: f64,
     /// Five times the rounding: of the positions at both ends, of one anywhere in the capsule, and of the point of the segment
-    /// from which its distance was measured.
+    /// from which its distance was measured. (Once would do: these are at most `(3 r + 12)` units of 2^-53 of the reach
+    /// together, and [`rounding_bound`] is `8 r + 128`.)
     widening: f64,
 }
 
@@ -73,7 +74,7 @@ impl<'q> CapsuleMotion<'q> {
         reach: f64,
     ) -> Self {
         let rounding = rounding_bound(reach, start.len());
-        let widening = right_or!(5.0 * rounding, CapsuleExact, 0.0);
+        let widening = right_or!(5.0 * rounding, CapsuleExact, 0.0, CapsuleWidenedOnce, rounding);
         let ends = [start, right_or!(end, CapsuleWithoutEnd, start)];
         Self { rates, ends, radius, rounding, widening }
     }

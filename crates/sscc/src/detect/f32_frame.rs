@@ -31,10 +31,12 @@ impl F32Frame {
     }
 
     /// An upper bound, along each axis, of the distance from a mapped point to its exact image, where the box of the
-    /// frame contains all points. `rounding` bounds the error of the points themselves. At least 14 units of 2^-24.
+    /// frame contains all points. `rounding` bounds the error of the points themselves. At least 14 units of 2^-24, on
+    /// which the separating-axis test counts, and four times the rounding, on which sweeps count.
     pub(crate) fn error_bound(&self, rounding: f64) -> f32 {
         let unit = f64::from(f32::EPSILON) / 2.0;
-        (16.0 * unit + 4.1 * rounding * self.scale) as f32
+        let error = 16.0 * unit + 4.1 * rounding * self.scale;
+        right_or!(error, FrameErrorQuartered, error / 4.0) as f32
     }
 
     /// The mapped point before it is rounded to single precision.
@@ -58,6 +60,9 @@ impl F32Frame {
 
 #[cfg(test)]
 mod tests {
+    use num_rational::BigRational;
+    use num_traits::Signed;
+
     use super::*;
     use crate::limits;
 
@@ -85,6 +90,33 @@ mod tests {
                 let mapped: Vec<Vec4> = numbers.iter().map(|x| frame.map(DVec3::splat(*x))).collect();
                 assert!(mapped.iter().all(|y| y.is_finite()), "{center} {half}");
                 assert!(mapped.windows(2).all(|y| y[0].cmple(y[1]).all()), "{center} {half}");
+            }
+        }
+    }
+
+    /// The separating-axis test counts on 14 units of 2^-24: its own sums need 20 of the 28 that two error bounds
+    /// beyond those of both positions have. Sweeps count on eight rounding bounds in the same two. And mapped points
+    /// are within a part of it of their exact images.
+    #[test]
+    fn the_error_bound_is_what_its_users_count_on() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let unit = 2.0_f64.powi(-24);
+        for (i, half) in [1e-30, 1e-3, 1.0, 7.0, 1e9].into_iter().enumerate() {
+            let center = half * [0.0, 3.0, -1e3][i % 3];
+            let corner = |by: f64| DVec3::splat(center + by);
+            let frame = F32Frame::around(Aabb { lower: corner(-half), upper: corner(half) });
+            for rounding in [0.0, 1e-12 * half, 1e-7 * half, 1e-3 * half] {
+                let error = f64::from(frame.error_bound(rounding));
+                assert!(error >= 14.0 * unit + 4.0 * rounding / half, "{half} {rounding}: {error}");
+                for j in 0..100 {
+                    let x = center + half * (f64::from(j) / 50.0 - 1.0);
+                    let mapped = exact(f64::from(frame.map(DVec3::splat(x)).x));
+                    // Where the point itself is wrong by the rounding.
+                    for by in [rounding, -rounding] {
+                        let image = (exact(x) + exact(by) - exact(frame.center.x)) * exact(frame.scale);
+                        assert!((&mapped - image).abs() <= exact(error), "{half} {rounding} {j}");
+                    }
+                }
             }
         }
     }

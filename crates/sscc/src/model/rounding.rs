@@ -15,11 +15,12 @@ pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
 }
 
 /// A quotient of two non-negative numbers, rounded down. Below the normal numbers, where rounding is not relative, it is
-/// 0.
+/// 0, and so is NaN.
 #[inline]
 pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
     let quotient = numerator / denominator;
-    if quotient < f64::MIN_POSITIVE { 0.0 } else { quotient * right_or!(ROUND_DOWN, QuotientToNearest, 1.0) }
+    let is_normal = right_or!(quotient >= f64::MIN_POSITIVE, QuotientOfNan, !(quotient < f64::MIN_POSITIVE));
+    if is_normal { quotient * right_or!(ROUND_DOWN, QuotientToNearest, 1.0) } else { 0.0 }
 }
 
 /// The radius at which a gap closes at a rate, rounded down: 0 unless the gap is positive (NaN included), infinite where
@@ -29,10 +30,45 @@ pub(crate) fn radius_down(gap: f64, rate: f64) -> f64 {
     if gap > 0.0 && rate >= 0.0 { quotient_down(gap, rate) } else { 0.0 }
 }
 
-/// A radius in single precision, rounded down.
+/// The larger one of two numbers; NaN if one of them is NaN, which `max` ignores.
+#[inline(always)]
+pub(crate) fn larger_or_nan<T: PartialOrd>(a: T, b: T) -> T {
+    let is_nan = right_or!(b.partial_cmp(&b).is_none(), MaximumIgnoresNan, false);
+    if a < b || is_nan { b } else { a }
+}
+
+/// A radius in single precision, rounded down; 0 for NaN.
 pub(crate) fn to_f32_down(radius: f64) -> f32 {
     let rounded = radius as f32;
     let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
     let rounded = if is_above { rounded.next_down() } else { rounded };
-    rounded.clamp(0.0, f32::MAX)
+    if rounded > 0.0 { rounded.min(f32::MAX) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_is_no_bound() {
+        for (a, b) in [(0.0, f64::INFINITY), (f64::INFINITY, 0.0)] {
+            // One of them is infinity times zero.
+            assert_eq!(quotient_down(a * b, 1.0), 0.0);
+        }
+        assert_eq!(quotient_down(f64::INFINITY, f64::INFINITY), 0.0);
+        assert_eq!(radius_down(f64::INFINITY, f64::INFINITY), 0.0);
+        assert_eq!(radius_down(f64::NAN, 1.0), 0.0);
+        assert_eq!(radius_down(1.0, f64::NAN), 0.0);
+        assert_eq!(radius_down(1.0, 0.0), f64::INFINITY);
+        assert_eq!(to_f32_down(f64::NAN), 0.0);
+        assert_eq!(to_f32_down(f64::INFINITY), f32::MAX);
+    }
+
+    #[test]
+    fn the_larger_one_of_nan_and_a_number_is_nan() {
+        assert_eq!((larger_or_nan(1.0, 2.0), larger_or_nan(2.0, 1.0)), (2.0, 2.0));
+        assert!(larger_or_nan(f64::NAN, 1.0).is_nan() && larger_or_nan(1.0, f64::NAN).is_nan());
+        let numbers = [1.0, f32::NAN, 3.0, 2.0];
+        assert!(numbers.into_iter().fold(0.0, larger_or_nan).is_nan());
+    }
 }

@@ -49,7 +49,7 @@ impl ScaledModel {
         }
         // A component in which nothing moves still needs a positive rounding bound if others move: squares of numbers
         // below 2^-537 underflow, and the largest mode is above 2^-200.
-        let floor = mode_reach.max_element() * f64::EPSILON;
+        let floor = right_or!(mode_reach.max_element() * f64::EPSILON, ModeReachWithoutFloor, 0.0);
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());
         Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding }

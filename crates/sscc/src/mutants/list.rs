@@ -208,4 +208,44 @@ mutants! {
     CrossingByDoubleDoubles: CaughtBy("it intersection::determinants_that_cancel");
     /// The depth of triangles that touch without crossing is what rounding leaves of it.
     TouchingDepthRounded: CaughtBy("it penetration::on_a_grid");
+    /// A kinetic motion is taken to begin at the last q, wherever it does.
+    MotionStartUnchecked: CaughtBy("lib query::kinetic::tests::motions_may_begin_anywhere");
+    /// Two hulls are apart where their gap is wider than the larger radius, not than the sum of both.
+    LargerHullRadius: CaughtBy("lib detect::hulls::tests::hulls_are_apart_only_where_their_triangles_are");
+    /// The norm of an affine map is the root of the largest entry of F'F, not of the largest row sum.
+    HullStretchLargestEntry: CaughtBy("lib detect::hulls::moved_hulls::tests::no_vector_is_stretched_by_more_than_the_bound");
+    /// A hull whose radius or map is NaN has the radius of other numbers.
+    HullNanIgnored: CaughtBy("lib detect::hulls::moved_hulls::tests::hulls_that_are_no_numbers_prove_nothing");
+    /// The remainder of residuals is that of vectors before they are rounded to single precision.
+    HullVectorsUnrounded: Covered("the relative error of sums has room for one more rounding");
+    /// Residuals of hulls have no rounding error.
+    HullResidualErrorForgotten: Covered("rounding up to single precision and the error of single precision are larger");
+    /// The radius of a moving hull omits the rounding of positions at the configuration of the hulls.
+    HullConfigurationExact: Covered("the rounding bound at q is eight times the rounding of a position at either");
+    /// Safe distances are as long as a gap and its rate say.
+    SafeDistanceUncapped: Covered("the rate contains the rounding of positions that are farther away");
+    /// Of a gap that is measured at one z and used at another, one of four rounding bounds is left.
+    GapRoundedOnce: Covered("the roundings that the bound grants to evaluation are more than the other position's");
+    /// A capsule is widened by one of five rounding bounds.
+    CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
+    /// Scales at which a radius is reached are rounded to nearest.
+    SafeScaleToNearest: Covered("norms are rounded up by more");
+    /// AABBs of posed shapes omit the rounding error of positions in the world.
+    PosedAabbExact: CaughtBy("lib posed::posed_shape::tests::aabbs_contain_positions_that_the_world_rounds");
+    /// The minimum of two numbers has the smaller one of their errors.
+    SmallerErrorOfTwo: CaughtBy("lib geometry::ccd::number_tests::a_minimum_has_the_larger_error");
+    /// The error bound of positions in single precision is a quarter of it.
+    FrameErrorQuartered: CaughtBy("lib detect::f32_frame::tests::the_error_bound_is_what_its_users_count_on");
+    /// A direction separates moving triangles by a quarter of their slack.
+    CandidateSlackQuartered: CaughtBy("lib geometry::ccd::free_until::tests::corners_may_be_off_by_all_of_the_slack");
+    /// The slack of sweeps is a quarter of it.
+    SweepSlackQuartered: CaughtBy("lib query::sweep::weight_line::tests::products_that_are_rounded_apart_need_the_slack");
+    /// Along an axis in which squares of modes underflow, motion has no rounding error.
+    ModeReachWithoutFloor: CaughtBy("it rounding::motions_whose_squares_underflow_are_no_rest");
+    /// The limit of the outer round is not rounded to single precision.
+    OuterLimitInDouble: CaughtBy("lib certificates::build::pair_tree_builder::tests::pairs_bounded_up_to_the_limit_are_not_stored");
+    /// A quotient that is NaN is a bound.
+    QuotientOfNan: CaughtBy("lib model::rounding::tests::nan_is_no_bound");
+    /// The larger one of a number and NaN is the number.
+    MaximumIgnoresNan: CaughtBy("lib model::rounding::tests::the_larger_one_of_nan_and_a_number_is_nan");
 }

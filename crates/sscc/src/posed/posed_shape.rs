@@ -191,6 +191,44 @@ mod tests {
         assert!(found > 200 && empty > 200, "{found} {empty}");
     }
 
+    /// A shape that is small in the world and far from its origin: what is rounded there are sums with the translation.
+    #[test]
+    fn aabbs_contain_positions_that_the_world_rounds() {
+        let state = &mut 5;
+        let model = model(30, state);
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let [mut x, mut y] = [(); 2].map(|()| PosedShape::new(&model, &certificates).unwrap());
+        let mut found = 0;
+        for case in 0..300 {
+            let size = 10.0_f64.powi(-(case % 18));
+            let mut place = |shape: &mut PosedShape<'_>, translation: DVec3| {
+                let rotation = DMat3::from_quat(glam::DQuat::from_scaled_axis(vector(state) * 3.0)) * size;
+                let q = [random(state), random(state)];
+                let Aabb { lower, upper } = shape.place(&q, &Pose { rotation, translation }).unwrap();
+                for t in 0..model.mesh().faces().len() as u32 {
+                    for x in shape.corners(t) {
+                        assert!(
+                            x.cmpge(lower).all() && x.cmple(upper).all(),
+                            "case {case}: {x} {lower} {upper}"
+                        );
+                    }
+                }
+                translation + (shape.corners(3)[0] - shape.corners(9)[1])
+            };
+            let next = place(&mut x, DVec3::new(1.0, -3.0, 0.7));
+            place(&mut y, next);
+            let triangles = 0..model.mesh().faces().len() as u32;
+            let all = triangles.clone().flat_map(|i| triangles.clone().map(move |j| (i, j)));
+            let meet = |(i, j): &Pair| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j));
+            let expected: Vec<Pair> = all.filter(meet).collect();
+            let mut pairs = Vec::new();
+            x.colliding(&mut y, Aabb::default(), &mut pairs);
+            assert_eq!(pairs, expected, "case {case}");
+            found += pairs.len();
+        }
+        assert!(found > 1000, "{found}");
+    }
+
     #[test]
     fn what_has_no_place_is_refused() {
         let model = model(20, &mut 3);

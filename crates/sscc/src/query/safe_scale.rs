@@ -30,7 +30,7 @@ impl Query<'_> {
         self.norm = self.measure(q)?.norm;
         let line = ConfigurationLine::new(self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
-        let mut best = (global / self.norm).min(line.farthest) * DOWN;
+        let mut best = (global / self.norm).min(line.farthest) * right_or!(DOWN, SafeScaleToNearest, 1.0);
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
@@ -136,7 +136,11 @@ impl Query<'_> {
     /// The scale at which a radius is reached; [`Query::norm`] is that of scale 1.
     fn scale(&self, radius: f64) -> f64 {
         let scale = radius / self.norm;
-        if radius > 0.0 && scale >= f64::MIN_POSITIVE { scale * DOWN } else { 0.0 }
+        if radius > 0.0 && scale >= f64::MIN_POSITIVE {
+            scale * right_or!(DOWN, SafeScaleToNearest, 1.0)
+        } else {
+            0.0
+        }
     }
 
     /// Advances two triangles that do not collide before `t`. Infinite if they do not collide before `goal` or do not
@@ -153,6 +157,10 @@ impl Query<'_> {
 }
 
 /// Covers the rounding of scales and of norms at scales.
+///
+/// (Norms cover it, too. `|z|` is rounded up by at least `(1.5 r + 27)` units of 2^-53 more than its own rounding; the
+/// quotient, and `t (q - center)` in f64, are rounded by 3 of them. The sum with the centre moves vertices by no more
+/// than the rounding of their positions, which is part of every radius.)
 const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 
 /// Leaf pairs are advanced up to this many times the scale up to which all others are free ...

@@ -165,6 +165,30 @@ fn a_radius_of_nothing_proves_nothing_at_the_centre() {
     }
 }
 
+/// Two triangles that a mode brings together along x, so slowly that the square of its rate is no number, while it
+/// moves both sideways faster. Their gap is so small that they meet nevertheless.
+#[test]
+fn motions_whose_squares_underflow_are_no_rest() {
+    let power = |exponent: i32| 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2);
+    for (rate, aside, contact) in [(-540, -150, 139), (-545, -140, 130), (-600, -190, 150)] {
+        let gap = power(rate + contact);
+        let corners = [DVec3::ZERO, DVec3::Y, DVec3::Z];
+        let positions = [0.0, gap].map(|x| corners.map(|p| p + DVec3::X * x)).concat();
+        let aside = DVec3::Y * power(aside);
+        let modes = [[aside; 3], [aside - DVec3::X * power(rate); 3]].concat();
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::new(1, modes).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(1)).unwrap();
+        let certificates = certify(&model, None);
+        let mut colliding = 0;
+        for share in [1e-30, 1e-9, 0.5, 0.999, 1.0] {
+            colliding += usize::from(ask(&model, &certificates, &[share * power(contact)]).0);
+        }
+        assert_eq!(colliding, 1);
+        assert!(certificates[0].root_radius() < power(contact));
+    }
+}
+
 /// Far from the origin the last step of the way is made by rounding.
 #[test]
 fn safe_scales_end_before_rounding_closes_a_gap() {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::nearest_within;
+use crate::model::rounding::larger_or_nan;
 
 /// Core points of each hull. With 24, hulls leave more node pairs open; more points hardly make them tighter, and take longer
 /// (docs/notes/2026-11-24-moving-hulls.md).
@@ -66,9 +67,10 @@ pub(super) fn choose(points: &[DVec3]) -> CorePoints {
         let hull = hull_of(points, &chosen);
         far.retain_mut(|(i, distance)| {
             *distance = distance_bound(points[*i], &hull);
+            // NaN is close, and stays.
             let is_far = *distance > TOLERANCE;
             if !is_far {
-                close = close.max(*distance);
+                close = larger_or_nan(close, *distance);
             }
             is_far
         });
@@ -85,7 +87,7 @@ pub(super) fn choose(points: &[DVec3]) -> CorePoints {
             break;
         }
     }
-    let distance = far.iter().fold(close, |most, x| most.max(x.1)) + ROUNDING;
+    let distance = far.iter().fold(close, |most, x| larger_or_nan(most, x.1)) + ROUNDING;
     let all = hull_of(points, &chosen).map(|d| d.as_vec3().to_array());
     CorePoints { points: all, distance }
 }

@@ -47,7 +47,10 @@ impl<const E: usize> HullMotion<E> {
     ///   after the other, and a sum. That adds 7 u T along each axis. The error of F times `eps`, which is at most 2,
     ///   adds as much.
     /// - The computed positions at q, and those at the configuration of the hulls, are within their rounding bounds,
-    ///   which are 30 times larger: they cover `q - configuration` and the units of the hulls, too.
+    ///   which are 8 times larger: they cover `q - configuration` and the units of the hulls, too. (The bound at q
+    ///   alone would do: a position at the configuration is rounded by at most `(r + 1) 2^-53` times its terms. These
+    ///   exceed the terms at q by `|U_k y_k|` at most, which are terms of core points and residuals, and are rounded
+    ///   here by far more.)
     ///
     /// The last number of the error covers underflow: squares of residuals and of entries of F below 1e-19, and products.
     /// The error is at least 32 u times the terms of a coordinate, and at most 1 / 64, so coordinates are below 1e4.
@@ -84,7 +87,8 @@ impl<const E: usize> HullMotion<E> {
         };
         let rank = hulls.rank as f64;
         let single = right_or!((3.0 * rank + 32.0) * unit * most, HullSinglePrecisionExact, 0.0);
-        let double = (rounding + rounding_bound(hulls.reach, hulls.rank)) * self.scale;
+        let at_configuration = rounding_bound(hulls.reach, hulls.rank);
+        let double = (rounding + right_or!(at_configuration, HullConfigurationExact, 0.0)) * self.scale;
         let error = 1.01 * DIAGONAL * (single + right_or!(double, HullShapeExact, 0.0)) + 1e-15;
         self.error = error as f32;
         self.relative = right_or!((2.0 * (rank + 16.0) * unit) as f32, HullSumsExact, 0.0);

@@ -7,6 +7,7 @@ use super::node_hulls::NodeHulls;
 use super::separation::{AffineMap, MovedPoints, PlaneTest, widest_gap};
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::vertex_motion::VertexMotion;
+use crate::model::rounding::larger_or_nan;
 use crate::vectors::InstructionSet;
 
 /// A gap at the centre of less than so many radii seldom stays open: such pairs are not tested.
@@ -96,7 +97,8 @@ impl<const E: usize> MovedHulls<E> {
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
         let points = [i, j].map(|i| self.points(hulls, i));
-        self.instructions.run(PlaneTest { points, distance: a.radius + b.radius, normal })
+        let distance = right_or!(a.radius + b.radius, LargerHullRadius, a.radius.max(b.radius));
+        self.instructions.run(PlaneTest { points, distance, normal })
     }
 
     /// Moves all hulls.
@@ -152,6 +154,7 @@ impl<const E: usize> MovedHulls<E> {
             let residual = right_or!(sum.min(split), HullResidualForgotten, 0.0);
             let stretch = right_or!(norm_bound(&columns), HullNotStretched, 1.0);
             let radius = (shape.distance * stretch + residual) * (1.0 + 1e-6);
+            let radius = radius_or_infinity(&hull.maps[end], radius);
             hull.radius = right_or!(hull.radius.max(radius), HullRadiusAtEnd, radius);
             if end == 0 {
                 let [x, y, z] = [columns.x_axis, columns.y_axis, columns.z_axis];
@@ -186,6 +189,81 @@ impl MovedHulls<1> {
 /// Underflow is part of [`HullMotion::error`].
 fn norm_bound(columns: &Mat3) -> f32 {
     let gram = columns.transpose() * *columns;
-    let sum = |column: Vec3| column.abs().element_sum();
-    sum(gram.x_axis).max(sum(gram.y_axis)).max(sum(gram.z_axis)).sqrt() * (1.0 + 1e-5)
+    let sum = |column: Vec3| {
+        right_or!(column.abs().element_sum(), HullStretchLargestEntry, column.abs().max_element())
+    };
+    let [x, y, z] = [gram.x_axis, gram.y_axis, gram.z_axis].map(sum);
+    larger_or_nan(larger_or_nan(x, y), z).sqrt() * (1.0 + 1e-5)
+}
+
+/// The radius of a hull whose core points this map moves; infinite where a number is not finite.
+///
+/// A maximum of numbers ignores NaN, and so does the extent of points along a direction. A hull of NaN would be a
+/// proof; one of infinite radius proves nothing.
+#[inline]
+fn radius_or_infinity(map: &AffineMap, radius: f32) -> f32 {
+    let is_finite = radius.is_finite() && map.iter().all(|row| row.is_finite());
+    right_or!(if is_finite { radius } else { f32::INFINITY }, HullNanIgnored, radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec3};
+
+    use super::*;
+    use crate::detect::vertex_motion::DeformedMotion;
+    use crate::hierarchy::Hierarchy;
+    use crate::test_models::Random;
+    use crate::{Modes, ReducedModel, Scope, TriMesh};
+
+    /// Against the lengths of moved vectors: no unit vector becomes longer than the bound. The matrices stretch mostly
+    /// along a diagonal, where the entries of F'F are alike.
+    #[test]
+    fn no_vector_is_stretched_by_more_than_the_bound() {
+        let random = &mut Random(17);
+        let signs = [[1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, -1.0], [1.0, 0.0, 0.0]];
+        for case in 0..500 {
+            let along = DVec3::from_array(signs[case % 5]);
+            let noise = [0.0, 1e-3, 1.0][case % 3];
+            let columns = [along.x, along.y, along.z].map(|x| along * x + random.vector() * noise);
+            let size = 10.0_f64.powi(case as i32 % 7 - 3);
+            let [x, y, z] = columns.map(|column| (column * size).as_vec3());
+            let bound = f64::from(norm_bound(&Mat3::from_cols(x, y, z)));
+            let exact = DMat3::from_cols(x.as_dvec3(), y.as_dvec3(), z.as_dvec3());
+            let mut longest = 0.0_f64;
+            for dir in std::iter::once(along).chain((0..20).map(|_| random.vector())) {
+                // Powers of F'F turn a vector to where F stretches most.
+                let dir = exact.transpose() * (exact * dir.normalize() / size) / size;
+                longest = longest.max((exact * dir.normalize_or(DVec3::X)).length());
+            }
+            assert!(longest <= bound && bound <= 1.7321 * longest * 1.3, "case {case}: {longest} {bound}");
+        }
+    }
+
+    /// Where a number is infinite or NaN at either end of a motion, a hull is apart from nothing, and so are all
+    /// others from it.
+    #[test]
+    fn hulls_that_are_no_numbers_prove_nothing() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::new(2, vec![DVec3::Z, DVec3::X].repeat(6)).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap();
+        let motion = DeformedMotion::new([&[0.0; 2][..]; 2], 9.0);
+        for wrong in [f32::INFINITY, f32::NAN] {
+            for (mode, end) in [(0, 0), (0, 1), (1, 0), (2, 1)] {
+                let mut moved = MovedHulls::<2>::new(&hulls);
+                let one = Vec4::splat(0.5);
+                (moved.motion.factors, moved.motion.error, moved.motion.scale) =
+                    (vec![[one; 2]; 3], 1e-6, 1.0);
+                moved.motion.factors[mode][end] = Vec4::splat(wrong);
+                moved.begin();
+                moved.update(&hulls, 0, 0, &motion);
+                let radius = moved.hulls[0].radius;
+                assert!(radius > 1e30, "{wrong} for mode {mode} at end {end}: {radius}");
+            }
+        }
+    }
 }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, NodePair};
+use crate::model::rounding::larger_or_nan;
 
 /// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
 const MAX_TRIANGLES: u32 = 1024;
@@ -81,7 +82,7 @@ impl NodeHulls {
         for hull in hulls {
             for (weight, rows) in weights.iter_mut().zip(&hull.frame) {
                 let of_row = rows[..3].iter().map(|row| f64::from(row.abs().element_sum()));
-                *weight = of_row.fold(*weight, f64::max);
+                *weight = of_row.fold(*weight, larger_or_nan);
             }
             frames.extend(hull.frame);
             shapes.push(hull.shape);

@@ -14,6 +14,8 @@
 
 use glam::DVec3;
 
+use crate::model::rounding::larger_or_nan;
+
 /// Vectors that the residuals are split into.
 pub(super) const VECTORS: usize = 3;
 
@@ -43,10 +45,17 @@ impl Residuals {
         let rank = error.len();
         let mut rates = vec![[0.0_f32; 1 + VECTORS]; rank];
         for of_vertex in residuals.chunks_exact(rank) {
-            rates.iter_mut().zip(of_vertex).for_each(|(rate, e)| rate[0] = rate[0].max(e.length() as f32));
+            rates
+                .iter_mut()
+                .zip(of_vertex)
+                .for_each(|(rate, e)| rate[0] = larger_or_nan(rate[0], e.length() as f32));
         }
+        // The errors are covered elsewhere, too. With the terms T_k of the map, the error of a residual is less than
+        // 16 eps (e_k + 2 T_k). 16 eps e_k is less than what `up` adds, here and to the remainder, whose constant is
+        // larger than 16 eps; 32 eps T_k is less than 2^-24 T_k, of which the error of single precision has 14 to
+        // spare (`HullMotion::begin`).
         for (rate, error) in rates.iter_mut().zip(error) {
-            rate[0] = up(f64::from(rate[0]) + error);
+            rate[0] = up(f64::from(rate[0]) + right_or!(*error, HullResidualErrorForgotten, 0.0));
         }
         // H_v, from here on.
         for of_vertex in residuals.chunks_exact_mut(rank) {
@@ -60,22 +69,26 @@ impl Residuals {
             principal_vector(residuals, &mut vector);
             for (rate, w) in rates.iter_mut().zip(&mut vector) {
                 rate[1 + j] = (*w as f32) * rate[0];
-                // As it is stored.
-                *w = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };
+                // As it is stored, so that nothing of it is lost. (Its rounding, `2^-24 |w_jk| t_k`, would also be
+                // within the relative error of sums, of which `HullMotion::relative` has 21 such units to spare; and
+                // underflow is far below the constant of `HullMotion::error`, since factors are below 1e13.)
+                let stored = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };
+                *w = right_or!(stored, HullVectorsUnrounded, *w);
             }
             let mut most = 0.0_f64;
             for of_vertex in residuals.chunks_exact_mut(rank) {
                 let h = of_vertex.iter().zip(&vector).map(|(h, w)| *h * *w).sum::<DVec3>();
-                most = most.max(h.length());
+                most = larger_or_nan(most, h.length());
                 of_vertex.iter_mut().zip(&vector).for_each(|(l, w)| *l -= h * *w);
             }
             along[j] = up(most);
         }
-        let largest = residuals.chunks_exact(rank).map(spectral_bound).fold(0.0, f64::max);
+        let largest = residuals.chunks_exact(rank).map(spectral_bound).fold(0.0, larger_or_nan);
         // The residual of mode k may be wrong by error_k, so its H_v by error_k / e_k, and the remainder by the norm of all of
         // these: the h_vj are those computed here.
         let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
         let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
+        let error = right_or!(error, HullResidualErrorForgotten, 0.0);
         let remainder = right_or!(up(largest + error + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
         Self { rates, along, remainder }
     }
@@ -118,10 +131,10 @@ fn spectral_bound(rows: &[DVec3]) -> f64 {
     for l in rows {
         (0..3).for_each(|axis| gram[axis] += *l * l[axis]);
     }
-    gram.map(|row| row.abs().element_sum()).into_iter().fold(0.0, f64::max).sqrt()
+    gram.map(|row| row.abs().element_sum()).into_iter().fold(0.0, larger_or_nan).sqrt()
 }
 
-/// Rounds up to single precision.
+/// Rounds up to single precision. NaN stays NaN.
 pub(super) fn up(x: f64) -> f32 {
-    if x > 0.0 { ((x * (1.0 + 1e-12)) as f32).next_up() } else { 0.0 }
+    if x <= 0.0 { 0.0 } else { ((x * (1.0 + 1e-12)) as f32).next_up() }
 }

@@ -17,7 +17,7 @@ use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::ScaledModel;
 use crate::test_models::Random;
 use crate::vectors::{Baseline, InstructionSet};
-use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
+use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh, intersect_triangle_triangle};
 
 /// A model with all that its hulls need.
 struct Case {
@@ -383,6 +383,59 @@ fn only_gaps_wider_than_the_radii_separate() {
     assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
     assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));
     assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
+}
+
+/// Two flat sheets, one above the other, whose vertices move up and down in turn: no affine map describes that, so
+/// each hull is the sheet at rest and a radius. Half of the gap is one radius, and where vertices of both go half of
+/// the way, they meet.
+#[test]
+fn hulls_are_apart_only_where_their_triangles_are() {
+    let (side, gap) = (9_u32, 2.5);
+    let (mut positions, mut faces, mut modes) = (Vec::new(), Vec::new(), Vec::new());
+    for height in [0.0, gap] {
+        let first = positions.len() as u32;
+        for i in 0..side * side {
+            let (x, y) = (i % side, i / side);
+            positions.push(DVec3::new(f64::from(x), f64::from(y), height));
+            // Vertices of both sheets that are one above the other move towards each other, or apart.
+            let is_up = (x + y) % 2 == 0;
+            modes.push(if is_up == (height == 0.0) { DVec3::Z } else { DVec3::NEG_Z });
+        }
+        for i in 0..(side - 1) * (side - 1) {
+            let j = first + i + i / (side - 1);
+            faces.extend([[j, j + 1, j + side], [j + 1, j + side + 1, j + side]]);
+        }
+    }
+    let is_lower = |v: u32| v < side * side;
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+    let Case { model, hierarchy, layout, .. } = Case::new(model, &[0.0]);
+    let vertices = |n: u32| hierarchy.vertices(&hierarchy.nodes()[n as usize], model.mesh().faces());
+    let nodes = 0..hierarchy.nodes().len() as u32;
+    let lower: Vec<u32> = nodes.clone().filter(|n| vertices(*n).into_iter().all(is_lower)).collect();
+    let upper: Vec<u32> = nodes.filter(|n| !vertices(*n).into_iter().any(is_lower)).collect();
+    let pairs: Vec<NodePair> = lower.iter().flat_map(|n| upper.iter().map(|m| (*n, *m))).collect();
+    let hulls = NodeHulls::new(&model, &hierarchy, &pairs, &[0.0]).unwrap();
+    let (mut apart, mut met) = (0, 0);
+    for share in [0.3, 0.9, 1.0, 1.01, 1.3, 1.8] {
+        let q = [share * gap / 2.0];
+        let motion = DeformedMotion::new([&q[..]], model.check_coordinates(&q).unwrap());
+        let frame = F32Frame::around(motion.overall_aabb(&layout));
+        let mut moved = MovedHulls::<1>::new(&hulls);
+        moved.begin();
+        let corners = |t: &u32| model.mesh().faces()[*t as usize].map(|v| model.position(v, &q));
+        for &(n, m) in &pairs {
+            let [a, b] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
+            let meet =
+                a.iter().any(|t| b.iter().any(|s| intersect_triangle_triangle(&corners(t), &corners(s))));
+            let said = moved.are_apart(&hulls, (n, m), Vec3::Z, &frame, &motion);
+            assert!(!(said && meet), "nodes {n} and {m}, {share}");
+            apart += usize::from(said && share == 0.9);
+            met += usize::from(meet);
+        }
+    }
+    // Of pairs that meet soon, the radii still leave a tenth of the gap.
+    assert!(apart > 20 && met > 100, "{apart} of {}, {met}", pairs.len());
 }
 
 /// Points whose distance is known apart from rounding, along normals of any length.

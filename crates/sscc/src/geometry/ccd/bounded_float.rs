@@ -58,7 +58,8 @@ impl Number for BoundedFloat {
     /// Each number differs from its value by at most its error, so their minimum differs by at most the larger error.
     #[inline]
     fn minimum(&self, other: &Self) -> Self {
-        Self { value: self.value.min(other.value), error: self.error.max(other.error) }
+        let error = right_or!(self.error.max(other.error), SmallerErrorOfTwo, self.error.min(other.error));
+        Self { value: self.value.min(other.value), error }
     }
 
     #[inline]

@@ -1,14 +1,15 @@
 //! Directions that provably separate two moving triangles during an interval of time.
 //!
-//! Candidates come from any heuristic; this file evaluates them with a rounding bound. With `u = 2^-53`: at t = 0 and at
-//! t = 1 all corners are taken relative to one of them, `p - o`, which errs by `u |p - o|` in each component (a common
-//! motion of both triangles, however large, does no harm). With `M` the largest magnitudes of these (over all corners and
-//! both times) and `m = sum_c |n_c| M_c`, a projection `n.(p - o)` errs by at most `4 u m` (that rounding, a product, two
-//! sums), the gap of two projections by `10 u m`. Interpolating it to a time t, `g0 + t (g1 - g0)`, rounds three more
-//! times, magnitudes of at most `4 m`: `10 u m`. The root of a linear function is rounded three times relative to itself,
-//! where the function changes by at most `4 m`: `12 u m`. A gap separates when it exceeds `40 u m`, more than all of them
-//! together. Underflow: each of these few dozen operations errs by at most 2^-1074, for which 2^-1022 is added. The
-//! coordinates are at most 2^200 and the largest component of a direction is 1, so nothing overflows.
+//! Candidates come from any heuristic; this file evaluates them with a rounding bound. With `u = 2^-53`: at t = 0 and
+//! at t = 1 all corners are taken relative to one of them, `p - o`, which errs by `u |p - o|` in each component (a
+//! common motion of both triangles, however large, does no harm). With `M` the largest magnitudes of these (over all
+//! corners and both times) and `m = sum_c |n_c| M_c`, a projection `n.(p - o)` errs by at most `4 u m` (that rounding,
+//! a product, two sums), the gap of two projections by `10 u m`. Interpolating it to a time t, `g0 + t (g1 - g0)`,
+//! rounds three more times, magnitudes of at most `4 m`: `10 u m`. The root of a linear function is rounded three
+//! times relative to itself, where the function changes by at most `4 m`: `12 u m`. A gap separates when it exceeds
+//! `40 u m`, more than all of them together. Underflow: each of these few dozen operations errs by at most 2^-1074,
+//! for which 2^-1022 is added. The coordinates are at most 2^200, those relative to a corner 2^201, and the largest
+//! component of a direction is 1, so nothing overflows.
 //!
 //! A slack makes a proof hold for corners that are off these lines: the gap must then also exceed `slack sum_c |n_c|`,
 //! which is at least the change of a gap of two corners whose distance along each axis is off by at most the slack.
@@ -87,8 +88,9 @@ impl MovingPair {
     /// The rounding bound of gaps along a direction.
     #[inline]
     pub(super) fn rounding(&self, dir: DVec3) -> f64 {
+        let slack = self.slack * dir.abs().element_sum();
         right_or!(RELATIVE * dir.abs().dot(self.reach) + ABSOLUTE, SeparationExact, 0.0)
-            + self.slack * dir.abs().element_sum()
+            + right_or!(slack, CandidateSlackQuartered, slack / 4.0)
     }
 }
 

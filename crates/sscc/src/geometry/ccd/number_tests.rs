@@ -70,6 +70,35 @@ fn both_kinds_agree_with_rational_arithmetic() {
     assert!(decided > 10_000 && open > 5, "{decided} {open}");
 }
 
+/// Of a number that lost its digits in a sum and one that lost none, whichever is smaller.
+#[test]
+fn a_minimum_has_the_larger_error() {
+    let (mut lost, mut open) = (0, 0);
+    for i in 0..400 {
+        let small = f64::from(i) / 64.0 + 1e-3;
+        // What is left of a sum with a large number: a multiple of 4.
+        let large = 2.0_f64.powi(54);
+        let sum = |one: f64| BoundedFloat::from_f64(large).plus(&BoundedFloat::from_f64(one));
+        let rounded = sum(small).minus(&BoundedFloat::from_f64(large));
+        for other in [-2.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.0, 8.0] {
+            let exact = rational(small).min(rational(other));
+            for least in [
+                rounded.minimum(&BoundedFloat::from_f64(other)),
+                BoundedFloat::from_f64(other).minimum(&rounded),
+            ] {
+                let off = (rational(least.value) - &exact).abs();
+                assert!(off <= rational(least.error), "{small} {other}: {least:?}");
+                lost += usize::from(off > rational(1e-3));
+                match least.is_positive() {
+                    Some(sign) => assert_eq!(sign, exact.is_positive()),
+                    None => open += 1,
+                }
+            }
+        }
+    }
+    assert!(lost > 1000 && open > 100, "{lost} {open}");
+}
+
 #[test]
 fn quotients_by_roots_are_rounded_down() {
     for (n, square, exact) in

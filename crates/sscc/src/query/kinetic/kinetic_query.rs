@@ -116,10 +116,10 @@ impl<'a> KineticQuery<'a> {
     }
 
     /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last
-    /// discrete query that the root's certificate did not answer, and the region around it proves all pairs free until `q_t1`,
-    /// and there are no exceptions, only the active pairs are tested. Only pairs that come as close as
-    /// [`Impact::TOLERANCE`] without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on
-    /// this query.
+    /// discrete query that the root's certificate did not answer, and the region around it proves all pairs free until
+    /// `q_t1`, and there are no exceptions, only the active pairs are tested; from any other start, and all other
+    /// times, it is a plain continuous query. Only pairs that come as close as [`Impact::TOLERANCE`] without a contact
+    /// can make a difference. Answers of [`KineticQuery::discrete`] do not depend on this query.
     ///
     /// # Errors
     /// As [`Query::discrete`], for start and end.
@@ -158,7 +158,9 @@ impl<'a> KineticQuery<'a> {
         let context = &self.query.context;
         // No region has the exceptions.
         let has_exceptions = !context.detect.exceptions.is_empty();
-        if t0.q != self.history.last_q || right_or!(has_exceptions, KineticExceptionsForgotten, false) {
+        // Region and safe distances say where the motion may go from the last q, and nothing of a start elsewhere.
+        let is_start_known = right_or!(t0.q == self.history.last_q, MotionStartUnchecked, true);
+        if !is_start_known || right_or!(has_exceptions, KineticExceptionsForgotten, false) {
             return Ok(false);
         }
         let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);

@@ -10,6 +10,11 @@ use crate::geometry::{TwoTriangles, nearest_to_origin};
 use crate::model::{RoundingBound, ScaledModel, scale_direction};
 
 /// Safe distances are at most this many times the norm of the z about which they are computed.
+///
+/// The proof needs no such cap. Let E be the rounding bound of a gap at `|z|`, `e0 + e1 |z|`, and let the distance D
+/// be about a z of at most the norm N: both ends together need `2 e0 + e1 (2 N + D)`.
+/// [`RoundingBound::between_configurations`] has `4 e0` and `12 N e1`, and [`bound_along`] adds `e1 D`, since e1 is
+/// part of the rate. The cap keeps distances, whatever the rates are, in the range of numbers that N is in.
 const MAX_NORMS: f64 = 2.0;
 
 /// Computes safe distances, from the model in scaled coordinates.
@@ -41,7 +46,7 @@ impl SafeDistances {
     /// by it.
     pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
-        let mut distance = self.largest;
+        let mut distance = right_or!(self.largest, SafeDistanceUncapped, f64::INFINITY);
         for simplices in filter.simplex_pairs_of_corners(pair.0, pair.1) {
             let modes =
                 |which: usize, simplex: [usize; 3]| simplex.map(|i| self.model.modes(faces[which][i]));

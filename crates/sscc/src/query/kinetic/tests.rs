@@ -385,6 +385,45 @@ fn capsules_are_left_sideways() {
     assert!(left > threshold(20), "{left}");
 }
 
+/// A motion that ends at the last q, or elsewhere in its region, and begins at another q: where sheets touch, or
+/// beyond other pairs than those of the region.
+#[test]
+fn motions_may_begin_anywhere() {
+    let (mut within, mut colliding) = (0, 0);
+    for case in 0..cases(24) {
+        let random = &mut Random(case as u64 + 900_000);
+        let heights = [-1.2, 0.0, 2.5 + 0.5 * random.signed()];
+        let model = three_sheets([10, 5, 4][case % 3], heights, false);
+        let certificates = tight_certificates(&model, [0, 1 << 10][case / 3 % 2]);
+        let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        let contact = heights[2];
+        let gap = contact * 0.05;
+        for i in -8..8 {
+            kinetic.control.plain_cost = 1_000_000;
+            kinetic.control.capsules.share = 0.5;
+            let q = [0.0, contact - gap, contact * 0.01 * f64::from(i)];
+            assert_eq!(kinetic.discrete(&q).unwrap(), oracle.discrete(&q).unwrap());
+            let pairs = |impacts: &[Impact]| impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>();
+            for aside in [1.01, 1.2, 0.5, -0.5] {
+                let start = [0.0, contact - gap + aside * gap, q[2] + contact * 0.01 * random.signed()];
+                for end in [q, [0.0, q[1], q[2] - contact * 0.005]] {
+                    let expected = pairs(oracle.continuous(&start, &end).unwrap());
+                    let is_within = kinetic.region_pairs.has_region();
+                    assert_eq!(
+                        pairs(kinetic.continuous(&start, &end).unwrap()),
+                        expected,
+                        "case {case}, {i}"
+                    );
+                    within += usize::from(is_within);
+                    colliding += usize::from(is_within && !expected.is_empty());
+                }
+            }
+        }
+    }
+    assert!(within > threshold(1000) && colliding > threshold(500), "{within} {colliding}");
+}
+
 /// Only a region that paid, over some steps, makes the next jump begin one; of unrelated q none does.
 #[test]
 fn after_a_jump_a_region_begins_where_the_last_one_paid() {

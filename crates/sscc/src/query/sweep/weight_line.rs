@@ -67,7 +67,8 @@ impl<'a> WeightLine<'a> {
         let after = self.ends[0][self.mode + 1..].iter().filter(|weight| **weight != 0.0).count();
         let error = (f64::EPSILON / 2.0) * (2 + after) as f64 * reach;
         // The reach and partial sums are rounded fewer times than this covers; products underflow by less than the constant.
-        right_or!(4.0 * error * (1.0 + 1e-9) + f64::MIN_POSITIVE, SweepExact, 0.0)
+        let slack = 4.0 * error * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+        right_or!(slack, SweepExact, 0.0, SweepSlackQuartered, slack / 4.0)
     }
 }
 
@@ -109,6 +110,7 @@ pub(super) fn simplest_between(w0: f64, w1: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::test_models::{Random, strips};
+    use crate::{Metric, Modes, TriMesh};
     use num_bigint::BigInt;
 
     /// An f64 times 2^1100 as an integer: exact from 2^-1074 on.
@@ -157,6 +159,44 @@ mod tests {
         }
         // The bound is not wasted.
         assert!(closest > 0.05, "{closest}");
+    }
+
+    /// Two vertices at rest at 0, whose displacements are a little more than a power of two, where rounding is
+    /// largest. At both ends and between them products are rounded one way or the other, so that the distance of the
+    /// two leaves that of their chords by almost all of the slack.
+    #[test]
+    fn products_that_are_rounded_apart_need_the_slack() {
+        let random = &mut Random(29);
+        let mut farthest = 0.0_f64;
+        for case in 0..400 {
+            let mut just_above = || 1.0 + 1e-3 * random.signed().abs();
+            let (u, w0, w1) = (just_above(), just_above(), just_above());
+            // The second vertex goes the other way. A third one makes a triangle.
+            let modes = [DVec3::X * u, DVec3::X * -just_above(), DVec3::ZERO].to_vec();
+            let mesh = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
+            let modes = Modes::new(1, modes).unwrap();
+            let model = ReducedModel::with_metric(mesh, modes, Metric::identity(1)).unwrap();
+            let mut line = WeightLine::new(&model, &[0.0], 0);
+            line.set([w0, w1]);
+            let reach = line.ends().map(|q| model.reach(q)).into_iter().fold(0.0, f64::max);
+            let slack = exact(line.slack(reach));
+            let distance = |w: f64| {
+                let [x, y] = [0, 1].map(|v| exact(model.position(v, &[w]).x));
+                y - x
+            };
+            let (from, to) = (distance(w0), distance(w1));
+            for _ in 0..40 {
+                let w = w0 + (w1 - w0) * random.signed().abs();
+                // (d - d0) (w1 - w0) - (d1 - d0) (w - w0), all over w1 - w0.
+                let whole = exact(w1) - exact(w0);
+                let off = (distance(w) - &from) * &whole - (&to - &from) * (exact(w) - exact(w0));
+                let (off, limit) = (off.magnitude().clone(), whole.magnitude() * slack.magnitude());
+                assert!(off <= limit, "case {case}: weight {w}");
+                let scaled: u32 = (off * 1000_u32 / limit).try_into().unwrap();
+                farthest = farthest.max(f64::from(scaled) / 1000.0);
+            }
+        }
+        assert!(farthest > 0.3, "{farthest}");
     }
 
     #[test]
