@@ -5,8 +5,8 @@
 //! follow from three facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
 //! - `fl(x + y) = (x + y)(1 + d)` with `|d| <= u`; a sum that underflows is exact;
 //! - `fl(x y) = x y (1 + d) + h` with `|d| <= u`, and `h` is 0 unless the product underflows; `|h| <= 2^-1075`;
-//! - nothing overflows: coordinates are at most 2^200, so differences are at most 2^201 and no
-//!   determinant of three of them exceeds 2^606.
+//! - nothing overflows: coordinates are at most 2^202 (2^200, or differences of such ones, rounded), so differences are
+//!   at most 2^203 and no determinant of three of them exceeds 2^612.
 //!
 //! **In space** ([`Plane::side`]), `det = (q x r) . s` with three difference vectors q, r, s is a sum of
 //! six signed products `q_i r_j s_k`. On its way into the sum, each goes through at most 8 roundings: three
@@ -15,8 +15,8 @@
 //! `|fl(det) - det| <= ((1 + u)^8 - 1) T`. The bound sums the computed magnitudes in the same order, hence
 //! `fl(P) >= (1 - u)^8 T`. Together: error `<= ((1 + u)^8 - 1) / (1 - u)^8 fl(P) < (8 u + 100 u^2) fl(P)`.
 //! The factor `9 u` is larger by `u - 100 u^2`, far more than the two roundings of `9 u P + A` take away.
-//! Underflow: the six inner products err by `h`, then multiplied by at most 2^201 and up to four roundings;
-//! the three outer products err by `h` alone: in all less than `7 * 2^-1075 * 2^201 < 2^-871`. The same may be
+//! Underflow: the six inner products err by `h`, then multiplied by at most 2^203 and up to four roundings;
+//! the three outer products err by `h` alone: in all less than `7 * 2^-1075 * 2^203 < 2^-869`. The same may be
 //! missing in `P`, where `9 u` makes it negligible, and `9 u P` itself errs by `h`. `A = 2^-860` covers all
 //! of this many times over.
 //!

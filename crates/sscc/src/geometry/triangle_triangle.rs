@@ -37,6 +37,12 @@ use crate::limits;
 /// ```
 pub fn intersect_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     debug_assert!(a.iter().chain(b).all(|p| limits::contains(*p)), "corner out of range: {a:?} {b:?}");
+    intersect_beyond_limits(a, b)
+}
+
+/// [`intersect_triangle_triangle`] for coordinates up to four times [`limits::LARGEST`]: corners relative to one of
+/// them are up to twice as large as the corners.
+pub(super) fn intersect_beyond_limits(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     let Some(sides_of_b) = Plane::through(a).sides_unless_separated(b) else {
         return false;
     };

@@ -244,6 +244,8 @@ mutants! {
     ModeReachWithoutFloor: CaughtBy("it rounding::motions_whose_squares_underflow_are_no_rest");
     /// The limit of the outer round is not rounded to single precision.
     OuterLimitInDouble: CaughtBy("lib certificates::build::pair_tree_builder::tests::pairs_bounded_up_to_the_limit_are_not_stored");
+    /// Corners relative to one of them may be no larger than corners.
+    RelativeCornersLimited: CaughtBy("it limits::corners_may_be_anywhere_in_the_range");
     /// A quotient that is NaN is a bound.
     QuotientOfNan: CaughtBy("lib model::rounding::tests::nan_is_no_bound");
     /// The larger one of a number and NaN is the number.

@@ -19,6 +19,7 @@ mod impact_tolerance;
 mod intersect;
 mod intersection;
 mod kinetic;
+mod limits;
 mod neighbours;
 mod normal_cones;
 mod pair_tree;

@@ -5,7 +5,8 @@
 use glam::DVec3;
 
 use super::candidate_direction::{CandidateDirection, MovingPair};
-use crate::geometry::{TwoTriangles, intersect_triangle_triangle, nearest_to_origin};
+use crate::geometry::triangle_triangle::intersect_beyond_limits;
+use crate::geometry::{TwoTriangles, nearest_to_origin};
 
 /// The closest points of the two triangles at a time.
 pub(super) struct ClosestPoints {
@@ -32,8 +33,14 @@ impl ClosestPoints {
         if between.is_some() {
             return Self { distance, direction: between };
         }
-        // No direction separates triangles that meet, and searching one is slow.
-        if intersect_triangle_triangle(&corners.a, &corners.b) {
+        // No direction separates triangles that meet, and searching one is slow. Relative to a corner, coordinates are
+        // up to twice as large as those given.
+        let TwoTriangles { a, b } = &corners;
+        if right_or!(
+            intersect_beyond_limits(a, b),
+            RelativeCornersLimited,
+            crate::intersect_triangle_triangle(a, b)
+        ) {
             return Self { distance: 0.0, direction: None };
         }
         Self { distance, direction: find_widest_gap(pair, t, &corners) }
