@@ -60,6 +60,10 @@ mutants! {
     LineExact: CaughtBy("it rounding::safe_scales_end_before_rounding_closes_a_gap");
     /// Sweeps omit the rounding of positions between two weights.
     SweepExact: CaughtBy("it sweep::rounding_between_two_weights_is_not_forgotten");
+    /// Steps of sweeps along features omit the slack.
+    FeaturesWithoutSlack: CaughtBy("lib geometry::ccd::free_until::tests::directions_along_features_leave_room_for_the_slack");
+    /// Sweeps do not follow features.
+    SweepFeaturesNotFollowed: CaughtBy("it near_layers::layers_that_nearly_touch_are_free_after_few_steps");
     /// A |z| that equals the root's radius is certified.
     RootRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals a node's radius is certified in a traversal.

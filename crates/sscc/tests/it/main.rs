@@ -20,6 +20,7 @@ mod intersect;
 mod intersection;
 mod kinetic;
 mod limits;
+mod near_layers;
 mod neighbours;
 mod normal_cones;
 mod pair_tree;

@@ -33,7 +33,7 @@ fn certify(model: &ReducedModel) -> Certificates {
 }
 
 /// The bracket is what its outcome says, and nothing that brute force finds is below `first_free`.
-fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query<'_>, weights: usize) {
+pub(crate) fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query<'_>, weights: usize) {
     let at = |w: f64| {
         let mut q = q.to_vec();
         q[sweep.mode] = w;

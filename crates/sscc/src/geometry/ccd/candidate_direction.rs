@@ -68,6 +68,11 @@ impl MovingPair {
         self.reach.max_element()
     }
 
+    /// How far, along each axis, the distance of two corners may be from the given one.
+    pub(super) fn slack(&self) -> f64 {
+        self.slack
+    }
+
     /// The corners of both at a time, rounded: for heuristics.
     #[inline]
     pub(super) fn at(&self, t: f64) -> TwoTriangles {

@@ -17,7 +17,7 @@ use super::moving_triangle::MovingTriangle;
 /// Steps by rounded directions, at most.
 const MAX_STEPS: usize = 128;
 
-/// Steps along features, at most.
+/// Steps along features of one continuous test, at most.
 const MAX_FEATURE_STEPS: usize = 10_000;
 
 /// Smaller tolerances (2^-44, about 6e-14) count as this one: gaps along rounded directions have a rounding bound of up to
@@ -57,7 +57,9 @@ pub(super) fn advance(
         Advance::Free => None,
         Advance::Within(t) => Some(t),
         Advance::Unknown(t) => {
-            right_or!(advance_along_features(a, b, pair, t, tolerance), FeaturesNotFollowed, Some(t))
+            let mut steps = MAX_FEATURE_STEPS;
+            let time = advance_along_features([a, b], pair, t, tolerance, &mut steps);
+            right_or!(time, FeaturesNotFollowed, Some(t))
         }
     }
 }
@@ -115,40 +117,43 @@ pub(super) fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -
 /// Follows one feature direction with doubling steps until it fails, then determines the closest features again. If
 /// even the shortest step fails, the fixed direction still advances by the time in which the fastest vertices could
 /// close the gap, up to its rounding bound.
+///
+/// Every step is proven for corners within the slack of the pair, too. `steps` are left for this and other pairs: with
+/// none left the time reached is returned.
 #[cold]
-fn advance_along_features(
-    a: &MovingTriangle,
-    b: &MovingTriangle,
+pub(super) fn advance_along_features(
+    [a, b]: [&MovingTriangle; 2],
     pair: &MovingPair,
     mut t: f64,
     tolerance: f64,
+    steps: &mut usize,
 ) -> Option<f64> {
     let mut step = 1.0 - t;
-    let mut tries = 0;
-    while tries < MAX_FEATURE_STEPS {
+    while *steps > 0 {
+        *steps -= 1;
         let Some(direction) = find_gap_above(tolerance, a, b, t) else { return Some(t) };
         let until = pair.along(direction.vector).map_or(t, |fixed| fixed.separates_until(t));
         if until >= 1.0 {
             return None;
         }
         if until <= t {
-            // The gap is within its rounding bound, hence within the tolerance, which is larger.
+            // The gap is within its rounding bound, hence within the tolerance, which is larger; or within the slack.
             break;
         }
         let start = t;
-        while t == start && t + step > until && tries < MAX_FEATURE_STEPS {
+        while t == start && t + step > until && *steps > 0 {
             let mut next = f64::min(t + step, 1.0);
-            while direction.separates(a, b, t, next) {
+            while direction.separates([a, b], pair.slack(), [t, next]) {
                 if next >= 1.0 {
                     return None;
                 }
                 t = next;
                 step *= 2.0;
                 next = f64::min(t + step, 1.0);
-                tries += 1;
+                *steps = steps.saturating_sub(1);
             }
             step *= 0.5;
-            tries += 1;
+            *steps = steps.saturating_sub(1);
         }
         if t == start {
             t = until;

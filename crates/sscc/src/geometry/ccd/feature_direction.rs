@@ -70,12 +70,14 @@ impl FeaturePair {
 }
 
 impl FeatureDirection {
-    /// Whether the direction provably separates both triangles from `t` to `s`: by the signs of coefficients, which exact
-    /// numbers decide where rounded ones do not.
-    pub(super) fn separates(&self, a: &MovingTriangle, b: &MovingTriangle, t: f64, s: f64) -> bool {
-        let rounded = Corners::<BoundedFloat>::between(a, b, t, s).is_separated_along(self);
-        rounded
-            .unwrap_or_else(|| Corners::<Dyadic>::between(a, b, t, s).is_separated_along(self) == Some(true))
+    /// Whether the direction provably separates both triangles from `t` to `s`, for all corners whose distances along each
+    /// axis are within `slack` of those of the given ones: by the signs of coefficients, which exact numbers decide where
+    /// rounded ones do not.
+    pub(super) fn separates(&self, [a, b]: [&MovingTriangle; 2], slack: f64, [t, s]: [f64; 2]) -> bool {
+        let rounded = Corners::<BoundedFloat>::between(a, b, t, s).is_separated_along(self, slack);
+        rounded.unwrap_or_else(|| {
+            Corners::<Dyadic>::between(a, b, t, s).is_separated_along(self, slack) == Some(true)
+        })
     }
 }
 
@@ -181,15 +183,25 @@ impl<T: Number> Corners<T> {
         })
     }
 
-    /// Whether all gaps along a direction are positive during the interval, by their coefficients. None where the error
-    /// bounds do not decide it.
-    fn is_separated_along(&self, direction: &FeatureDirection) -> Option<bool> {
+    /// Whether all gaps along a direction n exceed `slack sum_c |n_c|` during the interval, by their coefficients. None where
+    /// the error bounds do not decide it.
+    fn is_separated_along(&self, direction: &FeatureDirection, slack: f64) -> Option<bool> {
+        let dir = self.direction(direction.features);
+        let gaps = self.gaps_of_vertices(&dir);
+        let change = (slack > 0.0).then(|| {
+            let sum = dir.iter().fold(T::zero(), |sum, n| sum.plus(&n.magnitude()));
+            let slack = right_or!(slack, FeaturesWithoutSlack, 0.0);
+            Polynomial::constant(sum.times(&T::from_f64(slack))).elevated(gaps[0].degree())
+        });
         let mut all = Some(true);
-        for gap in self.gaps_of_vertices(&self.direction(direction.features)) {
+        for gap in gaps {
+            let gap = if direction.is_reversed { gap.reversed() } else { gap };
+            let gap = match &change {
+                Some(change) => gap.minus(change),
+                None => gap,
+            };
             for coefficient in gap.coefficients() {
-                let forwards =
-                    if direction.is_reversed { &T::zero().minus(coefficient) } else { coefficient };
-                match forwards.is_positive() {
+                match coefficient.is_positive() {
                     Some(true) => {}
                     Some(false) => return Some(false),
                     None => all = None,

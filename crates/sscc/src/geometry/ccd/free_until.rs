@@ -1,24 +1,93 @@
 //! How long two moving triangles provably stay apart where the motion of their corners is known up to a bound.
 
 use super::candidate_direction::MovingPair;
-use super::conservative_advancement::{Advance, advance_by_rounded_directions};
+use super::conservative_advancement::{Advance, advance_along_features, advance_by_rounded_directions};
 use super::impact_triangle_triangle::is_separated_by_planes;
 use super::moving_triangle::MovingTriangle;
+
+/// Directions along features are followed only where the distance is more than this many times the slack: nearer, they gain
+/// little before the slack ends them.
+const FEATURE_GAP: f64 = 32.0;
 
 /// A time up to which, itself included, the triangles have no point in common, for all corners whose distances along each
 /// axis are within `slack` of those of the given ones. Infinite: until t = 1. 0: nothing is proven, not even at t = 0. Near a
 /// contact it is close to the largest such time.
 ///
 /// Every step is proven by a direction that separates the triangles by more than the slack and the rounding bound. Unlike
-/// [`impact_triangle_triangle`](super::impact_triangle_triangle), it does not decide what is closer than that.
-pub(crate) fn free_until(a: &MovingTriangle, b: &MovingTriangle, slack: f64) -> f64 {
+/// [`impact_triangle_triangle`](super::impact_triangle_triangle), it does not decide what is closer than that. Directions
+/// along features are far slower than rounded ones: `steps` of them are left for this and other pairs. With none left, the
+/// time may be far from the largest one.
+pub(crate) fn free_until(a: &MovingTriangle, b: &MovingTriangle, slack: f64, steps: &mut usize) -> f64 {
     let pair = MovingPair::with_slack(a, b, slack);
     if is_separated_by_planes(&pair) {
         return f64::INFINITY;
     }
     match advance_by_rounded_directions(&pair, 0.0) {
         Advance::Free => f64::INFINITY,
-        Advance::Within(t) | Advance::Unknown(t) => t,
+        Advance::Within(t) => t,
+        Advance::Unknown(t) => {
+            let time = advance_along_features([a, b], &pair, t, FEATURE_GAP * slack, steps);
+            right_or!(time.unwrap_or(f64::INFINITY), SweepFeaturesNotFollowed, t)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::super::impact_triangle_triangle::impact_triangle_triangle;
+    use super::*;
+    use crate::test_models::Random;
+
+    /// Two copies of a triangle, one above the other, that turn together and come closer. Beyond a time, one of them could
+    /// reach the other within the slack.
+    #[test]
+    fn directions_along_features_leave_room_for_the_slack() {
+        let random = &mut Random(31);
+        let (mut advanced, mut stopped) = (0, 0);
+        for case in 0..60 {
+            let gap = 10.0_f64.powi(-3 - case % 3);
+            let slack = gap * (0.3 + 0.2 * random.signed());
+            let below = MovingTriangle {
+                t0: [DVec3::ZERO, DVec3::X, DVec3::Y],
+                t1: [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + random.vector() * 0.5),
+            };
+            let raised = |corners: [DVec3; 3], by: f64| corners.map(|p| p + DVec3::Z * by);
+            let above = MovingTriangle { t0: raised(below.t0, gap), t1: raised(below.t1, 0.1 * gap) };
+            let pair = MovingPair::with_slack(&below, &above, slack);
+            let mut steps = 1000;
+            let t = advance_along_features([&below, &above], &pair, 0.0, slack, &mut steps).unwrap_or(1.0);
+            (advanced, stopped) = (advanced + i32::from(t > 0.1), stopped + i32::from(t < 1.0));
+            for i in 0..=16 {
+                let [a, b] = [&below, &above].map(|moving| moving.at(t * f64::from(i) / 16.0));
+                for signs in 0..8 {
+                    let sign = |axis: u32| if signs >> axis & 1 == 0 { slack } else { -slack };
+                    let shift = DVec3::new(sign(0), sign(1), sign(2)) * (1.0 - 1e-9);
+                    let [a, b] =
+                        [MovingTriangle { t0: a, t1: a }, MovingTriangle { t0: b, t1: b.map(|p| p + shift) }];
+                    assert_eq!(impact_triangle_triangle(&a, &b, 1e-12), None, "case {case}, {i}, {shift}");
+                }
+            }
+        }
+        assert!(advanced > 20 && stopped > 20, "{advanced} {stopped}");
+    }
+
+    #[test]
+    fn without_steps_the_time_reached_is_returned() {
+        let flat = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let turned = [DVec3::ZERO, DVec3::new(0.8, 0.1, 0.5), DVec3::new(-0.2, 0.7, 0.6)];
+        let below = MovingTriangle { t0: flat, t1: turned };
+        let above = MovingTriangle {
+            t0: flat.map(|p| p + DVec3::Z * 1e-10),
+            t1: turned.map(|p| p + DVec3::Z * 1e-10),
+        };
+        let mut none = 0;
+        let early = free_until(&below, &above, 1e-15, &mut none);
+        let mut steps = 100;
+        assert!(early > 0.0 && early < 0.1, "{early}");
+        assert_eq!(free_until(&below, &above, 1e-15, &mut steps), f64::INFINITY);
+        assert!((80..100).contains(&steps), "{steps}");
     }
 }
 

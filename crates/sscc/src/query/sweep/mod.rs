@@ -1,9 +1,11 @@
 //! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket.
 
+mod contact;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod sweep;
 mod sweep_modes;
 mod weight_line;
 mod weight_sweep;
+mod work;
 
 pub use sweep::{Sweep, SweepOutcome};

@@ -1,0 +1,91 @@
+//! Sweeps of two layers that nearly touch everywhere and turn together: few steps suffice, and the work is limited where
+//! positions are rounded by nearly as much as the layers are apart.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use sscc::{Method, Modes, Query, ReducedModel, Scope, Sweep, SweepOutcome, TriMesh};
+
+use crate::sweep::check;
+
+/// Pieces of a layer along each side.
+const SIDE: u32 = 4;
+
+/// Triangles of both layers.
+const TRIANGLES: usize = 4 * (SIDE * SIDE) as usize;
+
+/// Two layers, `gap` apart, that one mode waves together. It also brings them closer, by `closing` times the gap.
+fn layers(gap: f64, wave: impl Fn(f64, f64) -> DVec3, closing: f64) -> ReducedModel {
+    let row = SIDE + 1;
+    let (mut positions, mut displacements, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    for layer in 0..2 {
+        let first = positions.len() as u32;
+        for i in 0..row * row {
+            let [x, y] = [i % row, i / row].map(|i| f64::from(i) / f64::from(SIDE));
+            positions.push(DVec3::new(x, y, f64::from(layer) * gap));
+            displacements.push(wave(x, y) - DVec3::Z * (f64::from(layer) * closing * gap));
+        }
+        for i in (0..SIDE * SIDE).map(|i| first + i / SIDE * row + i % SIDE) {
+            faces.extend([[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]);
+        }
+    }
+    assert_eq!(faces.len(), TRIANGLES);
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    ReducedModel::new(mesh, Modes::new(1, displacements).unwrap()).unwrap()
+}
+
+fn upwards(x: f64, y: f64) -> DVec3 {
+    DVec3::Z * (TAU * (0.8 * x + 0.3 * y)).sin()
+}
+
+fn askew(x: f64, y: f64) -> DVec3 {
+    DVec3::new(0.3 * (4.0 * y).cos(), 0.2 * (3.0 * x).sin(), (5.0 * x + 2.0 * y).sin())
+}
+
+/// The sweep of the only mode from 0 to 1, checked by brute force, and its tests of triangles and steps.
+fn sweep(model: &ReducedModel) -> (Sweep, u64) {
+    let mut query = Query::without_certificates(model, Scope::of(model), Method::BdTree).unwrap();
+    let sweep = query.sweep(&[0.0], 0, 1.0).unwrap();
+    let statistics = query.statistics();
+    assert!(statistics.complete && statistics.opened > 0 && statistics.box_tests > 0, "{statistics:?}");
+    let mut oracle = Query::without_certificates(model, Scope::of(model), Method::BruteForce).unwrap();
+    check(&sweep, model, &[0.0], &mut oracle, 60);
+    (sweep, statistics.triangle_tests)
+}
+
+/// Each pair of neighbouring triangles turns by about one radian while it is `gap` apart.
+#[test]
+fn layers_that_nearly_touch_are_free_after_few_steps() {
+    for gap in [1e-3, 1e-6, 1e-9, 1e-12] {
+        for model in [layers(gap, upwards, 0.0), layers(gap, askew, 0.0)] {
+            let (sweep, tests) = sweep(&model);
+            assert_eq!((sweep.outcome, sweep.first_free), (SweepOutcome::Free, Some(1.0)), "{gap}");
+            assert!(tests < 128 * TRIANGLES as u64, "{gap}: {tests}");
+        }
+    }
+}
+
+/// They would touch at 2/3, all at once.
+#[test]
+fn layers_that_meet_are_bracketed_after_few_steps() {
+    for gap in [1e-3, 1e-9, 1e-12] {
+        for model in [layers(gap, upwards, 1.5), layers(gap, askew, 1.5)] {
+            let (sweep, tests) = sweep(&model);
+            assert!(sweep.first_free.is_some_and(|free| free > 0.6 && free <= 2.0 / 3.0), "{gap}: {sweep:?}");
+            assert!(matches!(sweep.outcome, SweepOutcome::Hit | SweepOutcome::WithinTolerance), "{sweep:?}");
+            assert!(tests < 512 * TRIANGLES as u64, "{gap}: {tests}");
+        }
+    }
+}
+
+#[test]
+fn gaps_of_a_few_roundings_take_limited_work() {
+    for gap in [2e-14, 8e-15, 4e-15, 1e-15, 2e-16] {
+        for closing in [0.0, 1.5] {
+            for model in [layers(gap, upwards, closing), layers(gap, askew, closing)] {
+                let (sweep, tests) = sweep(&model);
+                assert!(tests < 4096 * TRIANGLES as u64, "{gap}, {closing}: {tests} {sweep:?}");
+            }
+        }
+    }
+}
