@@ -37,6 +37,9 @@ pub struct CertifyOptions {
     /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
     /// since the tree takes most of the time.
     pub budget: usize,
+    /// How far radii may reach, in units of `R_global` (paper, section 5.2), at least 1. The pair tree ends at that radius,
+    /// or before it where its budget is used up. Radii of nodes are capped at the tree's limit, and not below `R_global`.
+    pub reach: f64,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
 }
@@ -51,6 +54,7 @@ impl Default for CertifyOptions {
             ignore_rest: false,
             max_exceptions: None,
             budget: Self::DEFAULT_BUDGET,
+            reach: Self::DEFAULT_REACH,
             threads: None,
         }
     }
@@ -59,6 +63,9 @@ impl Default for CertifyOptions {
 impl CertifyOptions {
     /// The default of [`CertifyOptions::budget`], in bytes for each triangle.
     pub const DEFAULT_BUDGET: usize = 64;
+
+    /// The default of [`CertifyOptions::reach`].
+    pub const DEFAULT_REACH: f64 = 16.0;
 
     /// The default of [`CertifyOptions::max_exceptions`] for a mesh: half the number of its triangles. Testing more in
     /// every query costs as much as radii can save.

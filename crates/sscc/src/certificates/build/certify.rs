@@ -53,15 +53,14 @@ impl CertifiedRadii {
 
     /// The certificates of the model that was prepared.
     pub(crate) fn into_certificates(self, preparation: Preparation) -> Certificates {
-        let Preparation { digest, scope, hierarchy, global_radius, rest_collisions, epsilon, .. } =
-            preparation;
+        let Preparation { digest, scope, hierarchy, rest_collisions, epsilon, .. } = preparation;
         Certificates::new(CertificateParts {
             digest,
             scope,
             rest_collisions,
             hierarchy,
             epsilon,
-            global_radius,
+            global_radius: self.radii.cap,
             node_radii: self.radii.nodes,
             root_pair_radii: self.radii.root_pairs,
             pair_tree: self.pair_tree,

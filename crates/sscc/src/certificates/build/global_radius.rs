@@ -24,3 +24,14 @@ pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64
     }
     f64::INFINITY
 }
+
+/// `reach` times the global radius, as far as the pair tree can store it: rounded down to single precision. A global radius
+/// out of that range is the farthest radius itself: then there is no pair tree.
+pub(super) fn farthest_radius(global_radius: f64, reach: f64) -> f64 {
+    let farthest = global_radius * reach;
+    if global_radius > f64::from(f32::MAX) {
+        global_radius
+    } else {
+        f64::from(to_f32_down(farthest)).max(global_radius)
+    }
+}

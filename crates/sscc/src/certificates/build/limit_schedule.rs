@@ -27,6 +27,7 @@ const BUDGET_MARGIN: f64 = 1.1;
 /// Which limit to try next.
 pub(super) struct LimitSchedule {
     global_radius: f64,
+    farthest: f64,
     limit: f64,
     complete_below: f64,
     too_large: f64,
@@ -34,10 +35,16 @@ pub(super) struct LimitSchedule {
 
 impl LimitSchedule {
     /// None if radii are out of the range of single precision, in which the tree stores them.
-    pub(super) fn new(global_radius: f64) -> Option<Self> {
+    pub(super) fn new(global_radius: f64, farthest: f64) -> Option<Self> {
         let limit = f64::from(to_f32_down(global_radius * FIRST_SHARE));
         let is_in_range = limit > 0.0 && global_radius <= f64::from(f32::MAX);
-        is_in_range.then_some(Self { global_radius, limit, complete_below: 0.0, too_large: f64::INFINITY })
+        is_in_range.then_some(Self {
+            global_radius,
+            farthest,
+            limit,
+            complete_below: 0.0,
+            too_large: f64::INFINITY,
+        })
     }
 
     /// The limit to try.
@@ -64,7 +71,7 @@ impl LimitSchedule {
         } else {
             let Some(estimate) = self.estimate(budget, count_below) else { return false };
             let next = if estimate < self.too_large { estimate } else { self.half_way() };
-            (next, (self.complete_below * MIN_STEP).min(self.global_radius))
+            (next, (self.complete_below * MIN_STEP).min(self.farthest))
         };
         self.limit = next;
         next >= smallest
@@ -81,12 +88,12 @@ impl LimitSchedule {
         let count_below = |radius: f64| count_below(radius).max(1) as f64;
         let (stored, at_half) = (count_below(self.complete_below), count_below(self.complete_below / 2.0));
         let room = budget as f64 / stored;
-        if self.complete_below >= self.global_radius || room < BUDGET_MARGIN {
+        if self.complete_below >= self.farthest || room < BUDGET_MARGIN {
             return None;
         }
         let power = (stored / at_half).log2().max(1.0);
         let step = (BUDGET_MARGIN * room).powf(1.0 / power).min(MAX_STEP);
-        let next = f64::from(to_f32_down(self.complete_below * step)).min(self.global_radius);
+        let next = f64::from(to_f32_down(self.complete_below * step)).min(self.farthest);
         (next > self.complete_below).then_some(next)
     }
 }

@@ -16,7 +16,7 @@ use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use super::progress_counter::ProgressCounter;
 use super::radius_bound::{BoundedNodePair, RadiusBound};
-use super::search_goal::{Precision, SearchGoal};
+use super::search_goal::{Precision, SearchGoal, coarse_cap};
 use super::task::{NodeRadiusTask, Task, TaskResult};
 use crate::hierarchy::Node;
 use crate::{Error, Progress};
@@ -32,6 +32,8 @@ const UPPER_BOUND_REACH: f64 = 4.0;
 pub(super) struct NodeRadii {
     pub(super) nodes: Vec<f64>,
     pub(super) root_pairs: Vec<f64>,
+    /// The cap of all radii: the global radius, or the limit of the pair tree where that is larger.
+    pub(super) cap: f64,
 }
 
 impl NodeRadii {
@@ -45,7 +47,11 @@ impl NodeRadii {
         let nodes = preparation.hierarchy.nodes();
         let (count, pairs) = (nodes.len(), nodes[0].child_pairs().count());
         let counter = ProgressCounter::new(progress, 2 * (count + pairs));
-        let radii = Self { nodes: vec![0.0; count], root_pairs: vec![0.0; pairs] };
+        let radii = Self {
+            nodes: vec![0.0; count],
+            root_pairs: vec![0.0; pairs],
+            cap: builder.complete_below.max(preparation.global_radius),
+        };
         let mut passes = Passes { preparation, builder, counter, radii };
         let upper = passes.run(Precision::Coarse, f64::INFINITY, executor)?;
         let upper = upper.min(passes.root_upper_bound(executor)?);
@@ -99,7 +105,7 @@ impl Passes<'_> {
             let wanted: Vec<usize> =
                 (0..self.radii.root_pairs.len()).filter(|i| self.radii.root_pairs[*i] < below).collect();
             self.counter.add(self.radii.root_pairs.len() - wanted.len() + 1);
-            let cap = self.preparation.global_radius;
+            let cap = self.radii.cap;
             let task = |index: usize| self.task(precision, 0, wanted[index]..wanted[index] + 1, cap);
             let bounds = search(executor, wanted.len(), &task, &|count| self.counter.add(count))?;
             wanted.into_iter().zip(bounds).for_each(|(i, bound)| take(&mut self.radii.root_pairs[i], bound));
@@ -131,7 +137,7 @@ impl Passes<'_> {
             Some(pair) if n == 0 => pair..pair + 1,
             _ => 0..nodes[n].child_pairs().count(),
         };
-        let cap = self.preparation.global_radius.min(UPPER_BOUND_REACH * radii.nodes[0]);
+        let cap = self.radii.cap.min(UPPER_BOUND_REACH * radii.nodes[0]);
         let task = |_| {
             // From the bounded pairs, too, but with the precision of the first pass.
             let mut task = self.task(Precision::Full, n, siblings.clone(), cap);
@@ -145,7 +151,7 @@ impl Passes<'_> {
     /// The smallest radius of a node's children, at most the global one.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
-        radii.fold(self.preparation.global_radius, f64::min)
+        radii.fold(self.radii.cap, f64::min)
     }
 
     /// The task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings`: their
@@ -155,7 +161,7 @@ impl Passes<'_> {
         let node = n as u32;
         if hierarchy.is_bucket_below_root(node) || hierarchy.nodes()[n].is_leaf() {
             // The radii of its parts are not known: they were not searched.
-            return NodeRadiusTask::within(node, precision, self.preparation.global_radius);
+            return NodeRadiusTask::within(node, precision, self.radii.cap);
         }
         let goal = SearchGoal::new(cap, precision);
         let Some(frontier) = self.builder.frontier(hierarchy, n, siblings.clone(), cap) else {
@@ -166,7 +172,11 @@ impl Passes<'_> {
         match precision {
             Precision::Coarse => {
                 // Without a pair tree queries have no other radii than these.
-                let refine_up_to = if self.builder.is_empty() { cap } else { self.preparation.coarse_cap() };
+                let refine_up_to = if self.builder.is_empty() {
+                    cap
+                } else {
+                    coarse_cap(self.radii.cap, self.preparation.epsilon)
+                };
                 let pairs = open.into_iter().filter(|pair| pair.lower < radius).collect();
                 NodeRadiusTask { node, pairs, goal: SearchGoal { cap: radius, refine_up_to, precision } }
             }

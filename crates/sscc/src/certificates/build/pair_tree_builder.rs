@@ -70,7 +70,9 @@ impl PairTreeBuilder {
         let hierarchy = &preparation.hierarchy;
         let budget = budget.min(MAX_ENTRIES);
         let mut builder = Self { bvtt: Bvtt::empty(), complete_below: 0.0, budget };
-        let Some(mut schedule) = LimitSchedule::new(preparation.global_radius).filter(|_| budget > 0) else {
+        let Some(mut schedule) =
+            LimitSchedule::new(preparation.global_radius, preparation.farthest).filter(|_| budget > 0)
+        else {
             return Ok(builder);
         };
         builder.bvtt = Bvtt::new(hierarchy);
@@ -88,7 +90,7 @@ impl PairTreeBuilder {
         }
         builder.complete_below = schedule.complete_below();
         refine_pairs(&mut builder.bvtt, builder.complete_below, preparation, executor)?;
-        let outer = (OUTER_FACTOR * builder.complete_below).min(preparation.global_radius);
+        let outer = (OUTER_FACTOR * builder.complete_below).min(preparation.farthest);
         // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not
         // stored.
         let round = Round {

@@ -1,11 +1,10 @@
 //! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
 //! the options alone, so every process computes its own, and all are equal.
 
-use super::global_radius::global_radius;
+use super::global_radius::{farthest_radius, global_radius};
 use super::node_groups::NodeGroups;
 use super::radius_search::RadiusSearch;
 use super::radius_search_context::RadiusSearchContext;
-use super::search_goal::coarse_cap;
 use crate::bounds::NodePairBounds;
 use crate::certificates::{CertifyOptions, Digest, Scope};
 use crate::detect::colliding_pairs;
@@ -19,7 +18,10 @@ pub(crate) struct Preparation {
     pub(crate) digest: Digest,
     pub(crate) scope: Scope,
     pub(crate) hierarchy: Hierarchy,
+    /// The paper's `R_global`.
     pub(crate) global_radius: f64,
+    /// The largest radius that the pair tree may reach: [`CertifyOptions::reach`] times the global one.
+    pub(crate) farthest: f64,
     pub(crate) rest_collisions: u64,
     pub(crate) epsilon: f64,
     scaled: ScaledModel,
@@ -40,6 +42,9 @@ impl Preparation {
     ) -> Result<Self, Error> {
         if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
             return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
+        }
+        if !(options.reach >= 1.0 && options.reach <= f64::from(f32::MAX)) {
+            return Err(Error::Option { name: "reach", value: options.reach, wanted: "at least 1" });
         }
         let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
         check_scaled_modes(model.mesh(), model.modes(), &metric)?;
@@ -73,23 +78,20 @@ impl Preparation {
         let (digest, nodes) =
             rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
         let filter = PairFilter::new(model, &scope.filter).excluding(&scope.exceptions);
+        let global_radius = global_radius(model, &scope.metric, &scope.center);
         Ok(Self {
             digest,
             groups: NodeGroups::new(&filter, &hierarchy),
             filter,
             nodes,
-            global_radius: global_radius(model, &scope.metric, &scope.center),
+            global_radius,
+            farthest: farthest_radius(global_radius, options.reach),
             rest_collisions,
             epsilon: options.epsilon,
             scope,
             hierarchy,
             scaled,
         })
-    }
-
-    /// The radius up to which coarse searches go.
-    pub(crate) fn coarse_cap(&self) -> f64 {
-        coarse_cap(self.global_radius, self.epsilon)
     }
 
     /// Whether the AABBs of two nodes touch or overlap at the centre.

@@ -62,9 +62,9 @@ pub(super) fn split(
                 pair.lower = pair.lower.max(to_f32_down(radius));
             }
             None => {
-                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.global_radius);
+                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.farthest);
                 let radius = search.between_without_subdivision(nodes, cap)?.radius;
-                if radius < cap || cap == preparation.global_radius {
+                if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }
                 pair.lower = pair.lower.max(to_f32_down(radius));

@@ -27,6 +27,7 @@ impl Key {
         hasher.update(&preparation.digest.0);
         hasher.update(&preparation.epsilon.to_bits().to_le_bytes());
         hasher.update(&preparation.global_radius.to_bits().to_le_bytes());
+        hasher.update(&preparation.farthest.to_bits().to_le_bytes());
         let nodes = preparation.hierarchy.nodes();
         hasher.update(&(nodes.len() as u64).to_le_bytes());
         for node in nodes {
