@@ -34,7 +34,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
 
-    // All modes swing with growing amplitude, until some vertex may have moved by half the size of the shape.
+    // All modes swing with growing amplitude, up to the radius at which all radii are capped.
     let (rest, largest) = (vec![0.0; model.rank()], certificates.global_radius());
     let growing = (0..FRAMES).map(|i| swing(&model, &rest, i, largest * i as f64 / FRAMES as f64));
     let mut query = Query::new(&model, &certificates)?;

@@ -22,6 +22,7 @@ pub struct CertifyArguments<'a, 'py> {
     pub center: Option<&'a Bound<'py, PyAny>>,
     pub scheme: Option<&'a Bound<'py, PyAny>>,
     pub budget: Option<&'a Bound<'py, PyAny>>,
+    pub reach: Option<&'a Bound<'py, PyAny>>,
     pub neighbours: Option<&'a Bound<'py, PyAny>>,
     pub weld: Option<&'a Bound<'py, PyAny>>,
     pub ignore_rest: Option<&'a Bound<'py, PyAny>>,
@@ -60,6 +61,14 @@ impl CertifyArguments<'_, '_> {
             return Err(value("scheme 'paper' stores no pair tree: leave budget out"));
         }
         let budget = if scheme == Some(Scheme::Paper) { 0 } else { budget.unwrap_or(default.budget) };
+        let reach = number(self.reach, "reach")?;
+        if scheme == Some(Scheme::Paper) && reach.is_some() {
+            return Err(value("scheme 'paper' ends radii at the global radius: leave reach out"));
+        }
+        let reach = reach.unwrap_or(default.reach);
+        if !CertifyOptions::is_reach(reach) {
+            return Err(value(format!("reach is {reach}: a finite number of at least 1 was expected")));
+        }
         let rules = Neighbours::ALL.map(|rule| (rule.name(), rule));
         let neighbours = choice(self.neighbours, "neighbours", &rules)?.unwrap_or_default();
         neighbours.check_models().map_err(|error| refused(&error, "neighbours"))?;
@@ -74,6 +83,7 @@ impl CertifyArguments<'_, '_> {
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,
+            reach,
             threads: threads(self.threads)?,
         })
     }

@@ -18,12 +18,13 @@ use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
 /// The keywords of `Model.certify`, except `progress`.
-const KEYWORDS: [&str; 12] = [
+const KEYWORDS: [&str; 13] = [
     "epsilon",
     "metric",
     "center",
     "scheme",
     "budget",
+    "reach",
     "neighbours",
     "weld",
     "ignore_rest",
@@ -56,6 +57,7 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         center,
         scheme,
         budget,
+        reach,
         neighbours,
         weld,
         ignore_rest,
@@ -73,6 +75,7 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         center: center.as_ref(),
         scheme: scheme.as_ref(),
         budget: budget.as_ref(),
+        reach: reach.as_ref(),
         neighbours: neighbours.as_ref(),
         weld: weld.as_ref(),
         ignore_rest: ignore_rest.as_ref(),

@@ -59,6 +59,7 @@ class Model:
         center: ArrayLike | None = None,
         scheme: Literal["full", "paper"] | None = None,
         budget: int | None = None,
+        reach: float | None = None,
         neighbours: Literal["exclude", "include-one-vertex"] | None = None,
         weld: bool | None = None,
         ignore_rest: bool | None = None,
@@ -74,6 +75,7 @@ class Model:
         metric: as in ``Model``; None: the model's own.
         center: the q from which radii are measured (r,); None: 0, the rest pose.
         scheme: "full" (default) stores a pair tree of up to ``budget`` (64) bytes for each triangle; "paper" does not.
+        reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 16.
         neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
         ignore_rest: whether pairs that collide at rest never count.

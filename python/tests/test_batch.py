@@ -174,6 +174,7 @@ def test_certificates_by_shards_have_the_same_bytes(client: Any) -> None:
         {},
         {"scheme": "paper"},
         {"budget": 64, "weld": True, "neighbours": "include-one-vertex"},
+        {"budget": 512, "reach": 3},
     ]
     for options in choices:
         here = content_of(model.certify(**options))

@@ -56,6 +56,7 @@ def test_certificates_and_answers_are_the_same(
             ["--neighbours", "include-one-vertex", "--weld=on"],
             {"neighbours": "include-one-vertex", "weld": True},
         ),
+        (["--reach", "1.5", "--budget", "512"], {"reach": 1.5, "budget": 512}),
         (["--ignore-rest", "--max-exceptions", "7"], {"ignore_rest": True, "max_exceptions": 7}),
     ],
 )

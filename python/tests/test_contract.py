@@ -71,6 +71,8 @@ def test_certificates_state_their_options(model: sscc.Model) -> None:
     assert certs.neighbours == "include-one-vertex" and certs.weld
     assert certs.pair_limit == 0 and certs.pairs == 6 and certs.exceptions.shape == (0, 2)
     assert model.certify(budget=64).pairs > model.certify(budget=0).pairs == 6
+    paper, near, far = certs, *(model.certify(center=center, budget=4096, reach=reach) for reach in (1, 2))
+    assert paper.global_radius == near.global_radius < far.global_radius <= 2 * near.global_radius
     assert certs.model is model
 
 

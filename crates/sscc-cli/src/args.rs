@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use sscc::CertifyOptions;
 
 /// The template of a help page with examples, one command a line. The examples are part of the template because clap
 /// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
@@ -214,6 +215,10 @@ pub struct Options {
     /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
+    /// How far radii of the scheme full may reach, in units of the paper's global radius, at least 1; they end before where
+    /// the budget does [default: 16]
+    #[arg(long, value_name = "X", value_parser = parse_reach)]
+    pub reach: Option<f64>,
     #[command(flatten)]
     pub threads: Threads,
 }
@@ -277,7 +282,7 @@ pub enum Scheme {
 #[command(
     help_template = with_examples!(
         "sscc certify bunny.model.safetensors -o bunny.sscc.safetensors"
-        "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 256"
+        "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 256 --reach 32"
         "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
         "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
     )
@@ -748,6 +753,13 @@ fn parse_epsilon(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(epsilon) if epsilon > 0.0 && epsilon < 1.0 => Ok(epsilon),
         _ => Err("a number between 0 and 1 was expected".into()),
+    }
+}
+
+fn parse_reach(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(reach) if CertifyOptions::is_reach(reach) => Ok(reach),
+        _ => Err("a finite number of at least 1 was expected".into()),
     }
 }
 

@@ -52,6 +52,7 @@ pub fn request(
             args::Scheme::Full => Scheme::Full,
         }),
         budget: typed.budget.map(|bytes| bytes as usize),
+        reach: typed.reach,
         threads: Some(threads(&typed.threads)),
     })
 }
@@ -79,14 +80,14 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
 }
 
 /// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree unless
-/// `--scheme` or `--budget` requests one: a few queries do not save the time that it takes to compute.
+/// `--scheme`, `--budget` or `--reach` requests one: a few queries do not save the time that it takes to compute.
 pub fn certificates_now(
     loaded: &LoadedModel,
     files: &args::Model,
     typed: &args::Options,
 ) -> Result<Certificates> {
     let mut options = request(loaded, files, typed)?.options(&loaded.model)?;
-    if (typed.scheme, typed.budget) == (None, None) {
+    if (typed.scheme, typed.budget, typed.reach) == (None, None, None) {
         options.budget = 0;
     }
     note("no --certificates given: computing them first (sscc certify keeps them in a file)");

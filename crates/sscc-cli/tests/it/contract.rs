@@ -185,6 +185,14 @@ fn schemes() {
     assert_eq!(default, fs::read(folder.path().join("full.sscc.safetensors")).unwrap());
     let contradiction = ["certify", MODEL, "-o", "x.sscc.safetensors", "--scheme", "paper", "--budget", "8"];
     assert!(sscc(folder.path(), &contradiction).refusal().contains("leave --budget out"));
+    let contradiction = ["certify", MODEL, "-o", "x.sscc.safetensors", "--scheme", "paper", "--reach", "2"];
+    assert!(sscc(folder.path(), &contradiction).refusal().contains("leave --reach out"));
+    // Radii beyond the paper's global radius.
+    let near = certify("near.sscc.safetensors", &["--reach", "1"]);
+    let far = certify("far.sscc.safetensors", &["--reach", "3", "--budget", "4096"]);
+    let global = |report: &Value| report["global_radius"].as_f64().unwrap();
+    assert_eq!(global(&near), global(&paper));
+    assert!(2.9 * global(&near) < global(&far) && global(&far) <= 3.0 * global(&near));
     let check = |file: &str, args: &[&str]| {
         sscc(folder.path(), &[&["check", MODEL, "--certificates", file, "--q=0,0"], args].concat())
     };
@@ -192,6 +200,8 @@ fn schemes() {
         ("full.sscc.safetensors", "--scheme=full"),
         ("full.sscc.safetensors", "--budget=1000"),
         ("small.sscc.safetensors", "--budget=16"),
+        ("near.sscc.safetensors", "--reach=1"),
+        ("far.sscc.safetensors", "--reach=3"),
         ("paper.sscc.safetensors", "--scheme=paper"),
     ] {
         assert_eq!(check(file, &[flag]).code, Some(0), "{file} {flag}");
@@ -203,6 +213,13 @@ fn schemes() {
     ] {
         assert!(check(file, &[flag]).refusal().contains("contradicts --scheme or --budget"), "{file} {flag}");
     }
+    let refusal = check("far.sscc.safetensors", &["--reach=2"]).refusal();
+    assert!(refusal.contains("its radii reach farther than --reach 2 allows"), "{refusal}");
+    let refusal = check("paper.sscc.safetensors", &["--reach=2"]).refusal();
+    assert!(refusal.contains("it has no pair tree"), "{refusal}");
+    // As --budget does, --reach asks for a pair tree of certificates that are computed at once.
+    let at_once = sscc(folder.path(), &["sweep", MODEL, "--reach", "2", "--json"]);
+    assert!(at_once.code.is_some_and(|code| code < 2), "{at_once:?}");
 }
 
 #[test]
@@ -424,6 +441,10 @@ fn help_and_usage() {
         &["check", "x.obj", "--q=1", "--method", "guess"],
         &["check", "x.obj", "--q=1", "--continuous"],
         &["certify", "x.obj", "-o", "x", "--budget", "0"],
+        &["certify", "x.obj", "-o", "x", "--reach", "0.5"],
+        &["certify", "x.obj", "-o", "x", "--reach", "inf"],
+        &["certify", "x.obj", "-o", "x", "--reach", "nan"],
+        &["check", "x.obj", "--reach", "2"],
         &["certify", "x.obj", "-o", "x", "--scheme", "best"],
         &["certify", "x.obj", "-o", "x", "--epsilon", "0"],
         &["certify", "x.obj", "-o", "x", "--epsilon", "nan"],

@@ -11,7 +11,7 @@
 //! | `root_pair_states` | U8 | p | as `node_states` |
 //! | `metric_scales` | F64 | r | the diagonal of the metric's factor S, or |
 //! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
-//! | `limit` | F64 | 1 | `R_global`: radii are resolved and stored up to here; may be infinite |
+//! | `limit` | F64 | 1 | the global radius: radii are resolved and stored up to here; may be infinite |
 //! | `epsilon` | F64 | 1 | relative error allowed |
 //! | `center` | F64 | r | the q from which radii are measured: they are norms `\|S (q - center)\|` |
 //! | `exceptions` | U32 | e x 2 | triangle pairs that no radius covers; every query tests them; sorted |

@@ -36,6 +36,8 @@ pub struct CertificateRequest {
     pub scheme: Option<Scheme>,
     /// Memory for the pair tree (`--budget`), in bytes for each triangle.
     pub budget: Option<usize>,
+    /// How far radii may reach (`--reach`), in units of the global radius of the paper.
+    pub reach: Option<f64>,
     /// Number of threads; none: all cores.
     pub threads: Option<usize>,
 }
@@ -63,6 +65,7 @@ impl CertificateRequest {
             ignore_rest: self.ignore_rest,
             max_exceptions: self.max_exceptions,
             budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
+            reach: self.reach()?.unwrap_or(CertifyOptions::DEFAULT_REACH),
             threads: Some(self.threads.unwrap_or_else(available_threads)),
         })
     }
@@ -107,6 +110,22 @@ impl CertificateRequest {
             }
             (Some(Scheme::Full), None) => Ok(Some(CertifyOptions::DEFAULT_BUDGET)),
             (_, budget) => Ok(budget),
+        }
+    }
+
+    /// Returns how far radii may reach, if it is stated.
+    pub(super) fn reach(&self) -> Result<Option<f64>> {
+        if self.reach.is_some() && self.scheme == Some(Scheme::Paper) {
+            return Err(SimError::refused(
+                "--scheme paper",
+                "its radii end at the global radius: leave --reach out",
+            ));
+        }
+        match self.reach {
+            Some(reach) if !CertifyOptions::is_reach(reach) => {
+                Err(SimError::refused("--reach", format!("{reach} is not a finite number of at least 1")))
+            }
+            reach => Ok(reach),
         }
     }
 }

@@ -71,6 +71,19 @@ impl CertificateRequest {
                 tree.bytes()
             )));
         }
+        if let Some(reach) = self.reach()? {
+            if !has_tree {
+                return Ok(Some(
+                    "it has no pair tree, so --reach has no meaning; leave the flag out, or certify anew"
+                        .into(),
+                ));
+            }
+            if !certificates.is_within_reach(model, reach) {
+                return Ok(Some(format!(
+                    "its radii reach farther than --reach {reach} allows; leave the flag out, or certify anew"
+                )));
+            }
+        }
         let ignored = certificates.filter().ignored().len() as u64;
         if self.ignore_rest && ignored != certificates.rest_collisions() {
             return Ok(Some("certified without --ignore-rest; leave the flag out, or certify anew".into()));

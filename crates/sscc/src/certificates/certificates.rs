@@ -28,7 +28,9 @@ pub struct CertificateParts {
     pub scope: Scope,
     /// Relative error allowed of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
     pub epsilon: f64,
-    /// `R_global`: radii are capped here (paper, section 5.2); infinite if no mode moves anything.
+    /// The radius at which radii are capped: the paper's `R_global` (section 5.2), or the radius up to which the pair tree
+    /// was built where that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)); infinite if no mode moves
+    /// anything.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
     /// bucket ([`Node::fits_in_bucket`](crate::hierarchy::Node::fits_in_bucket)) has the bucket's radius.
@@ -83,7 +85,8 @@ impl Certificates {
         self.parts.node_radii[0]
     }
 
-    /// `R_global`, at which radii are capped.
+    /// The radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built where
+    /// that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
     pub fn global_radius(&self) -> f64 {
         self.parts.global_radius
     }

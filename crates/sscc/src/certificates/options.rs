@@ -37,8 +37,11 @@ pub struct CertifyOptions {
     /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
     /// since the tree takes most of the time.
     pub budget: usize,
-    /// How far radii may reach, in units of `R_global` (paper, section 5.2), at least 1. The pair tree ends at that radius,
-    /// or before it where its budget is used up. Radii of nodes are capped at the tree's limit, and not below `R_global`.
+    /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
+    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of
+    /// the budget, because they take time. Radii of nodes are capped at the radius up to which the tree was
+    /// built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
+    /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.
     pub reach: f64,
     /// Number of threads; none: all cores. The result is the same for any number.
     pub threads: Option<usize>,
@@ -66,6 +69,11 @@ impl CertifyOptions {
 
     /// The default of [`CertifyOptions::reach`].
     pub const DEFAULT_REACH: f64 = 16.0;
+
+    /// Whether a number can be a [`CertifyOptions::reach`]: finite and at least 1.
+    pub fn is_reach(reach: f64) -> bool {
+        (1.0..f64::INFINITY).contains(&reach)
+    }
 
     /// The default of [`CertifyOptions::max_exceptions`] for a mesh: half the number of its triangles. Testing more in
     /// every query costs as much as radii can save.

@@ -172,6 +172,12 @@ mutants! {
     OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
     /// Pairs of the outer round that are searched are free below the limit.
     OuterSearchForgotten: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
+    /// A pair of buckets whose search ended at its cap is free up to the reach.
+    CappedPairFreeToTheEnd: CaughtBy("it reach::radii_beyond_the_global_radius_are_sound");
+    /// The outer round never passes the global radius.
+    OuterRoundEndsAtGlobalRadius: CaughtBy("lib certificates::build::limit_schedule::tests::the_outer_round_passes_the_global_radius_only_from_there_and_with_room");
+    /// Radii of nodes are capped at the global radius, although the pair tree reaches farther.
+    RadiiCappedBelowTheTree: CaughtBy("it reach::radii_end_where_the_reach_says");
     /// After a refused round, pairs that it has split stay split.
     RefusedRoundNotUndone: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
     /// The limit of a pair tree whose budget is full is that of its construction.

@@ -17,7 +17,7 @@ impl Query<'_> {
     /// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for certificates
     /// about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, and close to the
     /// largest possible one. Nodes and node pairs are bounded by their certified radii, and triangle pairs beyond these by
-    /// conservative advancement along the line. At most the scale at which `R_global` is reached
+    /// conservative advancement along the line. At most the scale at which radii are capped
     /// ([`Certificates::global_radius`]). 0 if the shape collides at the centre (ignored pairs apart); infinite if nothing
     /// moves.
     ///

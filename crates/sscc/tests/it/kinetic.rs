@@ -170,6 +170,8 @@ fn coils_of_several_clusters() {
                 seed % 3 == 0 && seed % 2 == 0,
             )),
             budget: [1 << 12, 64][usize::from(seed % 7 == 3)],
+            // The limit, which sets the size of the motion, stays near contact.
+            reach: 1.0,
             ..CertifyOptions::default()
         };
         let certificates = Certificates::compute(&model, &options, &()).unwrap();

@@ -26,6 +26,7 @@ mod normal_cones;
 mod pair_tree;
 mod pair_tree_traversal;
 mod penetration;
+mod reach;
 mod resolve;
 mod rounding;
 mod safe_scale;

@@ -104,7 +104,11 @@ fn scales_of_simple_shapes() {
     let mesh = TriMesh::new([triangle(0.0), triangle(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
     let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     let model = ReducedModel::new(mesh, Modes::from_matrix(6, 1, lowered).unwrap()).unwrap();
-    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let within = |reach| {
+        let options = CertifyOptions { reach, ..CertifyOptions::default() };
+        Certificates::compute(&model, &options, &()).unwrap()
+    };
+    let certificates = within(1.0);
     let mut query = Query::new(&model, &certificates).unwrap();
     // The global radius is rounded down to single precision.
     let near = |x: f64, goal: f64| x <= goal && x > goal * (1.0 - 2e-7);
@@ -113,6 +117,12 @@ fn scales_of_simple_shapes() {
     assert!(near(query.safe_scale(&[1.0]).unwrap(), certificates.global_radius()));
     assert!(near(query.safe_scale(&[-2.0]).unwrap(), certificates.global_radius() / 2.0));
     assert_eq!(query.safe_scale(&[0.0]).unwrap(), f64::INFINITY);
+    // Radii that reach farther: up to the contact, and away from it up to where they end.
+    let farther = within(4.0);
+    let mut query = Query::new(&model, &farther).unwrap();
+    assert_eq!(farther.global_radius(), 4.0 * certificates.global_radius());
+    assert!(near(query.safe_scale(&[1.0]).unwrap(), 1.0));
+    assert!(near(query.safe_scale(&[-2.0]).unwrap(), 2.0 * certificates.global_radius()));
     // Without certificates there is no R_global: up to the contact, and away from it as far as numbers go.
     let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
     assert!(near(query.safe_scale(&[1.0]).unwrap(), 1.0));

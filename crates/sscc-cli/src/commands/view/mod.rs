@@ -106,6 +106,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         max_exceptions,
         scheme,
         budget,
+        reach,
         threads,
     } = options;
     let typed = [
@@ -125,6 +126,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         (max_exceptions.is_some(), "--max-exceptions"),
         (scheme.is_some(), "--scheme"),
         (budget.is_some(), "--budget"),
+        (reach.is_some(), "--reach"),
         (threads.threads.is_some(), "--threads"),
     ];
     typed.into_iter().find_map(|(is_typed, option)| is_typed.then_some(option))

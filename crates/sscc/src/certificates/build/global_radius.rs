@@ -1,8 +1,21 @@
-//! `R_global`, the largest radius of interest, at which all radii are capped (paper, section 5.2).
+//! `R_global`, the paper's largest radius of interest (section 5.2), and how far beyond it radii may reach.
+//!
+//! The paper caps all radii at `R_global`. Bodies move farther than that, and radii beyond it are proofs like the others: their
+//! bounds hold at any `|z|`. So the pair tree goes on up to [`CertifyOptions::reach`](crate::CertifyOptions::reach) times
+//! `R_global` while its budget lasts (docs/notes/2026-11-26-reach.md).
 
 use crate::geometry::Aabb;
 use crate::model::rounding::to_f32_down;
-use crate::{Metric, ReducedModel};
+use crate::{Certificates, Metric, ReducedModel};
+
+impl Certificates {
+    /// Whether no radius is farther than [`CertifyOptions::reach`](crate::CertifyOptions::reach) allows. The model must be
+    /// that of the certificates.
+    pub fn is_within_reach(&self, model: &ReducedModel, reach: f64) -> bool {
+        let global_radius = global_radius(model, self.metric(), self.center());
+        self.global_radius() <= farthest_radius(global_radius, reach)
+    }
+}
 
 /// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the box at the
 /// centre; infinite if no mode moves anything. Only vertices of faces count.
@@ -18,20 +31,23 @@ pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64
         let largest = lengths.fold(0.0, f64::max);
         if largest > 0.0 && half_diagonal > 0.0 {
             let radius = half_diagonal / largest;
-            let is_in_range = (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius);
-            return if is_in_range { f64::from(to_f32_down(radius)) } else { radius };
+            return if is_in_range(radius) { f64::from(to_f32_down(radius)) } else { radius };
         }
     }
     f64::INFINITY
 }
 
-/// `reach` times the global radius, as far as the pair tree can store it: rounded down to single precision. A global radius
-/// out of that range is the farthest radius itself: then there is no pair tree.
+/// `reach` times the global radius, rounded down to single precision, so that the pair tree can store it. The global radius
+/// itself where that is out of this range.
 pub(super) fn farthest_radius(global_radius: f64, reach: f64) -> f64 {
-    let farthest = global_radius * reach;
-    if global_radius > f64::from(f32::MAX) {
-        global_radius
+    if is_in_range(global_radius) {
+        f64::from(to_f32_down(global_radius * reach)).max(global_radius)
     } else {
-        f64::from(to_f32_down(farthest)).max(global_radius)
+        global_radius
     }
+}
+
+/// Whether a radius is in the range of single precision.
+fn is_in_range(radius: f64) -> bool {
+    (f64::from(f32::MIN_POSITIVE)..f64::from(f32::MAX)).contains(&radius)
 }

@@ -24,23 +24,33 @@ const MIN_STEP: f64 = 1.2;
 /// are estimated for one tenth too many, which are dropped in the end.
 const BUDGET_MARGIN: f64 = 1.1;
 
+/// Limits beyond the global radius may use the budget divided by this. So certificates of models that have few pairs below the
+/// global radius take at most about twice as long as with a reach of 1 (docs/notes/2026-11-26-reach.md).
+const REACH_DIVISOR: usize = 2;
+
+/// The outer limit is this many times the last one.
+const OUTER_FACTOR: f64 = 1.5;
+
 /// Which limit to try next.
 pub(super) struct LimitSchedule {
     global_radius: f64,
     farthest: f64,
+    budget: usize,
     limit: f64,
     complete_below: f64,
     too_large: f64,
 }
 
 impl LimitSchedule {
-    /// None if radii are out of the range of single precision, in which the tree stores them.
-    pub(super) fn new(global_radius: f64, farthest: f64) -> Option<Self> {
+    /// A schedule up to the farthest radius for a budget of so many pairs. None if radii are out of the range of single
+    /// precision, in which the tree stores them.
+    pub(super) fn new(global_radius: f64, farthest: f64, budget: usize) -> Option<Self> {
         let limit = f64::from(to_f32_down(global_radius * FIRST_SHARE));
         let is_in_range = limit > 0.0 && global_radius <= f64::from(f32::MAX);
         is_in_range.then_some(Self {
             global_radius,
             farthest,
+            budget,
             limit,
             complete_below: 0.0,
             too_large: f64::INFINITY,
@@ -59,22 +69,32 @@ impl LimitSchedule {
 
     /// Goes on to the next limit; false if there is none. `has_room`: whether there was room for this one; `count_below`:
     /// how many pairs have a lower bound below a radius.
-    pub(super) fn advance(
-        &mut self,
-        has_room: bool,
-        budget: usize,
-        count_below: impl Fn(f64) -> usize,
-    ) -> bool {
+    pub(super) fn advance(&mut self, has_room: bool, count_below: impl Fn(f64) -> usize) -> bool {
         *(if has_room { &mut self.complete_below } else { &mut self.too_large }) = self.limit;
         let (next, smallest) = if self.complete_below == 0.0 {
             (self.limit / RETRY_DIVISOR, self.global_radius * LAST_SHARE)
         } else {
-            let Some(estimate) = self.estimate(budget, count_below) else { return false };
+            let Some(estimate) = self.estimate(count_below) else { return false };
             let next = if estimate < self.too_large { estimate } else { self.half_way() };
-            (next, (self.complete_below * MIN_STEP).min(self.farthest))
+            (next, (self.complete_below * MIN_STEP).min(self.end()))
         };
         self.limit = next;
         next >= smallest
+    }
+
+    /// The limit of the outer round, which follows the last limit for which there was room. `has_room`: whether the pairs below
+    /// that are no more than the whole budget; without room a limit beyond the global radius would be lowered again.
+    pub(super) fn outer_limit(&self, has_room: bool) -> f64 {
+        let end = if has_room { self.end() } else { self.global_radius };
+        let end = right_or!(end, OuterRoundEndsAtGlobalRadius, self.global_radius);
+        let outer = (OUTER_FACTOR * self.complete_below).min(end);
+        // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not stored.
+        right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
+    }
+
+    /// The largest limit to try. The rounds up to the global radius are the same for any farthest radius.
+    fn end(&self) -> f64 {
+        if self.complete_below < self.global_radius { self.global_radius } else { self.farthest }
     }
 
     /// Half way, in logarithms, to the limit for which there was no room.
@@ -84,16 +104,60 @@ impl LimitSchedule {
 
     /// A limit that should just use up the budget, as if the number of pairs grew as a power of the limit; none if the
     /// budget is used up.
-    fn estimate(&self, budget: usize, count_below: impl Fn(f64) -> usize) -> Option<f64> {
+    fn estimate(&self, count_below: impl Fn(f64) -> usize) -> Option<f64> {
         let count_below = |radius: f64| count_below(radius).max(1) as f64;
         let (stored, at_half) = (count_below(self.complete_below), count_below(self.complete_below / 2.0));
+        let is_beyond = self.complete_below >= self.global_radius;
+        let budget = if is_beyond { self.budget / REACH_DIVISOR } else { self.budget };
         let room = budget as f64 / stored;
-        if self.complete_below >= self.farthest || room < BUDGET_MARGIN {
+        if self.complete_below >= self.end() || room < BUDGET_MARGIN {
             return None;
         }
         let power = (stored / at_half).log2().max(1.0);
         let step = (BUDGET_MARGIN * room).powf(1.0 / power).min(MAX_STEP);
-        let next = f64::from(to_f32_down(self.complete_below * step)).min(self.farthest);
+        let next = f64::from(to_f32_down(self.complete_below * step)).min(self.end());
         (next > self.complete_below).then_some(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A schedule for a global radius of 1 and a farthest radius of 16, after one limit for which there was room.
+    fn after(limit: f64) -> LimitSchedule {
+        LimitSchedule { limit, complete_below: limit, ..LimitSchedule::new(1.0, 16.0, 1 << 20).unwrap() }
+    }
+
+    #[test]
+    fn limits_pass_the_global_radius_only_from_there() {
+        // As many pairs as the limit is large, of a budget without end.
+        let limits = |farthest: f64| {
+            let mut schedule = LimitSchedule::new(1.0, farthest, usize::MAX).unwrap();
+            let mut limits = vec![schedule.limit()];
+            while schedule.advance(true, |radius| (1e3 * radius) as usize) {
+                limits.push(schedule.limit());
+            }
+            limits
+        };
+        assert_eq!(limits(1.0), [0.0625, 0.25, 1.0]);
+        assert_eq!(limits(2.5), [0.0625, 0.25, 1.0, 2.5]);
+        assert_eq!(limits(40.0), [0.0625, 0.25, 1.0, 4.0, 16.0, 40.0]);
+        let next = |limit: f64| {
+            let mut schedule = after(limit);
+            schedule.advance(true, |radius| (16.0 * radius) as usize).then(|| schedule.limit())
+        };
+        assert_eq!((next(0.5), next(1.0), next(16.0)), (Some(1.0), Some(4.0), None));
+        // Half of the budget is used up beyond the global radius, not at it.
+        let has_next = |limit: f64| after(limit).advance(true, |_| 600_000);
+        assert!(has_next(0.5) && !has_next(1.0) && !has_next(2.0));
+    }
+
+    #[test]
+    fn the_outer_round_passes_the_global_radius_only_from_there_and_with_room() {
+        let outer = |limit: f64, has_room: bool| after(limit).outer_limit(has_room);
+        assert_eq!((outer(0.5, true), outer(0.75, true), outer(0.5, false)), (0.75, 1.0, 0.75));
+        assert_eq!((outer(1.0, true), outer(2.0, true), outer(12.0, true)), (1.5, 3.0, 16.0));
+        assert!(outer(1.0, false) <= 1.0 && outer(2.0, false) <= 2.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Radii of nodes, bottom-up: `R_n = min(R_global, R of the children, R_nm of the children's pairs)` (paper, section
+//! Radii of nodes, bottom-up: `R_n = min(cap, R of the children, R_nm of the children's pairs)` (paper, section
 //! 5.2).
 //!
 //! There are two passes. The first is coarse: it uses the bounds from building the pair tree and searches the rest with
@@ -32,7 +32,7 @@ const UPPER_BOUND_REACH: f64 = 4.0;
 pub(super) struct NodeRadii {
     pub(super) nodes: Vec<f64>,
     pub(super) root_pairs: Vec<f64>,
-    /// The cap of all radii: the global radius, or the limit of the pair tree where that is larger.
+    /// The cap of all radii: the global radius, or that up to which the pair tree was built where it is larger.
     pub(super) cap: f64,
 }
 
@@ -47,11 +47,10 @@ impl NodeRadii {
         let nodes = preparation.hierarchy.nodes();
         let (count, pairs) = (nodes.len(), nodes[0].child_pairs().count());
         let counter = ProgressCounter::new(progress, 2 * (count + pairs));
-        let radii = Self {
-            nodes: vec![0.0; count],
-            root_pairs: vec![0.0; pairs],
-            cap: builder.complete_below.max(preparation.global_radius),
-        };
+        let global_radius = preparation.global_radius;
+        let cap =
+            right_or!(builder.complete_below.max(global_radius), RadiiCappedBelowTheTree, global_radius);
+        let radii = Self { nodes: vec![0.0; count], root_pairs: vec![0.0; pairs], cap };
         let mut passes = Passes { preparation, builder, counter, radii };
         let upper = passes.run(Precision::Coarse, f64::INFINITY, executor)?;
         let upper = upper.min(passes.root_upper_bound(executor)?);
@@ -148,7 +147,7 @@ impl Passes<'_> {
         Ok(bounds.into_iter().map(|bound| bound.upper).fold(f64::INFINITY, f64::min))
     }
 
-    /// The smallest radius of a node's children, at most the global one.
+    /// The smallest radius of a node's children, at most the cap.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
         radii.fold(self.radii.cap, f64::min)

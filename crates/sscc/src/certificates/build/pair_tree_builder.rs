@@ -23,7 +23,6 @@ use super::task::{Task, TaskResult};
 use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
 use crate::hierarchy::{Hierarchy, NodePair};
-use crate::model::rounding::to_f32_down;
 
 /// The maximum number of node pairs of the BVTT for each entry that the inner budget allows: most turn out not to be needed.
 /// In tests the limit is small, so that they reach it.
@@ -34,9 +33,6 @@ const MAX_PAIRS: usize = 1 << 31;
 
 /// The rounds before the outer one may use the budget divided by this: the outer round adds two to three times as many entries.
 const INNER_DIVISOR: usize = 4;
-
-/// The outer limit is this many times the last one, at most the global radius.
-const OUTER_FACTOR: f64 = 1.5;
 
 /// Open pairs that a thread takes at once.
 const SPLIT_GRAIN: usize = 8;
@@ -70,13 +66,11 @@ impl PairTreeBuilder {
         let hierarchy = &preparation.hierarchy;
         let budget = budget.min(MAX_ENTRIES);
         let mut builder = Self { bvtt: Bvtt::empty(), complete_below: 0.0, budget };
-        let Some(mut schedule) =
-            LimitSchedule::new(preparation.global_radius, preparation.farthest).filter(|_| budget > 0)
-        else {
-            return Ok(builder);
-        };
-        builder.bvtt = Bvtt::new(hierarchy);
         let inner_budget = (budget / INNER_DIVISOR).max(1);
+        let Preparation { global_radius, farthest, .. } = *preparation;
+        let schedule = LimitSchedule::new(global_radius, farthest, inner_budget);
+        let Some(mut schedule) = schedule.filter(|_| budget > 0) else { return Ok(builder) };
+        builder.bvtt = Bvtt::new(hierarchy);
         let max_pairs =
             inner_budget.saturating_mul(PAIRS_PER_ENTRY).max(2 * builder.bvtt.pairs.len()).min(MAX_PAIRS);
         loop {
@@ -84,17 +78,15 @@ impl PairTreeBuilder {
             let has_room = builder.run_round(hierarchy, round, executor)?;
             let pairs = &builder.bvtt.pairs;
             let count_below = |radius: f64| pairs.iter().filter(|p| f64::from(p.lower) < radius).count();
-            if !schedule.advance(has_room, inner_budget, count_below) {
+            if !schedule.advance(has_room, count_below) {
                 break;
             }
         }
         builder.complete_below = schedule.complete_below();
         refine_pairs(&mut builder.bvtt, builder.complete_below, preparation, executor)?;
-        let outer = (OUTER_FACTOR * builder.complete_below).min(preparation.farthest);
-        // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not
-        // stored.
+        let below = builder.bvtt.pairs.iter().filter(|p| f64::from(p.lower) < builder.complete_below).count();
         let round = Round {
-            limit: right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer),
+            limit: schedule.outer_limit(below <= budget),
             is_outer: true,
             max_pairs: max_pairs.saturating_mul(2).min(MAX_PAIRS),
         };

@@ -43,8 +43,12 @@ impl Preparation {
         if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
             return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
         }
-        if !(options.reach >= 1.0 && options.reach <= f64::from(f32::MAX)) {
-            return Err(Error::Option { name: "reach", value: options.reach, wanted: "at least 1" });
+        if !CertifyOptions::is_reach(options.reach) {
+            return Err(Error::Option {
+                name: "reach",
+                value: options.reach,
+                wanted: "finite and at least 1",
+            });
         }
         let metric = options.metric.clone().unwrap_or_else(|| model.metric().clone());
         check_scaled_modes(model.mesh(), model.modes(), &metric)?;
@@ -92,6 +96,12 @@ impl Preparation {
             hierarchy,
             scaled,
         })
+    }
+
+    /// The largest radius of interest in a round of the pair tree up to a limit. Rounds up to the global radius do not look
+    /// beyond it: where the budget ends there, no time is spent on more, and the certificates are those without a reach.
+    pub(crate) fn farthest_in_round(&self, limit: f64) -> f64 {
+        if limit > self.global_radius { self.farthest } else { self.global_radius }
     }
 
     /// Whether the AABBs of two nodes touch or overlap at the centre.

@@ -62,11 +62,17 @@ pub(super) fn split(
                 pair.lower = pair.lower.max(to_f32_down(radius));
             }
             None => {
-                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.farthest);
+                let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.farthest_in_round(limit));
                 let radius = search.between_without_subdivision(nodes, cap)?.radius;
+                // One that ends at the global radius is searched again in rounds beyond it.
                 if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }
+                let radius = right_or!(
+                    radius,
+                    CappedPairFreeToTheEnd,
+                    if radius < cap { radius } else { preparation.farthest }
+                );
                 pair.lower = pair.lower.max(to_f32_down(radius));
             }
             Some(split) => {
