@@ -213,10 +213,13 @@ fn schemes() {
     ] {
         assert!(check(file, &[flag]).refusal().contains("contradicts --scheme or --budget"), "{file} {flag}");
     }
-    let refusal = check("far.sscc.safetensors", &["--reach=2"]).refusal();
-    assert!(refusal.contains("its radii reach farther than --reach 2 allows"), "{refusal}");
-    let refusal = check("paper.sscc.safetensors", &["--reach=2"]).refusal();
-    assert!(refusal.contains("it has no pair tree"), "{refusal}");
+    for (file, cause) in [
+        ("far.sscc.safetensors", "its radii reach farther than --reach 2 allows"),
+        ("paper.sscc.safetensors", "it has no pair tree"),
+    ] {
+        let refused = check(file, &["--reach=2"]);
+        assert!(refused.refusal().contains(cause), "{refused:?}");
+    }
     // As --budget does, --reach asks for a pair tree of certificates that are computed at once.
     let at_once = sscc(folder.path(), &["sweep", MODEL, "--reach", "2", "--json"]);
     assert!(at_once.code.is_some_and(|code| code < 2), "{at_once:?}");

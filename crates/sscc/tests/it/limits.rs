@@ -169,7 +169,7 @@ fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
     for case in 0..6 {
         let models = [1.0, limits::LARGEST].map(|scale| model(scale, &mut Random::new(case)));
         let options = CertifyOptions {
-            filter: ContactFilter::new(Neighbours::IncludeOneVertex, false),
+            filter: Some(ContactFilter::new(Neighbours::IncludeOneVertex, false)),
             ..CertifyOptions::default()
         };
         let certificates =
