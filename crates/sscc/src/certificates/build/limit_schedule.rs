@@ -29,7 +29,7 @@ const BUDGET_MARGIN: f64 = 1.1;
 const REACH_DIVISOR: usize = 2;
 
 /// The outer limit is this many times the last one.
-const OUTER_FACTOR: f64 = 1.5;
+pub(super) const OUTER_FACTOR: f64 = 1.5;
 
 /// Which limit to try next.
 pub(super) struct LimitSchedule {

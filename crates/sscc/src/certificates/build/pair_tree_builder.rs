@@ -182,10 +182,12 @@ fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::limit_schedule::OUTER_FACTOR;
     use super::*;
     use crate::CertifyOptions;
     use crate::certificates::build::executor::ThreadExecutor;
     use crate::certificates::test_models::ring;
+    use crate::model::rounding::to_f32_down;
 
     /// A pair that is free up to the limit takes no entry, though radii are rounded down. The limits of some outer rounds
     /// would be no single-precision numbers.
@@ -211,7 +213,8 @@ mod tests {
                 );
                 // An odd mantissa times 1.5 needs one digit more.
                 let inner = tree.limit() / OUTER_FACTOR;
-                let is_cut = tree.limit() >= preparation.global_radius;
+                let is_cut =
+                    tree.limit() == preparation.global_radius || tree.limit() == preparation.farthest;
                 rounded += usize::from(!tree.is_empty() && !is_cut && f64::from(inner as f32) != inner);
             }
         }

@@ -38,6 +38,7 @@ mod tests {
 
     use super::super::impact_triangle_triangle::impact_triangle_triangle;
     use super::*;
+    use crate::geometry::triangle_triangle::intersect_triangle_triangle;
     use crate::test_models::Random;
 
     /// Two copies of a triangle, one above the other, that turn together and come closer. Beyond a time, one of them could
@@ -89,15 +90,6 @@ mod tests {
         assert_eq!(free_until(&below, &above, 1e-15, &mut steps), f64::INFINITY);
         assert!((80..100).contains(&steps), "{steps}");
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use super::*;
-    use crate::geometry::triangle_triangle::intersect_triangle_triangle;
-    use crate::test_models::Random;
 
     /// Up to the time found, one triangle may be off by the whole slack along each axis, in every direction, and so
     /// may all of its corners in directions of their own.
@@ -111,7 +103,7 @@ mod tests {
             let a = MovingTriangle { t0: triangle(DVec3::ZERO), t1: triangle(DVec3::ZERO) };
             let b = MovingTriangle { t0: triangle(place * 5.0), t1: triangle(DVec3::ZERO) };
             let slack = [0.3, 1e-2, 1e-4][case % 3];
-            let until = free_until(&a, &b, slack).min(1.0);
+            let until = free_until(&a, &b, slack, &mut 1000).min(1.0);
             if until == 0.0 {
                 continue;
             }
