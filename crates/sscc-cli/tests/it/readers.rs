@@ -131,10 +131,11 @@ fn soups_have_a_hint_at_welding() {
     (0..4).for_each(|t| text += &format!("f {} {} {}\n", 3 * t + 1, 3 * t + 2, 3 * t + 3));
     let directory = folder(&[
         ("soup.obj", text.as_bytes()),
+        ("doubled.obj", format!("{CROSSING}v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nf 7 8 9").as_bytes()),
         ("shared.obj", format!("{CROSSING}f 1 2 3\nf 4 5 6").as_bytes()),
     ]);
     let run = |args: &[&str]| sscc(directory.path(), &[&["check"], args].concat());
-    let hint = "note: soup.obj: in the 6 colliding pairs, triangles have corners at equal positions but do not share them: with \
+    let hint = "note: soup.obj: in 6 colliding pairs, triangles have corners at equal positions but do not share them: with \
         --weld they are neighbours, which do not count\n";
     for args in [&["soup.obj"][..], &["soup.obj", "--json"], &["soup.obj", "soup.obj"]] {
         let found = run(args);
@@ -152,6 +153,7 @@ fn soups_have_a_hint_at_welding() {
         (&["--weld", "on", "soup.obj"], 0),
         (&["soup.obj", "--against", "soup.obj"], 1),
         (&["shared.obj"], 1),
+        (&["doubled.obj"], 1),
     ] {
         let found = run(args);
         assert_eq!((found.code, found.stderr.as_str()), (Some(code), ""), "{found:?}");

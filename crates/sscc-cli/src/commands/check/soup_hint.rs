@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use sscc_sim::DetectionAnswer;
 
-use crate::output::note;
+use crate::output::{counted, grouped, note};
 
-/// Counts the listed pairs of triangles with corners at equal positions of different numbers.
+/// Counts the listed pairs of triangles that have one or two corners at equal positions of different numbers. Triangles
+/// with three such corners are doubled, not neighbours.
 #[derive(Default)]
 pub struct SoupHint {
     pairs: usize,
@@ -21,8 +22,10 @@ impl SoupHint {
         let (faces, positions) = (found.mesh.faces(), found.mesh.rest_positions());
         let corners = |triangle: u32| faces[triangle as usize];
         let is_same = |a: u32, b: u32| a != b && positions[a as usize] == positions[b as usize];
-        let meets =
-            |&&(i, j): &&(u32, u32)| corners(i).iter().any(|a| corners(j).iter().any(|b| is_same(*a, *b)));
+        let meets = |&&(i, j): &&(u32, u32)| {
+            let equal = |a: &&u32| corners(j).iter().any(|b| is_same(**a, *b));
+            matches!(corners(i).iter().filter(equal).count(), 1 | 2)
+        };
         let count = found.pairs.iter().filter(meets).count();
         self.pairs += count;
         self.all += found.pairs.len();
@@ -35,10 +38,9 @@ impl SoupHint {
     pub fn print(&self, model: &Path) {
         let Some(file) = &self.file else { return };
         let file = if file.as_os_str().is_empty() { model } else { file };
-        let those = match self.pairs == self.all {
-            true => format!("the {} colliding pairs", self.all),
-            false => format!("{} of the {} colliding pairs", self.pairs, self.all),
-        };
+        let all = counted(self.all as u64, "colliding pair");
+        let those =
+            if self.pairs == self.all { all } else { format!("{} of {all}", grouped(self.pairs as u64)) };
         note(format_args!(
             "{}: in {those}, triangles have corners at equal positions but do not share them: with --weld they are neighbours, \
              which do not count",
