@@ -118,7 +118,7 @@ mod tests {
             found.sort_unstable();
             let is_inside = |at: &usize| {
                 let p = points[*at];
-                *at % 2 == 0 && (1..100).contains(at) && p.cmpge(low).all() && p.cmple(high).all()
+                at.is_multiple_of(2) && (1..100).contains(at) && p.cmpge(low).all() && p.cmple(high).all()
             };
             let expected: Vec<usize> = (0..points.len()).filter(is_inside).collect();
             assert!(expected.iter().all(|at| found.contains(at)), "{found:?}");

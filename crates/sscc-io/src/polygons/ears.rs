@@ -253,13 +253,13 @@ mod tests {
         let count = 6000;
         let gear = |i: usize| {
             let angle = i as f64 * std::f64::consts::TAU / count as f64;
-            let radius = if i % 2 == 0 { 1000.0 } else { 990.0 };
+            let radius = if i.is_multiple_of(2) { 1000.0 } else { 990.0 };
             DVec2::new(libm::cos(angle), libm::sin(angle)) * radius
         };
         let comb = |i: usize| match i {
             0 => DVec2::new(-1.0, 30_000.0),
             1 => DVec2::new(-1.0, -1.0),
-            _ => DVec2::new(if i % 2 == 0 { 0.0 } else { 50_000.0 }, i as f64),
+            _ => DVec2::new(if i.is_multiple_of(2) { 0.0 } else { 50_000.0 }, i as f64),
         };
         let spiral = |i: usize| {
             let (arm, inward) = (count / 2, i >= count / 2);
