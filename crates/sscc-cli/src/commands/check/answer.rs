@@ -38,8 +38,7 @@ pub struct Answer<'a> {
     /// Pairs that no certificate covers, where there are any.
     #[serde(skip_serializing_if = "is_zero")]
     pub exceptions: usize,
-    /// The number of ignored pairs; and the names of all pairs that are left out, where pairs are ignored or do not count by
-    /// their groups.
+    /// The number of ignored pairs, and the names of all pairs that are left out, where pairs are ignored.
     #[serde(skip_serializing_if = "is_zero")]
     pub ignored: usize,
     #[serde(rename = "left_out", skip_serializing_if = "Option::is_none")]
@@ -74,7 +73,7 @@ impl<'a> Answer<'a> {
             root_certified: found.root_certified,
             exceptions: found.exceptions,
             ignored: found.left_out.ignored(),
-            listed_left_out: found.left_out.has_exclusions().then(|| found.left_out.to_string()),
+            listed_left_out: (found.left_out.ignored() > 0).then(|| found.left_out.to_string()),
             left_out: found.left_out,
             opened: found.opened,
             box_tests: found.box_tests,
