@@ -212,7 +212,7 @@ fn animations() {
     let several = lines(folder, &["flag.gltf", "flag.gltf", "--animation=0", "--times=0"], "file,node,time");
     assert_eq!(several.len(), 4);
     let text = check(folder, &["flag.gltf", "--animation", "wave", "--times=0.5"]);
-    assert!(text.stdout.starts_with("node 1         0  0.5000 s "), "{text:?}");
+    assert!(text.stdout.starts_with("node 1    frame     0  0.5000 s "), "{text:?}");
 }
 
 #[test]
