@@ -199,7 +199,7 @@ mod tests {
         let rows: Vec<SweepRow> = (0..67).map(|k| at_start(k / 2, &[(0, 7), (1, 9)])).collect();
         let lines = sweep_table(&rows);
         assert_eq!(lines.len(), 4, "{lines:?}");
-        assert_eq!(lines[1], "all                COLLIDING at the start  2 pairs, first 0 7");
+        assert_eq!(lines[1], "all               COLLIDING at the start  2 pairs, first 0 7");
         assert_eq!(lines[3], "67 sweeps: 0 free, 67 not; free means proven free at every weight");
         // Sweeps from elsewhere have lines of their own.
         let mut mixed = rows.clone();
