@@ -5,8 +5,8 @@ use sscc::{Aabb, Impact, KineticQuery, Method, Pair, Pose, PosedShape, Query, Sw
 
 use crate::change::Change;
 use crate::displacement::displacement;
+use crate::implicit_step::NewmarkBuffers;
 use crate::kinematics::{Kinematics, pose};
-use crate::nonlinear_oscillator::NewmarkBuffers;
 use crate::rest::Rest;
 use crate::start::{Detection, Start};
 use crate::{DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, Shape, WorldOptions};
@@ -20,7 +20,7 @@ pub struct Body<'a> {
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
     pub(crate) v: Vec<f64>,
-    /// State of the integrator of nonlinear forces (2 r numbers); empty for linear forces.
+    /// State of the integrator of nonlinear forces (2 r + 2 numbers); empty for linear forces.
     pub(crate) a: Vec<f64>,
     /// Constant generalised forces (r numbers): gravity on a held body, else zeros.
     load: Vec<f64>,

@@ -5,16 +5,14 @@
 //! step and that at its end without the correction, and dissipates only the energy below both.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 use crate::World;
 use crate::body::Body;
-use crate::nonlinear_oscillator::NewmarkBuffers;
 
 impl World<'_> {
     /// Charges the change of energy by the corrections of this step to energy budgets. Velocities are scaled down where
     /// the budgets are too small. `before` holds the energies of each corrected body at the beginning of the step and at its
-    /// end without the correction.
+    /// end without the correction. The forces of these bodies are known.
     pub(crate) fn limit_energy(&mut self, before: &[Option<[f64; 2]>]) {
         let mut corrected: Vec<(usize, usize)> =
             (0..before.len()).filter(|n| before[*n].is_some()).map(|n| (self.islands.of(n), n)).collect();
@@ -23,20 +21,13 @@ impl World<'_> {
         }
         corrected.sort_unstable();
         let gravity = self.options.gravity;
-        let energy = |buffers: &mut NewmarkBuffers, (body, before): (&mut Body<'_>, &Option<_>)| {
-            before.as_ref().map_or(0.0, |_| {
-                body.update_forces(buffers);
-                body.energy() + body.potential(gravity)
-            })
-        };
-        let bodies = self.bodies.par_iter_mut().zip(before);
-        let energies: Vec<f64> = bodies.map_init(NewmarkBuffers::default, energy).collect();
         for island in corrected.chunk_by(|a, b| a.0 == b.0) {
             let members = || island.iter().map(|(_, n)| *n);
             let [start, trial] =
                 [0, 1].map(|k| members().filter_map(|n| before[n]).map(|both| both[k]).sum::<f64>());
             let budget: f64 = members().map(|n| self.bodies[n].energy_budget).sum();
-            let now: f64 = members().map(|n| energies[n]).sum();
+            let now: f64 =
+                members().map(|n| self.bodies[n].energy() + self.bodies[n].potential(gravity)).sum();
             let mut work = (now - start.max(trial)).max(0.0) + (now - start.min(trial)).min(0.0);
             if work > budget {
                 let is_held = members()

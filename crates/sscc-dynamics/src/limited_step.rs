@@ -62,6 +62,7 @@ impl<'a> World<'a> {
             self.begin_contacts(buffers)?;
             self.correct(buffers);
         }
+        self.limit_potential(buffers, observer)?;
         self.stop_contacts();
         self.limit_energy(&buffers.energies);
         self.keep_impulses();
@@ -107,7 +108,7 @@ impl<'a> World<'a> {
     }
 
     /// Finds the impacts of the selected bodies with others and with themselves.
-    fn find_impacts(
+    pub(crate) fn find_impacts(
         &mut self,
         buffers: &mut StepBuffers,
         observer: &mut impl Observer,
@@ -145,7 +146,11 @@ impl<'a> World<'a> {
 
     /// Finds the selected bodies that sink into the ground. `makes_points` makes points of their lowest vertices, and also
     /// selects bodies that come too near.
-    fn find_sinking(&mut self, buffers: &mut StepBuffers, makes_points: bool) -> Result<(), DynamicsError> {
+    pub(crate) fn find_sinking(
+        &mut self,
+        buffers: &mut StepBuffers,
+        makes_points: bool,
+    ) -> Result<(), DynamicsError> {
         let StepBuffers { moves, sinks, .. } = buffers;
         sinks.fill(false);
         let Some(options) = self.ground_options() else { return Ok(()) };
@@ -271,7 +276,7 @@ impl<'a> World<'a> {
     }
 
     /// Moves bodies with impacts or vertices below the ground a share of their way, until none are left.
-    fn shorten(
+    pub(crate) fn shorten(
         &mut self,
         buffers: &mut StepBuffers,
         observer: &mut impl Observer,

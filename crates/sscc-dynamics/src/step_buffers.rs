@@ -16,6 +16,9 @@ pub(crate) struct StepBuffers {
     /// Energy that the recovery of all gaps of each island costs, and the budgets of its bodies, at the number of its first
     /// body.
     pub recovery: Vec<[f64; 2]>,
+    /// Sums over each island, at the number of its first body: potential energy at the end of the step less energy budgets,
+    /// energy at the beginning and at the end without contacts, and the size of these.
+    pub excess: Vec<[f64; 4]>,
     /// Impacts of the current round, with their bodies.
     pub impacts: Vec<([usize; 2], Impact)>,
     /// Pairs of triangles near impacts, with their bodies.

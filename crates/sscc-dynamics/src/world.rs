@@ -11,8 +11,8 @@ use crate::contact_solver::{ContactSolver, Spring};
 use crate::correction::CorrectionSolver;
 use crate::error::first_error;
 use crate::ground_contacts::{GroundContacts, GroundOptions};
+use crate::implicit_step::NewmarkBuffers;
 use crate::islands::Islands;
-use crate::nonlinear_oscillator::NewmarkBuffers;
 use crate::rigid_contacts::RigidContacts;
 use crate::root_constraint::constrain_to_root;
 use crate::step_buffers::StepBuffers;
@@ -40,7 +40,7 @@ pub struct World<'a> {
     /// Number of bodies that moved only a share of their way in this step.
     pub(crate) shortened_bodies: usize,
     /// Buffers of the integration of a single body.
-    newmark: NewmarkBuffers,
+    pub(crate) newmark: NewmarkBuffers,
     start: StartEnergy,
     pub(crate) step: u64,
     pub(crate) impulses: Vec<Impulse>,
@@ -148,7 +148,7 @@ impl<'a> World<'a> {
     }
 
     /// Returns the number of bodies that moved only a share of their way in the last step, because no correction kept them
-    /// apart.
+    /// apart, or because the corrected end had too much elastic energy.
     pub fn shortened_bodies(&self) -> usize {
         self.shortened_bodies
     }

@@ -1,0 +1,105 @@
+//! Random scenes run to their end without new energy, whatever stiffness, damping, step, orientation, speed and shape are.
+//! The example `robustness` of `sscc-sim` is the long form.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{block, cubes, elastic, fork};
+use glam::{DQuat, DVec3};
+use sscc_dynamics::{ContactOptions, Damping, Ground, Shape, Start, World, WorldOptions};
+use sscc_modes::natural_frequencies;
+use sscc_solid::{Material, PartialMaterial};
+
+/// Number of random scenes.
+const SCENES: u64 = 16;
+
+/// Steps of each.
+const STEPS: usize = 200;
+
+/// Bound of the energy and of what contacts have dissipated, over the first energy: Newmark's method may add 2% of that of
+/// the modes.
+const MAX_ENERGY: f64 = 1.02;
+
+/// Random numbers (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        low * libm::pow(high / low, self.unit())
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| 2.0 * self.unit() - 1.0))
+    }
+}
+
+/// A random shape, with a first mode whose half period is longer than the step.
+fn shape(random: &mut Random, step: f64) -> Shape {
+    loop {
+        let youngs_modulus = Some(random.log(1e4, 1e9));
+        let material = Material::new(&PartialMaterial { youngs_modulus, ..PartialMaterial::default() });
+        let (material, kind) = (material.unwrap(), (4.0 * random.unit()) as u32);
+        let solid = match kind {
+            0 => fork(4, 0.05, material),
+            1 => block([4, 1, 1], 0.06, material),
+            2 => block([3, 3, 1], 0.05, material),
+            _ => cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 1, 1]], 0.06, material),
+        };
+        let shape = elastic(&solid, 8, random.unit() < 0.8, &[]);
+        if 2.0 * step * natural_frequencies(shape.elasticity().stiffness()).unwrap()[0] < 1.0 {
+            return shape;
+        }
+    }
+}
+
+/// Runs a random scene. Returns its largest energy, with what contacts have dissipated, over the first one.
+fn run(seed: u64) -> f64 {
+    let mut random = Random(seed);
+    let step = 1.0 / random.log(500.0, 4000.0);
+    let shape = shape(&mut random, step);
+    let contact = ContactOptions {
+        frequency: random.log(10.0, 125.0),
+        damping: random.unit(),
+        friction: random.unit(),
+        ..ContactOptions::default()
+    };
+    let ground = Some(Ground { friction: random.unit(), ..Ground::default() });
+    let mut some = |low, high| if random.unit() < 0.25 { 0.0 } else { random.log(low, high) };
+    let damping = Damping { mass: some(1e-2, 3.0), stiffness: some(1e-6, 1e-3) };
+    let options = WorldOptions { step, contact, ground, ..WorldOptions::default() };
+    let mut world = World::new(options).unwrap();
+    let (radius, speed) = (shape.radius(), 12.0 * random.unit());
+    for n in 0..2 {
+        let start = Start {
+            position: Some(DVec3::Y * radius * (1.05 + 2.2 * f64::from(n))),
+            orientation: DQuat::from_scaled_axis(random.vector() * 3.0),
+            velocity: DVec3::NEG_Y * speed * (1.0 + f64::from(n)) + random.vector() * speed * 0.3,
+            spin: random.vector() * 10.0,
+            damping,
+            ..Start::default()
+        };
+        world.add(&shape, &start).unwrap();
+    }
+    world.check_start().unwrap();
+    let (first, mut largest) = (world.energy(), 0.0_f64);
+    for _ in 0..STEPS {
+        world.advance(&mut ()).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
+        largest = largest.max(world.energy() + world.dissipated());
+    }
+    largest / first
+}
+
+#[test]
+fn random_scenes_run_to_their_end_without_new_energy() {
+    for seed in 0..SCENES {
+        let largest = run(seed);
+        assert!(largest < MAX_ENERGY, "scene {seed}: {largest} of the first energy");
+    }
+}
