@@ -86,8 +86,11 @@ impl LimitSchedule {
     /// that are no more than the whole budget; without room a limit beyond the global radius would be lowered again.
     pub(super) fn outer_limit(&self, has_room: bool) -> f64 {
         let end = if has_room { self.end() } else { self.global_radius };
-        let end = right_or!(end, OuterRoundEndsAtGlobalRadius, self.global_radius);
-        let outer = (OUTER_FACTOR * self.complete_below).min(end);
+        let outer = (OUTER_FACTOR * self.complete_below).min(right_or!(
+            end,
+            OuterRoundEndsAtGlobalRadius,
+            self.global_radius
+        ));
         // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not stored.
         right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
     }

@@ -68,12 +68,12 @@ pub(super) fn split(
                 if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }
-                let radius = right_or!(
+                let certified = right_or!(
                     radius,
                     CappedPairFreeToTheEnd,
                     if radius < cap { radius } else { preparation.farthest }
                 );
-                pair.lower = pair.lower.max(to_f32_down(radius));
+                pair.lower = pair.lower.max(to_f32_down(certified));
             }
             Some(split) => {
                 let lower = pair.lower.max(to_f32_down(search.bound_nodes(nodes, limit)));

@@ -88,8 +88,8 @@ impl Residuals {
         // these: the h_vj are those computed here.
         let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
         let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
-        let error = right_or!(error, HullResidualErrorForgotten, 0.0);
-        let remainder = right_or!(up(largest + error + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
+        let own = right_or!(error, HullResidualErrorForgotten, 0.0);
+        let remainder = right_or!(up(largest + own + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
         Self { rates, along, remainder }
     }
 }

@@ -190,8 +190,8 @@ impl<T: Number> Corners<T> {
         let gaps = self.gaps_of_vertices(&dir);
         let change = (slack > 0.0).then(|| {
             let sum = dir.iter().fold(T::zero(), |sum, n| sum.plus(&n.magnitude()));
-            let slack = right_or!(slack, FeaturesWithoutSlack, 0.0);
-            Polynomial::constant(sum.times(&T::from_f64(slack))).elevated(gaps[0].degree())
+            let each = T::from_f64(right_or!(slack, FeaturesWithoutSlack, 0.0));
+            Polynomial::constant(sum.times(&each)).elevated(gaps[0].degree())
         });
         let mut all = Some(true);
         for gap in gaps {
