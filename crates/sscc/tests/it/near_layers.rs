@@ -67,13 +67,13 @@ fn layers_that_nearly_touch_are_free_after_few_steps() {
 
 /// They would touch at 2/3, all at once.
 #[test]
-fn layers_that_meet_are_bracketed_after_few_steps() {
+fn layers_that_meet_are_bracketed_after_limited_work() {
     for gap in [1e-3, 1e-9, 1e-12] {
         for model in [layers(gap, upwards, 1.5), layers(gap, askew, 1.5)] {
             let (sweep, tests) = sweep(&model);
             assert!(sweep.first_free.is_some_and(|free| free > 0.6 && free <= 2.0 / 3.0), "{gap}: {sweep:?}");
             assert!(matches!(sweep.outcome, SweepOutcome::Hit | SweepOutcome::WithinTolerance), "{sweep:?}");
-            assert!(tests < 512 * TRIANGLES as u64, "{gap}: {tests}");
+            assert!(tests < 1024 * TRIANGLES as u64, "{gap}: {tests}");
         }
     }
 }
