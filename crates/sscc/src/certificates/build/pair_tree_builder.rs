@@ -196,7 +196,8 @@ mod tests {
         let mut rounded = 0;
         for case in 0..3 {
             let model = ring(300, 3, 1.3 + f64::from(case));
-            let preparation = Preparation::new(&model, &CertifyOptions::default(), &()).unwrap();
+            let options = CertifyOptions { reach: 1.0, ..CertifyOptions::default() };
+            let preparation = Preparation::new(&model, &options, &()).unwrap();
             let hierarchy = &preparation.hierarchy;
             let most = hierarchy.order().len();
             for budget in [most / 16, most / 8, most / 4, most / 2] {
