@@ -29,11 +29,15 @@ impl ClassedCorners<'_> {
     }
 }
 
-/// Whether two closed triangles have a point in common beyond their common corners and the edges between them, exactly.
-/// Triangles all of whose corners are common have: they are one face twice.
+/// Whether two closed triangles have a point in common beyond their common corners, exactly; with `edges_are_common` beyond the
+/// edges between these, too. Triangles all of whose corners are common have: they are one face twice.
 #[cold] // By default no pair comes here, and the test of pairs without common vertices stays small.
 #[inline(never)]
-pub(super) fn intersect_beyond_common_corners(a: ClassedCorners<'_>, b: ClassedCorners<'_>) -> bool {
+pub(super) fn intersect_beyond_common_corners(
+    a: ClassedCorners<'_>,
+    b: ClassedCorners<'_>,
+    edges_are_common: bool,
+) -> bool {
     let (common_a, common_b) = (a.common_with(&b), b.common_with(&a));
     if common_a == [true; 3] && common_b == [true; 3] {
         return right_or!(true, DoubledFacesAreFree, false);
@@ -44,6 +48,9 @@ pub(super) fn intersect_beyond_common_corners(a: ClassedCorners<'_>, b: ClassedC
         return intersect_triangle_triangle(a.positions, b.positions);
     };
     let edge = [u, common.find(|x| *x != u).unwrap_or(u)];
+    if edge[0] != edge[1] && right_or!(!edges_are_common, EdgeOfOneVertexForgiven, false) {
+        return true;
+    }
     let mut others_a = a.corners_where(common_a.map(|is_common| !is_common));
     let mut others_b = b.corners_where(common_b.map(|is_common| !is_common));
     // A triangle whose corners are all common is a part of the edge.

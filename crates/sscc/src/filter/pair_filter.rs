@@ -163,7 +163,10 @@ impl PairFilter {
                     positions,
                     classes: self.classes[triangle as usize],
                 };
-                intersect_beyond_common_corners(classed(pair.0, corners_a), classed(pair.1, corners_b))
+                // One common vertex may be at two positions. The points between them are no points of it.
+                let edges_are_common = relation == Relation::Foldable;
+                let [a, b] = [classed(pair.0, corners_a), classed(pair.1, corners_b)];
+                intersect_beyond_common_corners(a, b, edges_are_common)
             }
         }
     }

@@ -67,8 +67,20 @@ impl PairFilter {
                 let is_together = || a_t0[i] == b_t0[j] && a_t1[i] == b_t1[j];
                 classes_a[i] == class && classes_b[j] == class && is_together()
             });
-            let edge = |corner: usize| [(corner + 1) % 3, (corner + 2) % 3];
-            common.map_or(TRIANGLES, |(i, j)| edges_and_triangles(edge(i), edge(j)))
+            let Some((i, j)) = common else { return TRIANGLES.into_iter().flatten() };
+            // The corners that are not always at the common vertex: two, or one twice.
+            let edge = |corner: usize, classes: [u32; 3], [t0, t1]: [&[DVec3; 3]; 2]| {
+                let is_at_vertex =
+                    |k: usize| classes[k] == class && t0[k] == t0[corner] && t1[k] == t1[corner];
+                let mut others = (1..3).map(|k| (corner + k) % 3).filter(|k| !is_at_vertex(*k));
+                let first = others.next()?;
+                Some([first, others.next().unwrap_or(first)])
+            };
+            match (edge(i, classes_a, [a_t0, a_t1]), edge(j, classes_b, [b_t0, b_t1])) {
+                (Some(edge_a), Some(edge_b)) => edges_and_triangles(edge_a, edge_b),
+                // One face is the vertex alone.
+                _ => [None, None],
+            }
         };
         pairs.into_iter().flatten()
     }

