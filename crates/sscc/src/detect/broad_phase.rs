@@ -49,6 +49,8 @@ pub(crate) struct BroadPhase<const E: usize> {
     /// A bucket pair whose test is deferred until the next one is found. Meanwhile its memory is fetched.
     deferred: Option<(u32, u32)>,
     visits: u32,
+    /// Tested pairs of buckets whose own AABBs do not overlap, although those by which they were found do.
+    pub(crate) loose_pairs: usize,
     is_cancelled: bool,
     pub(crate) counters: Counters,
 }
@@ -63,6 +65,7 @@ impl<const E: usize> BroadPhase<E> {
             stack: Vec::new(),
             deferred: None,
             visits: 0,
+            loose_pairs: 0,
             is_cancelled: false,
             counters: Counters::default(),
         }
@@ -73,6 +76,7 @@ impl<const E: usize> BroadPhase<E> {
     pub(crate) fn begin(&mut self) {
         self.is_cancelled = false;
         self.deferred = None;
+        self.loose_pairs = 0;
         self.counters = Counters::default();
     }
 

@@ -67,6 +67,7 @@ impl<const E: usize> BroadPhase<E> {
         let [x, y] = [n, m].map(|bucket| *self.volumes.node(self.volumes.layout.buckets.node(bucket)));
         self.counters.box_tests += 1;
         if !x.overlaps(&y) {
+            self.loose_pairs += 1;
             return;
         }
         self.counters.box_tests += LANES as u64;

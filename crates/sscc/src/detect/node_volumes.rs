@@ -33,6 +33,8 @@ pub(crate) struct NodeVolumes<const E: usize> {
     pub(crate) instructions: InstructionSet,
     is_lazy: bool,
     search: u32,
+    /// Buckets of this search that are not open.
+    closed_buckets: usize,
     positions: ExactPositions<E>,
     /// Whether AABBs of triangles are computed from coarse positions.
     is_coarse: bool,
@@ -62,6 +64,7 @@ impl<const E: usize> NodeVolumes<E> {
             instructions: InstructionSet::default(),
             is_lazy,
             search: 0,
+            closed_buckets: buckets,
             positions: ExactPositions::new(layout.vertices.count()),
             is_coarse: false,
             motion: CoarseMotion::default(),
@@ -87,6 +90,7 @@ impl<const E: usize> NodeVolumes<E> {
                 .for_each(|searches| searches.fill(0));
             self.search = 1;
         }
+        self.closed_buckets = layout.buckets.count();
         self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
         self.is_coarse = begin_coarse(&layout, motion, frame, &mut self.motion);
@@ -102,14 +106,16 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Computes all AABBs from all vertices, bottom-up.
+    /// Computes all AABBs from all vertices, bottom-up; those of open buckets are current.
     pub(crate) fn refit<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
         if !self.is_coarse {
             self.positions.move_all(&layout, motion);
         }
         for bucket in 0..layout.buckets.count() as u32 {
-            self.refit_bucket(bucket, motion);
+            if !self.is_bucket_open(bucket) {
+                self.refit_bucket(bucket, motion);
+            }
         }
         for n in (0..hierarchy.nodes().len() as u32).rev() {
             if layout.buckets.of_node(n).is_none() {
@@ -144,6 +150,12 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn is_bucket_open(&self, bucket: u32) -> bool {
         self.packets_searches[bucket as usize] == self.search
+    }
+
+    /// The number of buckets whose AABBs within are not current.
+    #[inline]
+    pub(crate) fn closed_buckets(&self) -> usize {
+        self.closed_buckets
     }
 
     /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
@@ -253,6 +265,7 @@ impl<const E: usize> NodeVolumes<E> {
             whole = whole.union(&union);
         }
         self.packets_searches[bucket as usize] = self.search;
+        self.closed_buckets -= 1;
         self.set_node(n, whole);
     }
 
