@@ -255,7 +255,7 @@ mutants! {
     /// Along an axis in which squares of modes underflow, motion has no rounding error.
     ModeReachWithoutFloor: CaughtBy("it rounding::motions_whose_squares_underflow_are_no_rest");
     /// The limit of the outer round is not rounded to single precision.
-    OuterLimitInDouble: CaughtBy("lib certificates::build::pair_tree_builder::tests::pairs_bounded_up_to_the_limit_are_not_stored");
+    OuterLimitInDouble: Covered("pairs cut off at the limit are stored, too");
     /// Corners relative to one of them may be no larger than corners.
     RelativeCornersLimited: CaughtBy("it limits::corners_may_be_anywhere_in_the_range");
     /// A quotient that is NaN is a bound.

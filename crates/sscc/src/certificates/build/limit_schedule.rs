@@ -29,7 +29,7 @@ const BUDGET_MARGIN: f64 = 1.1;
 const REACH_DIVISOR: usize = 2;
 
 /// The outer limit is this many times the last one.
-pub(super) const OUTER_FACTOR: f64 = 1.5;
+const OUTER_FACTOR: f64 = 1.5;
 
 /// Which limit to try next.
 pub(super) struct LimitSchedule {
@@ -91,7 +91,8 @@ impl LimitSchedule {
             OuterRoundEndsAtGlobalRadius,
             self.global_radius
         ));
-        // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not stored.
+        // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not stored. With
+        // another limit it would be stored, with a radius that holds: a few more entries, and no other answer.
         right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
     }
 

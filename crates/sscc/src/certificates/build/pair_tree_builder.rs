@@ -182,45 +182,10 @@ fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::limit_schedule::OUTER_FACTOR;
     use super::*;
     use crate::CertifyOptions;
     use crate::certificates::build::executor::ThreadExecutor;
     use crate::certificates::test_models::ring;
-    use crate::model::rounding::to_f32_down;
-
-    /// A pair that is free up to the limit takes no entry, though radii are rounded down. The limits of some outer rounds
-    /// would be no single-precision numbers.
-    #[test]
-    fn pairs_bounded_up_to_the_limit_are_not_stored() {
-        let mut rounded = 0;
-        for case in 0..3 {
-            let model = ring(300, 3, 1.3 + f64::from(case));
-            let options = CertifyOptions { reach: 1.0, ..CertifyOptions::default() };
-            let preparation = Preparation::new(&model, &options, &()).unwrap();
-            let hierarchy = &preparation.hierarchy;
-            let most = hierarchy.order().len();
-            for budget in [most / 16, most / 8, most / 4, most / 2] {
-                let mut executor = ThreadExecutor { preparation: &preparation, progress: &() };
-                let mut builder = PairTreeBuilder::build(&preparation, budget, &mut executor).unwrap();
-                // So that all pairs below the limit are stored.
-                builder.budget = MAX_ENTRIES;
-                let tree = builder.finish(hierarchy, &vec![0.0; hierarchy.nodes().len()]);
-                let limit = to_f32_down(tree.limit());
-                assert!(
-                    tree.entries().all(|(radius, _)| radius < limit),
-                    "case {case}, {budget}: {}",
-                    tree.limit()
-                );
-                // An odd mantissa times 1.5 needs one digit more.
-                let inner = tree.limit() / OUTER_FACTOR;
-                let is_cut =
-                    tree.limit() == preparation.global_radius || tree.limit() == preparation.farthest;
-                rounded += usize::from(!tree.is_empty() && !is_cut && f64::from(inner as f32) != inner);
-            }
-        }
-        assert!(rounded > 0, "{rounded}");
-    }
 
     /// However small the budget is, the tree has all pairs below its limit, and no more than the budget allows.
     #[test]
