@@ -1,4 +1,4 @@
-//! Meshes of glTF files stand where nodes put them, and each side of a comparison has a name.
+//! Nodes place meshes of glTF files, and each side of a comparison has a name.
 
 use std::fs;
 use std::path::Path;
@@ -173,22 +173,34 @@ fn every_node_is_compared() {
     let expected = [(1, 1, 1), (1, 2, 0), (2, 1, 0), (2, 2, 1)];
     assert_eq!(found, expected.map(|(a, b, count)| (json!(a), json!(b), json!(count))));
     let text = sscc(folder, &["check", "needles.gltf", "--against", "sheets.gltf"]);
-    assert!(text.stdout.starts_with("node 1    against node 1         0 "), "{text:?}");
-    assert!(text.stdout.contains("4 files: 2 free, 2 colliding"), "{text:?}");
+    assert!(text.stdout.starts_with("node 1    against node 1 "), "{text:?}");
+    assert!(text.stdout.contains("4 comparisons: 2 free, 2 colliding; median "), "{text:?}");
+    assert!(text.stdout.contains("; worst: node 1 against node 1 (1 pair)"), "{text:?}");
+    let text = sscc(folder, &["check", "sheet.obj", "--against", "needles.gltf"]);
+    assert!(text.stdout.contains("; worst: against node 2 (1 pair)"), "{text:?}");
     // A node has a name of its own.
     let found = places(&["needles.gltf#left", "--against", "sheets.gltf#right"]);
     assert_eq!(found, [(Value::Null, Value::Null, json!(0))]);
     let left =
         places(&["needles.gltf", "--mesh-name=left", "--against", "sheets.gltf", "--against-mesh=left"]);
     assert_eq!(left, [(Value::Null, Value::Null, json!(1))]);
-    // Without another mesh, the first place stands for all: an affine map changes no collision of a mesh.
+    // Without another mesh, the first place represents all: an affine map changes no collision of a mesh.
+    let flat = json!([{"mesh": 0, "scale": [0, 1, 1]}, {"mesh": 0}]);
+    write(folder, "flat.gltf", &gltf(&[("needle", &NEEDLE)], flat));
+    let run = sscc(folder, &["check", "flat.gltf"]);
+    let other =
+        "node 0 alone is checked; node 1 shows the mesh with another skin, or one of them flattens it";
+    assert!(run.stderr.contains(other), "{run:?}");
+    // The other mesh is made for each comparison, but its warning is one.
+    let run = sscc(folder, &["check", "sheets.gltf", "--against", "flat.gltf"]);
+    assert_eq!(run.stderr.matches("flat.gltf: node 0: a scale of 0 flattens the mesh").count(), 1, "{run:?}");
     let alone = lines(folder, &["needles.gltf"]);
     assert_eq!((alone.len(), alone[0].get("node")), (1, None));
-    let many: Vec<Value> = (0..1001).map(|_| json!({"mesh": 0})).collect();
+    let many: Vec<Value> = (0..101).map(|_| json!({"mesh": 0})).collect();
     write(folder, "many.gltf", &gltf(&[("sheet", &SHEET)], json!(many)));
     write(folder, "others.gltf", &gltf(&[("sheet", &SHEET)], json!(many)));
     let too_many = sscc(folder, &["check", "many.gltf", "--against=others.gltf"]);
-    assert!(too_many.refusal().contains("1001 nodes show the mesh, and 1001 the other one"), "{too_many:?}");
+    assert!(too_many.refusal().contains("101 nodes show the mesh, and 101 the other one"), "{too_many:?}");
     let report = sscc(folder, &["check", "needles.gltf", "--against=sheet.obj", "--report=r.html"]);
     assert!(
         report.refusal().ends_with("a report shows one of each: name the nodes, as in FILE#NODE"),
@@ -259,6 +271,16 @@ fn each_side_has_a_name() {
     };
     assert_eq!(against(["low.npy", "high.npy"]).code, Some(0));
     assert!(against(["low.npy", "low.npy"]).stderr.contains("the same mesh is on both sides"));
+    // Frames are at no node.
+    let nodes = json!([{"mesh": 0, "name": "a"}, {"mesh": 0, "name": "b", "translation": [0, 0, 9]}]);
+    write(folder, "twice.gltf", &gltf(&[("sheet", &SHEET)], nodes));
+    let frames = ["--frames=low.npy", "--against-frames=low.npy"];
+    refused(
+        &[&["twice.gltf#a", "--against=twice.gltf#b"], &frames[..]].concat(),
+        "the same mesh is on both sides",
+    );
+    let moving = lines(folder, &["twice.gltf", "--frames=low.npy", "--against=two.gltf#Shirt"]);
+    assert_eq!((moving.len(), moving[0].get("node"), &moving[0]["count"]), (1, None, &json!(1)));
 }
 
 /// A sheet, and a needle above it; the first primitive has no morph target, the second one's lowers the needle.
@@ -336,4 +358,49 @@ fn needless_content_refuses_nothing() {
     file["cameras"] = json!(7);
     write(folder, "a.gltf", &file);
     assert_eq!(pairs(folder, &["a.gltf"]), [json!([])]);
+}
+
+/// Coincident triangles of different joints move apart, so their vertices are not welded.
+#[test]
+fn skins_part_vertices_at_rest_as_in_animations() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let layers = [SHEET, SHEET].concat();
+    let skinned = |second: u8, node: Value| {
+        let mut file = gltf(&[("layers", &layers), ("zero", &[[0.0; 3]])], json!([node, {}, {}]));
+        let joints: Vec<u8> =
+            [0, 0, 0, second, second, second].iter().flat_map(|joint| [*joint, 0, 0, 0]).collect();
+        let weights: Vec<u8> =
+            [[1.0_f32, 0.0, 0.0, 0.0]; 6].as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+        for (number, bytes) in [(2, joints), (3, weights)] {
+            let uri = format!("data:;base64,{}", BASE64.encode(&bytes));
+            let lists = [
+                ("buffers", json!({"byteLength": bytes.len(), "uri": uri})),
+                ("bufferViews", json!({"buffer": number, "byteLength": bytes.len()})),
+            ];
+            for (list, entry) in lists {
+                file[list].as_array_mut().unwrap().push(entry);
+            }
+        }
+        let accessors = file["accessors"].as_array_mut().unwrap();
+        accessors.push(json!({"bufferView": 2, "componentType": 5121, "count": 6, "type": "VEC4"}));
+        accessors.push(json!({"bufferView": 3, "componentType": 5126, "count": 6, "type": "VEC4"}));
+        accessors.push(json!({"bufferView": 1, "componentType": 5126, "count": 1, "type": "SCALAR"}));
+        file["meshes"] =
+            json!([{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 2, "WEIGHTS_0": 3}}]}]);
+        file["skins"] = json!([{"joints": [1, 2]}]);
+        file["animations"] = json!([{"channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
+            "samplers": [{"input": 4, "output": 1}]}]);
+        file
+    };
+    let skin = json!({"mesh": 0, "skin": 0});
+    for (second, node, expected) in
+        [(1, &skin, json!([[0, 1]])), (0, &skin, json!([])), (1, &json!({"mesh": 0}), json!([]))]
+    {
+        write(folder, "layers.gltf", &skinned(second, node.clone()));
+        assert_eq!(pairs(folder, &["layers.gltf"]), [expected.clone()], "{second} {node}");
+        if node == &skin {
+            assert_eq!(pairs(folder, &["layers.gltf", "--animation=0", "--times=0"]), [expected], "{second}");
+        }
+    }
 }

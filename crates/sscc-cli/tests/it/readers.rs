@@ -131,6 +131,7 @@ fn soups_have_a_hint_at_welding() {
     (0..4).for_each(|t| text += &format!("f {} {} {}\n", 3 * t + 1, 3 * t + 2, 3 * t + 3));
     let directory = folder(&[
         ("soup.obj", text.as_bytes()),
+        ("copy.obj", text.as_bytes()),
         ("doubled.obj", format!("{CROSSING}v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nf 7 8 9").as_bytes()),
         ("shared.obj", format!("{CROSSING}f 1 2 3\nf 4 5 6").as_bytes()),
     ]);
@@ -151,7 +152,7 @@ fn soups_have_a_hint_at_welding() {
         (&["soup.obj", "--weld=off"], 1),
         (&["soup.obj", "--weld", "off"], 1),
         (&["--weld", "on", "soup.obj"], 0),
-        (&["soup.obj", "--against", "soup.obj"], 1),
+        (&["soup.obj", "--against", "copy.obj"], 1),
         (&["shared.obj"], 1),
         (&["doubled.obj"], 1),
     ] {
@@ -162,6 +163,21 @@ fn soups_have_a_hint_at_welding() {
     write_npy(&directory.path().join("u.npy"), &[12, 3], &[0.5; 36]).unwrap();
     let found = run(&["soup.obj", "--modes", "u.npy", "--q", "0", "--method", "brute-force"]);
     assert!(found.code == Some(1) && found.stderr.contains(hint), "{found:?}");
+    // The user has decided for a model, or the reader has.
+    let decided =
+        run(&["soup.obj", "--modes", "u.npy", "--q", "0", "--method", "brute-force", "--weld", "off"]);
+    assert!(decided.code == Some(1) && !decided.stderr.contains("note: "), "{decided:?}");
+    let facet = |[a, b, c]: [&str; 3]| {
+        format!("facet normal 0 0 1\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n")
+    };
+    let facets = [["0 0 0", "4 0 0", "0 4 0"], ["0 0 0", "2 2 1", "2 2 -1"]].map(facet).concat();
+    fs::write(directory.path().join("s.stl"), format!("solid s\n{facets}endsolid s\n")).unwrap();
+    write_npy(&directory.path().join("v.npy"), &[5, 3], &[0.5; 15]).unwrap();
+    write_npy(&directory.path().join("w.npy"), &[6, 3], &[0.5; 18]).unwrap();
+    let welded = ["--q", "0", "--method", "brute-force", "--neighbours", "include-one-vertex"];
+    let found = ["v.npy", "w.npy"].map(|modes| run(&[&["s.stl", "--modes", modes], &welded[..]].concat()));
+    let found = found.iter().find(|found| found.code == Some(1)).unwrap();
+    assert!(!found.stderr.contains("note: "), "{found:?}");
 }
 
 #[test]

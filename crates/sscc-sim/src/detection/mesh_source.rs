@@ -9,6 +9,7 @@ use sscc::TriMesh;
 use sscc_io::gltf::{PlacedMesh, is_gltf, read_placed_mesh};
 use sscc_io::{IoError, LoadedMesh, load_mesh_with_warnings, split_mesh_name};
 
+use super::weld_classes::WeldClasses;
 use crate::SimError;
 use crate::error::Result;
 use crate::watch::Watch;
@@ -48,7 +49,7 @@ impl MeshSource {
         Ok(source)
     }
 
-    /// Warns of a mesh that stands nowhere, and of skin weights that break the standard.
+    /// Warns of a mesh that no node shows, and of skin weights that break the standard.
     fn warn(&self, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
         let warn = |text: &str| watch.warn(&format!("{}: {text}", self.file.display()));
@@ -63,18 +64,19 @@ impl MeshSource {
         }
     }
 
-    /// Warns if the first place does not stand for all: skins deform a mesh, and a scale of 0 flattens it.
+    /// Warns if the first place does not represent all: skins deform a mesh, and a scale of 0 flattens it.
     pub fn warn_of_other_places(&self, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
         // Places with the same skin are one.
         let is_other = |place: &usize| match placed.skin(*place) {
-            None => placed.skin(0).is_some() || placed.is_flattened(*place),
+            None => placed.skin(0).is_some() || placed.is_flattened(*place) || placed.is_flattened(0),
             skin => skin != placed.skin(0),
         };
         let other = (1..placed.places()).find(is_other);
         if let Some((first, other)) = placed.node(0).zip(other.and_then(|other| placed.node(other))) {
             watch.warn(&format!(
-                "{}: node {first} alone is checked; node {other} shows the mesh with another skin, or flattened",
+                "{}: node {first} alone is checked; node {other} shows the mesh with another skin, or one of \
+                 them flattens it",
                 self.file.display()
             ));
         }
@@ -96,17 +98,24 @@ impl MeshSource {
         }
     }
 
-    /// Returns the mesh at a place. `watch` is warned if the place flattens it.
-    pub fn mesh(&self, place: usize, watch: &dyn Watch) -> Result<TriMesh> {
+    /// Warns of the first `places` nodes that flatten the mesh.
+    pub fn warn_of_flattened_places(&self, places: usize, watch: &dyn Watch) {
+        let Content::Placed(placed) = &self.content else { return };
+        for node in
+            (0..places).filter(|place| placed.is_flattened(*place)).filter_map(|place| placed.node(place))
+        {
+            watch.warn(&format!(
+                "{}: node {node}: a scale of 0 flattens the mesh, so that its triangles touch",
+                self.file.display()
+            ));
+        }
+    }
+
+    /// Returns the mesh at a place.
+    pub fn mesh(&self, place: usize) -> Result<TriMesh> {
         match &self.content {
             Content::Plain(mesh) => Ok(mesh.clone()),
             Content::Placed(placed) => {
-                if let Some(node) = placed.node(place).filter(|_| placed.is_flattened(place)) {
-                    watch.warn(&format!(
-                        "{}: node {node}: a scale of 0 flattens the mesh, so that its triangles touch",
-                        self.file.display()
-                    ));
-                }
                 let in_file = |error| IoError::Format { path: self.file.clone(), error };
                 Ok(placed.to_mesh(place).map_err(in_file)?)
             }
@@ -121,8 +130,17 @@ impl MeshSource {
         }
     }
 
-    /// Refuses to compare a mesh with itself at the same place.
-    pub fn check_differs(&self, other: &Self) -> Result<()> {
+    /// Classes of the vertices that are one at a place. A skin may part vertices of equal position.
+    pub fn weld_classes(&self, place: usize) -> WeldClasses {
+        let of_skin = match &self.content {
+            Content::Plain(_) => None,
+            Content::Placed(placed) => placed.weld_classes(place),
+        };
+        of_skin.map_or_else(|| WeldClasses::at(self.own_positions()), WeldClasses::from)
+    }
+
+    /// Refuses to compare a mesh with itself at the same place. Meshes with the same frames are so at any nodes.
+    pub fn check_differs(&self, other: &Self, has_frames: bool) -> Result<()> {
         let real = |source: &Self| fs::canonicalize(split_mesh_name(&source.file).0).ok();
         if real(self) != real(other) {
             return Ok(());
@@ -133,7 +151,8 @@ impl MeshSource {
                 let nodes = |placed: &PlacedMesh| -> BTreeSet<Option<usize>> {
                     (0..placed.places()).map(|place| placed.node(place)).collect()
                 };
-                if a.mesh() != b.mesh() || nodes(a).is_disjoint(&nodes(b)) {
+                let is_apart = !has_frames && nodes(a).is_disjoint(&nodes(b));
+                if a.mesh() != b.mesh() || is_apart {
                     return Ok(());
                 }
                 let (path, _) = split_mesh_name(&self.file);

@@ -53,7 +53,8 @@ impl<'w> MovingMesh<'w> {
         request: &Detection,
         watch: &'w dyn Watch,
     ) -> Result<Self> {
-        Self::with_motion(source, place, request, watch, |_, _| Ok(Motion::Rest))
+        let classes = || source.weld_classes(place);
+        Self::with_motion(source, place, request, (watch, classes), |_, _| Ok(Motion::Rest))
     }
 
     /// Returns a mesh with frames, and checks all frames. Nodes do not move frames, which have positions of their own.
@@ -63,7 +64,8 @@ impl<'w> MovingMesh<'w> {
         request: &Detection,
         watch: &'w dyn Watch,
     ) -> Result<Self> {
-        Self::with_motion(source, 0, request, watch, |mesh, mut classes| {
+        let classes = || WeldClasses::at(source.own_positions());
+        Self::with_motion(source, 0, request, (watch, classes), |mesh, mut classes| {
             let mut reader = FrameReader::open(frames, mesh, &source.file)?;
             watch.begin(Stage::Reading);
             let mut positions = Vec::new();
@@ -83,13 +85,13 @@ impl<'w> MovingMesh<'w> {
         source: &MeshSource,
         place: usize,
         request: &Detection,
-        watch: &'w dyn Watch,
+        (watch, classes): (&'w dyn Watch, impl FnOnce() -> WeldClasses),
         motion: impl FnOnce(&TriMesh, Option<&mut WeldClasses>) -> Result<Motion>,
     ) -> Result<Self> {
         let file = source.file.as_path();
-        let mesh = source.mesh(place, watch)?;
+        let mesh = source.mesh(place)?;
         let weld = request.weld.unwrap_or(ContactFilter::of(&mesh).weld);
-        let mut classes = weld.then(|| WeldClasses::at(source.own_positions()));
+        let mut classes = weld.then(classes);
         let motion = motion(&mesh, classes.as_mut())?;
         // Every pair between two meshes counts.
         let groups = match request.against {
@@ -107,7 +109,9 @@ impl<'w> MovingMesh<'w> {
             None if request.meshes.len() > 1 => left_out.and_between_files(),
             None => left_out,
         };
-        let node = source.node(place).filter(|_| request.against.is_some());
+        // Frames are at no node.
+        let is_placed = request.against.is_some() && matches!(motion, Motion::Rest);
+        let node = source.node(place).filter(|_| is_placed);
         Ok(Self { file: file.to_owned(), node, mesh, detector, left_out, motion, watch })
     }
 

@@ -14,8 +14,8 @@ use crate::SimError;
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// Maximum number of pairs of places of two meshes. More are a mistake, or a hostile file.
-const MAX_PLACES: usize = 1_000_000;
+/// Maximum number of pairs of places of two meshes, each of which makes a detector. More are a mistake, or a hostile file.
+const MAX_PLACES: usize = 10_000;
 
 /// A mesh, and the other one.
 pub(super) type MeshPair<'w> = (Arc<MovingMesh<'w>>, Option<Arc<MovingMesh<'w>>>);
@@ -157,7 +157,7 @@ fn other_source(
     let source = MeshSource::read(&other.mesh, other.mesh_name.as_deref(), watch)?;
     let real = |frames: &Path| fs::canonicalize(frames).ok();
     if frames.map(real) == other.frames.as_deref().map(real) {
-        mesh.check_differs(&source)?;
+        mesh.check_differs(&source, frames.is_some())?;
     }
     Ok(source)
 }
@@ -168,16 +168,19 @@ fn side<'w>(
     request: &Detection,
     watch: &'w dyn Watch,
 ) -> Result<Side<'w>> {
+    let is_everywhere = frames.is_none() && request.against.is_some();
+    // A pair of places makes its meshes again, so the warnings are here. Too many places are refused without them.
+    source.warn_of_flattened_places(if is_everywhere { source.places().min(MAX_PLACES) } else { 1 }, watch);
     Ok(match frames {
         Some(frames) => {
             Side::Moving(vec![Arc::new(MovingMesh::with_frames(&source, frames, request, watch)?)])
         }
-        None if request.against.is_some() => {
+        None if is_everywhere => {
             let places = source.places();
             Side::Places(Box::new(source), places)
         }
         None => {
-            // An affine map does not change which triangles of a mesh intersect, so its first place stands for all.
+            // An affine map does not change which triangles of a mesh intersect, so its first place represents all.
             source.warn_of_other_places(watch);
             Side::Places(Box::new(source), 1)
         }

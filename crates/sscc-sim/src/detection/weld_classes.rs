@@ -1,4 +1,4 @@
-//! Weld classes of a mesh with frames: vertices that are at one position at rest and in every frame.
+//! Weld classes of a mesh: vertices that a reader joins, or that are at one position at rest and in every frame.
 
 use std::collections::HashMap;
 
@@ -6,6 +6,13 @@ use glam::DVec3;
 
 /// Classes of vertices that have been at equal positions so far. Each class has the number of its first vertex.
 pub(super) struct WeldClasses(Vec<u32>);
+
+impl From<&[u32]> for WeldClasses {
+    /// Takes the class of each vertex: the number of its first vertex.
+    fn from(classes: &[u32]) -> Self {
+        Self(classes.to_vec())
+    }
+}
 
 impl WeldClasses {
     /// The classes at some positions.

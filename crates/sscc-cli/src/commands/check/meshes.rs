@@ -26,6 +26,9 @@ pub fn check(args: &Check) -> Result<bool> {
     let request = request(args);
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",
+        (MeshMotion::Rest, _) if request.against.as_ref().is_some_and(|other| other.frames.is_none()) => {
+            "comparison"
+        }
         (MeshMotion::Rest, _) if args.motion.against_frames.is_none() => "file",
         _ => "frame",
     };

@@ -60,7 +60,8 @@ fn check_model(args: &Check) -> Result<bool> {
     printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some();
     let mut hint = SoupHint::default();
-    let is_welded = request.weld == Some(true);
+    // Models of some files are welded without a flag, and a user who has decided needs no hint.
+    let is_welded = request.weld.is_some() || query.scope().filter.weld;
     let take = |found: &DetectionAnswer<'_>| {
         if !is_welded {
             hint.add(found);

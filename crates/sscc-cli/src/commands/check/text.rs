@@ -61,11 +61,11 @@ impl Answer<'_> {
     }
 }
 
-/// Returns the word before the number of a query, which counts from 0. Files have names instead.
+/// Returns the word before the number of a query, which counts from 0. Files and nodes have names instead.
 fn numbered(noun: &str) -> Option<&str> {
     match noun {
         "configuration" => Some("row"),
-        "file" => None,
+        "file" | "comparison" => None,
         other => Some(other),
     }
 }
@@ -158,14 +158,14 @@ impl Summary {
     /// Returns an answer's place, its number of pairs and the largest depth.
     fn describe(&self, answer: &Answer<'_>, depth: f64) -> String {
         let number = numbered(self.noun).map(|label| format!("{label} {}", answer.index));
-        let place = match (&answer.file, number) {
-            (Some(file), Some(number)) => format!("{file}, {number}"),
-            (Some(file), None) => file.clone(),
-            (None, number) => number.unwrap_or_default(),
-        };
-        let node = answer.node.map(|node| format!(" of node {node}")).unwrap_or_default();
+        let node = answer.node.map(|node| format!("node {node}"));
+        let query: Vec<String> = number.into_iter().chain(node).collect();
+        let against = answer.against_node.map(|node| format!("against node {node}"));
+        let nodes: Vec<String> = [query.join(" of ")].into_iter().chain(against).collect();
+        let place = answer.file.iter().cloned().chain([nodes.join(" ").trim().to_owned()]);
+        let place: Vec<String> = place.filter(|part| !part.is_empty()).collect();
         let depth = answer.depths.as_ref().map(|_| format!(", deepest {}", length(depth)));
-        format!("{place}{node} ({}{})", answer.counted(), depth.unwrap_or_default())
+        format!("{} ({}{})", place.join(", "), answer.counted(), depth.unwrap_or_default())
     }
 
     pub fn line(&mut self) -> String {

@@ -212,6 +212,12 @@ impl PlacedMesh {
         self.map(place).is_some_and(|map| map.is_flat())
     }
 
+    /// For each vertex (V) the first vertex that coincides with it in every pose of the skin at a place: the position and
+    /// the influences are equal. None without a skin, where positions alone decide.
+    pub fn weld_classes(&self, place: usize) -> Option<&[u32]> {
+        self.skin(place).map(|_| &self.shape.weld_classes[..])
+    }
+
     /// The group of each triangle, at a place.
     ///
     /// # Errors
