@@ -18,13 +18,18 @@ pub(super) fn is_fan_a_triangulation(polygon: &[DVec2]) -> bool {
         turn = if side == 0 { turn } else { side };
     }
     // The directions from the centre turn one way, by at most half a turn at each step. They have passed the first
-    // direction again if one is on its side after another was behind it.
+    // direction again if one is on its side after another was behind it or opposite to it: an edge through the centre is half
+    // a turn.
     let Some(start) = others.iter().find(|p| *p != center) else { return true };
+    let is_between = |a: f64, x: f64, b: f64| a < x && x < b || b < x && x < a;
+    // Of a point on the line through the centre and the first direction.
+    let is_opposite = |p: &DVec2| is_between(start.x, center.x, p.x) || is_between(start.y, center.y, p.y);
     let mut was_behind = false;
     for point in others {
         match orient2d(*center, *start, *point) * turn {
             1 if was_behind => return false,
             -1 => was_behind = true,
+            0 if is_opposite(point) => was_behind = true,
             _ => {}
         }
     }
@@ -67,5 +72,9 @@ mod tests {
         let twice: Vec<_> = [(0., 0.)].into_iter().chain(ring).collect();
         assert!(!is_fan(&twice));
         assert!(is_fan(&twice[..5]));
+        // The same triangle twice, with an edge through the first corner between.
+        assert!(!is_fan(&[(0., 0.), (1., 0.), (0., 1.), (-1., 0.), (1., 0.), (0., 1.)]));
+        // The first corner is on an edge.
+        assert!(is_fan(&[(0., 0.), (1., 0.), (0., 1.), (-1., 0.)]));
     }
 }
