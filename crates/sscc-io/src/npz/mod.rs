@@ -64,7 +64,7 @@ pub fn read_npz_model(path: &Path) -> Result<NpzModel, IoError> {
 /// As [`read_npz_model`], without the file's name.
 pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     let all = [Part::Mean, Part::Modes, Part::Components, Part::Faces, Part::Weights];
-    let parts = Parts::read(bytes, &all)?;
+    let parts = Parts::read(bytes, &all, None)?;
     let mesh = parts.mesh()?;
     let modes = parts.modes(mesh.rest_positions().len())?;
     let weights = parts.weights(modes.rank())?;
@@ -72,14 +72,14 @@ pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     Ok(NpzModel { mesh, modes, weights, deviations })
 }
 
-/// Parses the modes of a mesh, with the standard deviations of q if the file has their variances; faces and other arrays
-/// are skipped. If the archive has a mean, it must equal the rest
-/// positions of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
+/// Parses the modes of a mesh, with the standard deviations of q if the file has their variances (and one array alone of
+/// numbers for each mode); faces and other arrays are skipped. If the archive has a mean, it must equal the rest positions
+/// of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
 ///
 /// # Errors
 /// As [`parse_model`], and when the modes or the mean belong to another mesh.
 pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<NamedModes, FormatError> {
-    let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components, Part::Weights])?;
+    let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components], Some(Part::Weights))?;
     let positions = mesh.rest_positions();
     let modes = parts.modes(positions.len())?;
     let deviations = parts.deviations(&modes);

@@ -16,17 +16,27 @@ use crate::{FormatError, Place};
 pub(super) struct Parts(BTreeMap<Part, (String, Vec<u8>)>);
 
 impl Parts {
-    /// Reads these parts.
-    pub fn read(bytes: &[u8], wanted: &[Part]) -> Result<Self, FormatError> {
-        let is_wanted = |name: &str| Part::of(name).is_some_and(|part| wanted.contains(&part));
+    /// Reads these parts. Arrays of one part are refused if they are several; those of an optional part are then left out,
+    /// because none of them can be preferred.
+    pub fn read(bytes: &[u8], wanted: &[Part], optional: Option<Part>) -> Result<Self, FormatError> {
+        let is_wanted =
+            |name: &str| Part::of(name).is_some_and(|part| wanted.contains(&part) || optional == Some(part));
+        let mut is_ambiguous = false;
         let mut parts = BTreeMap::new();
         for (name, content) in archive::entries(bytes, is_wanted)? {
             let Some(part) = Part::of(&name) else { continue };
             if let Some((other, _)) = parts.insert(part, (name.clone(), content)) {
+                if optional == Some(part) {
+                    is_ambiguous = true;
+                    continue;
+                }
                 let cause =
                     format!("'{other}' and '{name}' are the same part of the model: remove one of them");
                 return Err(FormatError::whole(cause));
             }
+        }
+        if let Some(part) = optional.filter(|_| is_ambiguous) {
+            parts.remove(&part);
         }
         if parts.contains_key(&Part::Modes) && parts.contains_key(&Part::Components) {
             let [a, b] = [Part::Modes, Part::Components].map(|part| parts[&part].0.clone());

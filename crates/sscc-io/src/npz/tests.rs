@@ -143,6 +143,11 @@ fn variances_state_the_standard_deviations_of_q() {
     let mesh = parse_model(&stored(&good())).unwrap().mesh;
     let more = parse_modes(&stored(&with("explained_variance", numbers(&[5]))), &mesh).unwrap();
     assert_eq!(more.deviations, None);
+    // Which of two arrays has the variances is unknown. Modes alone do not need them; a model shows them.
+    let mut two = with("explained_variance", numbers(&[2]));
+    two.push(("weights", numbers(&[2])));
+    assert_eq!(parse_modes(&stored(&two), &mesh).unwrap().deviations, None);
+    assert!(message(&two).contains("'explained_variance' and 'weights' are the same part"));
 }
 
 #[test]
