@@ -98,6 +98,10 @@ fn principal_components_go_to_three_standard_deviations() {
         run.json().iter().map(|row| row["to"].as_f64().unwrap()).collect()
     };
     assert_eq!(ends(&["p.model.safetensors"]), [3.0, -3.0]);
+    let info = sscc(folder, &["info", "p.model.safetensors", "--json"]).json().remove(0);
+    assert_eq!(info["deviations"], serde_json::json!([1.0]));
+    let info = sscc(folder, &["info", "p.model.safetensors"]).stdout;
+    assert!(info.contains("\ndeviations     1.000 (standard deviations of q)\n"), "{info}");
     // The same component of unit length.
     let mean: Vec<f64> = sscc_io::read_model(&folder.join("p.model.safetensors"))
         .unwrap()

@@ -10,7 +10,7 @@ use super::surface::Surface;
 use super::text::{form, hexadecimal, range};
 use crate::output::length;
 
-/// Maximum number of frequencies in the text; the JSON has all.
+/// Maximum number of frequencies, weights or deviations in the text; the JSON has all.
 const MAX_SHOWN: usize = 8;
 
 #[derive(Serialize)]
@@ -33,6 +33,9 @@ pub struct Model {
     /// One number for each mode from a `.npz` file, such as variances; absent without.
     #[serde(skip_serializing_if = "Option::is_none")]
     mode_weights: Option<Vec<f64>>,
+    /// The standard deviation of each entry of q, of principal components; absent without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviations: Option<Vec<f64>>,
     units: String,
     provenance: String,
     /// The digest of certificates with default options.
@@ -59,6 +62,7 @@ impl Model {
             },
             frequencies_hz: frequencies.and_then(Result::ok),
             mode_weights: None,
+            deviations: info.deviations,
             units: info.units,
             provenance: info.provenance,
             digest: hexadecimal(Digest::of(model, &Scope::of(model))),
@@ -81,15 +85,12 @@ impl Model {
         ]);
         lines.extend(self.elasticity());
         if let Some(all) = &self.mode_weights {
-            let shown: Vec<String> = all.iter().take(MAX_SHOWN).map(|weight| length(*weight)).collect();
-            let more = if all.len() > MAX_SHOWN { ", ..." } else { "" };
-            lines.push(format!("mode weights   {}{more}", shown.join(", ")));
-            // Of principal components these are variances, and archives have no word on the unit of q.
-            lines.push(
-                "unit of q      q_k = 1 adds the k-th mode once as stored; where mode weights are variances, their square \
-                 roots are the standard deviations of q"
-                    .to_owned(),
-            );
+            lines.push(format!("mode weights   {}", first(all)));
+            // Archives have no word on the unit of q.
+            lines.push("unit of q      q_k = 1 adds the k-th mode once as stored".to_owned());
+        }
+        if let Some(all) = &self.deviations {
+            lines.push(format!("deviations     {} (standard deviations of q)", first(all)));
         }
         lines.extend([
             format!("units          {}", stated(&self.units)),
@@ -104,11 +105,16 @@ impl Model {
         let forces = if self.nonlinear? { "nonlinear" } else { "linear" };
         Some(match &self.frequencies_hz {
             Some(all) => {
-                let shown: Vec<String> = all.iter().take(MAX_SHOWN).map(|hz| length(*hz)).collect();
-                let more = if all.len() > MAX_SHOWN { ", ..." } else { "" };
-                format!("frequencies    {}{more} Hz ({forces} forces)", shown.join(", "))
+                format!("frequencies    {} Hz ({forces} forces)", first(all))
             }
             None => format!("frequencies    none: {} ({forces} forces)", self.no_frequencies),
         })
     }
+}
+
+/// Returns the first of these numbers as text.
+fn first(all: &[f64]) -> String {
+    let shown: Vec<String> = all.iter().take(MAX_SHOWN).map(|number| length(*number)).collect();
+    let more = if all.len() > MAX_SHOWN { ", ..." } else { "" };
+    format!("{}{more}", shown.join(", "))
 }
