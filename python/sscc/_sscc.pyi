@@ -47,7 +47,8 @@ class Model:
         mesh (OBJ, PLY, OFF, STL) with its ``modes`` (``.npy``, ``.npz``, VegaFEM's matrices, a folder of target meshes).
 
         ``mesh_name``, or ``FILE#NAME`` as the path, chooses one of several meshes of a glTF file. The model is in the
-        coordinates of its mesh: nodes do not move it. Primitives that lack morph targets are warned about. Raises FileNotFoundError, OSError, ValueError.
+        coordinates of its mesh: nodes do not move it. Primitives that lack morph targets are warned about. Raises
+        FileNotFoundError, OSError, ValueError.
         """
     def save(self, path: _Path) -> None:
         """Writes ``*.model.safetensors``, whole or not at all."""
