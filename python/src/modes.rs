@@ -232,7 +232,8 @@ pub fn _pca(
             return Err(value("faces: the meshes of a folder have their own: leave faces out"));
         }
         let frames = py.detach(|| read_frames(&folder)).map_err(|error| file(&error))?;
-        warn(py, &frames.warnings)?;
+        let first = frames.paths.first().unwrap_or(&folder).to_string_lossy().escape_debug().to_string();
+        warn(py, &frames.warnings.iter().map(|warning| format!("{first}: {warning}")).collect::<Vec<_>>())?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         (frames.mesh, frames.positions, format!("meshes in {name}"))
     } else {
