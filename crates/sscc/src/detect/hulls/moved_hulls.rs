@@ -247,7 +247,7 @@ mod tests {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
-        let modes = Modes::new(2, vec![DVec3::Z, DVec3::X].repeat(6)).unwrap();
+        let modes = Modes::new(2, [DVec3::Z, DVec3::X].repeat(6)).unwrap();
         let model = ReducedModel::new(mesh, modes).unwrap();
         let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
         let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap();
