@@ -19,7 +19,7 @@ const MAX_HALVINGS: u32 = 10;
 ///
 /// Newmark's method conserves the energy of linear forces. With nonlinear forces it may add energy in each step, where the
 /// step is long against the period of a mode that swings far. Steps that would add too much, and steps that it does not
-/// solve, are solved with [the mean force of the step](Rule::Conserving), which adds none. A step without a solution is
+/// solve, are solved with the mean force of the step (`implicit_step.rs`), which adds none. A step without a solution is
 /// halved, again and again.
 #[derive(Clone, Debug)]
 pub struct NonlinearOscillator<'a> {
