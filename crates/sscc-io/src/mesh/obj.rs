@@ -129,11 +129,14 @@ fn arguments(statement: &[u8]) -> &[u8] {
 }
 
 fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
-    let mut values = [0.0; 7];
+    let mut values = [0.0; 3];
     let mut found = 0;
     for word in text.split_ascii_whitespace() {
-        if let Some(value) = values.get_mut(found) {
-            *value = number(word, line)?;
+        match values.get_mut(found) {
+            Some(value) => *value = number(word, line)?,
+            // Nobody needs colours and weights, which may be NaN.
+            None if word.parse::<f64>().is_err() => _ = number(word, line)?,
+            None => {}
         }
         found += 1;
     }
@@ -282,6 +285,12 @@ mod tests {
     }
 
     #[test]
+    fn colours_and_weights_may_be_no_numbers() {
+        let mesh = parse(b"v 0 0 0 nan nan nan\nv 1 0 0 inf\nv 0 1 0 1 nan 0 1e999\nf 1 2 3\n").unwrap();
+        assert_eq!(mesh.rest_positions(), [DVec3::ZERO, DVec3::X, DVec3::Y]);
+    }
+
+    #[test]
     fn errors_name_the_line() {
         assert_eq!(message("f 1 2 0"), "line 5: corner '0': vertices are counted from 1");
         assert_eq!(message("f 1 2 5"), "line 5: names vertex 5 (counted from 1), but there are 4");
@@ -295,6 +304,7 @@ mod tests {
         assert_eq!(message("v 1 nan 2"), "line 5: 'nan' is not a finite number");
         assert_eq!(message("v 1 1e999 2"), "line 5: '1e999' is not a finite number");
         assert_eq!(message("v 1 x 2"), "line 5: 'x' is not a number");
+        assert_eq!(message("v 1 2 3 x"), "line 5: 'x' is not a number");
         for line in ["f 1 2 3/a", "f 1 2 3/1/1/1", "f 1 2 x", "f 1 2 3.0", "f 1 2 99999999999999999999"] {
             assert!(message(line).starts_with("line 5: corner "), "{line}");
         }
