@@ -5,11 +5,15 @@ use sscc_solid::Stiffness;
 
 use crate::elastic_energy::{ElasticEnergy, Evaluation};
 use crate::implicit_step::{ImplicitStep, NewmarkBuffers, Rule, Start};
+use crate::trial::Trial;
 use crate::{Damping, DynamicsError};
 
 /// Maximum energy that Newmark's method may have added, as a share of the energy of the modes. Its energy oscillates by about
 /// this much where it resolves the motion.
 const MAX_GAIN: f64 = 0.02;
+
+/// Maximum energy that it may have lost and return later, as a share of that energy.
+const MAX_LOSS: f64 = 0.1;
 
 /// A step is halved at most so many times.
 const MAX_HALVINGS: u32 = 10;
@@ -99,7 +103,7 @@ impl<'a> NonlinearOscillator<'a> {
         let solved = self.solver.solve(Rule::Newmark, self.step, start, &undamped[r..2 * r], buffers);
         if let Some(is_quick) = solved {
             let trial = &buffers.trial;
-            let gain = kinetic(&trial.v) + trial.elastic_energy - work(g, &trial.q) - (energy - work(g, q));
+            let gain = trial.elastic_energy - undamped[2 * r] - work_of_mean_force(start, trial);
             if gain <= limit {
                 trial.finish(q, v, undamped);
                 undamped[r..2 * r].copy_from_slice(if is_quick {
@@ -108,7 +112,7 @@ impl<'a> NonlinearOscillator<'a> {
                     &trial.q
                 });
                 undamped[2 * r] = trial.elastic_energy;
-                undamped[2 * r + 1] = (undamped[2 * r + 1] + gain).max(0.0);
+                add_gain(undamped, gain, kinetic(v));
                 return Ok(trial.elastic_energy);
             }
         }
@@ -138,7 +142,6 @@ impl<'a> NonlinearOscillator<'a> {
         while left > 0 {
             let step = self.step * (f64::from(part) / f64::from(whole));
             let start = Start { q, v, undamped: &undamped[..r], g };
-            let before = kinetic(v) + undamped[2 * r] - work(g, q);
             if self.solver.solve(Rule::Conserving, step, start, q, buffers).is_none() {
                 part /= 2;
                 if part == 0 {
@@ -149,8 +152,7 @@ impl<'a> NonlinearOscillator<'a> {
             q.copy_from_slice(&buffers.trial.q);
             v.copy_from_slice(&buffers.trial.v);
             self.update(q, undamped, g, buffers);
-            let gain = kinetic(v) + undamped[2 * r] - work(g, q) - before;
-            undamped[2 * r + 1] = (undamped[2 * r + 1] + gain).max(0.0);
+            add_gain(undamped, 0.0, kinetic(v));
             left -= part;
         }
         true
@@ -167,9 +169,21 @@ fn kinetic(v: &[f64]) -> f64 {
     v.iter().map(|v| v * v / 2.0).sum()
 }
 
-/// Returns the work of the forces g from q = 0.
-fn work(g: &[f64], q: &[f64]) -> f64 {
-    g.iter().zip(q).map(|(g, q)| g * q).sum()
+/// Returns the work of the mean of the elastic forces at both ends of a step: what Newmark's method takes for the change of the
+/// elastic energy.
+fn work_of_mean_force(start: Start<'_>, end: &Trial) -> f64 {
+    let undamped = end.acceleration.iter().zip(&end.damping_forces).map(|(b, damping)| b + damping);
+    let forces = start.g.iter().zip(start.undamped).zip(undamped).map(|((g, e0), e1)| g - (e0 + e1) / 2.0);
+    forces.zip(end.q.iter().zip(start.q)).map(|(force, (q1, q0))| force * (q1 - q0)).sum()
+}
+
+/// Adds the energy that a step added, or lost, beside the work of all forces. Newmark's method returns what it lost, within
+/// limits: losses count as far as it may lose where it resolves the motion, gains as far as they are allowed.
+fn add_gain(undamped: &mut [f64], gain: f64, kinetic: f64) {
+    let r = undamped.len() / 2 - 1;
+    let energy = kinetic + undamped[2 * r];
+    let sum = undamped[2 * r + 1] + gain;
+    undamped[2 * r + 1] = sum.max(-MAX_LOSS * energy).min(MAX_GAIN * energy);
 }
 
 #[cfg(test)]
