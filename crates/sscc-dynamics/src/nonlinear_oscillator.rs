@@ -12,7 +12,7 @@ use crate::{Damping, DynamicsError};
 /// this much where it resolves the motion.
 const MAX_GAIN: f64 = 0.02;
 
-/// Maximum energy that it may have lost and return later, as a share of that energy.
+/// Maximum energy that it may have lost and may return later, as a share of that energy.
 const MAX_LOSS: f64 = 0.1;
 
 /// A step is halved at most so many times.
@@ -59,7 +59,7 @@ impl<'a> NonlinearOscillator<'a> {
 
     /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration
     /// `g - f(q)` under the forces g (r numbers each), the q whose derivative the step begins with (rest), the elastic energy
-    /// at q, and the energy that steps have added (0).
+    /// at q, and the energy that steps have added, less what they have lost (0).
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
         let mut undamped = vec![0.0; 2 * q.len() + 2];
         self.update(q, &mut undamped, g, buffers);
