@@ -279,7 +279,8 @@ mod vectors;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use certificates::{
-    BUILD, CertificateParts, Certificates, CertifyOptions, Digest, PairTree, RunJobs, Scope, ShardWorker,
+    BUILD, CertificateParts, Certificates, CertifyOptions, Digest, LocalBounds, LocalCertificates, PairTree,
+    RunJobs, Scope, ShardWorker,
 };
 pub use detect::contact_curves::{
     ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,
@@ -297,6 +298,6 @@ pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_posit
 pub use posed::{Pose, PosedShape, SweptShape};
 pub use progress::Progress;
 pub use query::{
-    Answer, FreeSamples, KineticQuery, Method, Query, ResolveOptions, Resolved, Statistics, Sweep,
+    Answer, FreeSamples, KineticQuery, Method, Proof, Query, ResolveOptions, Resolved, Statistics, Sweep,
     SweepOutcome,
 };

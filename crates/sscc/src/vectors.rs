@@ -26,6 +26,9 @@ pub(crate) trait Vectors: Copy {
     /// Eight integers as numbers.
     fn convert(self, x: &[i16; LANES]) -> Self::F32s;
 
+    /// Eight numbers of which the upper halves are given; the lower ones are 0.
+    fn load_upper_halves(self, x: &[u16; LANES]) -> Self::F32s;
+
     /// `a * b + c`, rounded twice.
     fn multiply_add(self, a: Self::F32s, b: Self::F32s, c: Self::F32s) -> Self::F32s;
 
@@ -120,6 +123,11 @@ impl Vectors for Baseline {
     #[inline(always)]
     fn convert(self, x: &[i16; LANES]) -> [Vec4; 2] {
         self.load(&x.map(f32::from))
+    }
+
+    #[inline(always)]
+    fn load_upper_halves(self, x: &[u16; LANES]) -> [Vec4; 2] {
+        self.load(&x.map(|half| f32::from_bits(u32::from(half) << 16)))
     }
 
     #[inline(always)]
@@ -219,6 +227,12 @@ mod avx2 {
         #[inline(always)]
         fn convert(self, x: &[i16; LANES]) -> __m256 {
             self.avx._mm256_cvtepi32_ps(self.avx2._mm256_cvtepi16_epi32(cast(*x)))
+        }
+
+        #[inline(always)]
+        fn load_upper_halves(self, x: &[u16; LANES]) -> __m256 {
+            let wide = self.avx2._mm256_cvtepu16_epi32(cast(*x));
+            cast(self.avx2._mm256_slli_epi32::<16>(wide))
         }
 
         #[inline(always)]

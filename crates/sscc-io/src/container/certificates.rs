@@ -216,6 +216,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         node_radii,
         root_pair_radii,
         pair_tree,
+        local: sscc::LocalCertificates::default(),
         rest_collisions: file.u64("rest_collisions")?.shaped(&[1])?.values[0],
     })?)
 }

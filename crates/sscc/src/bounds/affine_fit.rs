@@ -8,7 +8,7 @@ use crate::model::rounding::norm_up;
 use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// An affine map of the modes of some points, `A_i = A_0 + G (p_i - p_0) + E_i`, with residuals E. Owns its memory.
-pub(super) struct AffineFit {
+pub(crate) struct AffineFit {
     instructions: InstructionSet,
     row_len: usize,
     /// Nine rows: `G_cj` at `3 c + j`.
@@ -23,7 +23,7 @@ pub(super) struct AffineFit {
 }
 
 impl AffineFit {
-    pub(super) fn new(row_len: usize) -> Self {
+    pub(crate) fn new(row_len: usize) -> Self {
         debug_assert_eq!(row_len, padded_rank(row_len));
         Self {
             instructions: InstructionSet::default(),
@@ -37,7 +37,7 @@ impl AffineFit {
     }
 
     /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
-    pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
+    pub(crate) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
         self.instructions.run(FitModes { fit: self, plane, offsets, modes });
         self.longest = offsets.iter().map(|d| d.length()).fold(0.0, f64::max);
@@ -88,7 +88,7 @@ impl AffineFit {
     }
 
     /// Nine rows: `G_cj` at `3 c + j`.
-    pub(super) fn gradient(&self) -> &[f64] {
+    pub(crate) fn gradient(&self) -> &[f64] {
         &self.gradient
     }
 

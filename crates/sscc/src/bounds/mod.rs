@@ -27,6 +27,7 @@ mod sub_triangle;
 mod tests;
 mod upper_bound;
 
+pub(crate) use affine_fit::AffineFit;
 pub(crate) use configuration_line::{ConfigurationLine, MovingAabb};
 pub(crate) use leaf_pair::LeafPair;
 pub(crate) use node_pair::{NodePairBounds, NodePairScratch};

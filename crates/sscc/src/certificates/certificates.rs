@@ -3,7 +3,7 @@
 //! `build/` and `remote/` compute them. `validation.rs` checks that parts fit together. `compatibility.rs` checks that
 //! they belong to a model.
 
-use super::{Digest, PairTree, Scope};
+use super::{Digest, LocalCertificates, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Metric, Pair};
 
@@ -39,6 +39,8 @@ pub struct CertificateParts {
     pub root_pair_radii: Vec<f64>,
     /// Radii of node pairs, all below the tree's limit.
     pub pair_tree: PairTree,
+    /// Certificates of the strain of nodes, which hold far from the centre, too.
+    pub local: LocalCertificates,
     /// Number of colliding pairs at rest (q = 0), ignored ones included.
     pub rest_collisions: u64,
 }

@@ -8,6 +8,7 @@ mod certificates;
 mod clamp;
 mod compatibility;
 mod digest;
+mod local;
 mod options;
 mod pair_tree;
 mod pair_tree_validation;
@@ -24,6 +25,8 @@ pub(crate) use build::{
 };
 pub use certificates::{CertificateParts, Certificates};
 pub use digest::Digest;
+pub(crate) use local::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, gradient_len};
+pub use local::{LocalBounds, LocalCertificates};
 pub use options::CertifyOptions;
 pub use pair_tree::PairTree;
 pub(crate) use pair_tree::{StoredPair, sibling_pairs};

@@ -37,6 +37,9 @@ pub struct CertifyOptions {
     /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
     /// since the tree takes most of the time.
     pub budget: usize,
+    /// Memory for local certificates ([`LocalCertificates`](crate::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
+    /// pair tree leaves of its own. The largest nodes come first. 0: none.
+    pub local_budget: usize,
     /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
     /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of
     /// the budget, because they take time. Radii of nodes are capped at the radius up to which the tree was
@@ -57,6 +60,7 @@ impl Default for CertifyOptions {
             ignore_rest: false,
             max_exceptions: None,
             budget: Self::DEFAULT_BUDGET,
+            local_budget: Self::DEFAULT_LOCAL_BUDGET,
             reach: Self::DEFAULT_REACH,
             threads: None,
         }
@@ -66,6 +70,9 @@ impl Default for CertifyOptions {
 impl CertifyOptions {
     /// The default of [`CertifyOptions::budget`], in bytes for each triangle.
     pub const DEFAULT_BUDGET: usize = 64;
+
+    /// The default of [`CertifyOptions::local_budget`], in bytes for each triangle.
+    pub const DEFAULT_LOCAL_BUDGET: usize = 64;
 
     /// The default of [`CertifyOptions::reach`].
     pub const DEFAULT_REACH: f64 = 16.0;

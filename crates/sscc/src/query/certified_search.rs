@@ -3,6 +3,7 @@
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
+use super::local_proofs::LocalProofs;
 use super::pair_tree_traversal::{PairTreeStack, traverse_pair_tree};
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::hulls::MovedHulls;
@@ -15,6 +16,7 @@ pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) broad: BroadPhase<E>,
     stack: PairTreeStack,
     hulls: Option<MovedHulls<E>>,
+    pub(super) locals: Option<LocalProofs<E>>,
 }
 
 impl<const E: usize> CertifiedSearch<E> {
@@ -22,18 +24,29 @@ impl<const E: usize> CertifiedSearch<E> {
         let layout = &context.detect.layout;
         let broad = BroadPhase::new(layout, context.method.is_lazy(), context.cones());
         let hulls = context.hulls.as_ref().map(|hulls| MovedHulls::new(&hulls.nodes));
-        Self { broad, stack: PairTreeStack::default(), hulls }
+        let locals = context.locals.as_deref().map(LocalProofs::new);
+        Self { broad, stack: PairTreeStack::default(), hulls, locals }
     }
 
     /// Finds all hits but exceptions. `norm`: the largest `|z|` of the motion. A certificate holds during a motion if it
-    /// holds at start and end, since its region is convex.
+    /// holds at start and end, since its region is convex. Returns whether the root's local certificate proved the shape free.
     pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &QueryContext<'_>,
         norm: f64,
         motion: &M,
         narrow: &mut N,
-    ) {
+    ) -> bool {
+        let mut locals = self.locals.as_mut().zip(context.locals.as_deref());
+        if let (Some((proofs, tables)), Some(parts)) = (&mut locals, context.used_certificates()) {
+            proofs.prove(tables, &context.detect.hierarchy, motion, |n| parts.node_radii[n as usize] <= norm);
+            if proofs.is_node_proven(tables, 0) {
+                return true;
+            }
+        }
+        // Of a search without local certificates all buckets are open.
+        let is_open = |(proofs, _): &(&mut LocalProofs<E>, _)| proofs.is_mostly_open();
+        let is_mostly_open = locals.as_ref().is_none_or(is_open);
         match (context.complete_pair_tree(norm), context.used_certificates()) {
             (Some(tree), Some(parts)) => {
                 let radii = &parts.node_radii;
@@ -44,6 +57,7 @@ impl<const E: usize> CertifiedSearch<E> {
                 traverse_pair_tree(
                     &mut self.broad,
                     hulls,
+                    locals,
                     &mut self.stack,
                     &context.detect,
                     tree,
@@ -55,12 +69,13 @@ impl<const E: usize> CertifiedSearch<E> {
             }
             (_, Some(parts)) => {
                 // A search that ends at its first hits may open few nodes.
-                if norm >= context.refit_norm && narrow.hits().is_unlimited() {
+                if norm >= context.refit_norm && is_mostly_open && narrow.hits().is_unlimited() {
                     self.broad.volumes.refit(&context.detect.hierarchy, motion);
                 }
-                traverse_certified(&mut self.broad, &context.detect, parts, norm, motion, narrow);
+                traverse_certified(&mut self.broad, locals, &context.detect, parts, norm, motion, narrow);
             }
             (_, None) => self.broad.traverse(&context.detect, (0, 0), motion, narrow),
         }
+        false
     }
 }

@@ -4,6 +4,7 @@
 //! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, all AABBs are refitted, as the
 //! traditional method does, and the traversal goes on with those.
 
+use super::local_proofs::{LocalProofs, LocalTables};
 use crate::CertificateParts;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::context::Context;
@@ -18,6 +19,7 @@ const LOOSE_PAIRS: usize = 2;
 /// Finds all hits but exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
+    mut locals: Option<(&mut LocalProofs<E>, &LocalTables<'_>)>,
     context: &Context<'_>,
     certificates: &CertificateParts,
     norm: f64,
@@ -33,12 +35,22 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             can_refit = false;
         }
         if n != m {
+            let buckets = &broad.volumes.layout.buckets;
+            let is_last = [n, m].iter().all(|n| buckets.of_node(*n).is_some());
+            if let Some((proofs, tables)) = &mut locals
+                && proofs.is_pair_proven(tables, (n, m), is_last)
+            {
+                continue;
+            }
             broad.visit_node_pair(context, (n, m), motion, narrow);
             continue;
         }
         let radius = certificates.node_radii[n as usize];
         let is_certified = right_or!(norm < radius, NodeRadiusReached, norm <= radius);
-        if is_certified || !broad.visit_node(context, n, motion, narrow) {
+        if is_certified || locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n)) {
+            continue;
+        }
+        if !broad.visit_node(context, n, motion, narrow) {
             continue;
         }
         let node = context.hierarchy.nodes()[n as usize];
@@ -98,6 +110,7 @@ mod tests {
                     let norm = certificates.norm(&q);
                     traverse_certified(
                         &mut broad,
+                        None,
                         &context.detect,
                         certificates.parts(),
                         norm,

@@ -4,8 +4,10 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::local_proofs::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
+use crate::certificates::FactorScales;
 use crate::detect::context::Context;
 use crate::detect::normal_cones::NormalCones;
 use crate::hierarchy::Hierarchy;
@@ -21,6 +23,8 @@ pub(super) struct QueryContext<'a> {
     pub(super) method: Method,
     /// Hulls for the pair tree, if the method uses it.
     pub(super) hulls: Option<Arc<PairHulls>>,
+    /// Local certificates, if the method uses them.
+    pub(super) locals: Option<Arc<LocalTables<'a>>>,
     /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
     pub(super) refit_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
@@ -43,6 +47,10 @@ impl<'a> QueryContext<'a> {
             let tree = &used.parts().pair_tree;
             PairHulls::new(model, &detect.hierarchy, &detect.layout, tree, &scope.center).map(Arc::new)
         });
+        let locals = used.and_then(|used| {
+            let (scales, center) = (FactorScales::new(model, used.center())?, used.center());
+            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales).map(Arc::new)
+        });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
         let refit_norm = used.map_or(f64::INFINITY, |used| {
@@ -50,7 +58,7 @@ impl<'a> QueryContext<'a> {
             let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
             refit_norm((0..buckets.count() as u32).map(radius).collect())
         });
-        Self { model, detect, certificates, scope, method, hulls, refit_norm, proven_radius }
+        Self { model, detect, certificates, scope, method, hulls, locals, refit_norm, proven_radius }
     }
 
     /// The normal cones of the method, if it uses any.

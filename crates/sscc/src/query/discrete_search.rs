@@ -4,7 +4,7 @@ use super::certified_search::CertifiedSearch;
 use super::configuration::Configuration;
 use super::context::QueryContext;
 use super::method::Method;
-use super::statistics::Statistics;
+use super::statistics::{Proof, Statistics};
 use crate::Error;
 use crate::detect::narrow_phase::DiscreteHits;
 
@@ -37,23 +37,28 @@ impl DiscreteSearch {
         configuration: Configuration<'_>,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
-        statistics.root_certified = context.is_root_certified(configuration.norm);
-        if !statistics.root_certified || !context.detect.exceptions.is_empty() {
-            let result = self.search(context, configuration, statistics.root_certified);
+        let is_root_certified = context.is_root_certified(configuration.norm);
+        statistics.set_proof(if is_root_certified { Proof::Radius } else { Proof::Search });
+        if !is_root_certified || !context.detect.exceptions.is_empty() {
+            let result = self.search(context, configuration, is_root_certified);
             statistics.set_counters(&self.certified.broad.counters);
-            result?;
+            if result? {
+                statistics.set_proof(Proof::Local);
+            }
         }
         statistics.complete = self.narrow.0.is_complete();
         Ok(())
     }
 
+    /// Returns whether the root's local certificate was the proof.
     fn search(
         &mut self,
         context: &QueryContext<'_>,
         configuration: Configuration<'_>,
         is_root_certified: bool,
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
         let Self { certified, narrow } = self;
+        let mut is_root_proven = false;
         if context.method == Method::BruteForce {
             certified.broad.brute_force(
                 &context.detect,
@@ -65,11 +70,11 @@ impl DiscreteSearch {
             certified.broad.begin_volumes(&context.detect, &motion);
             certified.broad.test_exceptions(&context.detect, &motion, narrow);
             if !is_root_certified {
-                certified.find(context, configuration.norm, &motion, narrow);
+                is_root_proven = certified.find(context, configuration.norm, &motion, narrow);
             }
         }
         certified.broad.end(narrow)?;
         narrow.0.list.sort_unstable();
-        Ok(())
+        Ok(is_root_proven)
     }
 }

@@ -3,6 +3,7 @@
 //! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
 //! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
+use super::local_proofs::{LocalProofs, LocalTables};
 use super::pair_hulls::PairHulls;
 use crate::PairTree;
 use crate::certificates::StoredPair;
@@ -41,6 +42,7 @@ macro_rules! is_entry_reached {
 pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
     mut hulls: Option<(&mut MovedHulls<E>, &PairHulls)>,
+    mut locals: Option<(&mut LocalProofs<E>, &LocalTables<'_>)>,
     PairTreeStack(stack): &mut PairTreeStack,
     context: &Context<'_>,
     tree: &PairTree,
@@ -57,6 +59,9 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         }
         let buckets = &broad.volumes.layout.buckets;
         if entry == NODE {
+            if locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n)) {
+                continue;
+            }
             broad.counters.opened += 1;
             if let Some(bucket) = buckets.of_node(n) {
                 broad.test_bucket(context, bucket, motion, narrow);
@@ -77,6 +82,12 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
                     stack.push(Visit { nodes, entry: index });
                 }
             }
+            continue;
+        }
+        let is_last = [n, m].iter().all(|n| buckets.of_node(*n).is_some());
+        if let Some((proofs, tables)) = &mut locals
+            && proofs.is_pair_proven(tables, (n, m), is_last)
+        {
             continue;
         }
         broad.counters.box_tests += 1;

@@ -4,7 +4,7 @@ use super::certified_search::CertifiedSearch;
 use super::configuration::Configuration;
 use super::context::QueryContext;
 use super::method::Method;
-use super::statistics::Statistics;
+use super::statistics::{Proof, Statistics};
 use crate::detect::broad_phase::Counters;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::DeformedMotion;
@@ -43,8 +43,9 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
         let Self { certified, narrow } = self;
         narrow.hits().begin(limit);
         certified.broad.begin();
-        statistics.root_certified = context.is_root_certified(norm);
-        if !statistics.root_certified || !context.detect.exceptions.is_empty() {
+        let is_root_certified = context.is_root_certified(norm);
+        statistics.set_proof(if is_root_certified { Proof::Radius } else { Proof::Search });
+        if !is_root_certified || !context.detect.exceptions.is_empty() {
             if context.method == Method::BruteForce {
                 let positions = |v| [t0.q, t1.q].map(|q| context.model.position(v, q));
                 certified.broad.brute_force(&context.detect, positions, narrow);
@@ -52,8 +53,8 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
                 let motion = DeformedMotion::new([t0.q, t1.q], t0.reach.max(t1.reach));
                 certified.broad.begin_volumes(&context.detect, &motion);
                 certified.broad.test_exceptions(&context.detect, &motion, narrow);
-                if !statistics.root_certified {
-                    certified.find(context, norm, &motion, narrow);
+                if !is_root_certified && certified.find(context, norm, &motion, narrow) {
+                    statistics.set_proof(Proof::Local);
                 }
             }
             statistics.set_counters(&certified.broad.counters);

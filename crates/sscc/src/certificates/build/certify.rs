@@ -5,7 +5,7 @@ use super::node_radii::NodeRadii;
 use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use crate::certificates::pair_tree::{PairEntry, PairTree};
-use crate::certificates::{CertificateParts, Certificates, CertifyOptions};
+use crate::certificates::{CertificateParts, Certificates, CertifyOptions, LocalCertificates};
 use crate::thread_pool::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
@@ -24,7 +24,7 @@ impl Certificates {
             let preparation = Preparation::new(model, options, progress)?;
             let mut executor = ThreadExecutor { preparation: &preparation, progress };
             let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
-            Ok(radii.into_certificates(preparation))
+            Ok(radii.into_certificates(model, options, preparation))
         })
     }
 }
@@ -51,8 +51,21 @@ impl CertifiedRadii {
         Ok(Self { radii, pair_tree })
     }
 
-    /// The certificates of the model that was prepared.
-    pub(crate) fn into_certificates(self, preparation: Preparation) -> Certificates {
+    /// The certificates of the model that was prepared, with local certificates, which are computed on the threads of the current pool.
+    pub(crate) fn into_certificates(
+        self,
+        model: &ReducedModel,
+        options: &CertifyOptions,
+        preparation: Preparation,
+    ) -> Certificates {
+        let tree_bytes = self.pair_tree.len() * size_of::<PairEntry>();
+        let local = if options.local_budget == 0 {
+            LocalCertificates::default()
+        } else {
+            let bytes = |budget: usize| budget.saturating_mul(model.mesh().faces().len());
+            let left = bytes(options.budget.saturating_add(options.local_budget)).saturating_sub(tree_bytes);
+            preparation.local_certificates(model, left)
+        };
         let Preparation { digest, scope, hierarchy, rest_collisions, epsilon, .. } = preparation;
         Certificates::new(CertificateParts {
             digest,
@@ -64,6 +77,7 @@ impl CertifiedRadii {
             node_radii: self.radii.nodes,
             root_pair_radii: self.radii.root_pairs,
             pair_tree: self.pair_tree,
+            local,
         })
     }
 }

@@ -6,7 +6,8 @@ use super::node_groups::NodeGroups;
 use super::radius_search::RadiusSearch;
 use super::radius_search_context::RadiusSearchContext;
 use crate::bounds::NodePairBounds;
-use crate::certificates::{CertifyOptions, Digest, Scope};
+use crate::certificates::local::compute_local_certificates;
+use crate::certificates::{CertifyOptions, Digest, LocalCertificates, Scope};
 use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::{Hierarchy, NodePair};
@@ -107,6 +108,11 @@ impl Preparation {
     /// Whether the AABBs of two nodes touch or overlap at the centre.
     pub(crate) fn are_touching(&self, nodes: NodePair) -> bool {
         self.nodes.are_touching(nodes)
+    }
+
+    /// The local certificates of the model, in at most so many bytes.
+    pub(crate) fn local_certificates(&self, model: &ReducedModel, most_bytes: usize) -> LocalCertificates {
+        compute_local_certificates(model, &self.hierarchy, &self.filter, &self.scope.center, most_bytes)
     }
 
     /// A search for one thread.

@@ -33,7 +33,7 @@ impl Certificates {
         let key = Key::of(&preparation);
         let mut executor = RemoteExecutor { preparation: &preparation, key, shards, run, progress };
         let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
-        Ok(radii.into_certificates(preparation))
+        Ok(on_threads(options.threads, || radii.into_certificates(model, options, preparation)))
     }
 }
 

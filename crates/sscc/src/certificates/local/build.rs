@@ -1,0 +1,224 @@
+//! The computation of local certificates.
+
+use rayon::prelude::*;
+
+use super::corner_gaps::CornerGaps;
+use super::local_certificates::{LocalBounds, LocalCertificates, MOST_MODES, gradient_len};
+use super::patch::Patch;
+use super::patch_model::PatchModel;
+use super::residual_ellipsoid::FitEllipsoid;
+use super::strain_search::StrainSearch;
+use super::touching_nodes::TouchingNodes;
+use crate::filter::PairFilter;
+use crate::hierarchy::Hierarchy;
+use crate::vectors::{InstructionSet, LANES};
+use crate::{Neighbours, ReducedModel};
+
+/// Rounds in which the ellipsoid is fitted to the pairs that decided the one before.
+const ROUNDS: usize = 1;
+
+/// Blocks of the first ellipsoid: vertices and the patch's first one.
+const FIRST_BLOCKS: usize = 32;
+
+/// Certificates beyond these numbers prove nothing.
+const LARGEST: f64 = 1e12;
+
+/// Ratios with other nodes are not told apart below this share of the ratio within the node.
+const OWN_SHARE: f32 = 1.0;
+
+/// The certificate of one node.
+struct LocalCertificate {
+    modes: Vec<u32>,
+    gradients: Vec<f32>,
+    ellipsoid: Vec<u16>,
+    bounds: LocalBounds,
+    /// Nodes, and the ratio with each.
+    list: Vec<(u32, f32)>,
+}
+
+/// The certificates of all nodes down to buckets about the centre, largest nodes first as far as `most_bytes` go, on the threads of the
+/// current pool. `filter` leaves out exceptions. None where `most_bytes` is 0, the shape has no size, or the filter wants pairs that share
+/// an edge.
+pub(crate) fn compute_local_certificates(
+    model: &ReducedModel,
+    hierarchy: &Hierarchy,
+    filter: &PairFilter,
+    center: &[f64],
+    most_bytes: usize,
+) -> LocalCertificates {
+    if most_bytes == 0 || filter.neighbours() == Neighbours::IncludeFolded {
+        return LocalCertificates::default();
+    }
+    let Some(patch_model) = PatchModel::new(model, center) else { return LocalCertificates::default() };
+    let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions);
+    let touching = TouchingNodes::new(hierarchy, filter);
+    let builder = Builder { model: &patch_model, gaps: &gaps, touching: &touching };
+    let within = hierarchy.nodes_within_buckets();
+    let mut wanted: Vec<u32> = (0..within.len() as u32).filter(|n| !within[*n as usize]).collect();
+    wanted.sort_by_key(|n| std::cmp::Reverse(hierarchy.nodes()[*n as usize].triangle_count));
+    let scratch = || Scratch::new(patch_model.positions.len());
+    let mut found: Vec<(u32, LocalCertificate)> = wanted
+        .par_iter()
+        .map_init(scratch, |scratch, n| Some((*n, builder.certify(*n, scratch)?)))
+        .flatten()
+        .collect();
+    let mut bytes = 0;
+    found.retain(|(_, certificate)| {
+        bytes += LocalCertificates::bytes_of(certificate.modes.len()) + 8 * certificate.list.len();
+        bytes <= most_bytes
+    });
+    found.sort_unstable_by_key(|(n, _)| *n);
+    let mut all =
+        LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
+    for (n, certificate) in found {
+        all.nodes.push(n);
+        all.modes.extend(certificate.modes);
+        all.mode_starts.push(all.modes.len() as u32);
+        all.gradients.extend(certificate.gradients);
+        all.ellipsoids.extend(certificate.ellipsoid);
+        all.bounds.push(certificate.bounds);
+        all.list_nodes.extend(certificate.list.iter().map(|(m, _)| m));
+        all.list_ratios.extend(certificate.list.iter().map(|(_, ratio)| ratio));
+        all.list_starts.push(all.list_nodes.len() as u32);
+    }
+    all
+}
+
+struct Builder<'b> {
+    model: &'b PatchModel<'b>,
+    gaps: &'b CornerGaps<'b>,
+    touching: &'b TouchingNodes<'b>,
+}
+
+/// Memory of one thread.
+struct Scratch {
+    instructions: InstructionSet,
+    patch: Patch,
+    search: StrainSearch,
+    images: Vec<f64>,
+}
+
+impl Scratch {
+    fn new(vertices: usize) -> Self {
+        Self {
+            instructions: InstructionSet::default(),
+            patch: Patch::new(vertices),
+            search: StrainSearch::default(),
+            images: Vec::new(),
+        }
+    }
+}
+
+impl Builder<'_> {
+    /// The certificate of a node; none where it would prove nothing.
+    fn certify(&self, n: u32, scratch: &mut Scratch) -> Option<LocalCertificate> {
+        let Scratch { instructions, patch, search, images } = scratch;
+        let around = self.touching.around(n);
+        let top = || around.iter().copied().filter(|m| !self.touching.has_parent(*m, &around));
+        let nodes = || std::iter::once(n).chain(top());
+        let CornerGaps { hierarchy, filter, .. } = self.gaps;
+        patch.load(self.model, hierarchy, filter.faces(), nodes(), MOST_MODES)?;
+        let parts = search.load(self.gaps, patch, nodes());
+        let mut blocks = first_blocks(patch);
+        let rank = patch.modes.len();
+        let mut found = None;
+        for round in 0..=ROUNDS {
+            let ellipsoid =
+                instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
+            let largest = patch.images(&ellipsoid, images, &mut search.images);
+            search.begin(largest, round == ROUNDS);
+            let ratio = search.within(self.gaps, 0);
+            if round < ROUNDS {
+                search.add_blocks(patch, &mut blocks);
+            }
+            found = Some((ellipsoid, ratio));
+        }
+        let (ellipsoid, ratio) = found?;
+        let mut list = Vec::new();
+        for part in &parts[1..] {
+            self.list(search, &around, *part, OWN_SHARE * ratio, &mut list);
+        }
+        list.sort_unstable_by_key(|(m, _)| *m);
+        let (steepest, widest) = (patch.steepest(), ellipsoid.largest_column());
+        let per_error = (1.0 + 1e-12) / search.smallest_gap.min(1.0);
+        // The error of residuals, then that of their images.
+        let unit = f64::EPSILON / 2.0;
+        let of_residuals = 64.0 * unit * (2.0 + steepest * patch.longest()) * per_error;
+        let of_images = 2.0 * ellipsoid.defect() * patch.largest_residual() * per_error;
+        let bounds = LocalBounds {
+            ratio: f64::from(ratio),
+            per_factor: of_residuals + of_images,
+            per_error,
+            steepest,
+            widest,
+        };
+        let numbers = [bounds.per_factor, per_error, steepest, widest];
+        numbers.iter().all(|x| *x < LARGEST).then(|| LocalCertificate {
+            gradients: gradients(patch),
+            ellipsoid: ellipsoid.numbers().collect(),
+            modes: patch.modes.clone(),
+            bounds,
+            list,
+        })
+    }
+
+    /// Adds the ratios of the patch's node with a part and the nodes below it that share a vertex with that node, down to buckets.
+    /// Returns that of the part.
+    fn list(
+        &self,
+        search: &mut StrainSearch,
+        around: &[u32],
+        part: u32,
+        floor: f32,
+        list: &mut Vec<(u32, f32)>,
+    ) -> f32 {
+        let (node, children) = search.node(part);
+        let is_touching = |node: u32| around.binary_search(&node).is_ok();
+        if !is_touching(node) {
+            return search.between(self.gaps, (0, part), floor);
+        }
+        let Some(children) = children else {
+            let ratio = search.between(self.gaps, (0, part), floor);
+            list.push((node, ratio));
+            return ratio;
+        };
+        let mut ratio = floor;
+        for is_first in [true, false] {
+            for child in children.clone() {
+                if is_touching(search.node(child).0) != is_first {
+                    continue;
+                }
+                let floor = if is_first { floor } else { ratio };
+                let of_child = self.list(search, around, child, floor, list);
+                ratio = if of_child <= ratio { ratio } else { of_child };
+            }
+        }
+        list.push((node, ratio));
+        ratio
+    }
+}
+
+/// Blocks to begin with: the residual of some vertices over their distance from the first one.
+fn first_blocks(patch: &Patch) -> Vec<f64> {
+    let step = patch.offsets.len().div_ceil(FIRST_BLOCKS);
+    let rows = patch.residuals.chunks_exact((3 * patch.row_len).max(1));
+    let mut blocks = Vec::new();
+    for (rows, d) in rows.zip(&patch.offsets).skip(1).step_by(step) {
+        let distance = d.length();
+        if distance > 0.0 {
+            blocks.extend(rows.iter().map(|e| e / distance));
+        }
+    }
+    blocks
+}
+
+/// The gradients in the layout of [`LocalCertificates::gradients`].
+fn gradients(patch: &Patch) -> Vec<f32> {
+    let count = patch.modes.len();
+    // The rows are `G_cj` at 3 c + j; entry e of a column is `G_cj` with c = e % 3, j = e / 3.
+    let entry = |e: usize, k: usize| patch.gradient[(3 * (e % 3) + e / 3) * patch.row_len + k] as f32;
+    let mut numbers: Vec<f32> = (0..count).flat_map(|k| (0..LANES).map(move |e| entry(e, k))).collect();
+    numbers.extend((0..count).map(|k| entry(LANES, k)));
+    numbers.resize(gradient_len(count), 0.0);
+    numbers
+}

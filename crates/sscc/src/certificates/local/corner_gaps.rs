@@ -1,0 +1,210 @@
+//! The gaps between corners along directions that separate triangles, at the centre.
+//!
+//! For leaves that are near each other a table has, for each two vertices, the smallest gap over all pairs of triangles that
+//! have them as corners. Leaves that are farther apart have one direction for all their triangles.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::filter::{PairFilter, Relation, SimplexPair};
+use crate::geometry::nearest_to_origin;
+use crate::hierarchy::{Hierarchy, NodePair};
+
+/// Leaves have a table where the gap of their spheres is at most this share of the sum of the radii.
+const NEAR: f64 = 0.3;
+
+/// A direction whose gap is this share of the distance of the centroids is wide enough.
+const WIDE: f64 = 0.6;
+
+/// Covers the rounding of gaps in the unit of half the shape's size: coordinates are at most about 1.
+const GAP_ROUNDING: f64 = 1e-14;
+
+/// A smaller gap proves nothing.
+const SMALLEST: f64 = 1e-9;
+
+/// The smallest gaps between the vertices of two near leaves.
+pub(super) struct GapTable {
+    /// For each vertex of the first leaf those of the second, rounded down; infinite where no pair of triangles counts.
+    pub(super) gaps: Vec<f32>,
+}
+
+/// A sphere around the vertices of a node.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sphere {
+    pub(super) center: DVec3,
+    /// Rounded up.
+    pub(super) radius: f64,
+}
+
+/// The vertices of leaves, spheres of nodes, and the tables of near leaves.
+pub(super) struct CornerGaps<'g> {
+    pub(super) hierarchy: &'g Hierarchy,
+    pub(super) filter: &'g PairFilter,
+    positions: &'g [DVec3],
+    /// For each node where its vertices start if it is a leaf, and the end.
+    starts: Vec<u32>,
+    vertices: Vec<u32>,
+    pub(super) spheres: Vec<Sphere>,
+    /// None where two triangles that count have no gap.
+    tables: HashMap<NodePair, Option<GapTable>>,
+}
+
+impl<'g> CornerGaps<'g> {
+    pub(super) fn new(hierarchy: &'g Hierarchy, filter: &'g PairFilter, positions: &'g [DVec3]) -> Self {
+        let nodes = hierarchy.nodes();
+        let (mut starts, mut vertices) = (vec![0], Vec::new());
+        for node in nodes {
+            if node.is_leaf() {
+                vertices.extend(hierarchy.vertices(node, filter.faces()));
+            }
+            starts.push(vertices.len() as u32);
+        }
+        let mut gaps = Self {
+            hierarchy,
+            filter,
+            positions,
+            starts,
+            vertices,
+            spheres: Vec::new(),
+            tables: HashMap::new(),
+        };
+        gaps.spheres = gaps.node_spheres();
+        let mut near = gaps.near_leaves();
+        near.sort_unstable();
+        gaps.tables = near.par_iter().map(|pair| (*pair, gaps.table(*pair))).collect();
+        gaps
+    }
+
+    /// The vertices of a leaf, ascending.
+    #[inline]
+    pub(super) fn vertices(&self, leaf: u32) -> &[u32] {
+        let [start, end] = [leaf, leaf + 1].map(|n| self.starts[n as usize] as usize);
+        &self.vertices[start..end]
+    }
+
+    /// The table of two leaves, the smaller number first, if they are near.
+    #[inline]
+    pub(super) fn near(&self, pair: NodePair) -> Option<&Option<GapTable>> {
+        self.tables.get(&pair)
+    }
+
+    /// For leaves that are not near: the components of all vertices of the first leaf along a direction, and those of the
+    /// second. None where the direction separates them by too little. Any two of them have the gap of their components.
+    pub(super) fn components(&self, (n, m): NodePair, out: &mut [Vec<f64>; 2]) -> Option<f64> {
+        let [a, b] = [n, m].map(|n| self.spheres[n as usize].center);
+        let dir = (b - a).try_normalize()?;
+        for (out, leaf) in out.iter_mut().zip([n, m]) {
+            out.clear();
+            out.extend(self.vertices(leaf).iter().map(|v| dir.dot(self.positions[*v as usize] - a)));
+        }
+        let last = out[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let first = out[1].iter().copied().fold(f64::INFINITY, f64::min);
+        let gap = first - last - GAP_ROUNDING;
+        (gap > SMALLEST).then_some(gap)
+    }
+
+    /// The gap of two components, rounded down.
+    #[inline]
+    pub(super) fn gap_between(a: f64, b: f64) -> f64 {
+        (b - a) * (1.0 - 1e-14) - GAP_ROUNDING
+    }
+
+    fn node_spheres(&self) -> Vec<Sphere> {
+        let nodes = self.hierarchy.nodes();
+        let mut spheres = vec![Sphere::default(); nodes.len()];
+        for n in (0..nodes.len()).rev() {
+            let node = &nodes[n];
+            let (center, radius) = if node.is_leaf() {
+                let points = || self.vertices(n as u32).iter().map(|v| self.positions[*v as usize]);
+                let center = points().sum::<DVec3>() / points().count() as f64;
+                (center, points().map(|p| (p - center).length()).fold(0.0, f64::max))
+            } else {
+                let children =
+                    || node.children().map(|child| (spheres[child as usize], nodes[child as usize]));
+                let weight = |count: u32| f64::from(count) / f64::from(node.triangle_count);
+                let center = children().map(|(s, c)| s.center * weight(c.triangle_count)).sum::<DVec3>();
+                (center, children().map(|(s, _)| (s.center - center).length() + s.radius).fold(0.0, f64::max))
+            };
+            spheres[n] = Sphere { center, radius: radius * (1.0 + 1e-14) + GAP_ROUNDING };
+        }
+        spheres
+    }
+
+    fn near_leaves(&self) -> Vec<NodePair> {
+        let nodes = self.hierarchy.nodes();
+        let (mut near, mut stack) = (Vec::new(), vec![(0, 0)]);
+        while let Some((n, m)) = stack.pop() {
+            let [a, b] = [n, m].map(|n| nodes[n as usize]);
+            if n != m {
+                let [x, y] = [n, m].map(|n| self.spheres[n as usize]);
+                if (y.center - x.center).length() > (1.0 + NEAR) * (x.radius + y.radius) {
+                    continue;
+                }
+            }
+            if n == m {
+                if a.is_leaf() {
+                    near.push((n, n));
+                } else {
+                    stack.extend(a.children().map(|c| (c, c)));
+                    stack.extend(a.child_pairs());
+                }
+            } else if a.is_leaf() && b.is_leaf() {
+                near.push((n.min(m), n.max(m)));
+            } else if b.is_leaf() || (!a.is_leaf() && a.triangle_count >= b.triangle_count) {
+                stack.extend(a.children().map(|c| (c, m)));
+            } else {
+                stack.extend(b.children().map(|c| (n, c)));
+            }
+        }
+        near
+    }
+
+    fn table(&self, (n, m): NodePair) -> Option<GapTable> {
+        let [x, y] = [n, m].map(|n| self.vertices(n));
+        let mut gaps = vec![f32::INFINITY; x.len() * y.len()];
+        let [list_a, list_b] = [n, m].map(|n| self.hierarchy.triangles(&self.hierarchy.nodes()[n as usize]));
+        for (index, &s) in list_a.iter().enumerate() {
+            for &t in if n == m { &list_b[index + 1..] } else { list_b } {
+                if self.filter.relation(s, t) == Relation::Adjacent || self.filter.is_excluded(s, t) {
+                    continue;
+                }
+                for SimplexPair { a, b } in self.filter.simplex_pairs(s, t) {
+                    let [p, q] = [a, b].map(|corners| corners.map(|v| self.positions[v as usize]));
+                    let found = widest_gaps(&std::array::from_fn(|ij| q[ij % 3] - p[ij / 3]))?;
+                    for (ij, gap) in found.into_iter().enumerate() {
+                        let i = x.binary_search(&a[ij / 3]).ok()?;
+                        let j = y.binary_search(&b[ij % 3]).ok()?;
+                        let entry = &mut gaps[i * y.len() + j];
+                        *entry = entry.min(((gap * (1.0 - 1e-6)) as f32).next_down());
+                    }
+                }
+            }
+        }
+        Some(GapTable { gaps })
+    }
+}
+
+/// The gap of each two corners along one unit direction, rounded down; none where no direction found separates all of them.
+fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
+    let along = |dir: DVec3| {
+        let dir = dir.try_normalize()?;
+        let gaps = differences.map(|d| dir.dot(d) * (1.0 - 1e-14) - GAP_ROUNDING);
+        let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        (smallest > SMALLEST).then_some((smallest, gaps))
+    };
+    let centroids: DVec3 = differences.iter().sum::<DVec3>() / 9.0;
+    let first = along(centroids);
+    if let Some((smallest, gaps)) = first
+        && smallest * smallest > WIDE * WIDE * centroids.length_squared()
+    {
+        return Some(gaps);
+    }
+    let second = along(nearest_to_origin(differences).point);
+    match (first, second) {
+        (Some((s, a)), Some((t, b))) => Some(if s >= t { a } else { b }),
+        (Some((_, gaps)), None) | (None, Some((_, gaps))) => Some(gaps),
+        (None, None) => None,
+    }
+}

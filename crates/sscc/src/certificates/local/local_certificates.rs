@@ -1,0 +1,113 @@
+//! The numbers of local certificates.
+//!
+//! A node N with nodes around it is a *patch*. About the centre `q_0` of the certificates, in the unit of half the size of
+//! the shape, its vertices are at `x_v = p_v + U_v f`. The factor `f_k = (q - q_0)_k s_k` counts the largest displacement `s_k`
+//! by mode k. Take any gradient G (a 3 x 3 matrix for each mode) and the residuals `E_v = U_v - U_0 - G (p_v - p_0)` that it
+//! leaves. Then for two vertices
+//!
+//! ```text
+//! x_j - x_i = F (p_j - p_i) + (E_j - E_i) f,    F = I + G f
+//! ```
+//!
+//! For two triangles take a unit direction n with `s_ij = n.(p_j - p_i) > 0` at all nine pairs of corners. Along
+//! `m = F^-T n` the gap of two corners is `s_ij + m.(E_j - E_i) f`, and `|m| <= 1 / sigma_min(F)`. So the plane across m
+//! separates the triangles if `|(E_j - E_i) f| < sigma_min(F) s_ij` at all nine. One matrix W for all pairs of the patch, and
+//! for each set of pairs of triangles a *ratio* `kappa` with `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` and
+//! `T = sum_k |f_k|`, make this one comparison:
+//!
+//! ```text
+//! kappa |W f| + rho T + eta / s  <  sigma_min(F)
+//! ```
+//!
+//! where s is the smallest `s_ij`, and eta bounds how far computed positions are from the exact ones. A certificate has a ratio
+//! for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
+//! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
+//! sets.
+
+/// Local certificates of the nodes of a hierarchy, largest nodes first, as far as their memory goes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LocalCertificates {
+    /// The node of each certificate, ascending.
+    pub nodes: Vec<u32>,
+    /// Where the modes of each certificate start, and the end; of modes that do not move a patch nothing is stored.
+    pub mode_starts: Vec<u32>,
+    /// The modes of each certificate, ascending.
+    pub modes: Vec<u32>,
+    /// The gradients of each certificate: for each of its modes eight entries of G column by column, then the ninth of all its
+    /// modes, padded with zeros to a multiple of eight.
+    pub gradients: Vec<f32>,
+    /// W of each certificate, upper triangular, each number the upper half of a single-precision one: for each eight rows
+    /// their parts of all columns from the first row's diagonal on.
+    pub ellipsoids: Vec<u16>,
+    /// Of each certificate the numbers of its comparison.
+    pub bounds: Vec<LocalBounds>,
+    /// Where the list of each certificate starts, and the end.
+    pub list_starts: Vec<u32>,
+    /// The nodes of each list, ascending.
+    pub list_nodes: Vec<u32>,
+    /// The ratio of the pairs of the certificate's node with each node of its list; infinite where none was found.
+    pub list_ratios: Vec<f32>,
+}
+
+/// The numbers of a certificate's comparison.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalBounds {
+    /// The ratio `kappa` of the pairs within the node; infinite where none was found.
+    pub ratio: f64,
+    /// `rho`: the error of residuals and of their images.
+    pub per_factor: f64,
+    /// `1 / s`
+    pub per_error: f64,
+    /// The largest Frobenius norm of a mode's gradient, rounded up: F in single precision is within a multiple of it.
+    pub steepest: f64,
+    /// The largest norm of a column of W, rounded up: so is `W f`.
+    pub widest: f64,
+}
+
+/// A patch that more modes move has no certificate.
+pub(crate) const MOST_MODES: usize = 200;
+
+/// The entries of the gradient of one mode.
+pub(crate) const GRADIENT: usize = 9;
+
+/// Numbers in a vector.
+const LANES: usize = crate::vectors::LANES;
+
+/// The layout of an upper triangular matrix in blocks of eight rows and one column.
+#[derive(Clone, Copy)]
+pub(crate) struct EllipsoidBlocks(pub(crate) usize);
+
+impl EllipsoidBlocks {
+    /// For each eight rows the columns that have entries in them.
+    pub(crate) fn columns(self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        (0..self.0).step_by(LANES).map(move |first| first..self.0)
+    }
+
+    /// The numbers of a matrix.
+    pub(crate) fn len(self) -> usize {
+        LANES * self.columns().map(|columns| columns.len()).sum::<usize>()
+    }
+}
+
+/// The numbers of the gradients of so many modes.
+pub(crate) fn gradient_len(modes: usize) -> usize {
+    LANES * (modes + modes.div_ceil(LANES))
+}
+
+impl LocalCertificates {
+    /// Memory in bytes of a certificate of so many modes, apart from its list.
+    pub(crate) fn bytes_of(modes: usize) -> usize {
+        4 * gradient_len(modes) + 2 * EllipsoidBlocks(modes).len() + 4 * modes + size_of::<LocalBounds>() + 12
+    }
+
+    /// Memory in bytes.
+    pub fn bytes(&self) -> usize {
+        let words = self.nodes.len()
+            + self.mode_starts.len()
+            + self.modes.len()
+            + self.gradients.len()
+            + self.list_starts.len()
+            + 2 * self.list_nodes.len();
+        4 * words + 2 * self.ellipsoids.len() + size_of_val(&*self.bounds)
+    }
+}

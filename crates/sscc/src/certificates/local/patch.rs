@@ -1,0 +1,174 @@
+//! A patch: a node with the nodes around it, the affine map of its modes, and the residuals that this leaves.
+
+use glam::DVec3;
+
+use super::patch_model::PatchModel;
+use super::residual_ellipsoid::ResidualEllipsoid;
+use crate::bounds::AffineFit;
+use crate::hierarchy::Hierarchy;
+use crate::model::mode_rows::{dot, padded_rank};
+use crate::vectors::{InstructionSet, Kernel, Vectors};
+
+/// The vertices of a patch, and what their modes leave beside an affine map. Owns its memory.
+pub(super) struct Patch {
+    instructions: InstructionSet,
+    /// For each vertex of the mesh its number in the patch.
+    pub(super) numbers: Vec<u32>,
+    pub(super) vertices: Vec<u32>,
+    pub(super) modes: Vec<u32>,
+    pub(super) row_len: usize,
+    pub(super) offsets: Vec<DVec3>,
+    rows: Vec<f64>,
+    /// Nine rows, `G_cj` at 3 c + j, of numbers in single precision.
+    pub(super) gradient: Vec<f64>,
+    /// For each vertex three rows.
+    pub(super) residuals: Vec<f64>,
+}
+
+impl Patch {
+    pub(super) fn new(vertices: usize) -> Self {
+        Self {
+            instructions: InstructionSet::default(),
+            numbers: vec![u32::MAX; vertices],
+            vertices: Vec::new(),
+            modes: Vec::new(),
+            row_len: 0,
+            offsets: Vec::new(),
+            rows: Vec::new(),
+            gradient: Vec::new(),
+            residuals: Vec::new(),
+        }
+    }
+
+    /// Takes the triangles of these nodes. None where more than `most` modes move them.
+    pub(super) fn load(
+        &mut self,
+        model: &PatchModel<'_>,
+        hierarchy: &Hierarchy,
+        faces: &[[u32; 3]],
+        nodes: impl Iterator<Item = u32>,
+        most: usize,
+    ) -> Option<()> {
+        self.vertices.iter().for_each(|v| self.numbers[*v as usize] = u32::MAX);
+        self.vertices.clear();
+        for n in nodes {
+            for &t in hierarchy.triangles(&hierarchy.nodes()[n as usize]) {
+                for v in faces[t as usize] {
+                    if self.numbers[v as usize] == u32::MAX {
+                        self.numbers[v as usize] = self.vertices.len() as u32;
+                        self.vertices.push(v);
+                    }
+                }
+            }
+        }
+        model.moving_modes(&self.vertices, most, &mut self.modes)?;
+        // Whole vectors of single precision.
+        self.row_len = padded_rank(self.modes.len()).next_multiple_of(crate::vectors::LANES);
+        let width = 3 * self.row_len;
+        self.rows.clear();
+        self.rows.resize(width * self.vertices.len(), 0.0);
+        for (v, rows) in self.vertices.iter().zip(self.rows.chunks_exact_mut(width.max(1))) {
+            model.write_modes(*v, &self.modes, rows);
+        }
+        let first = model.positions[self.vertices[0] as usize];
+        self.offsets.clear();
+        self.offsets.extend(self.vertices.iter().map(|v| model.positions[*v as usize] - first));
+        self.fit();
+        Some(())
+    }
+
+    /// Fits the affine map, and computes the residuals that its gradient in single precision leaves.
+    fn fit(&mut self) {
+        let (row_len, width) = (self.row_len, 3 * self.row_len);
+        self.gradient.clear();
+        self.gradient.resize(9 * row_len, 0.0);
+        let mut fit = AffineFit::new(row_len);
+        if fit.fit(&self.offsets, |i| &self.rows[width * i..][..width]) {
+            self.gradient.iter_mut().zip(fit.gradient()).for_each(|(g, x)| *g = f64::from(*x as f32));
+        }
+        self.residuals.clear();
+        self.residuals.resize(self.rows.len(), 0.0);
+        let Self { instructions, row_len, offsets, rows, gradient, residuals, .. } = self;
+        instructions.run(Residuals { row_len: *row_len, offsets, rows, gradient, residuals });
+    }
+
+    /// The largest Frobenius norm of a mode's gradient, rounded up.
+    pub(super) fn steepest(&self) -> f64 {
+        let square = |k: usize| (0..9).map(|e| self.gradient[e * self.row_len + k].powi(2)).sum::<f64>();
+        (0..self.modes.len()).map(square).fold(0.0, f64::max).sqrt() * (1.0 + 1e-12)
+    }
+
+    /// The largest Frobenius norm of a vertex's residual, rounded up; NaN where one is.
+    pub(super) fn largest_residual(&self) -> f64 {
+        largest_norm(&self.residuals, 3 * self.row_len)
+    }
+
+    /// The longest offset.
+    pub(super) fn longest(&self) -> f64 {
+        self.offsets.iter().map(|d| d.length()).fold(0.0, f64::max)
+    }
+
+    /// The images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of one before it
+    /// was rounded.
+    pub(super) fn images(
+        &self,
+        ellipsoid: &ResidualEllipsoid,
+        scratch: &mut Vec<f64>,
+        images: &mut Vec<f32>,
+    ) -> f64 {
+        scratch.clone_from(&self.residuals);
+        self.instructions.run(Divide { ellipsoid, images: scratch });
+        images.clear();
+        images.extend(scratch.iter().map(|x| *x as f32));
+        largest_norm(scratch, 3 * self.row_len)
+    }
+}
+
+/// The largest norm of so many numbers each, rounded up; NaN where one is: it proves nothing.
+fn largest_norm(numbers: &[f64], width: usize) -> f64 {
+    let squares = numbers.chunks_exact(width.max(1)).map(|rows| dot(rows, rows));
+    squares.fold(0.0_f64, |l, x| if x <= l { l } else { x + 0.0 * l }).sqrt() * (1.0 + 1e-9)
+}
+
+/// The residuals of all vertices.
+struct Residuals<'r> {
+    row_len: usize,
+    offsets: &'r [DVec3],
+    rows: &'r [f64],
+    gradient: &'r [f64],
+    residuals: &'r mut [f64],
+}
+
+impl Kernel for Residuals<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        let Self { row_len, offsets, rows, gradient, residuals } = self;
+        for (i, d) in offsets.iter().enumerate() {
+            for c in 0..3 {
+                let [u, first] = [i, 0].map(|i| &rows[(3 * i + c) * row_len..][..row_len]);
+                let [x, y, z] = [0, 1, 2].map(|j| &gradient[(3 * c + j) * row_len..][..row_len]);
+                let out = &mut residuals[(3 * i + c) * row_len..][..row_len];
+                for k in 0..row_len {
+                    out[k] = (u[k] - first[k]) - (d.x * x[k] + d.y * y[k] + d.z * z[k]);
+                }
+            }
+        }
+    }
+}
+
+/// The images of all residuals under the ellipsoid.
+struct Divide<'d> {
+    ellipsoid: &'d ResidualEllipsoid,
+    images: &'d mut [f64],
+}
+
+impl Kernel for Divide<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        self.ellipsoid.divide(self.images);
+    }
+}

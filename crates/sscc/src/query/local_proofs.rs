@@ -1,0 +1,460 @@
+//! Which local certificates hold at the configurations of a search.
+//!
+//! A search goes down from the root before its traversal, and stops at the nodes whose certificate holds: these are *proven*.
+//! Then the traversal asks whether a node is proven, and whether the pairs of two nodes are.
+
+use glam::{DMat3, DVec3};
+
+use crate::certificates::{
+    EllipsoidBlocks, FactorScales, GRADIENT, LocalCertificates, MOST_MODES, gradient_len,
+};
+use crate::detect::vertex_motion::{VertexMotion, rounding_bound};
+use crate::hierarchy::Hierarchy;
+use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
+
+/// The root of three, rounded up: errors are along each axis, gaps along any direction.
+const DIAGONAL: f64 = 1.7321;
+
+/// Rounds a sum of a handful of non-negative numbers up.
+const ROUND_UP: f64 = 1.0 + 1e-12;
+
+/// A search goes on from the root down while it has evaluated no more certificates than this share of all buckets, and one for each two
+/// buckets that were proven.
+const FEW: usize = 16;
+
+/// A search tries certificates of buckets on pairs of buckets until so many more were in vain than not.
+const MOST_LOST: usize = 32;
+
+/// No certificate.
+const NONE: u32 = u32::MAX;
+
+/// Local certificates, and where those of a node are.
+#[derive(Clone)]
+pub(super) struct LocalTables<'a> {
+    certificates: &'a LocalCertificates,
+    center: &'a [f64],
+    scales: FactorScales,
+    /// For each node its certificate; [`NONE`] for none.
+    of_node: Vec<u32>,
+    /// For each certificate where its gradients and its ellipsoid start, in vectors.
+    starts: Vec<[u32; 2]>,
+    /// For each node its buckets, as a range of positions in the order of triangles.
+    buckets: Vec<std::ops::Range<u32>>,
+}
+
+impl<'a> LocalTables<'a> {
+    /// None where there are no certificates.
+    pub(super) fn new(
+        certificates: &'a LocalCertificates,
+        hierarchy: &Hierarchy,
+        center: &'a [f64],
+        scales: FactorScales,
+    ) -> Option<Self> {
+        if certificates.nodes.is_empty() {
+            return None;
+        }
+        let mut of_node = vec![NONE; hierarchy.nodes().len()];
+        certificates.nodes.iter().enumerate().for_each(|(i, n)| of_node[*n as usize] = i as u32);
+        let mut starts = Vec::new();
+        let (mut gradient, mut ellipsoid) = (0, 0);
+        for range in certificates.mode_starts.windows(2) {
+            starts.push([gradient, ellipsoid]);
+            let count = (range[1] - range[0]) as usize;
+            gradient += (gradient_len(count) / LANES) as u32;
+            ellipsoid += (EllipsoidBlocks(count).len() / LANES) as u32;
+        }
+        Some(Self { certificates, center, scales, of_node, starts, buckets: bucket_ranges(hierarchy) })
+    }
+
+    #[inline]
+    fn certificate_of(&self, node: u32) -> Option<usize> {
+        let index = self.of_node[node as usize];
+        (index != NONE).then_some(index as usize)
+    }
+
+    /// The ratio of the pairs of a certificate's node with another one.
+    #[inline]
+    fn ratio_with(&self, certificate: usize, node: u32) -> Option<f32> {
+        let LocalCertificates { list_starts, list_nodes, list_ratios, .. } = self.certificates;
+        let [start, end] = [certificate, certificate + 1].map(|i| list_starts[i] as usize);
+        let at = list_nodes[start..end].binary_search(&node).ok()?;
+        Some(list_ratios[start + at])
+    }
+}
+
+/// For each node the positions of its buckets in the order of triangles; for a node within a bucket that of the bucket.
+fn bucket_ranges(hierarchy: &Hierarchy) -> Vec<std::ops::Range<u32>> {
+    let nodes = hierarchy.nodes();
+    let within = hierarchy.nodes_within_buckets();
+    let mut first: Vec<u32> = (0..nodes.len())
+        .filter(|n| !within[*n] && nodes[*n].fits_in_bucket())
+        .map(|n| nodes[n].first_triangle)
+        .collect();
+    first.sort_unstable();
+    let position = |triangle: u32| first.partition_point(|start| *start <= triangle) as u32;
+    let range = |n: &crate::hierarchy::Node| {
+        position(n.first_triangle) - 1..position(n.first_triangle + n.triangle_count - 1)
+    };
+    nodes.iter().map(range).collect()
+}
+
+/// The local certificates that hold in one search.
+#[derive(Clone)]
+pub(super) struct LocalProofs<const E: usize> {
+    instructions: InstructionSet,
+    search: u32,
+    /// For each certificate the search in which it was evaluated last, and the ratios that it allowed: those below this.
+    allowed: Vec<(u32, f32)>,
+    /// For each bucket, by its position, the search in which it was proven last, and by which node.
+    proven: Vec<(u32, u32)>,
+    stack: Vec<u32>,
+    /// The factors of the modes at each configuration, in single precision, padded with zeros.
+    factors: [Vec<f32>; E],
+    /// `T` at each configuration, rounded up.
+    sums: [f64; E],
+    /// `eta`
+    error: f64,
+    is_usable: bool,
+    /// How many certificates the search evaluated from the root down, and how many buckets they proved.
+    evaluated: usize,
+    proven_buckets: usize,
+    /// How many pairs of buckets were tried by certificates of their own: with a proof, and without.
+    won: usize,
+    lost: usize,
+}
+
+impl<const E: usize> LocalProofs<E> {
+    pub(super) fn new(tables: &LocalTables<'_>) -> Self {
+        Self {
+            instructions: InstructionSet::default(),
+            search: 0,
+            allowed: vec![(0, 0.0); tables.certificates.nodes.len()],
+            proven: vec![(0, 0); tables.buckets[0].end as usize],
+            stack: Vec::new(),
+            factors: [const { Vec::new() }; E],
+            sums: [0.0; E],
+            error: f64::INFINITY,
+            is_usable: false,
+            evaluated: 0,
+            proven_buckets: 0,
+            won: 0,
+            lost: 0,
+        }
+    }
+
+    /// Starts a new search: finds from the root down the largest nodes that are proven, among those for which `is_open` (their radius is
+    /// reached).
+    pub(super) fn prove<M: VertexMotion<E>>(
+        &mut self,
+        tables: &LocalTables<'_>,
+        hierarchy: &Hierarchy,
+        motion: &M,
+        is_open: impl Fn(u32) -> bool,
+    ) {
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 {
+            self.proven.fill((0, 0));
+            self.allowed.fill((0, 0.0));
+            self.search = 1;
+        }
+        (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
+        self.is_usable = self.begin_motion(tables, motion);
+        if !self.is_usable {
+            return;
+        }
+        let mut stack = std::mem::take(&mut self.stack);
+        stack.clear();
+        stack.push(0);
+        while let Some(n) = stack.pop() {
+            if self.evaluated > self.proven.len() / FEW + self.proven_buckets / 2 {
+                break;
+            }
+            if let Some(index) = tables.certificate_of(n) {
+                self.evaluated += 1;
+                let allowed = self.allowed(tables, index);
+                if tables.certificates.bounds[index].ratio < f64::from(allowed) {
+                    let range = &tables.buckets[n as usize];
+                    self.proven[range.start as usize..range.end as usize].fill((self.search, n));
+                    self.proven_buckets += range.len();
+                    continue;
+                }
+            }
+            let node = &hierarchy.nodes()[n as usize];
+            if !node.fits_in_bucket() {
+                stack.extend(node.children().filter(|child| is_open(*child)));
+            }
+        }
+        self.stack = stack;
+    }
+
+    /// Whether most buckets are proven by no certificate.
+    pub(super) fn is_mostly_open(&self) -> bool {
+        self.proven_buckets * 10 < 3 * self.proven.len()
+    }
+
+    /// Whether no two triangles of a node collide.
+    #[inline]
+    pub(super) fn is_node_proven(&self, tables: &LocalTables<'_>, n: u32) -> bool {
+        self.proven_node(tables, n).is_some()
+    }
+
+    /// The node whose certificate proves a node.
+    #[inline]
+    fn proven_node(&self, tables: &LocalTables<'_>, n: u32) -> Option<u32> {
+        let range = &tables.buckets[n as usize];
+        let (search, by) = self.proven[range.start as usize];
+        (search == self.search && tables.buckets[by as usize].end >= range.end).then_some(by)
+    }
+
+    /// Whether no triangle of one node collides with one of the other, by the certificate of one of them or of a proven node
+    /// around it.
+    #[inline]
+    pub(super) fn is_pair_proven(
+        &mut self,
+        tables: &LocalTables<'_>,
+        (n, m): (u32, u32),
+        is_last: bool,
+    ) -> bool {
+        if !self.is_usable {
+            return false;
+        }
+        for (n, m) in [(n, m), (m, n)] {
+            let by = self.proven_node(tables, n).unwrap_or(n);
+            if let Some(index) = tables.certificate_of(by)
+                && let Some(ratio) = tables.ratio_with(index, m)
+                && ratio < self.allowed(tables, index)
+            {
+                return true;
+            }
+        }
+        if is_last && self.lost < MOST_LOST + self.won {
+            for (n, m) in [(n, m), (m, n)] {
+                if let Some(index) = tables.certificate_of(n)
+                    && let Some(ratio) = tables.ratio_with(index, m)
+                    && ratio < self.allowed(tables, index)
+                {
+                    self.won += 1;
+                    return true;
+                }
+            }
+            self.lost += 1;
+        }
+        false
+    }
+
+    /// Sets the factors. False where the positions of the motion are not those of the modes alone.
+    fn begin_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+        let Some(coordinates) = motion.coarse_coordinates().filter(|_| motion.margin() == 0.0) else {
+            return false;
+        };
+        if motion.coarse_slack(0).is_some() {
+            return false;
+        }
+        let FactorScales { sizes, scale, reach } = &tables.scales;
+        for (end, q) in coordinates.into_iter().enumerate() {
+            let all = &mut self.factors[end];
+            all.clear();
+            let mut sum = 0.0;
+            all.extend(q.iter().zip(tables.center).zip(sizes).map(|((q, c), size)| {
+                let factor = (q - c) * size;
+                sum += factor.abs();
+                factor as f32
+            }));
+            all.resize(all.len().next_multiple_of(LANES), 0.0);
+            self.sums[end] = sum * ROUND_UP;
+        }
+        let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
+        self.error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
+        self.error.is_finite() && self.sums.iter().all(|sum| *sum < 1e30)
+    }
+
+    /// The ratios that a certificate allows: those below this.
+    #[inline]
+    fn allowed(&mut self, tables: &LocalTables<'_>, index: usize) -> f32 {
+        let (search, allowed) = self.allowed[index];
+        if search == self.search {
+            return allowed;
+        }
+        let allowed = (self.evaluate(tables, index) as f32).next_down();
+        self.allowed[index] = (self.search, allowed);
+        allowed
+    }
+
+    fn evaluate(&self, tables: &LocalTables<'_>, index: usize) -> f64 {
+        let all = tables.certificates;
+        let bounds = &all.bounds[index];
+        let [start, end] = [index, index + 1].map(|i| all.mode_starts[i] as usize);
+        let modes = &all.modes[start..end];
+        let [gradient, ellipsoid] = tables.starts[index].map(|start| start as usize);
+        let gradients = &all.gradients.as_chunks().0[gradient..][..gradient_len(modes.len()) / LANES];
+        let ellipsoid =
+            &all.ellipsoids.as_chunks().0[ellipsoid..][..EllipsoidBlocks(modes.len()).len() / LANES];
+        let is_dense = modes.len() == tables.center.len();
+        // The error of sums of products in single precision, and of the factors.
+        let single = 2.0 * (modes.len() as f64 + 4.0) * f64::from(f32::EPSILON);
+        let at = |end: usize| {
+            let (mut gathered, mut sum) = ([0.0_f32; MOST_MODES], self.sums[end]);
+            let factors = if is_dense {
+                &*self.factors[end]
+            } else {
+                let mut local = 0.0;
+                for (g, k) in gathered.iter_mut().zip(modes) {
+                    *g = self.factors[end][*k as usize];
+                    local += f64::from(g.abs());
+                }
+                sum = sum.min(local * (1.0 + 1e-6) + 1e-30);
+                &gathered[..modes.len().next_multiple_of(LANES)]
+            };
+            let (gradient, strain) =
+                self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
+            let strain = strain + single * bounds.widest * sum + 1e-30;
+            let error = bounds.per_factor * sum
+                + bounds.per_error * self.error
+                + single * bounds.steepest * sum
+                + 1e-30;
+            (DMat3::IDENTITY + gradient, strain * ROUND_UP, error * ROUND_UP)
+        };
+        if E == 1 {
+            let (map, strain, error) = at(0);
+            return (smallest_stretch(&map) - error) / strain * (1.0 - 1e-12);
+        }
+        let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
+        let middle = ends.iter().fold(DMat3::ZERO, |sum, (map, _, _)| sum + *map);
+        let Some(turn) = nearest_rotation(&middle) else { return 0.0 };
+        let turn = turn.transpose();
+        let allowed = ends.iter().map(|(map, strain, error)| {
+            (smallest_eigenvalue(&(turn * *map)) - error) / strain * (1.0 - 1e-12)
+        });
+        // NaN stays, and allows nothing.
+        allowed.fold(f64::INFINITY, |least, x| if x >= least { least } else { x })
+    }
+}
+
+/// A lower bound of the smallest singular value of a matrix; NaN for a matrix with NaN.
+fn smallest_stretch(map: &DMat3) -> f64 {
+    let gram = map.transpose() * *map;
+    smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
+}
+
+/// A lower bound of the smallest eigenvalue of the symmetric part of a matrix: at most its smallest singular value, for each matrix on the line
+/// between two such ones, too. The rotation before it is one up to rounding, which the share of the norm covers.
+fn smallest_eigenvalue(map: &DMat3) -> f64 {
+    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12)
+}
+
+/// A lower bound of the smallest eigenvalue of a symmetric matrix, which may be below zero by more than needed. `error`: of its entries, relative to their sum.
+fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let size = [x, y, z].iter().map(|x| x.abs().element_sum()).sum::<f64>();
+    // The closed form; any candidate would do.
+    let mean = (x.x + y.y + z.z) / 3.0;
+    let [a, b, c] = [x.x - mean, y.y - mean, z.z - mean];
+    let spread = ((a * a + b * b + c * c + 2.0 * (x.y * x.y + x.z * x.z + y.z * y.z)) / 6.0).sqrt();
+    let candidate = if spread > 1e-12 * size {
+        let [a, b, c, d, e, f] = [a, b, c, x.y, x.z, y.z].map(|x| x / spread);
+        let half = 0.5 * (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e));
+        let angle = half.clamp(-1.0, 1.0).acos() / 3.0 + 2.0 * std::f64::consts::FRAC_PI_3;
+        mean + 2.0 * spread * angle.cos()
+    } else {
+        mean
+    };
+    // Rounding of the closed form may be as large as the root of that of its numbers.
+    for slack in [1e-9, 1e-6] {
+        let shift = candidate - slack * size;
+        if has_cholesky_factor(matrix, shift + error * size) {
+            return shift;
+        }
+    }
+    f64::NEG_INFINITY
+}
+
+/// Whether the Cholesky factorisation of a symmetric matrix minus `shift` times the identity succeeds. (Rump, *Verification of
+/// positive definiteness*, 2006: its rounding is relative to the trace.) NaN fails.
+fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let first = x.x - shift;
+    let (b, c) = (x.y / first, x.z / first);
+    let second = (y.y - shift) - b * x.y;
+    let e = y.z - b * x.z;
+    let third = (z.z - shift) - c * x.z - e * e / second;
+    first > 0.0 && second > 0.0 && third > 0.0
+}
+
+/// Steps of the iteration towards the rotation.
+const STEPS: usize = 8;
+
+/// The rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; none near a singular
+/// one.
+fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
+    let mut next = *map;
+    for _ in 0..STEPS {
+        let inverse = next.inverse().transpose();
+        // Scaled towards the rotation: singular values become close to 1.
+        let size = |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>();
+        let factor = (size(&inverse) / size(&next)).sqrt().sqrt();
+        next = (next * factor + inverse * (1.0 / factor)) * 0.5;
+    }
+    // Orthogonal to rounding, whatever the iteration did.
+    let x = next.x_axis.try_normalize()?;
+    let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
+    let y = (y - x * x.dot(y)).try_normalize()?;
+    let z = x.cross(y);
+    let z = if z.dot(next.z_axis) < 0.0 { -z } else { z };
+    Some(DMat3::from_cols(x, y, z))
+}
+
+/// Vectors of the longest column of W.
+const MOST_VECTORS: usize = MOST_MODES.div_ceil(LANES);
+
+/// `G f`, and the norm of `W f` as computed, for the numbers of one certificate.
+struct Sums<'c> {
+    gradients: &'c [[f32; LANES]],
+    ellipsoid: &'c [[u16; LANES]],
+    factors: &'c [f32],
+    count: usize,
+}
+
+impl Kernel for Sums<'_> {
+    type Output = (DMat3, f64);
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, vectors: V) -> Self::Output {
+        let Self { gradients, ellipsoid, factors, count } = self;
+        let (columns, last) = gradients.split_at(count);
+        let mut gradient = [vectors.splat(0.0); 2];
+        for (k, (column, factor)) in columns.iter().zip(factors).enumerate() {
+            gradient[k & 1] =
+                vectors.multiply_add(vectors.load(column), vectors.splat(*factor), gradient[k & 1]);
+        }
+        let mut ninth = vectors.splat(0.0);
+        for (row, factors) in last.iter().zip(factors.as_chunks().0) {
+            ninth = vectors.multiply_add(vectors.load(row), vectors.load(factors), ninth);
+        }
+        let mut image = [[0.0_f32; LANES]; MOST_VECTORS];
+        let mut blocks = ellipsoid;
+        for (first, image) in (0..count).step_by(LANES).zip(&mut image) {
+            let (rows, rest) = blocks.split_at(count - first);
+            blocks = rest;
+            let mut sums = [vectors.splat(0.0); 2];
+            for (i, (column, factor)) in rows.iter().zip(&factors[first..]).enumerate() {
+                let column = vectors.load_upper_halves(column);
+                sums[i & 1] = vectors.multiply_add(column, vectors.splat(*factor), sums[i & 1]);
+            }
+            let one = vectors.splat(1.0);
+            *image = vectors.array(vectors.multiply_add(sums[0], one, sums[1]));
+        }
+        let [even, odd] = gradient.map(|sum| vectors.array(sum));
+        let entry = |e: usize| f64::from(even[e]) + f64::from(odd[e]);
+        let ninth = vectors.array(ninth).iter().map(|x| f64::from(*x)).sum();
+        let map = DMat3::from_cols(
+            DVec3::new(entry(0), entry(1), entry(2)),
+            DVec3::new(entry(3), entry(4), entry(5)),
+            DVec3::new(entry(6), entry(7), ninth),
+        );
+        let used = &image[..count.div_ceil(LANES)];
+        let square: f64 = used.as_flattened().iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
+        (map, square.sqrt() * ROUND_UP)
+    }
+}
+
+const _: () = assert!(GRADIENT == LANES + 1);
