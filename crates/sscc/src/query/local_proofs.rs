@@ -166,7 +166,7 @@ impl<const E: usize> LocalProofs<E> {
         stack.clear();
         stack.push(0);
         while let Some(n) = stack.pop() {
-            if self.evaluated > self.proven.len() / FEW + self.proven_buckets / 2 {
+            if self.evaluated > MOST_LOST + self.proven.len() / FEW + self.proven_buckets {
                 break;
             }
             if let Some(index) = tables.certificate_of(n) {
@@ -189,7 +189,7 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Whether most buckets are proven by no certificate.
     pub(super) fn is_mostly_open(&self) -> bool {
-        self.proven_buckets * 10 < 3 * self.proven.len()
+        self.proven_buckets * 10 < 6 * self.proven.len()
     }
 
     /// Whether no two triangles of a node collide.
