@@ -7,7 +7,7 @@ use super::local_certificates::{LocalBounds, LocalCertificates, MOST_MODES, grad
 use super::patch::Patch;
 use super::patch_model::PatchModel;
 use super::residual_ellipsoid::FitEllipsoid;
-use super::strain_search::StrainSearch;
+use super::strain_search::{StrainSearch, larger};
 use super::touching_nodes::TouchingNodes;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
@@ -180,7 +180,7 @@ impl Builder<'_> {
                 }
                 let floor = if is_first { floor } else { ratio };
                 let of_child = self.list(search, around, child, floor, list);
-                ratio = if of_child <= ratio { ratio } else { of_child };
+                ratio = larger(ratio, of_child);
             }
         }
         list.push((node, ratio));

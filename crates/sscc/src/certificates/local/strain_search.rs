@@ -307,7 +307,7 @@ impl Kernel for Search<'_, '_> {
 
 /// The larger of two numbers, and NaN where one is NaN.
 #[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
+pub(super) fn larger(a: f32, b: f32) -> f32 {
     if b <= a { a } else { b + 0.0 * a }
 }
 
