@@ -34,22 +34,31 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
 
-    // All modes swing with growing amplitude, up to the radius at which all radii are capped.
-    let (rest, largest) = (vec![0.0; model.rank()], certificates.global_radius());
+    // All modes swing with growing amplitude, up to the |z| at which mode 0 alone moves some vertex by half the size of the
+    // shape. (Certificates reach farther by default, where the shape no longer looks like itself.)
+    let rest = vec![0.0; model.rank()];
+    let mut far = rest.clone();
+    far[0] = half_size(&model);
+    if far[0].is_infinite() {
+        println!("mode 0 moves nothing");
+        return Ok(());
+    }
+    let largest = model.metric().norm(&far);
     let growing = (0..FRAMES).map(|i| swing(&model, &rest, i, largest * i as f64 / FRAMES as f64));
     let mut query = Query::new(&model, &certificates)?;
     check("growing", &mut query, growing)?;
 
-    // The shape may have settled in another pose, for example under its weight. Here that pose is half of the safe
-    // scale of mode 0 in the negative direction. The shape swings about it with a small amplitude.
+    // The shape may have settled in another pose, for example under its weight. Here that pose is half of that amplitude of
+    // mode 0 in the negative direction, or half of the safe scale if that is less. The shape swings about it with a small
+    // amplitude.
     let mut settled = rest.clone();
-    settled[0] = -1.0;
+    settled[0] = -far[0];
     let safe = query.safe_scale(&settled)?;
-    if safe == 0.0 || safe.is_infinite() {
-        println!("no other pose to settle in: the shape collides at rest, or mode 0 moves nothing");
+    if safe == 0.0 {
+        println!("no other pose to settle in: the shape collides at rest");
         return Ok(());
     }
-    settled[0] *= safe / 2.0;
+    settled[0] *= safe.min(1.0) / 2.0;
     let size = 0.3 * certificates.root_radius();
     let small = || (0..FRAMES).map(|i| swing(&model, &settled, i, size));
     check("settled", &mut query, small())?;
@@ -60,6 +69,15 @@ fn run() -> Result<(), Box<dyn Error>> {
     println!("certified about the settled pose: free where |z| < {:.3e}", centred.root_radius());
     check("settled", &mut Query::new(&model, &centred)?, small())?;
     Ok(())
+}
+
+/// Returns the amplitude of mode 0 at which some vertex has moved by half the diagonal of the box at rest.
+fn half_size(model: &ReducedModel) -> f64 {
+    let positions = model.mesh().rest_positions();
+    let (low, high) = positions.iter().fold((positions[0], positions[0]), |(l, h), p| (l.min(*p), h.max(*p)));
+    let vertices = 0..positions.len() as u32;
+    let farthest = vertices.map(|v| model.modes().of_vertex(v)[0].length()).fold(0.0, f64::max);
+    (high - low).length() / 2.0 / farthest
 }
 
 /// Returns frame i of an oscillation about a pose, at the distance `size` from it in the model's metric. Every mode has
