@@ -74,6 +74,41 @@ pub(crate) fn add_row_twice<S: Simd>(
     total(simd, sums)
 }
 
+/// Returns the products of the rows with z.
+#[inline(always)]
+pub(crate) fn products<S: Simd, const N: usize>(simd: S, rows: [&[f64]; N], z: &[f64]) -> [f64; N] {
+    let (z, _) = S::as_simd_f64s(z);
+    let rows = rows.map(|row| &S::as_simd_f64s(row).0[..z.len()]);
+    let mut sums = [[simd.splat_f64s(0.0); 2]; N];
+    for (c, z) in z.as_chunks::<2>().0.iter().enumerate() {
+        for half in 0..2 {
+            for m in 0..N {
+                let product = simd.mul_f64s(rows[m][2 * c + half], z[half]);
+                sums[m][half] = simd.add_f64s(sums[m][half], product);
+            }
+        }
+    }
+    sums.map(|sums| total(simd, sums))
+}
+
+/// Adds `sum_m weights[m] * rows[m]` to y.
+#[inline(always)]
+pub(crate) fn add_rows_to<S: Simd, const N: usize>(
+    simd: S,
+    rows: [&[f64]; N],
+    weights: [f64; N],
+    y: &mut [f64],
+) {
+    let (y, _) = S::as_mut_simd_f64s(y);
+    let rows = rows.map(|row| &S::as_simd_f64s(row).0[..y.len()]);
+    let weights = weights.map(|weight| simd.splat_f64s(weight));
+    for (c, y) in y.iter_mut().enumerate() {
+        for m in 0..N {
+            *y = simd.add_f64s(*y, simd.mul_f64s(rows[m][c], weights[m]));
+        }
+    }
+}
+
 /// Returns the sum of all lanes.
 #[inline(always)]
 fn total<S: Simd>(simd: S, sums: [S::f64s; 2]) -> f64 {

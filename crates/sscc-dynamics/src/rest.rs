@@ -26,7 +26,15 @@ pub(crate) struct Rest {
 impl Rest {
     /// Adds a step to the time, or, if some point may have moved farther than `distance` from the reference state, makes
     /// the current state the reference. Costs O(r), and O(r) for each vertex where the modes move little, but many do.
-    pub fn update(&mut self, shape: &Shape, rigid: &RigidMotion, q: &[f64], step: f64, distance: f64) {
+    /// `bend_bound` bounds the displacements of all vertices by a change of q.
+    pub fn update(
+        &mut self,
+        shape: &Shape,
+        rigid: &RigidMotion,
+        q: &[f64],
+        (step, distance): (f64, f64),
+        bend_bound: impl Fn(&[f64]) -> f64,
+    ) {
         let before = self.orientation;
         let before = if before.dot(rigid.orientation) < 0.0 { -before } else { before };
         // A rotation by the angle t moves a unit vector by at most 2 sin(t / 2); quaternions differ by 2 sin(t / 4).
@@ -40,7 +48,7 @@ impl Rest {
         let is_due = ((self.time / step).round() as u64).is_multiple_of(CHECK_STEPS);
         let is_near = moved <= distance && bent <= MAX_BEND * distance;
         if moved + bent <= distance
-            || (is_near && (!is_due || self.is_bent_within(shape, q, distance - moved)))
+            || (is_near && (!is_due || self.is_bent_within(shape, q, distance - moved, bend_bound)))
         {
             self.time += step;
             return;
@@ -52,9 +60,18 @@ impl Rest {
 
     /// Whether the modes have moved all vertices by at most `distance` from the reference state. The sum of the largest
     /// displacements by each mode is a bound, but vibrations of many modes have it at no vertex.
-    fn is_bent_within(&self, shape: &Shape, q: &[f64], distance: f64) -> bool {
+    fn is_bent_within(
+        &self,
+        shape: &Shape,
+        q: &[f64],
+        distance: f64,
+        bend_bound: impl Fn(&[f64]) -> f64,
+    ) -> bool {
         let modes = shape.model().modes();
         let change: Vec<f64> = q.iter().zip(&self.q).map(|(q, before)| q - before).collect();
+        if bend_bound(&change) <= distance {
+            return true;
+        }
         let vertices = shape.model().mesh().rest_positions().len() as u32;
         (0..vertices).all(|v| displacement(modes.of_vertex(v), &change).length() <= distance)
     }

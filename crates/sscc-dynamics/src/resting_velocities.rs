@@ -13,14 +13,17 @@
 //! the same reason the positions at the end of the step do not bounce: staying in place satisfies all contacts.
 
 use glam::{DMat3, DVec3};
+use pulp::{Simd, WithSimd};
 
 use crate::World;
 use crate::contact_constraint::{Side, Source, sides};
+use crate::contact_rows::{ContactRows, RowPoint};
 use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::correction::Correction;
 use crate::displacement::displacement;
 use crate::friction_cone::{limit_friction, stop_sliding};
 use crate::ground_point::rest_position;
+use crate::packed_rows::dispatch;
 
 /// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 50;
@@ -45,6 +48,8 @@ struct Load {
     given_friction: DVec3,
     /// Velocity at which the points of an impact part; None if they do not bounce.
     bounce: Option<f64>,
+    /// Velocity between the points before the impulses.
+    velocity: DVec3,
     /// Velocity along the normal that the impulses aim at.
     target: f64,
     /// Minimum and maximum impulse along the normal at the end of the step.
@@ -61,10 +66,13 @@ impl World<'_> {
         if !self.corrections.list.iter().enumerate().any(|one| is_loaded(&one)) {
             return;
         }
-        let mut velocities: Vec<RigidVelocity> = self.bodies.iter().map(RigidVelocity::of).collect();
+        let velocities: Vec<RigidVelocity> = self.bodies.iter().map(RigidVelocity::of).collect();
+        let mut rows = std::mem::take(&mut self.corrections.rows);
+        rows.begin(velocities.iter().zip(&self.bodies).map(|(rigid, body)| (rigid, body.q.len())));
         let corrections = self.corrections.list.iter().enumerate().filter(is_loaded);
-        let mut loads: Vec<Load> = corrections.map(|(n, one)| self.load(n, one, &velocities)).collect();
-        self.stop_all(&mut loads, &mut velocities);
+        let mut loads: Vec<Load> =
+            corrections.map(|(n, one)| self.load(n, one, &velocities, &mut rows)).collect();
+        dispatch(Stopping { loads: &mut loads, rows: &mut rows });
         let mut bounces = false;
         for load in &mut loads {
             let Some(speed) = load.bounce else { continue };
@@ -73,33 +81,45 @@ impl World<'_> {
             bounces = true;
         }
         if bounces {
-            self.stop_all(&mut loads, &mut velocities);
+            dispatch(Stopping { loads: &mut loads, rows: &mut rows });
         }
+        self.corrections.rows = rows;
         for load in &loads {
-            self.corrections.list[load.correction].end_impulse =
-                load.normal * load.normal_impulse + load.friction_impulse;
+            let impulse = load.normal * load.normal_impulse + load.friction_impulse;
+            self.corrections.list[load.correction].end_impulse = impulse;
+            self.push_apart(load, impulse, &velocities);
         }
     }
 
-    /// Gives the points of all contacts the velocities that they aim at, as far as their impulses can.
-    fn stop_all(&mut self, loads: &mut [Load], velocities: &mut [RigidVelocity]) {
-        let mut first_change = 0.0;
-        for iteration in 0..MAX_ITERATIONS {
-            let mut max_change = 0.0_f64;
-            for load in &mut *loads {
-                max_change = max_change.max(self.stop_contact(load, velocities));
+    /// Adds an impulse of a contact to the momenta and modal velocities of its bodies.
+    fn push_apart(&mut self, load: &Load, impulse: DVec3, velocities: &[RigidVelocity]) {
+        let is_within = load.bodies[0] == load.bodies[1];
+        for Side { n, body, sign } in sides(load.bodies) {
+            let (rigid, body) = (&velocities[body], &mut self.bodies[body]);
+            let mut local = impulse;
+            if !is_within {
+                let impulse = impulse * sign;
+                if body.is_free() {
+                    body.rigid.momentum += impulse;
+                    body.rigid.angular_momentum += load.arms[n].cross(impulse);
+                }
+                local = rigid.rotation.transpose() * impulse;
             }
-            if iteration == 0 {
-                first_change = max_change;
-            }
-            if max_change <= RELATIVE_TOLERANCE * first_change {
-                break;
+            let modes = load.source.modes(n, body, &self.contacts.list);
+            for ((v, u), weight) in body.v.iter_mut().zip(modes).zip(&body.step_weights) {
+                *v += weight * u.dot(local);
             }
         }
     }
 
-    /// Returns the contact of a correction in the bodies' current state.
-    fn load(&self, correction: usize, one: &Correction, velocities: &[RigidVelocity]) -> Load {
+    /// Returns the contact of a correction in the bodies' current state, and adds its rows.
+    fn load(
+        &self,
+        correction: usize,
+        one: &Correction,
+        velocities: &[RigidVelocity],
+        rows: &mut ContactRows,
+    ) -> Load {
         let Correction { bodies, source, normal, friction, .. } = *one;
         let contacts = &self.contacts.list;
         let is_within = one.is_within();
@@ -114,6 +134,7 @@ impl World<'_> {
             given_normal: one.normal_impulse,
             given_friction: one.friction_impulse,
             bounce: one.bounce,
+            velocity: DVec3::ZERO,
             target: 0.0,
             range: [if one.bounce.is_some() { 0.0 } else { -one.normal_impulse }, f64::INFINITY],
             normal_impulse: 0.0,
@@ -133,33 +154,72 @@ impl World<'_> {
                 load.arms[n] = sum / count - self.bodies[body].rigid.position;
             }
         }
-        for Side { n, body, .. } in sides(bodies) {
+        for Side { n, body, sign } in sides(bodies) {
             let (rigid, body) = (&velocities[body], &self.bodies[body]);
             let modes = source.modes(n, body, contacts);
-            load.inverse_mass += if is_within {
-                modal_inverse_mass(modes, &body.step_weights)
+            let modal = displacement(modes, &body.v);
+            if is_within {
+                load.inverse_mass += modal_inverse_mass(modes, &body.step_weights);
+                load.velocity += modal;
             } else {
-                rigid.inverse_mass_at(load.arms[n], modes, &body.step_weights)
-            };
+                load.inverse_mass += rigid.inverse_mass_at(load.arms[n], modes, &body.step_weights);
+                load.velocity += rigid.of_point(load.arms[n], modal) * sign;
+            }
         }
+        let points = sides(bodies).map(|Side { n, body, sign }| RowPoint {
+            body,
+            sign,
+            arm: (!is_within).then_some(load.arms[n]),
+            modes: source.modes(n, &self.bodies[body], contacts),
+            weights: &self.bodies[body].step_weights,
+        });
+        rows.push(normal, points);
         load
     }
+}
 
+/// Gives the points of all contacts the velocities that they aim at, as far as their impulses can. The rows have the numbers of
+/// the loads.
+struct Stopping<'s> {
+    loads: &'s mut [Load],
+    rows: &'s mut ContactRows,
+}
+
+impl WithSimd for Stopping<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let mut first_change = 0.0;
+        for iteration in 0..MAX_ITERATIONS {
+            let mut max_change = 0.0_f64;
+            for n in 0..self.loads.len() {
+                max_change = max_change.max(self.stop_contact(simd, n));
+            }
+            if iteration == 0 {
+                first_change = max_change;
+            }
+            if max_change <= RELATIVE_TOLERANCE * first_change {
+                break;
+            }
+        }
+    }
+}
+
+impl Stopping<'_> {
     /// Stops the motion at one contact, or takes back as much of its impulse as the others allow. Returns the change of
     /// velocity.
-    fn stop_contact(&mut self, load: &mut Load, velocities: &mut [RigidVelocity]) -> f64 {
-        let Load { bodies, source, normal, arms, inverse_mass, friction, .. } = *load;
+    #[inline(always)]
+    fn stop_contact<S: Simd>(&mut self, simd: S, n: usize) -> f64 {
+        let (load, rows) = (&mut self.loads[n], &mut *self.rows);
+        let Load { normal, inverse_mass, friction, .. } = *load;
         let normal_inverse_mass = normal.dot(inverse_mass * normal);
         if normal_inverse_mass <= 0.0 {
             return 0.0;
         }
-        let (is_within, contacts) = (bodies[0] == bodies[1], &self.contacts.list);
-        let mut v = DVec3::ZERO;
-        for Side { n, body, sign } in sides(bodies) {
-            let (rigid, body) = (&velocities[body], &self.bodies[body]);
-            let modal = displacement(source.modes(n, body, contacts), &body.v);
-            v += if is_within { modal } else { rigid.of_point(arms[n], modal) * sign };
-        }
+        let axes = rows.axes(n);
+        let (along, [second, third]) = (rows.along_normal(simd, n), rows.across(simd, n));
+        let v = load.velocity + (axes[0] * along + axes[1] * second + axes[2] * third);
         let [least, most] = load.range;
         let before = load.normal_impulse;
         let wanted = before + (load.target - normal.dot(v)) / normal_inverse_mass;
@@ -174,23 +234,7 @@ impl World<'_> {
             limit_friction(total, friction, normal, total_normal, &inverse_mass) - load.given_friction;
         impulse += friction_impulse - load.friction_impulse;
         load.friction_impulse = friction_impulse;
-        for Side { n, body, sign } in sides(bodies) {
-            let (rigid, body) = (&mut velocities[body], &mut self.bodies[body]);
-            let mut local = impulse;
-            if !is_within {
-                let impulse = impulse * sign;
-                if body.is_free() {
-                    rigid.push(impulse, arms[n]);
-                    body.rigid.momentum += impulse;
-                    body.rigid.angular_momentum += arms[n].cross(impulse);
-                }
-                local = rigid.rotation.transpose() * impulse;
-            }
-            let modes = source.modes(n, body, contacts);
-            for ((v, u), weight) in body.v.iter_mut().zip(modes).zip(&body.step_weights) {
-                *v += weight * u.dot(local);
-            }
-        }
+        rows.push_along_axes(simd, n, axes.map(|axis| axis.dot(impulse)));
         (inverse_mass * impulse).length()
     }
 }

@@ -61,7 +61,8 @@ impl World<'_> {
             let distance = sleep.distance.unwrap_or_else(|| SLEEP_DISTANCE * body.shape().radius());
             if !body.is_asleep() {
                 let (shape, step) = (body.shape(), self.options.step);
-                body.rest.update(shape, &body.rigid, &body.q, step, distance);
+                let bend_bound = |change: &[f64]| body.posed.displacement_bound(change);
+                body.rest.update(shape, &body.rigid, &body.q, (step, distance), bend_bound);
             }
             let island = self.islands.of(n);
             let body = &self.bodies[n];

@@ -8,7 +8,7 @@ use crate::body_collisions::BodyCollisions;
 use crate::contact_constraint::{GROUND, Source};
 use crate::contact_set::ContactSet;
 use crate::contact_solver::{ContactSolver, Spring};
-use crate::correction::CorrectionSolver;
+use crate::correction_solver::CorrectionSolver;
 use crate::error::first_error;
 use crate::ground_contacts::{GroundContacts, GroundOptions};
 use crate::implicit_step::NewmarkBuffers;

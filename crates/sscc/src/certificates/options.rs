@@ -41,7 +41,7 @@ pub struct CertifyOptions {
     /// pair tree leaves of its own. The largest nodes come first. 0: none.
     pub local_budget: usize,
     /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
-    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of
+    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use a sixteenth of
     /// the budget, because they take time. Radii of nodes are capped at the radius up to which the tree was
     /// built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
     /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.

@@ -8,6 +8,7 @@ use super::quantization::{CoarseMotion, Quantization};
 use crate::ReducedModel;
 use crate::geometry::Aabb;
 use crate::hierarchy::{Hierarchy, Node};
+use crate::model::rounding::larger_or_nan;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// Components of a mean and a growth.
@@ -87,7 +88,7 @@ impl BdTree {
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision, in the frame of the motion.
+    /// The same in single precision, in the frame of the search.
     #[inline]
     pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
         let index = self.indices[node as usize] as usize;
@@ -101,10 +102,13 @@ impl BdTree {
         let half = sums.first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
         // The error of the centre, and that of the half.
         let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
-        let ends = sums.map(|[x, y, z, ..]| {
+        let mut ends = sums.map(|[x, y, z, ..]| {
             let center = Vec4::new(x, y, z, 0.0);
             AabbF32 { lower: center - half, upper: center + half }
         });
+        if let Some(maps) = &motion.maps {
+            ends.iter_mut().zip(maps).for_each(|(aabb, map)| *aabb = map.apply_to_aabb(*aabb));
+        }
         let join = |a: AabbF32, b: AabbF32| right_or!(a.union(&b), SweptCoarseNodesAtStart, a);
         ends.into_iter().reduce(join)
     }
@@ -112,6 +116,26 @@ impl BdTree {
     /// The same for the whole shape.
     pub(crate) fn root<const E: usize>(&self, q: [&[f64]; E], margin: DVec3) -> Aabb {
         self.at_index(0, q, margin)
+    }
+
+    /// An upper bound of the length of `sum_k U_k q_k` over all vertices of some nodes, up to rounding. Infinite where one of them
+    /// has no box.
+    pub(crate) fn displacement_bound(&self, nodes: impl Iterator<Item = u32>, q: &[f64]) -> f64 {
+        let mut most = 0.0_f64;
+        for node in nodes {
+            let index = self.indices[node as usize] as usize;
+            if index >= self.rest.len() {
+                return f64::INFINITY;
+            }
+            let (mut mean, mut growth) = (DVec3::ZERO, DVec3::ZERO);
+            for ((mean_rate, growth_rate), q) in self.rates[index * self.rank..][..self.rank].iter().zip(q) {
+                mean += *mean_rate * *q;
+                growth += *growth_rate * q.abs();
+            }
+            let growth = right_or!(growth, DisplacementsOfMeans, DVec3::ZERO);
+            most = larger_or_nan(most, (mean.abs() + growth).length());
+        }
+        most
     }
 
     fn at_index<const E: usize>(&self, index: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {

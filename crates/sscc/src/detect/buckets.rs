@@ -154,6 +154,11 @@ impl Buckets {
         self.nodes[bucket as usize]
     }
 
+    /// The node of each bucket.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.nodes.iter().copied()
+    }
+
     /// The number of buckets.
     pub(crate) fn count(&self) -> usize {
         self.nodes.len()

@@ -107,6 +107,16 @@ impl CoarseVertices {
         self.instructions.run(MoveVertices { displacements, motions });
     }
 
+    /// The positions of the vertices of a bucket that has been moved, in the frame, in the order of its vertices; then some more.
+    pub(crate) fn of_bucket<'p, const E: usize>(
+        &self,
+        bucket: u32,
+        positions: &'p [[Vec4; E]],
+    ) -> &'p [[Vec4; E]] {
+        let groups = self.groups(bucket);
+        &positions[groups.start * LANES..groups.end * LANES]
+    }
+
     /// The corners of the triangle in a slot of a bucket whose vertices have been moved, in the frame; their fourth
     /// components are unused.
     #[inline]
@@ -159,11 +169,14 @@ impl<const E: usize, const N: usize> Kernel for MoveVertices<'_, E, N> {
                 }
             }
             for n in 0..N {
-                let positions = &mut motions[n].1[group];
                 for end in 0..E {
-                    let points = v.points(sums[n][end]);
+                    let mut sum = sums[n][end];
+                    if let Some(maps) = &motions[n].0.maps {
+                        sum = maps[end].apply(v, sum);
+                    }
+                    let points = v.points(sum);
                     for lane in 0..LANES {
-                        positions[lane][end] = points[lane];
+                        motions[n].1[group][lane][end] = points[lane];
                     }
                 }
             }

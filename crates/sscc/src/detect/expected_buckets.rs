@@ -5,12 +5,13 @@
 //! finds coarse positions that it would have computed itself, with the same bits. So answers and statistics depend neither on
 //! groups nor on which buckets were expected (docs/notes/2026-11-25-explicit-vectors.md).
 
-use glam::Vec4;
+use glam::{DVec3, Vec4};
 
 use super::f32_frame::F32Frame;
+use super::frame_map::FrameMap;
 use super::layout::Layout;
 use super::quantization::CoarseMotion;
-use super::vertex_motion::VertexMotion;
+use super::vertex_motion::{InWorld, VertexMotion};
 
 /// Searches in a group at most: as many as their sums fit in the registers of AVX2.
 pub(crate) const GROUP: usize = 4;
@@ -113,10 +114,20 @@ pub(crate) fn begin_coarse<const E: usize, M: VertexMotion<E>>(
     frame: &F32Frame,
     coarse: &mut CoarseMotion<E>,
 ) -> bool {
-    !layout.coarse.is_empty()
-        && motion
-            .coarse_coordinates()
-            .is_some_and(|q| layout.quantization.begin(coarse, q, frame, motion.rounding()))
+    coarse.maps = None;
+    let Some(q) = motion.coarse_coordinates().filter(|_| !layout.coarse.is_empty()) else { return false };
+    let Some(InWorld { maps, own_rounding }) = motion.in_world() else {
+        return layout.quantization.begin(coarse, q, frame, motion.rounding());
+    };
+    let own = F32Frame::around(layout.bd_tree.root(q, DVec3::splat(own_rounding)));
+    if !layout.quantization.begin(coarse, q, &own, own_rounding) {
+        return false;
+    }
+    let maps = maps.map(|map| FrameMap::new([&own, frame], map, coarse.error, motion.rounding()));
+    if maps.iter().all(Option::is_some) {
+        coarse.maps = Some(maps.map(Option::unwrap_or_default));
+    }
+    coarse.maps.is_some()
 }
 
 #[cfg(test)]

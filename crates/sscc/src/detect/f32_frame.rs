@@ -39,6 +39,11 @@ impl F32Frame {
         right_or!(error, FrameErrorQuartered, error / 4.0) as f32
     }
 
+    /// The point that is mapped to the origin.
+    pub(crate) fn center(&self) -> DVec3 {
+        self.center
+    }
+
     /// The mapped point before it is rounded to single precision.
     pub(crate) fn linear(&self, x: DVec3) -> DVec3 {
         (x - self.center) * self.scale

@@ -25,6 +25,7 @@ mod detector;
 mod exact_positions;
 pub(crate) mod expected_buckets;
 pub(crate) mod f32_frame;
+mod frame_map;
 pub(crate) mod hulls;
 pub(crate) mod layout;
 pub(crate) mod narrow_phase;

@@ -97,7 +97,7 @@ impl<const E: usize> NodeVolumes<E> {
         self.corner_error = if !M::HAS_ERROR_BOUND {
             f32::INFINITY
         } else if self.is_coarse {
-            self.motion.error
+            self.motion.search_error()
         } else {
             frame.error_bound(rounding)
         };
@@ -246,7 +246,8 @@ impl<const E: usize> NodeVolumes<E> {
             if !self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
                 coarse.move_bucket(bucket, &self.motion, &mut self.coarse.positions);
             }
-            by = self.slack(n, motion) + right_or!(self.motion.error, CoarseTrianglesNotWidened, 0.0);
+            by =
+                self.slack(n, motion) + right_or!(self.motion.search_error(), CoarseTrianglesNotWidened, 0.0);
         } else if motion.margin() > 0.0 {
             by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
         }
@@ -324,6 +325,22 @@ impl<const E: usize> NodeVolumes<E> {
         } else {
             self.positions.mapped(buckets.corners()[slot])
         }
+    }
+
+    /// The vertices of an open bucket, with their positions in the frame at the start of the motion: within [`Self::corner_error`]
+    /// of the exact ones.
+    pub(crate) fn mapped_vertices(&self, bucket: u32) -> impl Iterator<Item = (u32, Vec4)> {
+        let Layout { buckets, coarse, .. } = &*self.layout;
+        let moved: &[[Vec4; E]] =
+            if self.is_coarse { coarse.of_bucket(bucket, &self.coarse.positions) } else { &[] };
+        let exact = |v: u32| self.positions.mapped([v; 3])[0];
+        let at = move |(i, v): (usize, &u32)| (*v, moved.get(i).copied().unwrap_or_else(|| exact(*v))[0]);
+        buckets.vertices(bucket).iter().enumerate().map(at)
+    }
+
+    /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
+    pub(crate) fn corner_error(&self) -> f32 {
+        self.corner_error
     }
 
     /// Prefetches the rest positions and modes of three vertices, of those that have not been moved.

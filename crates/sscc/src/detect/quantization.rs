@@ -5,6 +5,7 @@
 use glam::{DVec3, Vec4};
 
 use super::f32_frame::F32Frame;
+use super::frame_map::FrameMap;
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
@@ -39,11 +40,27 @@ pub(crate) struct CoarseMotion<const E: usize> {
     pub(crate) node_factors: Vec<[[f32; LANES]; E]>,
     /// An upper bound, along each axis, of the distance from coarse positions to the exact ones mapped to the frame.
     pub(crate) error: f32,
+    /// For shapes in the world: from the frame in axes of the model, which all of the above is about, to that of the search.
+    pub(crate) maps: Option<[FrameMap; E]>,
 }
 
 impl<const E: usize> Default for CoarseMotion<E> {
     fn default() -> Self {
-        Self { shift: [Vec4::ZERO; E], factors: Vec::new(), node_factors: Vec::new(), error: f32::INFINITY }
+        Self {
+            shift: [Vec4::ZERO; E],
+            factors: Vec::new(),
+            node_factors: Vec::new(),
+            error: f32::INFINITY,
+            maps: None,
+        }
+    }
+}
+
+impl<const E: usize> CoarseMotion<E> {
+    /// The error bound of coarse positions in the frame of the search.
+    pub(crate) fn search_error(&self) -> f32 {
+        let maps = self.maps.as_ref();
+        maps.map_or(self.error, |maps| maps.iter().fold(0.0, |most, map| map.error().max(most)))
     }
 }
 

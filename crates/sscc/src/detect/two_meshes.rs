@@ -117,16 +117,32 @@ fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: Narro
     counters: &mut Counters,
     narrow: &mut N,
 ) {
-    x.volumes.open_bucket(a, x.motion);
-    y.volumes.open_bucket(b, y.motion);
     let (x_layout, y_layout) =
         (std::sync::Arc::clone(&x.volumes.layout), std::sync::Arc::clone(&y.volumes.layout));
     let [x_buckets, y_buckets] = [&x_layout.buckets, &y_layout.buckets];
-    let y_box = *y.volumes.node(y_buckets.node(b));
-    counters.box_tests += 1 + LANES as u64;
-    if !x.volumes.node(x_buckets.node(a)).overlaps(&y_box) {
+    let (x_node, y_node) = (x_buckets.node(a), y_buckets.node(b));
+    // An open bucket has a tighter AABB, which may save opening the other one. Their AABBs may have become tighter since they
+    // were put on the stack, too.
+    counters.box_tests += 1;
+    if !x.volumes.node(x_node).overlaps(y.volumes.node(y_node)) {
         return;
     }
+    if !x.volumes.is_bucket_open(a) {
+        x.volumes.open_bucket(a, x.motion);
+        counters.box_tests += 1;
+        if !x.volumes.node(x_node).overlaps(y.volumes.node(y_node)) {
+            return;
+        }
+    }
+    if !y.volumes.is_bucket_open(b) {
+        y.volumes.open_bucket(b, y.motion);
+        counters.box_tests += 1;
+        if !x.volumes.node(x_node).overlaps(y.volumes.node(y_node)) {
+            return;
+        }
+    }
+    let y_box = *y.volumes.node(y_node);
+    counters.box_tests += LANES as u64;
     for i in x.volumes.packets(a).overlapping(&y_box) {
         counters.box_tests += LANES as u64;
         let x_packet = x_buckets.packets(a).start + i as usize;

@@ -5,7 +5,7 @@
 //! ([`CapsuleMotion`](super::capsule_motion::CapsuleMotion)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
 //! given positions ([`Detector`](crate::Detector)).
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::layout::Layout;
 use crate::geometry::Aabb;
@@ -32,6 +32,11 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
 
+    /// Where a shape in the world is; none for positions in axes of the model.
+    fn in_world(&self) -> Option<InWorld<E>> {
+        None
+    }
+
     /// How far, along each axis, the vertices of a node may be from their positions at these coordinates; none: not at
     /// all.
     fn coarse_slack(&self, node: u32) -> Option<DVec3>;
@@ -41,6 +46,14 @@ pub(crate) trait VertexMotion<const E: usize> {
 
     /// An AABB of all positions of a node's vertices, computed without them; none for a node that has no such AABB.
     fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb>;
+}
+
+/// Where a shape is in the world.
+pub(crate) struct InWorld<const E: usize> {
+    /// At each configuration the matrix and the translation of `x -> matrix x + translation`.
+    pub(crate) maps: [(DMat3, DVec3); E],
+    /// The bound of [`VertexMotion::rounding`] for positions in axes of the model.
+    pub(crate) own_rounding: f64,
 }
 
 /// Positions deformed by the modes: at q, or on straight lines from one q to another.

@@ -244,6 +244,12 @@ mutants! {
     SafeScaleToNearest: Covered("norms are rounded up by more");
     /// AABBs of posed shapes omit the rounding error of positions in the world.
     PosedAabbExact: CaughtBy("lib posed::posed_shape::tests::aabbs_contain_positions_that_the_world_rounds");
+    /// Coarse positions in the world are taken to be exact in axes of the model.
+    FrameMapOfExactPositions: CaughtBy("lib posed::posed_motion::tests::coarse_positions_are_within_their_error_bound");
+    /// Vertices far above a plane by coarse positions alone are not below it.
+    HalfSpaceExact: CaughtBy("lib posed::half_space::tests::vertices_just_below_a_plane_are_found");
+    /// All vertices of a node are displaced like their mean.
+    DisplacementsOfMeans: CaughtBy("lib posed::posed_shape::tests::displacements_are_within_their_bound");
     /// The minimum of two numbers has the smaller one of their errors.
     SmallerErrorOfTwo: CaughtBy("lib geometry::ccd::number_tests::a_minimum_has_the_larger_error");
     /// The error bound of positions in single precision is a quarter of it.

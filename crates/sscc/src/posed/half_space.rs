@@ -1,35 +1,44 @@
 //! The vertices of a posed shape below a plane.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
-use super::posed_motion::PosedMotion;
 use super::posed_shape::PosedShape;
-use crate::detect::layout::Layout;
-use crate::detect::vertex_motion::VertexMotion;
-use crate::geometry::Aabb;
+use crate::detect::aabb8::AabbF32;
 
 impl PosedShape<'_> {
     /// Adds the used vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();
-        let Layout { vertices, buckets, bd_tree, .. } = &*self.volumes.layout;
-        let PosedMotion { q: [q], pose: [pose], .. } = &self.motion;
+        self.enter(self.whole);
+        let layout = std::sync::Arc::clone(&self.volumes.layout);
+        let pose = self.motion.pose[0];
         let local = pose.rotation.transpose() * normal;
-        let height = height - normal.dot(pose.translation);
-        let rounding = DVec3::splat(self.motion.rounding());
+        let own_height = height - normal.dot(pose.translation);
+        // In the frame of the search. What is higher there, by more than the errors, is not below. All numbers there are finite.
+        let frame = self.volumes.frame();
+        let reach = normal.abs().element_sum();
+        let error = reach * f64::from(self.volumes.corner_error()) * (1.0 + 1e-6);
+        let limit = (height - normal.dot(frame.center())) * frame.scale();
+        let rounding =
+            64.0 * f64::EPSILON * (reach * frame.center().abs().max_element() * frame.scale() + limit.abs());
+        let limit = limit + right_or!(error, HalfSpaceExact, 0.0) + rounding;
+        let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
+        let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
         self.stack.clear();
         self.stack.push((0, 0));
         while let Some((n, _)) = self.stack.pop() {
-            let is_above = bd_tree.at(n, [q], rounding).is_some_and(|Aabb { lower, upper }| {
-                let half = (upper - lower) * 0.5;
-                local.dot((upper + lower) * 0.5) - local.abs().dot(half) > height
-            });
-            if is_above {
+            self.volumes.update_node(n, &self.motion);
+            let AabbF32 { lower, upper } = *self.volumes.node(n);
+            if 0.5 * (along(lower) + along(upper) - spread(upper - lower)) > limit {
                 continue;
             }
-            if let Some(bucket) = buckets.of_node(n) {
-                let below = |v: &&u32| local.dot(vertices.position(**v, [q])[0]) < height;
-                found.extend(buckets.vertices(bucket).iter().filter(below).map(|v| vertices.mesh_vertex(*v)));
+            if let Some(bucket) = layout.buckets.of_node(n) {
+                self.volumes.open_bucket(bucket, &self.motion);
+                let near = self.volumes.mapped_vertices(bucket).filter(|(_, x)| along(*x) <= limit);
+                let [q] = &self.motion.q;
+                let below =
+                    near.filter(|(v, _)| local.dot(layout.vertices.position(*v, [q])[0]) < own_height);
+                found.extend(below.map(|(v, _)| layout.vertices.mesh_vertex(v)));
             } else {
                 self.stack.extend(self.context.hierarchy.nodes()[n as usize].children().map(|n| (n, 0)));
             }
@@ -44,5 +53,49 @@ impl PosedShape<'_> {
             }
         }
         found.truncate(kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DQuat};
+
+    use super::*;
+    use crate::test_models::Random;
+    use crate::{Certificates, CertifyOptions, Modes, Pose, ReducedModel, TriMesh};
+
+    /// Planes through vertices, and a little above them.
+    #[test]
+    fn vertices_just_below_a_plane_are_found() {
+        let random = &mut Random(6);
+        let positions: Vec<DVec3> = (0..302)
+            .map(|i| DVec3::new(f64::from(i / 2) * 0.02, f64::from(i % 2) * 0.03, 0.1 * random.signed()))
+            .collect();
+        let faces = (0..300).map(|i| [i, i + 1, i + 2]).collect();
+        let modes = (0..302 * 5).map(|_| random.vector() * 0.2).collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(5, modes).unwrap()).unwrap();
+        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let mut shape = PosedShape::new(&model, &certificates).unwrap();
+        let mut partly = 0;
+        for case in 0..400 {
+            let q: Vec<f64> = (0..5).map(|_| random.signed()).collect();
+            let rotation = DMat3::from_quat(DQuat::from_scaled_axis(random.vector() * 3.0));
+            let pose = Pose { rotation, translation: random.vector() * [0.0, 1.0, 100.0][case % 3] };
+            shape.place(&q, &pose).unwrap();
+            let normal = random.vector().normalize();
+            // As the search computes them.
+            let local = rotation.transpose() * normal;
+            let heights: Vec<f64> = (0..302).map(|v| local.dot(model.position(v, &q))).collect();
+            let height = heights[case % 302] + normal.dot(pose.translation) + [0.0, 1e-9, 1e-6][case / 3 % 3];
+            let own = height - normal.dot(pose.translation);
+            let expected: Vec<u32> = (0..302).filter(|v| heights[*v as usize] < own).collect();
+            let mut found = Vec::new();
+            shape.vertices_below(normal, height, &mut found);
+            assert_eq!(found, expected, "case {case}");
+            partly += usize::from(!found.is_empty() && found.len() < 302);
+        }
+        assert!(partly > 300, "{partly}");
     }
 }

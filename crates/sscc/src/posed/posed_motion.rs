@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::pose::Pose;
 use crate::detect::layout::Layout;
-use crate::detect::vertex_motion::{VertexMotion, rounding_bound};
+use crate::detect::vertex_motion::{InWorld, VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
 use crate::{Error, ReducedModel, limits};
 
@@ -13,10 +13,12 @@ use crate::{Error, ReducedModel, limits};
 pub(super) struct PosedMotion<const E: usize> {
     pub(super) q: [Vec<f64>; E],
     pub(super) pose: [Pose; E],
-    /// An AABB of approximately all shapes compared.
+    /// An AABB that contains both shapes compared.
     pub(super) around: Aabb,
     /// An upper bound of the magnitude of every term of every position in the world.
     pub(super) reach: f64,
+    /// The same in axes of the model.
+    own_reach: f64,
     /// See [`VertexMotion::margin`].
     pub(super) margin: f64,
 }
@@ -30,7 +32,14 @@ impl<const E: usize> PosedMotion<E> {
         let q = vec![0.0; model.rank()];
         let reach = model.check_coordinates(&q)?;
         let q = std::array::from_fn(|_| q.clone());
-        Ok(Self { q, pose: [Pose::default(); E], around: Aabb::default(), reach, margin: 0.0 })
+        Ok(Self {
+            q,
+            pose: [Pose::default(); E],
+            around: Aabb::default(),
+            reach,
+            own_reach: reach,
+            margin: 0.0,
+        })
     }
 
     /// Sets q and pose of each configuration. Returns an AABB of the shape in the world at all of them.
@@ -43,17 +52,18 @@ impl<const E: usize> PosedMotion<E> {
         layout: &Layout,
         places: [(&[f64], &Pose); E],
     ) -> Result<Aabb, Error> {
-        let mut all = 0.0_f64;
+        let (mut all, mut all_own) = (0.0_f64, 0.0_f64);
         for (q, pose) in places {
-            let reach = pose.reach(model.check_coordinates(q)?);
+            let own = model.check_coordinates(q)?;
+            let reach = pose.reach(own);
             // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
             let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
             if !(is_finite && reach * 1.001 <= limits::LARGEST) {
                 return Err(Error::CoordinatesRange);
             }
-            all = all.max(reach);
+            (all, all_own) = (all.max(reach), all_own.max(own));
         }
-        (self.reach, self.margin) = (all, 0.0);
+        (self.reach, self.own_reach, self.margin) = (all, all_own, 0.0);
         for (end, (q, pose)) in places.into_iter().enumerate() {
             self.q[end].copy_from_slice(q);
             self.pose[end] = *pose;
@@ -68,8 +78,8 @@ impl<const E: usize> PosedMotion<E> {
 }
 
 impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
-    /// The AABB around a swept shape contains all positions ([`SweptShape`](crate::SweptShape)).
-    const HAS_ERROR_BOUND: bool = E == 2;
+    /// The AABB around two shapes contains all positions of both.
+    const HAS_ERROR_BOUND: bool = true;
 
     #[inline]
     fn rounding(&self) -> f64 {
@@ -85,10 +95,16 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
         self.around
     }
 
-    /// Coordinates in the world have no bound, so positions are exact.
+    /// Near pairs are those of exact positions: they become contacts.
     #[inline]
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
-        None
+        (self.margin == 0.0).then(|| self.q.each_ref().map(|q| &**q))
+    }
+
+    #[inline]
+    fn in_world(&self) -> Option<InWorld<E>> {
+        let maps = self.pose.map(|pose| (pose.rotation, pose.translation));
+        Some(InWorld { maps, own_rounding: rounding_bound(self.own_reach, self.q[0].len()) })
     }
 
     #[inline]
@@ -111,5 +127,86 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
             Some(self.pose[end].apply_to_aabb(own, rounding))
         };
         (1..E).try_fold(at(0)?, |all, end| Some(all.union(&at(end)?)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::borrow::Cow;
+
+    use glam::{DMat3, DQuat};
+
+    use super::*;
+    use crate::detect::context::Context;
+    use crate::detect::layout::Needs;
+    use crate::detect::node_volumes::NodeVolumes;
+    use crate::hierarchy::Hierarchy;
+    use crate::test_models::Random;
+    use crate::{ContactFilter, Modes, TriMesh};
+
+    /// Shapes that are small and large in the frame, turned, sheared and moved far away; and that AABBs contain all exact
+    /// positions.
+    #[test]
+    fn coarse_positions_are_within_their_error_bound() {
+        let random = &mut Random(4);
+        let (mut coarse, mut worst) = (0, 0.0_f64);
+        for case in 0..80 {
+            let rank = [1, 5, 20][case % 3];
+            let positions: Vec<DVec3> = (0..202)
+                .map(|i| DVec3::new(f64::from(i / 2) * 0.02, f64::from(i % 2) * 0.03, 0.1 * random.signed()))
+                .collect();
+            let faces = (0..200).map(|i| [i, i + 1, i + 2]).collect();
+            let modes = (0..202 * rank).map(|_| random.vector() * 0.2).collect();
+            let mesh = TriMesh::new(positions, faces).unwrap();
+            let model = ReducedModel::new(mesh, Modes::new(rank, modes).unwrap()).unwrap();
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let filter = ContactFilter::default();
+            let context = Context::new(&model, Cow::Borrowed(&hierarchy), &filter, &[], Some(Needs::LAZY));
+            let layout = &context.layout;
+            let mut volumes = NodeVolumes::<2>::new(layout, true);
+            let mut motion = PosedMotion::<2>::new(&model).unwrap();
+            let size = 10.0_f64.powi(-(case as i32 % 4));
+            let mut place = || {
+                let q: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+                let turn = DMat3::from_quat(DQuat::from_scaled_axis(random.vector() * 3.0));
+                let shear = DMat3::from_diagonal(DVec3::new(1.0, 0.7, 1.2)) * turn * size;
+                let rotation = if case % 2 == 0 { turn } else { shear };
+                (q, Pose { rotation, translation: random.vector() * 2.0 })
+            };
+            let ends = [place(), place()];
+            let places = ends.each_ref().map(|(q, pose)| (&q[..], pose));
+            let whole = motion.place(&model, layout, places).unwrap();
+            motion.around =
+                Aabb { lower: whole.lower - 3.0 * f64::from(case as u32 % 5), upper: whole.upper };
+            volumes.begin(&hierarchy, &motion);
+            let error = f64::from(volumes.corner_error());
+            let frame = *volumes.frame();
+            let mut most = 0.0_f64;
+            let mut is_coarse = false;
+            for bucket in 0..layout.buckets.count() as u32 {
+                let node = layout.buckets.node(bucket);
+                volumes.update_node(node, &motion);
+                let before = *volumes.node(node);
+                volumes.open_bucket(bucket, &motion);
+                for (v, mapped) in volumes.mapped_vertices(bucket) {
+                    let exact = motion.positions(layout, v);
+                    let off = mapped.truncate().as_dvec3() - frame.linear(exact[0]);
+                    most = most.max(off.abs().max_element());
+                    is_coarse |= mapped != frame.map(exact[0]);
+                    for aabb in [before, *volumes.node(node)] {
+                        for x in exact.map(|x| frame.map(x)) {
+                            let inside = x.cmpge(aabb.lower) & x.cmple(aabb.upper);
+                            assert_eq!(inside.bitmask() & 0b111, 0b111, "case {case}");
+                        }
+                    }
+                }
+            }
+            assert!(most <= error, "case {case}: {most} {error}");
+            coarse += u32::from(is_coarse);
+            if is_coarse {
+                worst = worst.max(most / error);
+            }
+        }
+        assert!(coarse > 50 && worst > 0.05, "{coarse} {worst}");
     }
 }

@@ -25,6 +25,8 @@ pub struct PosedShape<'a> {
     pub(super) context: Context<'a>,
     pub(super) volumes: NodeVolumes<1>,
     pub(super) motion: PosedMotion<1>,
+    /// An AABB of the shape.
+    pub(super) whole: Aabb,
     /// Whether the volumes are those of this motion.
     is_current: bool,
     pub(super) stack: Vec<NodePair>,
@@ -41,12 +43,14 @@ impl<'a> PosedShape<'a> {
         let hierarchy = Cow::Borrowed(certificates.hierarchy());
         let context = Context::new(model, hierarchy, certificates.filter(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
-        let motion = PosedMotion::new(model)?;
+        let mut motion = PosedMotion::new(model)?;
+        let whole = motion.place(model, &context.layout, [(&vec![0.0; model.rank()], &Pose::default())])?;
         Ok(Self {
             model,
             context,
             volumes,
             motion,
+            whole,
             is_current: false,
             stack: Vec::new(),
             hits: DiscreteHits::default(),
@@ -58,8 +62,12 @@ impl<'a> PosedShape<'a> {
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
+        if (&self.motion.q[0][..], &self.motion.pose[0]) == (q, pose) {
+            return Ok(self.whole);
+        }
         self.is_current = false;
-        self.motion.place(self.model, &self.volumes.layout, [(q, pose)])
+        self.whole = self.motion.place(self.model, &self.volumes.layout, [(q, pose)])?;
+        Ok(self.whole)
     }
 
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
@@ -67,6 +75,8 @@ impl<'a> PosedShape<'a> {
     /// the same, AABBs are computed once after each [`PosedShape::place`].
     pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
         let first = found.len();
+        // The error bounds of positions in single precision hold within this AABB.
+        let around = around.union(&self.whole).union(&other.whole);
         self.enter(around);
         other.enter(around);
         self.hits.0.begin(usize::MAX);
@@ -79,6 +89,17 @@ impl<'a> PosedShape<'a> {
         found[first..].sort_unstable();
     }
 
+    /// An upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite or NaN
+    /// where q is. It costs O(r) for each 64 triangles.
+    ///
+    /// # Panics
+    /// When q has fewer numbers than there are modes.
+    pub fn displacement_bound(&self, q: &[f64]) -> f64 {
+        let layout = &self.context.layout;
+        let bound = layout.bd_tree.displacement_bound(layout.buckets.nodes(), &q[..self.model.rank()]);
+        bound * (1.0 + 1e-9)
+    }
+
     /// The corners of a triangle in the world, bit for bit those of all answers.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let face = self.model.mesh().faces()[triangle as usize];
@@ -86,7 +107,7 @@ impl<'a> PosedShape<'a> {
     }
 
     /// Starts a search in the frame of this box, unless the last one was the same.
-    fn enter(&mut self, around: Aabb) {
+    pub(super) fn enter(&mut self, around: Aabb) {
         if !self.is_current || self.motion.around != around {
             self.motion.around = around;
             self.is_current = true;
@@ -227,6 +248,28 @@ mod tests {
             found += pairs.len();
         }
         assert!(found > 1000, "{found}");
+    }
+
+    #[test]
+    fn displacements_are_within_their_bound() {
+        let state = &mut 9;
+        for triangles in [3, 40, 300] {
+            let model = model(triangles, state);
+            let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+            let certificates = Certificates::compute(&model, &options, &()).unwrap();
+            let shape = PosedShape::new(&model, &certificates).unwrap();
+            for _ in 0..20 {
+                let q = [random(state), random(state)];
+                let bound = shape.displacement_bound(&q);
+                let displacement = |v: u32| {
+                    let rest = model.mesh().rest_positions()[v as usize];
+                    (model.position(v, &q) - rest).length()
+                };
+                let most = (0..3 * triangles as u32).map(displacement).fold(0.0, f64::max);
+                assert!(most <= bound && bound < 3.0 * most, "{most} {bound}");
+            }
+            assert!(shape.displacement_bound(&[f64::NAN, 0.0]).is_nan());
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::certificates::{
     EllipsoidBlocks, FactorScales, GRADIENT, LocalCertificates, MOST_MODES, gradient_len,
 };
 use crate::detect::vertex_motion::{VertexMotion, rounding_bound};
-use crate::hierarchy::Hierarchy;
+use crate::hierarchy::{Hierarchy, NodePair};
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// The root of three, rounded up: errors are along each axis, gaps along any direction.
@@ -127,7 +127,8 @@ impl<const E: usize> LocalProofs<E> {
     pub(super) fn new(tables: &LocalTables<'_>) -> Self {
         Self {
             instructions: InstructionSet::default(),
-            search: 0,
+            // None of the marks below is of this search.
+            search: 1,
             allowed: vec![(0, 0.0); tables.certificates.nodes.len()],
             proven: vec![(0, 0); tables.buckets[0].end as usize],
             stack: Vec::new(),
@@ -151,22 +152,14 @@ impl<const E: usize> LocalProofs<E> {
         motion: &M,
         is_open: impl Fn(u32) -> bool,
     ) {
-        self.search = self.search.wrapping_add(1);
-        if self.search == 0 {
-            self.proven.fill((0, 0));
-            self.allowed.fill((0, 0.0));
-            self.search = 1;
-        }
-        (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
-        self.is_usable = self.begin_motion(tables, motion);
-        if !self.is_usable {
+        if !self.begin(tables, motion) {
             return;
         }
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
         stack.push(0);
         while let Some(n) = stack.pop() {
-            if self.evaluated > self.proven.len() / FEW + self.proven_buckets / 2 {
+            if self.evaluated > MOST_LOST + self.proven.len() / FEW + self.proven_buckets {
                 break;
             }
             if let Some(index) = tables.certificate_of(n) {
@@ -187,9 +180,43 @@ impl<const E: usize> LocalProofs<E> {
         self.stack = stack;
     }
 
+    /// The pairs of nodes that one certificate proves free during a motion, in a search of its own: its node with itself, and with
+    /// nodes of its list.
+    pub(super) fn claims<M: VertexMotion<E>>(
+        &mut self,
+        tables: &LocalTables<'_>,
+        motion: &M,
+        index: usize,
+    ) -> Vec<NodePair> {
+        if !self.begin(tables, motion) {
+            return Vec::new();
+        }
+        let allowed = self.allowed(tables, index);
+        let LocalCertificates { nodes, bounds, list_starts, list_nodes, list_ratios, .. } =
+            tables.certificates;
+        let range = list_starts[index] as usize..list_starts[index + 1] as usize;
+        let own = (bounds[index].ratio < f64::from(allowed)).then_some(nodes[index]);
+        let of_list = list_nodes[range.clone()].iter().zip(&list_ratios[range]);
+        let others = of_list.filter(|(_, ratio)| **ratio < allowed).map(|(m, _)| *m);
+        own.into_iter().chain(others).map(|m| (nodes[index], m)).collect()
+    }
+
+    /// Begins a new search: forgets what the last one proved. False where certificates prove nothing about the motion.
+    fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 {
+            self.proven.fill((0, 0));
+            self.allowed.fill((0, 0.0));
+            self.search = 1;
+        }
+        (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
+        self.is_usable = self.begin_motion(tables, motion);
+        self.is_usable
+    }
+
     /// Whether most buckets are proven by no certificate.
     pub(super) fn is_mostly_open(&self) -> bool {
-        self.proven_buckets * 10 < 3 * self.proven.len()
+        self.proven_buckets * 10 < 6 * self.proven.len()
     }
 
     /// Whether no two triangles of a node collide.
@@ -325,12 +352,16 @@ impl<const E: usize> LocalProofs<E> {
         let allowed = ends.iter().map(|(map, strain, error)| {
             (smallest_eigenvalue(&(turn * *map)) - error) / strain * (1.0 - 1e-12)
         });
-        // NaN stays, and allows nothing.
-        allowed.fold(f64::INFINITY, |least, x| if x >= least { least } else { x })
+        allowed.fold(f64::INFINITY, smaller)
     }
 }
 
-/// A lower bound of the smallest singular value of a matrix; NaN for a matrix with NaN.
+/// The smaller of two numbers, and NaN where one is NaN: it allows nothing.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+/// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
 fn smallest_stretch(map: &DMat3) -> f64 {
     let gram = map.transpose() * *map;
     smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
@@ -383,6 +414,10 @@ fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
 /// Steps of the iteration towards the rotation.
 const STEPS: usize = 8;
 
+/// A rotation is orthogonal up to this: more than rounding leaves of two vectors that were orthogonal before, and far less than
+/// [`smallest_eigenvalue`] covers.
+const ORTHOGONAL: f64 = 1e-15;
+
 /// The rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; none near a singular
 /// one.
 fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
@@ -398,6 +433,10 @@ fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let x = next.x_axis.try_normalize()?;
     let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
     let y = (y - x * x.dot(y)).try_normalize()?;
+    // Of a map that is nearly singular the iteration may leave two columns along one line.
+    if !(x.dot(y).abs() <= ORTHOGONAL) {
+        return None;
+    }
     let z = x.cross(y);
     let z = if z.dot(next.z_axis) < 0.0 { -z } else { z };
     Some(DMat3::from_cols(x, y, z))

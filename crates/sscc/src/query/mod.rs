@@ -12,6 +12,7 @@ mod continuous;
 mod discrete_between;
 mod discrete_search;
 mod kinetic;
+mod local_claims;
 mod local_proofs;
 mod method;
 mod pair_hulls;

@@ -3,6 +3,7 @@
 //! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
 //! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
+use super::certified_traversal::LOOSE_PAIRS;
 use super::local_proofs::{LocalProofs, LocalTables};
 use super::pair_hulls::PairHulls;
 use crate::PairTree;
@@ -25,6 +26,9 @@ struct Visit {
     /// The entry of a node pair in the tree; [`NODE`] for a node.
     entry: u32,
 }
+
+/// So many visits of stored pairs take as long as a pair of buckets that is tested in vain ([`LOOSE_PAIRS`]).
+const VISITS_OF_LOOSE_PAIR: usize = 8;
 
 /// The entry of a node.
 const NODE: u32 = u32::MAX;
@@ -51,11 +55,22 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     motion: &M,
     narrow: &mut N,
 ) {
+    // A search that ends at its first hits may open few nodes.
+    let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
+    let mut visits = 0;
     stack.clear();
     stack.push(Visit { nodes: (0, 0), entry: NODE });
     while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
         if !broad.count_visit(context, narrow) {
             break;
+        }
+        visits += 1;
+        if can_refit
+            && broad.loose_pairs + visits / VISITS_OF_LOOSE_PAIR
+                > LOOSE_PAIRS * broad.volumes.closed_buckets()
+        {
+            broad.volumes.refit(&context.hierarchy, motion);
+            can_refit = false;
         }
         let buckets = &broad.volumes.layout.buckets;
         if entry == NODE {

@@ -7,18 +7,17 @@ use super::local_certificates::{LocalBounds, LocalCertificates, MOST_MODES, grad
 use super::patch::Patch;
 use super::patch_model::PatchModel;
 use super::residual_ellipsoid::FitEllipsoid;
-use super::strain_search::StrainSearch;
+use super::strain_search::{StrainSearch, larger};
 use super::touching_nodes::TouchingNodes;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
+use crate::model::mode_rows::squared_distance;
 use crate::vectors::{InstructionSet, LANES};
 use crate::{Neighbours, ReducedModel};
 
-/// Rounds in which the ellipsoid is fitted to the pairs that decided the one before.
-const ROUNDS: usize = 1;
-
-/// Blocks of the first ellipsoid: vertices and the patch's first one.
-const FIRST_BLOCKS: usize = 32;
+/// Vertices that the ellipsoid is fitted to, and parts of the node of which it is fitted to the tightest pair.
+const VERTEX_BLOCKS: usize = 16;
+const TIGHT_BLOCKS: usize = 48;
 
 /// Certificates beyond these numbers prove nothing.
 const LARGEST: f64 = 1e12;
@@ -122,22 +121,12 @@ impl Builder<'_> {
         let CornerGaps { hierarchy, filter, .. } = self.gaps;
         patch.load(self.model, hierarchy, filter.faces(), nodes(), MOST_MODES)?;
         let parts = search.load(self.gaps, patch, nodes());
-        let mut blocks = first_blocks(patch);
         let rank = patch.modes.len();
-        let mut found = None;
-        for round in 0..=ROUNDS {
-            let ellipsoid =
-                instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
-            let largest = patch.images(&ellipsoid, images, &mut search.images);
-            search.begin(largest, round == ROUNDS);
-            let ratio = search.within(self.gaps, 0);
-            if round < ROUNDS {
-                search.add_blocks(patch, &mut blocks);
-            }
-            found = Some((ellipsoid, ratio));
-        }
-        let (ellipsoid, ratio) = found?;
-        let ratio = infinite_for_nan(ratio);
+        let blocks = self.blocks(n, patch);
+        let ellipsoid = instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
+        let largest_image = patch.images(&ellipsoid, images, &mut search.images);
+        search.begin(largest_image);
+        let ratio = infinite_for_nan(search.within(self.gaps, 0));
         let mut list = Vec::new();
         for part in &parts[1..] {
             self.list(search, &around, *part, OWN_SHARE * ratio, &mut list);
@@ -195,31 +184,55 @@ impl Builder<'_> {
                 }
                 let floor = if is_first { floor } else { ratio };
                 let of_child = self.list(search, around, child, floor, list);
-                ratio = if of_child <= ratio { ratio } else { of_child };
+                ratio = larger(ratio, of_child);
             }
         }
         list.push((node, ratio));
         ratio
+    }
+
+    /// The blocks that the ellipsoid is fitted to: the residual of some vertices over their distance from the first one, and differences of
+    /// residuals over the gap, of the tight pairs within the node where they are largest.
+    fn blocks(&self, n: u32, patch: &Patch) -> Vec<f64> {
+        let width = 3 * patch.row_len;
+        let residual = |i: u32| &patch.residuals[width * i as usize..][..width];
+        let mut blocks = Vec::new();
+        for i in (1..patch.offsets.len()).step_by(patch.offsets.len().div_ceil(VERTEX_BLOCKS)) {
+            let distance = patch.offsets[i].length();
+            if distance > 0.0 {
+                blocks.extend(residual(i as u32).iter().map(|e| e / distance));
+            }
+        }
+        let nodes = self.gaps.hierarchy.nodes();
+        let (mut tight, mut stack) = (Vec::new(), vec![n]);
+        while let Some(n) = stack.pop() {
+            stack.extend(nodes[n as usize].children());
+            for pair in self.gaps.tight(n) {
+                let [i, j] = [pair.i, pair.j].map(|v| patch.numbers[v as usize]);
+                if i.max(j) != u32::MAX {
+                    let ratio = squared_distance(residual(i), residual(j)).sqrt() / f64::from(pair.gap);
+                    tight.push((ratio, i, j, f64::from(pair.gap)));
+                }
+            }
+        }
+        // The largest of each part, so that no crease alone decides, and the largest of all.
+        let larger = |a: &(f64, u32, u32, f64), b: &(f64, u32, u32, f64)| b.0.total_cmp(&a.0);
+        let mut chosen: Vec<_> = tight
+            .chunks(tight.len().div_ceil(TIGHT_BLOCKS).max(1))
+            .filter_map(|part| part.iter().min_by(|a, b| larger(a, b)).copied())
+            .collect();
+        tight.sort_by(larger);
+        chosen.extend(tight.into_iter().take(TIGHT_BLOCKS / 2));
+        for (_, i, j, gap) in chosen {
+            blocks.extend(residual(i).iter().zip(residual(j)).map(|(x, y)| (y - x) / gap));
+        }
+        blocks
     }
 }
 
 /// A ratio that is no number proves nothing, as an infinite one.
 fn infinite_for_nan(ratio: f32) -> f32 {
     if ratio.is_nan() { f32::INFINITY } else { ratio }
-}
-
-/// Blocks to begin with: the residual of some vertices over their distance from the first one.
-fn first_blocks(patch: &Patch) -> Vec<f64> {
-    let step = patch.offsets.len().div_ceil(FIRST_BLOCKS);
-    let rows = patch.residuals.chunks_exact((3 * patch.row_len).max(1));
-    let mut blocks = Vec::new();
-    for (rows, d) in rows.zip(&patch.offsets).skip(1).step_by(step) {
-        let distance = d.length();
-        if distance > 0.0 {
-            blocks.extend(rows.iter().map(|e| e / distance));
-        }
-    }
-    blocks
 }
 
 /// The gradients in the layout of [`LocalCertificates::gradients`].

@@ -28,6 +28,17 @@ const SMALLEST: f64 = 1e-9;
 pub(super) struct GapTable {
     /// For each vertex of the first leaf those of the second, rounded down; infinite where no pair of triangles counts.
     pub(super) gaps: Vec<f32>,
+    /// The smallest gap of each vertex of the first leaf.
+    pub(super) of_rows: Vec<f32>,
+    pub(super) smallest: f32,
+}
+
+/// The two corners of two near leaves whose gap is smallest for their distance, by vertices.
+#[derive(Clone, Copy)]
+pub(super) struct TightPair {
+    pub(super) i: u32,
+    pub(super) j: u32,
+    pub(super) gap: f32,
 }
 
 /// A sphere around the vertices of a node.
@@ -49,6 +60,9 @@ pub(super) struct CornerGaps<'g> {
     pub(super) spheres: Vec<Sphere>,
     /// None where two triangles that count have no gap.
     tables: HashMap<NodePair, Option<GapTable>>,
+    /// For each node where the tight pairs of its tables with later leaves start if it is a leaf, and the end.
+    tight_starts: Vec<u32>,
+    tight: Vec<TightPair>,
 }
 
 impl<'g> CornerGaps<'g> {
@@ -69,11 +83,24 @@ impl<'g> CornerGaps<'g> {
             vertices,
             spheres: Vec::new(),
             tables: HashMap::new(),
+            tight_starts: Vec::new(),
+            tight: Vec::new(),
         };
         gaps.spheres = gaps.node_spheres();
         let mut near = gaps.near_leaves();
         near.sort_unstable();
-        gaps.tables = near.par_iter().map(|pair| (*pair, gaps.table(*pair))).collect();
+        let tables: Vec<Option<GapTable>> = near.par_iter().map(|pair| gaps.table(*pair)).collect();
+        gaps.tight_starts = vec![0; nodes.len() + 1];
+        for (pair, table) in near.iter().zip(&tables) {
+            if let Some(tight) = table.as_ref().and_then(|table| gaps.tightest(*pair, table)) {
+                gaps.tight.push(tight);
+                gaps.tight_starts[pair.0 as usize + 1] += 1;
+            }
+        }
+        for n in 0..nodes.len() {
+            gaps.tight_starts[n + 1] += gaps.tight_starts[n];
+        }
+        gaps.tables = near.into_iter().zip(tables).collect();
         gaps
     }
 
@@ -82,6 +109,23 @@ impl<'g> CornerGaps<'g> {
     pub(super) fn vertices(&self, leaf: u32) -> &[u32] {
         let [start, end] = [leaf, leaf + 1].map(|n| self.starts[n as usize] as usize);
         &self.vertices[start..end]
+    }
+
+    /// The tight pairs of a leaf and later ones.
+    pub(super) fn tight(&self, leaf: u32) -> &[TightPair] {
+        let [start, end] = [leaf, leaf + 1].map(|n| self.tight_starts[n as usize] as usize);
+        &self.tight[start..end]
+    }
+
+    /// The tightest pair of a table.
+    fn tightest(&self, (n, m): NodePair, table: &GapTable) -> Option<TightPair> {
+        let [x, y] = [n, m].map(|n| self.vertices(n));
+        let pairs = x.iter().flat_map(|i| y.iter().map(|j| (*i, *j))).zip(&table.gaps);
+        let distance = |i: u32, j: u32| (self.positions[j as usize] - self.positions[i as usize]).length();
+        let tight = pairs
+            .filter(|(_, gap)| **gap < f32::INFINITY)
+            .map(|((i, j), gap)| (f64::from(*gap) / distance(i, j), TightPair { i, j, gap: *gap }));
+        tight.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, pair)| pair)
     }
 
     /// The table of two leaves, the smaller number first, if they are near.
@@ -182,7 +226,10 @@ impl<'g> CornerGaps<'g> {
                 }
             }
         }
-        Some(GapTable { gaps })
+        let smallest = |gaps: &[f32]| gaps.iter().copied().fold(f32::INFINITY, f32::min);
+        let of_rows: Vec<f32> = gaps.chunks_exact(y.len()).map(smallest).collect();
+        let smallest = smallest(&of_rows);
+        Some(GapTable { gaps, of_rows, smallest })
     }
 }
 

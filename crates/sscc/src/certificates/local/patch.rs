@@ -63,7 +63,7 @@ impl Patch {
             }
         }
         model.moving_modes(&self.vertices, most, &mut self.modes)?;
-        // Whole vectors of single precision; one also where no mode moves the patch.
+        // Whole vectors of single precision, and one where no mode moves the patch.
         self.row_len = padded_rank(self.modes.len().max(1)).next_multiple_of(crate::vectors::LANES);
         let width = 3 * self.row_len;
         self.rows.clear();

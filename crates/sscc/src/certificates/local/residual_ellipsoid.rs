@@ -8,7 +8,7 @@ use crate::model::mode_rows::LANES;
 use crate::vectors::{Kernel, Vectors};
 
 /// Steps of the iteration.
-const STEPS: usize = 3;
+const STEPS: usize = 2;
 
 /// What is added to the diagonal, relative to the trace: W is invertible, and a motion that leaves no residual still has a small
 /// `W f`.

@@ -9,10 +9,7 @@ use crate::hierarchy::BUCKET_TRIANGLES;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// A pair of nodes whose bound is at most this many times the largest ratio found is not split.
-const ACCEPTED: [f32; 2] = [1.3, 1.1];
-
-/// Pairs that the ellipsoid is fitted to in each round.
-const HOT_PAIRS: usize = 48;
+const ACCEPTED: f32 = 1.1;
 
 /// Covers the rounding of norms of images, which are sums of `3 r` squares, and of quotients.
 const ROUND_UP: f32 = 1.0 + 1e-4;
@@ -30,15 +27,6 @@ struct Part {
     spread: f32,
 }
 
-/// Two vertices of the patch, by their numbers, whose gap was small for their images.
-#[derive(Clone, Copy)]
-struct HotPair {
-    ratio: f32,
-    i: u32,
-    j: u32,
-    gap: f32,
-}
-
 /// The parts and images of one patch. Owns its memory.
 #[derive(Default)]
 pub(super) struct StrainSearch {
@@ -49,15 +37,11 @@ pub(super) struct StrainSearch {
     vertices: Vec<u32>,
     vertex_starts: Vec<u32>,
     width: usize,
-    accepted: f32,
     pub(super) images: Vec<f32>,
     /// For each part the mean image.
     means: Vec<f32>,
     /// What rounding to single precision may have changed in the difference of two images.
     image_error: f32,
-    hot: Vec<HotPair>,
-    /// Pairs of a smaller ratio are not kept.
-    hot_floor: f32,
     stack: Vec<(u32, u32)>,
     components: [Vec<f64>; 2],
     /// The smallest gap that a ratio assumes.
@@ -107,12 +91,9 @@ impl StrainSearch {
     }
 
     /// Takes images, of which the largest norm is known: computes means and spreads, and forgets what was found with others.
-    pub(super) fn begin(&mut self, largest_image: f64, is_last: bool) {
-        self.accepted = ACCEPTED[usize::from(is_last)];
+    pub(super) fn begin(&mut self, largest_image: f64) {
         // Squares below the range of single precision are lost, too.
         self.image_error = (largest_image * 1.2e-7 + 1e-18) as f32;
-        self.hot.clear();
-        self.hot_floor = 0.0;
         self.smallest_gap = f64::INFINITY;
         let instructions = self.instructions;
         instructions.run(Means(self));
@@ -137,25 +118,6 @@ impl StrainSearch {
         (node, (!is_bucket).then_some(first_child..first_child + child_count))
     }
 
-    /// Adds the blocks of the hottest pairs of the last search: the differences of residuals over the gap.
-    pub(super) fn add_blocks(&mut self, patch: &Patch, blocks: &mut Vec<f64>) {
-        self.shrink_hot();
-        for pair in &self.hot {
-            let [x, y] = [pair.i, pair.j].map(|i| &patch.residuals[self.width * i as usize..][..self.width]);
-            blocks.extend(x.iter().zip(y).map(|(x, y)| (y - x) / f64::from(pair.gap)));
-        }
-    }
-
-    fn shrink_hot(&mut self) {
-        if self.hot.len() > HOT_PAIRS {
-            let order =
-                |a: &HotPair, b: &HotPair| b.ratio.total_cmp(&a.ratio).then((a.i, a.j).cmp(&(b.i, b.j)));
-            let (_, last, _) = self.hot.select_nth_unstable_by(HOT_PAIRS - 1, order);
-            self.hot_floor = last.ratio;
-            self.hot.truncate(HOT_PAIRS);
-        }
-    }
-
     #[inline(always)]
     fn image(&self, i: u32) -> &[f32] {
         &self.images[self.width * i as usize..][..self.width]
@@ -174,24 +136,21 @@ impl StrainSearch {
 
     /// Compares the ratio of two vertices with the largest one.
     #[inline(always)]
-    fn compare(&mut self, i: u32, j: u32, gap: f32, largest: &mut f32) {
-        let (x, y) = (self.image(i), self.image(j));
-        let norm = squared_distance(x, y).sqrt() * ROUND_UP + self.image_error;
+    fn compare(&self, x: &[f32], j: u32, gap: f32, largest: &mut f32) {
+        let y = self.image(j);
         // NaN is compared, too, and proves nothing.
-        if norm <= 0.5 * *largest * gap {
+        if self.is_at_most(squared_distance(x, y), 0.0, *largest * gap) {
             return;
         }
-        if !(norm <= *largest * gap) {
-            let ratio = (largest_singular_value(x, y) * ROUND_UP + self.image_error) / gap * ROUND_UP;
-            *largest = larger(*largest, ratio);
-        }
-        let ratio = norm / gap;
-        if ratio > self.hot_floor {
-            self.hot.push(HotPair { ratio, i, j, gap });
-            if self.hot.len() >= 4 * HOT_PAIRS {
-                self.shrink_hot();
-            }
-        }
+        let ratio = (largest_singular_value(x, y) * ROUND_UP + self.image_error) / gap * ROUND_UP;
+        *largest = larger(*largest, ratio);
+    }
+
+    /// Whether a distance of images, of which the square was computed, and more than that are surely at most a limit.
+    #[inline(always)]
+    fn is_at_most(&self, square: f32, more: f32, limit: f32) -> bool {
+        let left = (limit - (more + self.image_error) * ROUND_UP) * (1.0 / ROUND_UP);
+        left > 0.0 && square <= left * left * (1.0 / ROUND_UP)
     }
 }
 
@@ -271,7 +230,7 @@ impl Kernel for Search<'_, '_> {
                     let difference = squared_distance(search.mean(x), search.mean(y)).sqrt();
                     let bound = (difference + a.spread + b.spread) * ROUND_UP + search.image_error;
                     let ratio = bound / distance as f32 * ROUND_UP;
-                    if ratio <= search.accepted * largest {
+                    if ratio <= ACCEPTED * largest {
                         accepted = larger(accepted, ratio);
                         search.smallest_gap = search.smallest_gap.min(distance);
                         continue;
@@ -303,15 +262,19 @@ impl Kernel for Search<'_, '_> {
                     let bound = (difference + a.spread + b.spread) * ROUND_UP + search.image_error;
                     let ratio = bound / gap as f32 * ROUND_UP;
                     search.smallest_gap = search.smallest_gap.min(gap);
-                    if ratio <= search.accepted * largest {
+                    if ratio <= ACCEPTED * largest {
                         accepted = larger(accepted, ratio);
                         continue;
                     }
                     for (u, s) in of_x.zip(&components[0]) {
                         for (v, t) in of_y.clone().zip(&components[1]) {
                             let gap = (CornerGaps::gap_between(*s, *t) as f32).next_down();
-                            let (i, j) = (search.vertices[u], search.vertices[v]);
-                            search.compare(i, j, gap, &mut largest);
+                            search.compare(
+                                search.image(search.vertices[u]),
+                                search.vertices[v],
+                                gap,
+                                &mut largest,
+                            );
                         }
                     }
                 }
@@ -320,13 +283,16 @@ impl Kernel for Search<'_, '_> {
                     break;
                 }
                 Some(Some(table)) => {
-                    let len = of_y.len();
-                    for (u, row) in of_x.zip(table.gaps.chunks_exact(len)) {
+                    search.smallest_gap = search.smallest_gap.min(f64::from(table.smallest));
+                    let (len, mean, spread) = (of_y.len(), search.mean(y), search.parts[y as usize].spread);
+                    for ((u, row), smallest) in of_x.zip(table.gaps.chunks_exact(len)).zip(&table.of_rows) {
+                        let image = search.image(search.vertices[u]);
+                        if search.is_at_most(squared_distance(image, mean), spread, largest * smallest) {
+                            continue;
+                        }
                         for (v, gap) in of_y.clone().zip(row) {
                             if *gap < f32::INFINITY {
-                                search.smallest_gap = search.smallest_gap.min(f64::from(*gap));
-                                let (i, j) = (search.vertices[u], search.vertices[v]);
-                                search.compare(i, j, *gap, &mut largest);
+                                search.compare(image, search.vertices[v], *gap, &mut largest);
                             }
                         }
                     }
@@ -341,7 +307,7 @@ impl Kernel for Search<'_, '_> {
 
 /// The larger of two numbers, and NaN where one is NaN.
 #[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
+pub(super) fn larger(a: f32, b: f32) -> f32 {
     if b <= a { a } else { b + 0.0 * a }
 }
 

@@ -1,0 +1,242 @@
+//! Each claim of a local certificate against exact tests, at the edge of where it holds.
+
+use glam::DVec3;
+use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
+
+use crate::hierarchy::{Node, NodePair};
+use crate::{
+    Certificates, CertifyOptions, ContactFilter, Method, Metric, MetricKind, Modes, Neighbours, Pair, Query,
+    ReducedModel, TriMesh,
+};
+
+fn model_of(shape: &FlexibleShape) -> ReducedModel {
+    let mesh = TriMesh::new(shape.positions.clone(), shape.faces.clone()).unwrap();
+    ReducedModel::new(mesh, Modes::new(shape.rank, shape.displacements.clone()).unwrap()).unwrap()
+}
+
+/// Local certificates of every node, in scopes of every kind.
+fn certify(model: &ReducedModel, seed: u64, random: &mut Numbers) -> Certificates {
+    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let rank = model.rank();
+    let metric = (seed.is_multiple_of(2) && rank < 40).then(|| {
+        let entry = |i: usize, j: usize| scales[i] * scales[j] * if i == j { 1.0 } else { 0.2 / rank as f64 };
+        let matrix: Vec<f64> = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
+        Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
+    });
+    let center = seed.is_multiple_of(3).then(|| {
+        let size = random.power(-4.0, -1.0) / (rank as f64).sqrt();
+        scales.iter().map(|scale| size * random.signed() / scale).collect()
+    });
+    let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
+    let options = CertifyOptions {
+        metric,
+        center,
+        filter: Some(ContactFilter::new(neighbours, seed % 5 < 3)),
+        ignore_rest: seed % 4 == 3,
+        budget: 0,
+        local_budget: 1 << 20,
+        epsilon: 0.9,
+        threads: Some(1),
+        ..CertifyOptions::default()
+    };
+    Certificates::compute(model, &options, &()).unwrap()
+}
+
+/// Claims and exact tests on one model.
+struct Attack<'a> {
+    model: &'a ReducedModel,
+    certificates: &'a Certificates,
+    certified: Query<'a>,
+    oracle: Query<'a>,
+    index_in_order: Vec<u32>,
+}
+
+impl<'a> Attack<'a> {
+    fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Self {
+        let order = certificates.hierarchy().order();
+        let mut index_in_order = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(i, t)| index_in_order[*t as usize] = i as u32);
+        Self {
+            model,
+            certificates,
+            certified: Query::new(model, certificates).unwrap(),
+            oracle: Query::with_method(model, certificates, Method::Traditional).unwrap(),
+            index_in_order,
+        }
+    }
+
+    /// Whether a pair is one of two nodes.
+    fn is_of(&self, nodes: NodePair, pair: Pair) -> bool {
+        let all = self.certificates.hierarchy().nodes();
+        let has = |n: u32, triangle: u32| {
+            let Node { first_triangle, triangle_count, .. } = all[n as usize];
+            (first_triangle..first_triangle + triangle_count)
+                .contains(&self.index_in_order[triangle as usize])
+        };
+        let (n, m) = nodes;
+        has(n, pair.0) && has(m, pair.1) || has(n, pair.1) && has(m, pair.0)
+    }
+
+    /// The claims at q; none where q is out of range.
+    fn claims(&mut self, index: usize, q: &[f64]) -> Vec<NodePair> {
+        self.certified.local_claims(index, [q]).unwrap_or_default()
+    }
+
+    /// The pairs that collide at q, exceptions apart.
+    fn collisions(&mut self, q: &[f64]) -> Vec<Pair> {
+        let exceptions = self.certificates.exceptions();
+        let mut pairs = self.oracle.discrete(q).unwrap().to_vec();
+        pairs.retain(|pair| exceptions.binary_search(pair).is_err());
+        pairs
+    }
+
+    fn at(&self, ray: &[f64], scale: f64) -> Vec<f64> {
+        self.certificates.center().iter().zip(ray).map(|(c, d)| c + scale * d).collect()
+    }
+
+    /// A direction: few or many modes, or a part of a turn.
+    fn ray(&self, shape: &FlexibleShape, random: &mut Numbers) -> Vec<f64> {
+        let scales = Metric::displacement(self.model.mesh(), self.model.modes()).scales();
+        let decay = random.below(3) as i32;
+        let few = random.below(3) == 0;
+        let mut ray: Vec<f64> = scales
+            .iter()
+            .enumerate()
+            .map(|(k, scale)| {
+                let weight = if few && random.below(4) > 0 { 0.0 } else { (1.0 + k as f64).powi(-decay) };
+                random.signed() * weight / scale
+            })
+            .collect();
+        let angle = 3.0 * random.signed();
+        if random.below(2) == 0
+            && let Some(turned) = shape.turned(random.vector() + DVec3::X * 0.01, angle)
+        {
+            let share = random.power(-3.0, 0.0);
+            ray.iter_mut().zip(turned).for_each(|(x, y)| *x = *x * share + y);
+        }
+        ray
+    }
+
+    /// The largest scale found at which a claim holds, and one just beyond; none where the claim does not hold close to the
+    /// centre.
+    fn edge(&mut self, index: usize, claim: NodePair, ray: &[f64]) -> Option<[f64; 2]> {
+        let mut holds = |scale: f64| self.claims(index, &self.at(ray, scale)).contains(&claim);
+        let mut low = [1.0, 0.1, 1e-2, 1e-3, 1e-5].into_iter().find(|scale| holds(*scale))?;
+        let mut high = low * 2.0;
+        while holds(high) {
+            (low, high) = (high, 2.0 * high);
+            if high > 1e12 {
+                break;
+            }
+        }
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            if holds(middle) { low = middle } else { high = middle }
+        }
+        Some([low, high])
+    }
+}
+
+/// What an attack saw.
+#[derive(Debug, Default)]
+struct Seen {
+    certificates: usize,
+    claims: usize,
+    pairs_of_nodes: usize,
+    swept: usize,
+    with_collisions: usize,
+    largest_share: f64,
+}
+
+fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
+    let random = &mut Numbers(seed + 4000);
+    let model = model_of(shape);
+    let certificates = certify(&model, seed, random);
+    let mut attack = Attack::new(&model, &certificates);
+    let local = &certificates.parts().local;
+    seen.certificates += local.nodes.len();
+    let mut last: Option<(usize, Vec<f64>)> = None;
+    for _ in 0..rays {
+        if local.nodes.is_empty() {
+            break;
+        }
+        let index = random.below(local.nodes.len());
+        let n = local.nodes[index];
+        let list =
+            &local.list_nodes[local.list_starts[index] as usize..local.list_starts[index + 1] as usize];
+        let claim = if list.is_empty() || random.below(3) == 0 {
+            (n, n)
+        } else {
+            (n, list[random.below(list.len())])
+        };
+        let ray = attack.ray(shape, random);
+        let Some([edge, beyond]) = attack.edge(index, claim, &ray) else { continue };
+        // Beyond, up to the first collision of the claim's pairs: how close claims come to the truth.
+        let mut collides = false;
+        let within = [1.0, 0.999, 0.5 + 0.5 * random.signed().abs()].map(|share| share * edge);
+        let outside = (0..16).map(|step| beyond * 1.12_f64.powi(step));
+        for scale in within.into_iter().chain(outside) {
+            if collides {
+                break;
+            }
+            let q = attack.at(&ray, scale);
+            if model.check_coordinates(&q).is_err() {
+                continue;
+            }
+            let (claims, collisions) = (attack.claims(index, &q), attack.collisions(&q));
+            for nodes in &claims {
+                let hit = collisions.iter().find(|pair| attack.is_of(*nodes, **pair));
+                assert_eq!(hit, None, "seed {seed}: claim {nodes:?} of {n} at scale {scale} of {ray:?}");
+                seen.pairs_of_nodes += usize::from(nodes.0 != nodes.1);
+            }
+            seen.claims += claims.len();
+            seen.with_collisions += usize::from(!claims.is_empty() && !collisions.is_empty());
+            if !collides && scale > edge && collisions.iter().any(|pair| attack.is_of(claim, *pair)) {
+                collides = true;
+                seen.largest_share = seen.largest_share.max(edge / scale);
+            }
+        }
+        // Motions between two edges.
+        let q = attack.at(&ray, edge);
+        if let Some((other, start)) = last.replace((index, q.clone()))
+            && let Ok(claims) = attack.certified.local_claims(other, [&start, &q])
+        {
+            seen.swept += claims.len();
+            for step in 0..if claims.is_empty() { 0 } else { 12 } {
+                let t = f64::from(step) / 11.0;
+                let between: Vec<f64> = start.iter().zip(&q).map(|(x, y)| x + t * (y - x)).collect();
+                let collisions = attack.collisions(&between);
+                for nodes in &claims {
+                    let hit = collisions.iter().find(|pair| attack.is_of(*nodes, **pair));
+                    assert_eq!(hit, None, "seed {seed}: swept claim {nodes:?} at {t}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn claims_hold_up_to_where_they_end() {
+    let mut seen = Seen::default();
+    for seed in 0..cases(112) {
+        let shape = Shape::ALL[seed as usize % Shape::ALL.len()];
+        let rank = [1, 2, 5, 12, 28][seed as usize / 7 % 5];
+        attack(&FlexibleShape::new(seed, shape, rank), seed, 60, &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.claims > threshold(20_000) && seen.pairs_of_nodes > threshold(5_000), "{seen:?}");
+    assert!(seen.swept > threshold(2_000) && seen.with_collisions > threshold(2_000), "{seen:?}");
+}
+
+#[test]
+fn claims_hold_for_many_modes_and_at_every_size() {
+    let mut seen = Seen::default();
+    attack(&FlexibleShape::new(3, Shape::Sheet, 188), 3, 20, &mut seen);
+    for (seed, size) in [1e-150, 1e-40, 1e-9, 1e9, 1e50].into_iter().enumerate() {
+        // Odd numbers have diagonal metrics.
+        let (shape, seed) = (Shape::ALL[seed], 2 * seed as u64 + 1);
+        attack(&FlexibleShape::new(seed, shape, 4).scaled(size), seed, 60, &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.claims > 1000 && seen.pairs_of_nodes > 300, "{seen:?}");
+}
