@@ -17,7 +17,7 @@ const IGNORED: &str = "ignored";
 const COUNTED: &str = "counted";
 
 /// The first version with groups.
-const VERSION: u32 = 5;
+pub(super) const VERSION: u32 = 5;
 
 /// Writes the groups of a filter, if it has any.
 pub(super) fn write(writer: &mut ContainerWriter, filter: &ContactFilter) {

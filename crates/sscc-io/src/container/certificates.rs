@@ -23,39 +23,54 @@
 //! | `pair_starts` | U32 | n or 0 | for each node, the index of the first pair of its children; 2^32 - 1: no pair is below the limit, or the node is a bucket |
 //! | `pair_radii` | F32 | t | radius of each node pair, rounded down, below the limit |
 //! | `pair_links` | U32 | t | bits 0 to 27: index of its first child (0: none, both nodes are buckets); 28 to 30: its number among the children of its parent; 31: last sibling |
+//! | `local_nodes` | U32 | l | the node of each local certificate, ascending; this tensor and those below are absent where there are none |
+//! | `local_mode_starts` | U32 | l + 1 | where the modes of each start in `local_modes`, and the end |
+//! | `local_modes` | U32 | m | the modes that move the patch of each, ascending |
+//! | `local_gradients` | F32 | | of each the gradients G of its modes: for each mode eight entries of the 3 x 3 matrix, column by column, then the ninth of all its modes, padded with zeros to a multiple of eight |
+//! | `local_ellipsoids` | U32 | | of each W, upper triangular: for each eight rows their entries in all columns from the first row's diagonal on. Two entries in each number, the first in the lower half; an entry is the upper half of a single-precision number |
+//! | `local_bounds` | F64 | l x 5 | of each the ratio of the pairs within the node (infinite: none was found), rho, 1 / s, the largest Frobenius norm of a gradient, the largest norm of a column of W |
+//! | `local_list_starts` | U32 | l + 1 | where the list of each starts in `local_list_nodes`, and the end |
+//! | `local_list_nodes` | U32 | k | the nodes of each list, ascending |
+//! | `local_list_ratios` | F32 | k | the ratio of the pairs between the certificate's node and each node of its list; may be infinite |
 //!
 //! A node pair is split at the node with more triangles (the first of equals; never a leaf): its children pair with the
 //! other node. Lists of siblings are stored breadth first; the lists of the nodes' own children come first.
+//! `local_certificates.rs` in the core has the inequality of local certificates.
 //!
-//! Text: `metric` (the kind), `scheme` ("full" with a pair tree, else "paper"), `neighbours` ("exclude": triangles that
+//! Text: `metric` (the kind), `scheme` ("full" with a pair tree or local certificates, else "paper"), `neighbours` ("exclude": triangles that
 //! share a vertex are no pair; "include-one-vertex": triangles that share exactly one vertex count if they meet at
 //! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). With
 //! `groups` also `group_pairs`: what the tensor of that name lists ("ignored": pairs that do not count, the others do;
 //! "counted": pairs that count, the others do not). The name of the scheme implies nothing. A bucket has at most 64
-//! triangles and is not the root; the tree holds no pairs within a bucket. Groups are new in version 5; files without
-//! are written in version 4. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
+//! triangles and is not the root; the tree holds no pairs within a bucket. Local certificates are new in version 6, groups
+//! in version 5; files without are written in the oldest of 4, 5 and 6 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
 //! tree, and a text `pairs` ("root-children").
 
 use std::path::Path;
 
 use sscc::hierarchy::{Hierarchy, Node};
-use sscc::{CertificateParts, Certificates, ContactFilter, Digest, Neighbours, Pair, PairTree, Scope};
+use sscc::{
+    CertificateParts, Certificates, ContactFilter, Digest, LocalCertificates, Neighbours, Pair, PairTree,
+    Scope,
+};
 
-use super::{ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_groups, metric};
+use super::{
+    ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_groups, local_certificates, metric,
+};
 use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
 
-/// Files without groups are written in this version, which earlier builds read.
-const VERSION_WITHOUT_GROUPS: u32 = 4;
+/// Files without groups and local certificates are written in this version, which earlier builds read.
+const PLAIN_VERSION: u32 = 4;
 
 /// Values of the text `weld`.
 const WELD: &str = "equal";
 const NO_WELD: &str = "none";
 
 /// Returns the value of the text `scheme`.
-fn scheme(tree: &PairTree) -> &'static str {
-    if tree.limit() > 0.0 { "full" } else { "paper" }
+fn scheme(tree: &PairTree, local: &LocalCertificates) -> &'static str {
+    if tree.limit() > 0.0 || !local.nodes.is_empty() { "full" } else { "paper" }
 }
 
 const TENSORS: [&str; 21] = [
@@ -115,12 +130,17 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let tree = &parts.pair_tree;
     let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
-    let version = if scope.filter.groups().is_some() { CERTIFICATES.version } else { VERSION_WITHOUT_GROUPS };
+    let version = match (parts.local.nodes.is_empty(), scope.filter.groups()) {
+        (false, _) => local_certificates::VERSION,
+        (true, Some(_)) => certificate_groups::VERSION,
+        (true, None) => PLAIN_VERSION,
+    };
     let mut writer = ContainerWriter::new(Kind { version, ..CERTIFICATES });
     metric::write(&mut writer, &scope.metric);
     certificate_groups::write(&mut writer, &scope.filter);
+    local_certificates::write(&mut writer, &parts.local);
     writer
-        .text("scheme", scheme(tree))
+        .text("scheme", scheme(tree, &parts.local))
         .text("neighbours", scope.filter.neighbours.name())
         .text("weld", if scope.filter.weld { WELD } else { NO_WELD })
         .u8("model_digest", &[32], &parts.digest.0)
@@ -149,7 +169,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
 /// As [`read_certificates`], without the file's name.
 pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError> {
     let file = Container::parse(bytes, CERTIFICATES)?;
-    file.only(&TENSORS)?;
+    file.only(&[&TENSORS[..], &local_certificates::TENSORS].concat())?;
     let unknown = |key: &str, found: &str| {
         let cause = format!("{} is not known in this version of the format", quoted(found));
         FormatError::new(Place::Key(key.into()), cause)
@@ -157,12 +177,13 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     if file.version() < 3 && file.text("pairs")? != "root-children" {
         return Err(unknown("pairs", file.text("pairs")?));
     }
-    let pair_tree = read_pair_tree(&file)?;
+    let (pair_tree, local) = (read_pair_tree(&file)?, local_certificates::read(&file)?);
     match file.text("scheme")? {
-        found if found == scheme(&pair_tree) => {}
+        found if found == scheme(&pair_tree, &local) => {}
         "full" if file.version() == 3 => {}
         "full" | "paper" => {
-            return Err(FormatError::new(Place::Key("scheme".into()), "it does not agree with 'pair_limit'"));
+            let cause = "it does not agree with 'pair_limit' and 'local_nodes'";
+            return Err(FormatError::new(Place::Key("scheme".into()), cause));
         }
         other => return Err(unknown("scheme", other)),
     }
@@ -216,7 +237,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         node_radii,
         root_pair_radii,
         pair_tree,
-        local: sscc::LocalCertificates::default(),
+        local,
         rest_collisions: file.u64("rest_collisions")?.shaped(&[1])?.values[0],
     })?)
 }

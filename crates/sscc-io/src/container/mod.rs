@@ -10,6 +10,7 @@ mod certificates;
 mod elasticity;
 mod header;
 mod kind;
+mod local_certificates;
 mod mass_data;
 mod metric;
 mod model;

@@ -13,9 +13,12 @@ impl Certificates {
     /// When the parts do not fit together.
     pub fn from_parts(parts: CertificateParts) -> Result<Self, Error> {
         check_scope(&parts).and_then(|()| check_radii(&parts)).map_err(|cause| damaged(cause.to_owned()))?;
-        match parts.pair_tree.pairs(&parts.hierarchy) {
-            Ok(_) => Ok(Self::new(parts)),
-            Err(cause) => Err(damaged(format!("pair tree: {cause}"))),
+        if let Err(cause) = parts.pair_tree.pairs(&parts.hierarchy) {
+            return Err(damaged(format!("pair tree: {cause}")));
+        }
+        match parts.local.check(&parts.hierarchy, parts.scope.metric.rank()) {
+            Ok(()) => Ok(Self::new(parts)),
+            Err(cause) => Err(damaged(format!("local certificates: {cause}"))),
         }
     }
 }

@@ -65,7 +65,8 @@ fn grouped(table: impl Fn(TriangleGroups) -> TriangleGroups) -> Certificates {
     let model = model();
     let of_triangle: Vec<u32> = (0..model.mesh().faces().len() as u32).map(|t| t / 6).collect();
     let filter = ContactFilter::default().with_groups(table(TriangleGroups::new(&of_triangle).unwrap()));
-    let options = CertifyOptions { filter: Some(filter), budget: 16, ..CertifyOptions::default() };
+    let options =
+        CertifyOptions { filter: Some(filter), budget: 16, local_budget: 0, ..CertifyOptions::default() };
     Certificates::compute(&model, &options, &()).unwrap()
 }
 
@@ -87,9 +88,10 @@ fn groups_round_trip() {
         assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
     }
     // Without groups the file is one of the version before.
-    assert_eq!(Container::parse(&sample(), CERTIFICATES).unwrap().version(), 4);
-    let plain = grouped(|groups| groups);
-    assert_eq!(certificates_to_bytes(&plain).unwrap(), sample());
+    let plain = CertifyOptions { budget: 16, local_budget: 0, ..CertifyOptions::default() };
+    let plain = certificates_to_bytes(&Certificates::compute(&model(), &plain, &()).unwrap()).unwrap();
+    assert_eq!(Container::parse(&plain, CERTIFICATES).unwrap().version(), 4);
+    assert_eq!(certificates_to_bytes(&grouped(|groups| groups)).unwrap(), plain);
 }
 
 #[test]
@@ -131,7 +133,7 @@ fn damaged_groups_are_rejected() {
 
 fn certificates() -> Certificates {
     static ONCE: LazyLock<Certificates> = LazyLock::new(|| {
-        let options = CertifyOptions { budget: 16, ..CertifyOptions::default() };
+        let options = CertifyOptions { budget: 16, local_budget: 512, ..CertifyOptions::default() };
         Certificates::compute(&model(), &options, &()).unwrap()
     });
     ONCE.clone()
@@ -176,6 +178,8 @@ fn with(name: &str, change: impl Fn(&mut ContainerWriter)) -> String {
 #[test]
 fn round_trip_is_exact() {
     let (model, certificates) = (model(), certificates());
+    let LocalCertificates { nodes, list_nodes, .. } = &certificates.parts().local;
+    assert!(nodes.len() > 1 && !list_nodes.is_empty());
     let read = certificates_from_bytes(&sample()).unwrap();
     assert_eq!(read, certificates);
     read.check_model(&model).unwrap();
@@ -188,7 +192,8 @@ fn older(
     absent: &[&str],
     change: impl Fn(&mut ContainerWriter),
 ) -> Result<Certificates, FormatError> {
-    let options = CertifyOptions { max_exceptions: Some(0), budget: 0, ..CertifyOptions::default() };
+    let options =
+        CertifyOptions { max_exceptions: Some(0), budget: 0, local_budget: 0, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
@@ -232,7 +237,7 @@ fn version_2_is_read() {
 /// Pair trees of version 3 include pairs within buckets.
 #[test]
 fn version_3_is_read_without_its_pair_tree() {
-    let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
+    let options = CertifyOptions { budget: 512, local_budget: 0, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&strip(900), &options, &()).unwrap();
     assert!(!certificates.parts().pair_tree.is_empty());
     let bytes = certificates_to_bytes(&certificates).unwrap();
@@ -270,8 +275,8 @@ fn other_kinds_and_newer_versions_are_rejected() {
     let model_file = ContainerWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = ContainerWriter::new(super::super::Kind { version: 6, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 6"));
+    let newer = ContainerWriter::new(super::super::Kind { version: 7, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 7"));
 }
 
 #[test]
@@ -316,14 +321,20 @@ fn inconsistent_parts_are_rejected() {
     assert!(with("model_digest", |w| _ = w.u8("model_digest", &[3], &[0; 3])).contains("[32] was expected"));
 }
 
-/// The scheme only names the content; the pair tree decides.
+/// The scheme only names the content; the pair tree and local certificates decide.
 #[test]
 fn the_scheme_agrees_with_the_pair_tree() {
     assert!(with("scheme", |w| _ = w.text("scheme", "paper")).contains("does not agree"));
-    let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
-    let paper = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
-    assert_eq!(Container::parse(&paper, CERTIFICATES).unwrap().text("scheme").unwrap(), "paper");
-    assert_eq!(Container::parse(&sample(), CERTIFICATES).unwrap().text("scheme").unwrap(), "full");
+    for (budget, local_budget, scheme) in
+        [(0, 0, "paper"), (0, 64, "full"), (16, 0, "full"), (16, 64, "full")]
+    {
+        let options = CertifyOptions { budget, local_budget, ..CertifyOptions::default() };
+        let bytes = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
+        let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+        assert_eq!(file.text("scheme").unwrap(), scheme, "{budget} {local_budget}");
+        assert_eq!(file.version(), if local_budget == 0 { 4 } else { 6 });
+        certificates_from_bytes(&bytes).unwrap();
+    }
 }
 
 /// Replaces numbers of the pair tree and truncates its arrays: reading fails, or queries can traverse the tree.
@@ -398,3 +409,5 @@ fn damaged_pair_trees_are_rejected_or_harmless() {
     );
     assert!(rejected > threshold(400), "{rejected} with {} links", links.len());
 }
+
+mod local_certificates;

@@ -66,6 +66,9 @@ pub(crate) fn compute_local_certificates(
         bytes += LocalCertificates::bytes_of(certificate.modes.len()) + 8 * certificate.list.len();
         bytes <= most_bytes
     });
+    if found.is_empty() {
+        return LocalCertificates::default();
+    }
     found.sort_unstable_by_key(|(n, _)| *n);
     let mut all =
         LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
@@ -123,11 +126,12 @@ impl Builder<'_> {
         let ellipsoid = instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
         let largest_image = patch.images(&ellipsoid, images, &mut search.images);
         search.begin(largest_image);
-        let ratio = search.within(self.gaps, 0);
+        let ratio = infinite_for_nan(search.within(self.gaps, 0));
         let mut list = Vec::new();
         for part in &parts[1..] {
             self.list(search, &around, *part, OWN_SHARE * ratio, &mut list);
         }
+        list.iter_mut().for_each(|(_, ratio)| *ratio = infinite_for_nan(*ratio));
         list.sort_unstable_by_key(|(m, _)| *m);
         let (steepest, widest) = (patch.steepest(), ellipsoid.largest_column());
         let per_error = (1.0 + 1e-12) / search.smallest_gap.min(1.0);
@@ -224,6 +228,11 @@ impl Builder<'_> {
         }
         blocks
     }
+}
+
+/// A ratio that is no number proves nothing, as an infinite one.
+fn infinite_for_nan(ratio: f32) -> f32 {
+    if ratio.is_nan() { f32::INFINITY } else { ratio }
 }
 
 /// The gradients in the layout of [`LocalCertificates::gradients`].

@@ -2,7 +2,8 @@
 //!
 //! `local_certificates` has the inequality and the numbers. `build` computes them: `patch_model` has the positions and modes
 //! of the model in units of its size, `corner_gaps` the gaps between the corners of near leaves, `touching_nodes` the nodes that
-//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_proofs.rs` evaluates them.
+//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_proofs.rs` evaluates them. `validation`
+//! checks those of a file.
 
 mod build;
 mod corner_gaps;
@@ -12,6 +13,7 @@ mod patch_model;
 mod residual_ellipsoid;
 mod strain_search;
 mod touching_nodes;
+mod validation;
 
 pub(crate) use build::compute_local_certificates;
 pub(crate) use local_certificates::{EllipsoidBlocks, GRADIENT, MOST_MODES, gradient_len};

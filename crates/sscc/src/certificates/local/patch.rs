@@ -7,6 +7,7 @@ use super::residual_ellipsoid::ResidualEllipsoid;
 use crate::bounds::AffineFit;
 use crate::hierarchy::Hierarchy;
 use crate::model::mode_rows::{dot, padded_rank};
+use crate::model::rounding::larger_or_nan;
 use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// The vertices of a patch, and what their modes leave beside an affine map. Owns its memory.
@@ -92,10 +93,10 @@ impl Patch {
         instructions.run(Residuals { row_len: *row_len, offsets, rows, gradient, residuals });
     }
 
-    /// The largest Frobenius norm of a mode's gradient, rounded up.
+    /// The largest Frobenius norm of a mode's gradient, rounded up; NaN where one is.
     pub(super) fn steepest(&self) -> f64 {
         let square = |k: usize| (0..9).map(|e| self.gradient[e * self.row_len + k].powi(2)).sum::<f64>();
-        (0..self.modes.len()).map(square).fold(0.0, f64::max).sqrt() * (1.0 + 1e-12)
+        (0..self.modes.len()).map(square).fold(0.0, larger_or_nan).sqrt() * (1.0 + 1e-12)
     }
 
     /// The largest Frobenius norm of a vertex's residual, rounded up; NaN where one is.
@@ -103,9 +104,9 @@ impl Patch {
         largest_norm(&self.residuals, 3 * self.row_len)
     }
 
-    /// The longest offset.
+    /// The longest offset; NaN where one is.
     pub(super) fn longest(&self) -> f64 {
-        self.offsets.iter().map(|d| d.length()).fold(0.0, f64::max)
+        self.offsets.iter().map(|d| d.length()).fold(0.0, larger_or_nan)
     }
 
     /// The images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of one before it

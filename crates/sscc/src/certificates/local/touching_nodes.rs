@@ -23,7 +23,7 @@ impl<'t> TouchingNodes<'t> {
         }
         let within = hierarchy.nodes_within_buckets();
         let mut of_classes: Vec<(u32, u32)> = Vec::new();
-        for n in (0..nodes.len()).filter(|n| !within[*n] && nodes[*n].fits_in_bucket()) {
+        for n in (0..nodes.len()).filter(|n| !within[*n] && hierarchy.is_bucket_below_root(*n as u32)) {
             let triangles = hierarchy.triangles(&nodes[n]);
             of_classes.extend(
                 triangles.iter().flat_map(|&t| filter.vertex_classes(t)).map(|class| (class, n as u32)),

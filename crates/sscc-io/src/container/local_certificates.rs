@@ -1,0 +1,92 @@
+//! Local certificates in certificate files: optional tensors, whose names begin with `local_`.
+
+use sscc::{LocalBounds, LocalCertificates};
+
+use super::{ANY, Container, ContainerWriter};
+use crate::{FormatError, Place};
+
+const NODES: &str = "local_nodes";
+const MODE_STARTS: &str = "local_mode_starts";
+const MODES: &str = "local_modes";
+const GRADIENTS: &str = "local_gradients";
+const ELLIPSOIDS: &str = "local_ellipsoids";
+const BOUNDS: &str = "local_bounds";
+const LIST_STARTS: &str = "local_list_starts";
+const LIST_NODES: &str = "local_list_nodes";
+const LIST_RATIOS: &str = "local_list_ratios";
+
+/// The names of the tensors.
+pub(super) const TENSORS: [&str; 9] =
+    [BOUNDS, ELLIPSOIDS, GRADIENTS, LIST_NODES, LIST_RATIOS, LIST_STARTS, MODE_STARTS, MODES, NODES];
+
+/// The first version with local certificates.
+pub(super) const VERSION: u32 = 6;
+
+/// Writes local certificates, if there are any.
+pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
+    if local.nodes.is_empty() {
+        return;
+    }
+    // Two numbers each: earlier builds know no U16, and would not say that a newer version wrote the file. The layout has
+    // an even number of them.
+    let pair = |&[low, high]: &[u16; 2]| u32::from(low) | u32::from(high) << 16;
+    let ellipsoids: Vec<u32> = local.ellipsoids.as_chunks().0.iter().map(pair).collect();
+    let bounds: Vec<f64> = local
+        .bounds
+        .iter()
+        .flat_map(|b| [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest])
+        .collect();
+    writer
+        .u32(NODES, &[local.nodes.len()], &local.nodes)
+        .u32(MODE_STARTS, &[local.mode_starts.len()], &local.mode_starts)
+        .u32(MODES, &[local.modes.len()], &local.modes)
+        .f32(GRADIENTS, &[local.gradients.len()], &local.gradients)
+        .u32(ELLIPSOIDS, &[ellipsoids.len()], &ellipsoids)
+        .f64(BOUNDS, &[local.bounds.len(), 5], &bounds)
+        .u32(LIST_STARTS, &[local.list_starts.len()], &local.list_starts)
+        .u32(LIST_NODES, &[local.list_nodes.len()], &local.list_nodes)
+        .f32(LIST_RATIOS, &[local.list_ratios.len()], &local.list_ratios);
+}
+
+/// Reads local certificates; none from a file without. [`sscc::Certificates::from_parts`] checks that they fit the hierarchy.
+pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatError> {
+    let names = file.names();
+    let Some(name) = names.into_iter().find(|name| TENSORS.contains(&name.as_str())) else {
+        return Ok(LocalCertificates::default());
+    };
+    if file.version() < VERSION {
+        return Err(FormatError::new(Place::Tensor(name), "not known in this version of the format"));
+    }
+    let u32s = |name: &str| -> Result<Vec<u32>, FormatError> { Ok(file.u32(name)?.shaped(&[ANY])?.values) };
+    let f32s = |name: &str, count: usize| -> Result<Vec<f32>, FormatError> {
+        Ok(file.f32(name)?.shaped(&[count])?.values)
+    };
+    let nodes = u32s(NODES)?;
+    if nodes.is_empty() {
+        return Err(FormatError::new(
+            Place::Tensor(NODES.into()),
+            "it is empty: files without have no such tensor",
+        ));
+    }
+    let pairs = u32s(ELLIPSOIDS)?;
+    let bounds = file.f64(BOUNDS)?.shaped(&[nodes.len(), 5])?.values;
+    let bound = |&[ratio, per_factor, per_error, steepest, widest]: &[f64; 5]| LocalBounds {
+        ratio,
+        per_factor,
+        per_error,
+        steepest,
+        widest,
+    };
+    let list_nodes = u32s(LIST_NODES)?;
+    Ok(LocalCertificates {
+        mode_starts: u32s(MODE_STARTS)?,
+        modes: u32s(MODES)?,
+        gradients: f32s(GRADIENTS, ANY)?,
+        ellipsoids: pairs.iter().flat_map(|pair| [*pair as u16, (*pair >> 16) as u16]).collect(),
+        bounds: bounds.as_chunks().0.iter().map(bound).collect(),
+        list_starts: u32s(LIST_STARTS)?,
+        list_ratios: f32s(LIST_RATIOS, list_nodes.len())?,
+        nodes,
+        list_nodes,
+    })
+}

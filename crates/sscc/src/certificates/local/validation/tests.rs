@@ -1,0 +1,245 @@
+//! Each inconsistent part is refused, by its own message.
+
+use glam::DVec3;
+
+use super::*;
+use crate::certificates::test_models::ring;
+use crate::certificates::{CertificateParts, Certificates};
+use crate::{CertifyOptions, Method, Modes, Query, ReducedModel};
+
+const RANK: usize = 11;
+
+fn parts() -> CertificateParts {
+    let options = CertifyOptions { budget: 0, local_budget: 4096, ..CertifyOptions::default() };
+    Certificates::compute(&ring(300, RANK, 0.4), &options, &()).unwrap().parts().clone()
+}
+
+#[test]
+fn each_inconsistent_part_is_refused() {
+    let parts = parts();
+    let LocalCertificates { nodes, mode_starts, list_starts, .. } = &parts.local;
+    assert!(nodes.len() > 4 && mode_starts[1] as usize == RANK && list_starts[2] > list_starts[1] + 1);
+    assert!(parts.local.list_ratios.iter().any(|ratio| ratio.is_finite()));
+    let changed = |change: &dyn Fn(&mut LocalCertificates)| {
+        let mut parts = parts.clone();
+        change(&mut parts.local);
+        match Certificates::from_parts(parts) {
+            Ok(certificates) => {
+                let model = ring(300, RANK, 0.4);
+                let mut query = Query::new(&model, &certificates).unwrap();
+                query.discrete(&[0.1; RANK]).unwrap();
+                query.continuous(&[0.1; RANK], &[0.2; RANK]).unwrap();
+                String::new()
+            }
+            Err(error) => error.to_string(),
+        }
+    };
+    assert_eq!(changed(&|_| ()), "");
+    assert_eq!(changed(&|local| *local = LocalCertificates::default()), "");
+    let infinite = |local: &mut LocalCertificates| {
+        local.bounds[1].ratio = f64::INFINITY;
+        local.list_ratios[0] = f32::INFINITY;
+    };
+    assert_eq!(changed(&infinite), "");
+    type Change<'c> = &'c dyn Fn(&mut LocalCertificates);
+    let count = parts.hierarchy.nodes().len() as u32;
+    let within = parts.hierarchy.nodes_within_buckets().iter().position(|within| *within).unwrap() as u32;
+    let second = list_starts[1] as usize;
+    let own = nodes[1];
+    let all: [(&str, &[Change<'_>]); 13] = [
+        (
+            "they have numbers, but no nodes",
+            &[&|local| local.nodes.clear(), &|local| {
+                *local = LocalCertificates { mode_starts: vec![0], ..LocalCertificates::default() };
+            }],
+        ),
+        (
+            "nodes are out of order, do not exist, or are inside a bucket",
+            &[
+                &|local| local.nodes.swap(0, 1),
+                &|local| local.nodes[1] = local.nodes[0],
+                &|local| *local.nodes.last_mut().unwrap() = count,
+                &|local| *local.nodes.last_mut().unwrap() = u32::MAX,
+                &|local| {
+                    *local.nodes.last_mut().unwrap() = within.max(local.nodes[local.nodes.len() - 2] + 1)
+                },
+            ],
+        ),
+        (
+            "modes of certificates are out of order",
+            &[
+                &|local| _ = local.mode_starts.pop(),
+                &|local| local.mode_starts[0] = 1,
+                &|local| local.mode_starts.swap(1, 2),
+                &|local| local.mode_starts[1] = u32::MAX,
+                &|local| *local.mode_starts.last_mut().unwrap() += 1,
+                &|local| local.modes.push(0),
+                &|local| local.mode_starts.clear(),
+            ],
+        ),
+        (
+            "modes of a certificate are out of order, or do not exist",
+            &[
+                &|local| local.modes[1] = local.modes[0],
+                &|local| local.modes.swap(2, 3),
+                &|local| local.modes[RANK - 1] = RANK as u32,
+                &|local| local.modes[RANK - 1] = u32::MAX,
+            ],
+        ),
+        (
+            "gradients or ellipsoids are not those of their modes",
+            &[
+                &|local| _ = local.gradients.pop(),
+                &|local| local.gradients.extend([0.0; 8]),
+                &|local| _ = local.ellipsoids.pop(),
+                &|local| local.ellipsoids.extend([0; 8]),
+                &|local| local.gradients.clear(),
+                // One mode less: another layout.
+                &|local| {
+                    local.modes.remove(3);
+                    local.mode_starts[1..].iter_mut().for_each(|start| *start -= 1);
+                },
+            ],
+        ),
+        (
+            "a gradient is not finite",
+            &[&|local| local.gradients[5] = f32::NAN, &|local| local.gradients[6] = f32::NEG_INFINITY],
+        ),
+        (
+            "an ellipsoid is not finite",
+            &[&|local| local.ellipsoids[7] = 0x7f80, &|local| local.ellipsoids[8] = 0xffff],
+        ),
+        (
+            "the number of bounds is not the number of certificates",
+            &[&|local| _ = local.bounds.pop(), &|local| local.bounds.push(LocalBounds::default())],
+        ),
+        (
+            "a bound is negative or not a number",
+            &[
+                &|local| local.bounds[0].ratio = f64::NAN,
+                &|local| local.bounds[1].ratio = -1.0,
+                &|local| local.bounds[0].per_factor = f64::INFINITY,
+                &|local| local.bounds[2].per_factor = f64::NAN,
+                &|local| local.bounds[0].per_error = -1e-300,
+                &|local| local.bounds[1].per_error = f64::NAN,
+                &|local| local.bounds[0].steepest = f64::NEG_INFINITY,
+                &|local| local.bounds[0].widest = f64::NAN,
+                &|local| local.bounds[0].widest = -1.0,
+            ],
+        ),
+        (
+            "a ratio is negative or not a number",
+            &[&|local| local.list_ratios[1] = f32::NAN, &|local| local.list_ratios[0] = -1.0],
+        ),
+        (
+            "lists of certificates are out of order",
+            &[
+                &|local| _ = local.list_starts.pop(),
+                &|local| local.list_starts[0] = 1,
+                &|local| local.list_starts[1] = local.list_starts[2] + 1,
+                &|local| local.list_starts[1] = u32::MAX,
+                &|local| *local.list_starts.last_mut().unwrap() += 1,
+                &|local| {
+                    local.list_nodes.push(count - 1);
+                    local.list_ratios.push(0.0);
+                },
+            ],
+        ),
+        (
+            "nodes of a list are out of order, do not exist, or are inside a bucket",
+            &[
+                &|local| local.list_nodes[second + 1] = local.list_nodes[second],
+                &|local| local.list_nodes[second] = u32::MAX,
+                &|local| *local.list_nodes.last_mut().unwrap() = count,
+            ],
+        ),
+        (
+            "a node of a list has triangles of the certificate's node",
+            &[&|local| local.list_nodes[second] = 0, &|local| {
+                local.list_nodes.splice(second..local.list_starts[2] as usize, [own]);
+                let removed = local.list_starts[2] - local.list_starts[1] - 1;
+                local.list_ratios.truncate(local.list_nodes.len());
+                local.list_starts[2..].iter_mut().for_each(|start| *start -= removed);
+            }],
+        ),
+    ];
+    for (cause, changes) in all {
+        for (at, change) in changes.iter().enumerate() {
+            let message = changed(change);
+            assert!(message.contains(&format!("local certificates: {cause};")), "{cause}, {at}: {message}");
+        }
+    }
+    assert!(changed(&|local| _ = local.list_ratios.pop()).contains("is not the number of nodes in lists"));
+}
+
+/// Would fail if a mode more than queries have room for were accepted.
+#[test]
+fn too_many_modes_are_refused() {
+    let parts = parts();
+    let many = |count: usize| {
+        let mut local = parts.local.clone();
+        local.nodes.truncate(1);
+        local.bounds.truncate(1);
+        local.mode_starts = vec![0, count as u32];
+        local.modes = (0..count as u32).collect();
+        local.gradients = vec![0.0; gradient_len(count)];
+        local.ellipsoids = vec![0; EllipsoidBlocks(count).len()];
+        local.list_starts = vec![0, 0];
+        local.list_nodes.clear();
+        local.list_ratios.clear();
+        local.check(&parts.hierarchy, 1000)
+    };
+    assert_eq!((many(0), many(1), many(MOST_MODES)), (Ok(()), Ok(()), Ok(())));
+    assert_eq!(many(MOST_MODES + 1), Err("a certificate has too many modes"));
+}
+
+/// Certificates of models of any size pass: also of those whose root is a leaf or as small as a bucket.
+#[test]
+fn what_is_computed_is_accepted() {
+    for (quads, rank, budget) in
+        [(2, 1, 0), (4, 2, 64), (9, 3, 4096), (20, 2, 64), (40, 9, 4096), (300, 3, 64)]
+    {
+        let options = CertifyOptions { local_budget: budget, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&ring(quads, rank, 0.4), &options, &()).unwrap();
+        let parts = certificates.parts();
+        let read = Certificates::from_parts(parts.clone());
+        assert_eq!(read.map_err(|error| error.to_string()).as_ref(), Ok(&certificates), "{quads} quads");
+        assert_eq!(parts.local.nodes.is_empty(), budget == 0, "{quads} quads, {budget}");
+        // Neighbours are listed by one of the two, also where the root is as small as a bucket.
+        let children = parts.hierarchy.nodes()[0].child_count as usize;
+        assert!(budget == 0 || parts.local.list_nodes.len() + 1 >= children, "{quads} quads");
+        assert!(parts.local.bytes() <= (64 + budget) * 2 * quads + 8, "{quads} quads");
+    }
+}
+
+/// Would fail if nodes that no mode moves were not certified like others.
+#[test]
+fn nodes_that_no_mode_moves_are_certified() {
+    let whole = ring(150, 3, 0.4);
+    let (mesh, rank) = (whole.mesh().clone(), whole.rank());
+    for still in [rank, 1] {
+        // The first `still` modes move nothing, the others the last vertices only.
+        let is_still = |v: usize, k: usize| k < still || v < 200;
+        let vertices = mesh.rest_positions().len();
+        let displacements = (0..vertices)
+            .flat_map(|v| whole.modes().of_vertex(v as u32).iter().enumerate().map(move |(k, u)| (v, k, *u)))
+            .map(|(v, k, u)| if is_still(v, k) { DVec3::ZERO } else { u })
+            .collect();
+        let model = ReducedModel::new(mesh.clone(), Modes::new(rank, displacements).unwrap()).unwrap();
+        let options = CertifyOptions { local_budget: 4096, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let local = &certificates.parts().local;
+        let free = |i: &usize| local.mode_starts[*i] == local.mode_starts[*i + 1];
+        let counts = (0..local.nodes.len()).filter(free).filter(|i| local.bounds[*i].ratio < 1e-12).count();
+        assert!(counts > 2 && (still == rank) == (counts == local.nodes.len()), "{counts}");
+        let read = Certificates::from_parts(certificates.parts().clone()).unwrap();
+        assert_eq!(read, certificates);
+        let mut query = Query::new(&model, &read).unwrap();
+        let mut brute = Query::with_method(&model, &read, Method::BruteForce).unwrap();
+        for scale in [0.0, 0.3, 3.0, 30.0] {
+            let q = [scale; 3];
+            let expected = brute.discrete(&q).unwrap();
+            assert_eq!(query.discrete(&q).unwrap(), expected, "{scale}");
+        }
+    }
+}
