@@ -302,13 +302,15 @@ mod tests {
         fn run<V: Vectors>(self, v: V) -> Self::Output {
             let (a, b, c) = (v.convert(&self.0), v.load(&self.1), v.splat(self.1[3]));
             let sum = v.multiply_add(a, b, c);
+            let halves = v.load_upper_halves(&self.0.map(|x| x as u16));
             let mask = v.or(v.greater(a, b), v.greater(c, sum));
             let points = v.points([a, b, sum]);
             let numbers = v
                 .array(sum)
                 .into_iter()
                 .chain(v.array(v.max(a, b)))
-                .chain(points.iter().flat_map(|p| p.to_array()));
+                .chain(points.iter().flat_map(|p| p.to_array()))
+                .chain(v.array(halves));
             (numbers.map(f32::to_bits).collect(), v.bits(mask))
         }
     }
@@ -329,6 +331,7 @@ mod tests {
                 assert_eq!(first.0[lane], sum.to_bits());
                 assert_eq!(first.0[LANES + lane], if a > b { a } else { b }.to_bits());
                 assert_eq!(first.0[2 * LANES + 4 * lane..][..4], [a, b, sum, 0.0].map(f32::to_bits));
+                assert_eq!(first.0[6 * LANES + lane], u32::from(integers[lane] as u16) << 16);
                 assert_eq!(first.1 >> lane & 1 != 0, a > b || c > sum);
             }
         }

@@ -13,6 +13,7 @@ use crate::{interrupt, load};
 #[derive(Serialize)]
 struct Report {
     samples: usize,
+    local_samples: usize,
     violations: usize,
     root_tightness: Option<f64>,
     tightness_median: Option<f64>,
@@ -35,6 +36,7 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     if args.json.json {
         out.json(&Report {
             samples: found.samples,
+            local_samples: found.local_samples,
             violations: found.violations.len(),
             root_tightness: found.root_tightness,
             tightness_median: found.tightness_median,

@@ -16,7 +16,7 @@ const CERTIFY: &str = "triangles, vertices, rank, nodes, pairs, seconds, threads
     rest_collisions, exceptions";
 const CHECK: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, opened, box_tests, \
     triangle_tests";
-const AUDIT: &str = "samples, violations, root_tightness, tightness_median, tightness_min";
+const AUDIT: &str = "samples, local_samples, violations, root_tightness, tightness_median, tightness_min";
 
 #[test]
 fn certify() {

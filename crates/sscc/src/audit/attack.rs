@@ -1,9 +1,10 @@
-//! Attacks single radii: tests configurations inside the radius of a node or a node pair. A collision there of one of
-//! its triangle pairs refutes the radius.
+//! Attacks single claims. Of radii it tests configurations inside the radius of a node or a node pair: a collision there of one of
+//! its triangle pairs refutes the radius. Half of the attacks are on local certificates, where there are any.
 
 use rayon::prelude::*;
 
 use super::claims::{Claim, Claims};
+use super::local_attack::{LocalAttack, LocalQueries};
 use super::minimum_search::{Collision, MinimumSearch};
 use super::options::AuditOptions;
 use super::random::Random;
@@ -35,6 +36,8 @@ pub(super) struct Attack<'a> {
 #[derive(Default)]
 pub(super) struct Attacks {
     pub(super) samples: usize,
+    /// How many of them were on local certificates.
+    pub(super) local_samples: usize,
     pub(super) violations: Vec<String>,
 }
 
@@ -44,13 +47,17 @@ struct Queries<'q> {
     root: Query<'q>,
     /// BD-tree AABBs without certificates, for parts of the model.
     part: Query<'q>,
+    /// With local certificates, which it tells where they hold; none where there are none.
+    local: Option<Query<'q>>,
 }
 
 impl Attack<'_> {
     /// Makes all attacks.
     pub(super) fn run(&self) -> Result<Attacks, Error> {
         let is_any_claimed = self.certificates.parts().node_radii.iter().any(|r| *r > 0.0);
-        if !is_any_claimed {
+        let Self { certificates, minimum, collisions, .. } = *self;
+        let local = &LocalAttack { certificates, minimum, collisions };
+        if !is_any_claimed && !local.is_possible() {
             return Ok(Attacks::default());
         }
         let blocks = self.options.samples.div_ceil(64);
@@ -60,7 +67,8 @@ impl Attack<'_> {
                 || {
                     let query = |method| Query::with_method(self.model, self.certificates, method);
                     let root = query(Method::Traditional)?;
-                    Ok(Queries { root, part: query(Method::BdTree)? })
+                    let local = local.is_possible().then(|| query(Method::Certified)).transpose()?;
+                    Ok(Queries { root, part: query(Method::BdTree)?, local })
                 },
                 |queries: &mut Result<Queries<'_>, Error>, block| {
                     let queries = queries.as_mut().map_err(|error| error.clone())?;
@@ -69,7 +77,16 @@ impl Attack<'_> {
                         if self.progress.is_cancelled() {
                             break;
                         }
-                        let attack = self.attack(sample, queries);
+                        let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
+                        let attack = match &mut queries.local {
+                            Some(certified) if !is_any_claimed || random.below(2) == 0 => {
+                                let queries = LocalQueries { certified, exact: &mut queries.part };
+                                let attack = local.attack(sample, &mut random, queries);
+                                attacks.local_samples += usize::from(attack.is_some());
+                                attack
+                            }
+                            _ => self.attack(sample, &mut random, queries),
+                        };
                         attacks.samples += usize::from(attack.is_some());
                         attacks.violations.extend(attack.flatten());
                     }
@@ -80,18 +97,23 @@ impl Attack<'_> {
             .collect();
         let mut total = Attacks::default();
         for attacks in results {
-            let Attacks { samples, violations } = attacks?;
+            let Attacks { samples, local_samples, violations } = attacks?;
             total.samples += samples;
+            total.local_samples += local_samples;
             total.violations.extend(violations);
         }
         Ok(total)
     }
 
     /// Makes one attack. None if no configuration can be drawn or tested, else the violation found, if any.
-    fn attack(&self, sample: usize, queries: &mut Queries<'_>) -> Option<Option<String>> {
-        let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
-        let claim = self.draw_claim(sample, &mut random);
-        let q = self.draw_configuration(claim, sample, &mut random)?;
+    fn attack(
+        &self,
+        sample: usize,
+        random: &mut Random,
+        queries: &mut Queries<'_>,
+    ) -> Option<Option<String>> {
+        let claim = self.draw_claim(sample, random);
+        let q = self.draw_configuration(claim, sample, random)?;
         let query = if claim.nodes == (0, 0) { &mut queries.root } else { &mut queries.part };
         let pairs = query.discrete_between(claim.nodes, &q).ok()?.to_vec();
         let norm = query.norm();

@@ -2,6 +2,7 @@
 //!
 //! Exact collision tests alone decide whether a claim is refuted, never the bounds that made it. The tests:
 //! - Configurations q just inside radii, in random directions and in those of known collisions ([`attack`]).
+//! - Configurations at which local certificates only just hold ([`local_attack`]).
 //! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum_search`]), which also measures
 //!   how tight radii are ([`tightness`]).
 //! - Answers of certified queries, continuous ones too, compared with the traditional method, itself compared with brute
@@ -13,6 +14,7 @@
 mod attack;
 mod claims;
 mod compare;
+mod local_attack;
 mod minimum_search;
 mod options;
 mod point_pairs;
@@ -29,8 +31,11 @@ pub use options::AuditOptions;
 /// What the attacks found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of configurations really tried: 0 where every radius is 0, because nothing is claimed then.
+    /// Number of configurations really tried: 0 where nothing is claimed: every radius is 0, and there are no local
+    /// certificates.
     pub samples: usize,
+    /// How many of them attacked local certificates: about half, where there are any.
+    pub local_samples: usize,
     /// Every refuted claim, one line each. Empty for sound certificates.
     pub violations: Vec<String>,
     /// The root's radius over the smallest `|z|` found at which the model really collides; none when the
@@ -73,6 +78,7 @@ pub fn audit(
         quotients.sort_by(f64::total_cmp);
         Ok(AuditReport {
             samples: attacks.samples,
+            local_samples: attacks.local_samples,
             violations,
             root_tightness: tightness.root,
             tightness_median: (!quotients.is_empty()).then(|| quotients[quotients.len() / 2]),

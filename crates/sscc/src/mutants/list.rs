@@ -268,4 +268,48 @@ mutants! {
     QuotientOfNan: CaughtBy("lib model::rounding::tests::nan_is_no_bound");
     /// The larger one of a number and NaN is the number.
     MaximumIgnoresNan: CaughtBy("lib model::rounding::tests::the_larger_one_of_nan_and_a_number_is_nan");
+    /// Ratios of local certificates hold for each of three rows alone, not for the largest singular value.
+    LocalRowsAlone: CaughtBy("lib certificates::local::strain_search::tests::singular_values_are_at_least_exact");
+    /// Images of residuals are taken as exact in single precision.
+    LocalImagesUnrounded: CaughtBy("lib certificates::local::strain_search::tests::ratios_are_at_least_those_of_all_pairs");
+    /// The distance of images from their mean is not rounded up.
+    LocalSpreadToNearest: CaughtBy("lib certificates::local::strain_search::tests::images_are_within_the_spread_of_their_part");
+    /// The larger one of a ratio and NaN is the ratio.
+    LocalNanIgnored: CaughtBy("lib certificates::local::strain_search::tests::nan_is_the_largest_ratio");
+    /// The gap of two corners is that of the centroids of their triangles.
+    LocalGapOfCentroids: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
+    /// Gaps of corners are not rounded down.
+    LocalGapsExact: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
+    /// Pairs that collide at the centre leave a node without a proof.
+    LocalExceptionsKept: CaughtBy("it local_certificates::exceptions_do_not_spoil_the_root");
+    /// The modes of a patch are those that move its first vertex.
+    LocalModesOfOneVertex: CaughtBy("lib query::local_claims::tests::claims_hold_up_to_where_they_end");
+    /// Images are residuals divided by W without rounding.
+    LocalImagesExact: CaughtBy("lib certificates::local::residual_ellipsoid::tests::images_times_the_matrix_are_the_rows");
+    /// Residuals of a patch have no rounding error.
+    LocalResidualsExact: CaughtBy("lib certificates::local::build::tests::strains_are_at_least_those_of_exact_residuals");
+    /// Ratios omit what is left of residuals where images times W differ from them.
+    LocalDefectForgotten: Covered("W is no worse than its floor makes it, so ratios are rounded up by more");
+    /// Nodes that one search proved are proven in the next one.
+    LocalProofsKept: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
+    /// A node is proven if its first bucket is.
+    LocalProofOfOnePart: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
+    /// Local certificates that hold on the segment of a capsule hold in the capsule.
+    LocalProofsInRegions: CaughtBy("it local_certificates::kinetic_answers_are_those_of_brute_force");
+    /// Local certificates omit the rounding of positions.
+    LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
+    /// The rounding of a position along each axis is that along any direction.
+    LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
+    /// `W f` in single precision is exact.
+    LocalStrainExact: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    /// F in single precision is exact.
+    LocalMapExact: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    /// The map at each end of a motion is turned back by its own rotation.
+    LocalTurnAtEachEnd: CaughtBy("lib query::local_claims::tests::half_a_turn_is_no_proof");
+    /// Of two ends of a motion the one that is no number is ignored.
+    LocalSweptNanIgnored: CaughtBy("lib query::local_proofs::tests::nan_at_either_end_is_no_proof");
+    /// The closed form of an eigenvalue is a lower bound.
+    LocalEigenvalueUnproven: CaughtBy("lib query::local_proofs::tests::eigenvalues_are_lower_bounds");
+    /// A certificate proves pairs of two nodes of its list.
+    LocalRingWithRing: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
 }

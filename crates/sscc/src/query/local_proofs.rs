@@ -203,7 +203,7 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Begins a new search: forgets what the last one proved. False where certificates prove nothing about the motion.
     fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
-        self.search = self.search.wrapping_add(1);
+        self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
         if self.search == 0 {
             self.proven.fill((0, 0));
             self.allowed.fill((0, 0.0));
@@ -230,7 +230,8 @@ impl<const E: usize> LocalProofs<E> {
     fn proven_node(&self, tables: &LocalTables<'_>, n: u32) -> Option<u32> {
         let range = &tables.buckets[n as usize];
         let (search, by) = self.proven[range.start as usize];
-        (search == self.search && tables.buckets[by as usize].end >= range.end).then_some(by)
+        let is_within = tables.buckets[by as usize].end >= range.end;
+        (search == self.search && right_or!(is_within, LocalProofOfOnePart, true)).then_some(by)
     }
 
     /// Whether no triangle of one node collides with one of the other, by the certificate of one of them or of a proven node
@@ -244,6 +245,18 @@ impl<const E: usize> LocalProofs<E> {
     ) -> bool {
         if !self.is_usable {
             return false;
+        }
+        // A certificate proves nothing about two nodes of its list.
+        let of_one_list = right_or!(
+            false,
+            LocalRingWithRing,
+            (0..tables.certificates.nodes.len()).any(|index| {
+                let allowed = self.allowed(tables, index);
+                [n, m].iter().all(|n| tables.ratio_with(index, *n).is_some_and(|ratio| ratio < allowed))
+            })
+        );
+        if of_one_list {
+            return true;
         }
         for (n, m) in [(n, m), (m, n)] {
             let by = self.proven_node(tables, n).unwrap_or(n);
@@ -274,7 +287,7 @@ impl<const E: usize> LocalProofs<E> {
         let Some(coordinates) = motion.coarse_coordinates().filter(|_| motion.margin() == 0.0) else {
             return false;
         };
-        if motion.coarse_slack(0).is_some() {
+        if right_or!(motion.coarse_slack(0).is_some(), LocalProofsInRegions, false) {
             return false;
         }
         let FactorScales { sizes, scale, reach } = &tables.scales;
@@ -291,7 +304,8 @@ impl<const E: usize> LocalProofs<E> {
             self.sums[end] = sum * ROUND_UP;
         }
         let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
-        self.error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
+        let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
+        self.error = right_or!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
         self.error.is_finite() && self.sums.iter().all(|sum| *sum < 1e30)
     }
 
@@ -334,10 +348,11 @@ impl<const E: usize> LocalProofs<E> {
             };
             let (gradient, strain) =
                 self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
-            let strain = strain + single * bounds.widest * sum + 1e-30;
+            let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
+            let strain = strain + rounding + 1e-30;
             let error = bounds.per_factor * sum
                 + bounds.per_error * self.error
-                + single * bounds.steepest * sum
+                + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
                 + 1e-30;
             (DMat3::IDENTITY + gradient, strain * ROUND_UP, error * ROUND_UP)
         };
@@ -350,7 +365,10 @@ impl<const E: usize> LocalProofs<E> {
         let Some(turn) = nearest_rotation(&middle) else { return 0.0 };
         let turn = turn.transpose();
         let allowed = ends.iter().map(|(map, strain, error)| {
-            (smallest_eigenvalue(&(turn * *map)) - error) / strain * (1.0 - 1e-12)
+            // Any rotation will do, but the same one at both ends.
+            let stretch =
+                right_or!(smallest_eigenvalue(&(turn * *map)), LocalTurnAtEachEnd, smallest_stretch(map));
+            (stretch - error) / strain * (1.0 - 1e-12)
         });
         allowed.fold(f64::INFINITY, smaller)
     }
@@ -358,7 +376,7 @@ impl<const E: usize> LocalProofs<E> {
 
 /// The smaller of two numbers, and NaN where one is NaN: it allows nothing.
 fn smaller(a: f64, b: f64) -> f64 {
-    if a < b || a.is_nan() { a } else { b }
+    right_or!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
 }
 
 /// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
@@ -392,7 +410,7 @@ fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     // Rounding of the closed form may be as large as the root of that of its numbers.
     for slack in [1e-9, 1e-6] {
         let shift = candidate - slack * size;
-        if has_cholesky_factor(matrix, shift + error * size) {
+        if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
             return shift;
         }
     }
@@ -497,3 +515,6 @@ impl Kernel for Sums<'_> {
 }
 
 const _: () = assert!(GRADIENT == LANES + 1);
+
+#[cfg(test)]
+mod tests;

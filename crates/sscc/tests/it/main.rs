@@ -20,6 +20,7 @@ mod intersect;
 mod intersection;
 mod kinetic;
 mod limits;
+mod local_certificates;
 mod near_layers;
 mod neighbours;
 mod normal_cones;

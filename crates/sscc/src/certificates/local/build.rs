@@ -141,7 +141,13 @@ impl Builder<'_> {
         let of_images = 2.0 * ellipsoid.defect() * patch.largest_residual() * per_error;
         let bounds = LocalBounds {
             ratio: f64::from(ratio),
-            per_factor: of_residuals + of_images,
+            per_factor: right_or!(
+                of_residuals + of_images,
+                LocalResidualsExact,
+                of_images,
+                LocalDefectForgotten,
+                of_residuals
+            ),
             per_error,
             steepest,
             widest,
@@ -245,3 +251,6 @@ fn gradients(patch: &Patch) -> Vec<f32> {
     numbers.resize(gradient_len(count), 0.0);
     numbers
 }
+
+#[cfg(test)]
+mod tests;

@@ -211,7 +211,8 @@ impl<'g> CornerGaps<'g> {
         let [list_a, list_b] = [n, m].map(|n| self.hierarchy.triangles(&self.hierarchy.nodes()[n as usize]));
         for (index, &s) in list_a.iter().enumerate() {
             for &t in if n == m { &list_b[index + 1..] } else { list_b } {
-                if self.filter.relation(s, t) == Relation::Adjacent || self.filter.is_excluded(s, t) {
+                let is_excluded = right_or!(self.filter.is_excluded(s, t), LocalExceptionsKept, false);
+                if self.filter.relation(s, t) == Relation::Adjacent || is_excluded {
                     continue;
                 }
                 for SimplexPair { a, b } in self.filter.simplex_pairs(s, t) {
@@ -237,7 +238,10 @@ impl<'g> CornerGaps<'g> {
 fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
     let along = |dir: DVec3| {
         let dir = dir.try_normalize()?;
-        let gaps = differences.map(|d| dir.dot(d) * (1.0 - 1e-14) - GAP_ROUNDING);
+        let gaps = differences.map(|d| {
+            let d = right_or!(d, LocalGapOfCentroids, differences.iter().sum::<DVec3>() / 9.0);
+            right_or!(dir.dot(d) * (1.0 - 1e-14) - GAP_ROUNDING, LocalGapsExact, dir.dot(d))
+        });
         let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         (smallest > SMALLEST).then_some((smallest, gaps))
     };
@@ -255,3 +259,6 @@ fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
         (None, None) => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -171,7 +171,7 @@ impl ResidualEllipsoid {
         }
         let frobenius = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
         let rounding = 4.0 * (*rank as f64 + 4.0) * f64::EPSILON * frobenius(inverse) * frobenius(rows);
-        square.sqrt() * (1.0 + 1e-9) + rounding
+        square.sqrt() * (1.0 + 1e-9) + right_or!(rounding, LocalImagesExact, 0.0)
     }
 
     /// The largest norm of a column, rounded up.
@@ -202,3 +202,6 @@ fn upper_half(x: f32) -> u16 {
 fn upper_half_number(half: u16) -> f32 {
     f32::from_bits(u32::from(half) << 16)
 }
+
+#[cfg(test)]
+mod tests;

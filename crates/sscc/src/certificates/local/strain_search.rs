@@ -93,7 +93,7 @@ impl StrainSearch {
     /// Takes images, of which the largest norm is known: computes means and spreads, and forgets what was found with others.
     pub(super) fn begin(&mut self, largest_image: f64) {
         // Squares below the range of single precision are lost, too.
-        self.image_error = (largest_image * 1.2e-7 + 1e-18) as f32;
+        self.image_error = right_or!((largest_image * 1.2e-7 + 1e-18) as f32, LocalImagesUnrounded, 0.0);
         self.smallest_gap = f64::INFINITY;
         let instructions = self.instructions;
         instructions.run(Means(self));
@@ -189,7 +189,7 @@ impl Kernel for Means<'_> {
                     spread = larger(spread, distance * ROUND_UP + search.parts[c].spread);
                 }
             }
-            search.parts[p].spread = spread * ROUND_UP;
+            search.parts[p].spread = right_or!(spread * ROUND_UP, LocalSpreadToNearest, spread);
         }
         search.means = means;
     }
@@ -308,7 +308,7 @@ impl Kernel for Search<'_, '_> {
 /// The larger of two numbers, and NaN where one is NaN.
 #[inline(always)]
 pub(super) fn larger(a: f32, b: f32) -> f32 {
-    if b <= a { a } else { b + 0.0 * a }
+    right_or!(if b <= a { a } else { b + 0.0 * a }, LocalNanIgnored, a.max(b))
 }
 
 #[inline(always)]
@@ -349,7 +349,8 @@ fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
         }
     }
     let [xx, yy, zz, xy, xz, yz] = sums.map(|lanes| lanes.iter().map(|x| f64::from(*x)).sum::<f64>());
-    let trace = xx + yy + zz;
+    // The longest of three rows may be shorter by up to the root of three.
+    let trace = right_or!(xx + yy + zz, LocalRowsAlone, return (xx.max(yy).max(zz)).sqrt() as f32);
     if !(trace > 0.0) {
         return if trace == 0.0 { 0.0 } else { f32::INFINITY };
     }
@@ -363,3 +364,6 @@ fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
     // The rounding of a Gram matrix in single precision is relative to its trace.
     ((sum.sqrt().sqrt().sqrt().sqrt() + 1e-5) * trace).sqrt() as f32
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! Each claim of a local certificate against exact tests, at the edge of where it holds.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
 use crate::hierarchy::{Node, NodePair};
@@ -117,6 +117,30 @@ impl<'a> Attack<'a> {
         ray
     }
 
+    /// The shortest offset at which points of two triangles of a claim meet, in the displacement metric.
+    fn approach(&self, (n, m): NodePair, random: &mut Numbers) -> Option<Vec<f64>> {
+        let Self { model, certificates, .. } = self;
+        let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+        let hierarchy = certificates.hierarchy();
+        let (mut d, mut b) = (DVec3::ZERO, vec![DVec3::ZERO; model.rank()]);
+        for (n, sign) in [(n, -1.0), (m, 1.0)] {
+            let triangles = hierarchy.triangles(&hierarchy.nodes()[n as usize]);
+            let face = model.mesh().faces()[triangles[random.below(triangles.len())] as usize];
+            let weights = random.vector().abs() + DVec3::splat(1e-3);
+            for (v, w) in face.into_iter().zip((weights / weights.element_sum()).to_array()) {
+                d += model.position(v, certificates.center()) * w * sign;
+                let modes = model.modes().of_vertex(v).iter().zip(&scales);
+                b.iter_mut().zip(modes).for_each(|(b, (u, scale))| *b += *u * (w * sign / scale));
+            }
+        }
+        let mut gram = DMat3::ZERO;
+        b.iter().for_each(|b| gram += DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z));
+        let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
+        let y = (gram + DMat3::from_diagonal(DVec3::splat(1e-10 * trace))).inverse() * d;
+        let ray: Vec<f64> = b.iter().zip(&scales).map(|(b, scale)| -b.dot(y) / scale).collect();
+        ray.iter().all(|x| x.is_finite()).then_some(ray)
+    }
+
     /// The largest scale found at which a claim holds, and one just beyond; none where the claim does not hold close to the
     /// centre.
     fn edge(&mut self, index: usize, claim: NodePair, ray: &[f64]) -> Option<[f64; 2]> {
@@ -169,7 +193,8 @@ fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
         } else {
             (n, list[random.below(list.len())])
         };
-        let ray = attack.ray(shape, random);
+        let approach = (random.below(2) == 0).then(|| attack.approach(claim, random)).flatten();
+        let ray = approach.unwrap_or_else(|| attack.ray(shape, random));
         let Some([edge, beyond]) = attack.edge(index, claim, &ray) else { continue };
         // Beyond, up to the first collision of the claim's pairs: how close claims come to the truth.
         let mut collides = false;
@@ -218,14 +243,15 @@ fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
 #[test]
 fn claims_hold_up_to_where_they_end() {
     let mut seen = Seen::default();
-    for seed in 0..cases(112) {
+    for seed in 0..cases(56) {
         let shape = Shape::ALL[seed as usize % Shape::ALL.len()];
         let rank = [1, 2, 5, 12, 28][seed as usize / 7 % 5];
-        attack(&FlexibleShape::new(seed, shape, rank), seed, 60, &mut seen);
+        attack(&FlexibleShape::new(seed, shape, rank), seed, 50, &mut seen);
     }
     println!("{seen:?}");
-    assert!(seen.claims > threshold(20_000) && seen.pairs_of_nodes > threshold(5_000), "{seen:?}");
-    assert!(seen.swept > threshold(2_000) && seen.with_collisions > threshold(2_000), "{seen:?}");
+    assert!(seen.claims > threshold(20_000) && seen.pairs_of_nodes > threshold(10_000), "{seen:?}");
+    assert!(seen.swept > threshold(800) && seen.with_collisions > threshold(200), "{seen:?}");
+    assert!(seen.largest_share > 0.6, "{seen:?}");
 }
 
 #[test]
@@ -239,4 +265,60 @@ fn claims_hold_for_many_modes_and_at_every_size() {
     }
     println!("{seen:?}");
     assert!(seen.claims > 1000 && seen.pairs_of_nodes > 300, "{seen:?}");
+}
+
+/// Two triangles one above the other far from the origin, one unit in the last place apart, and modes that move them by less: rounding
+/// closes the gap, though the shape of real numbers stays open.
+#[test]
+fn rounding_of_positions_far_away_closes_gaps() {
+    let far = 2.0_f64.powi(30);
+    let unit = far * f64::EPSILON;
+    let (mut closed, mut claimed) = (0, 0);
+    for case in 0..40 {
+        let apart = f64::from(1 << (case / 2 % 10));
+        let at = |i: u32, height: f64| DVec3::new(f64::from(i % 2), f64::from(i / 2), far + height);
+        let p = [0.0, apart * unit].map(|height| [0, 1, 2].map(|i| at(i, height))).concat();
+        // The lower one is rounded up, the upper one is not.
+        let lifts = [0.52, 0.48 + 0.01 * f64::from(case % 2)];
+        let entry = |row: usize, _| if row % 3 == 2 { lifts[row / 9] } else { 0.0 };
+        let model = ReducedModel::new(
+            TriMesh::new(p, vec![[0, 1, 2], [3, 4, 5]]).unwrap(),
+            Modes::from_matrix(6, 1, entry).unwrap(),
+        );
+        let model = model.unwrap();
+        let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let mut attack = Attack::new(&model, &certificates);
+        for index in 0..certificates.parts().local.nodes.len() {
+            for scale in [1.0, 0.99, 0.97, 1.01, -1.0] {
+                let q = [unit * scale];
+                let (claims, collisions) = (attack.claims(index, &q), attack.collisions(&q));
+                closed += usize::from(!collisions.is_empty());
+                claimed += usize::from(!claims.is_empty());
+                assert!(claims.is_empty() || collisions.is_empty(), "{case} {scale}");
+            }
+        }
+    }
+    assert!(closed > 0, "{closed} {claimed}");
+}
+
+/// On a straight line from a shape to its half turn it is flat in between, though neither end is strained.
+#[test]
+fn half_a_turn_is_no_proof() {
+    let mut tried = 0;
+    for seed in (0..20).filter(|seed| FlexibleShape::new(*seed, Shape::Box, 2).is_affine) {
+        let shape = FlexibleShape::new(seed, Shape::Box, 2);
+        let model = model_of(&shape);
+        let options = CertifyOptions { budget: 0, local_budget: 1 << 20, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let mut attack = Attack::new(&model, &certificates);
+        let ends = [0.3, 0.3 + std::f64::consts::PI].map(|angle| shape.turned(DVec3::ONE, angle).unwrap());
+        for index in 0..certificates.parts().local.nodes.len() {
+            let of_ends = [&ends[0], &ends[1]].map(|q| attack.claims(index, q).len());
+            tried += of_ends[0].min(of_ends[1]);
+            let swept = attack.certified.local_claims(index, [&ends[0], &ends[1]]).unwrap();
+            assert!(swept.is_empty(), "seed {seed}: {swept:?}");
+        }
+    }
+    assert!(tried > 100, "{tried}");
 }

@@ -1,0 +1,117 @@
+//! The inequality of a certificate against exact arithmetic.
+
+use glam::DVec3;
+use num_rational::BigRational;
+use sscc_testing::Numbers;
+
+use super::*;
+use crate::filter::Relation;
+use crate::{ContactFilter, Modes, TriMesh};
+
+fn exact(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap()
+}
+
+/// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` for the modes as they are, not as residuals are computed. Modes are affine maps up to
+/// rounding, so that residuals are rounding alone, or have a part that is not.
+#[test]
+fn strains_are_at_least_those_of_exact_residuals() {
+    let random = &mut Numbers(8);
+    let (mut checked, mut close) = (0, 0);
+    for case in 0..1500 {
+        let (count, rank) = (2 + random.below(2) as u32, 1 + case % 3);
+        let size = random.power(-4.0, -1.0);
+        let middle = random.vector();
+        let at = |i: u32| middle + (DVec3::X * 3.0 * f64::from(i / 3) + random.vector()) * size;
+        let p: Vec<DVec3> = (0..3 * count).map(at).collect();
+        let noise = if case % 4 == 0 { random.power(-12.0, -2.0) } else { 0.0 };
+        let ways: Vec<[DVec3; 3]> =
+            (0..rank).map(|_| [random.vector(), random.vector(), random.vector()]).collect();
+        let mut modes = Vec::new();
+        for x in &p {
+            modes.extend(ways.iter().map(|[w, a, b]| *w * x.dot(*a) + *b + random.vector() * noise));
+        }
+        let faces: Vec<[u32; 3]> = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let mesh = TriMesh::new(p, faces.clone()).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(rank, modes).unwrap()).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let center = vec![0.0; rank];
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &center, 1 << 20);
+        if all.nodes != [0] || !all.bounds[0].ratio.is_finite() {
+            continue;
+        }
+        let bounds = all.bounds[0];
+        let patch_model = PatchModel::new(&model, &center).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions);
+        let gradient = |c: usize, j: usize, k: usize| {
+            let e = 3 * j + c;
+            exact(f64::from(if e < 8 { all.gradients[8 * k + e] } else { all.gradients[8 * rank + k] }))
+        };
+        let f: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        let column =
+            |k: usize, i: usize| f64::from(f32::from_bits(u32::from(all.ellipsoids[8 * k + i]) << 16));
+        let image =
+            (0..rank).map(|i| (0..rank).map(|k| column(k, i) * f[k]).sum::<f64>().powi(2)).sum::<f64>();
+        let total: f64 = f.iter().map(|f| f.abs()).sum();
+        let strain = (bounds.ratio * image.sqrt() + bounds.per_factor * total) * (1.0 + 1e-12);
+        let displaced: Vec<[BigRational; 3]> = (0..3 * count)
+            .map(|v| {
+                let of_vertex = model.modes().of_vertex(v);
+                std::array::from_fn(|c| {
+                    let of_mode = |k: usize| {
+                        let size = exact(model.mode_displacement_bound(k, 1.0));
+                        exact(of_vertex[k][c]) / size * exact(f[k])
+                    };
+                    (0..rank).map(of_mode).sum()
+                })
+            })
+            .collect();
+        let turned: Vec<Vec<BigRational>> = (0..3)
+            .map(|c| (0..3).map(|j| (0..rank).map(|k| gradient(c, j, k) * exact(f[k])).sum()).collect())
+            .collect();
+        let table = gaps.near((0, 0)).unwrap().as_ref().unwrap();
+        let vertices = gaps.vertices(0);
+        for s in 0..count {
+            for t in s + 1..count {
+                assert_eq!(filter.relation(s, t), Relation::NonAdjacent);
+                for (i, j) in faces[s as usize].into_iter().flat_map(|i| faces[t as usize].map(|j| (i, j))) {
+                    let number = |v: u32| vertices.binary_search(&v).unwrap();
+                    let at = |i: u32, j: u32| table.gaps[number(i) * vertices.len() + number(j)];
+                    let gap = f64::from(at(i, j).min(at(j, i)));
+                    let [x, y] = [i, j].map(|v| patch_model.positions[v as usize]);
+                    let d: Vec<BigRational> = (0..3).map(|c| exact(y[c]) - exact(x[c])).collect();
+                    let square: BigRational = (0..3)
+                        .map(|c| {
+                            let affine: BigRational = (0..3).map(|k| &turned[c][k] * &d[k]).sum();
+                            &displaced[j as usize][c] - &displaced[i as usize][c] - affine
+                        })
+                        .map(|x| &x * &x)
+                        .sum();
+                    let bound = exact(gap) * exact(strain);
+                    assert!(square <= &bound * &bound, "case {case}: {i} {j}");
+                    checked += 1;
+                    close += usize::from(square * exact(4.0) > &bound * &bound);
+                }
+            }
+        }
+    }
+    assert!(checked > 5000 && close > 300, "{checked} {close}");
+}
+
+/// A ratio that is NaN stays so in the lists of nodes above.
+#[test]
+fn certificates_of_no_numbers_are_not_stored() {
+    let positions =
+        (0..6).map(|i| DVec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 3))).collect();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let modes = Modes::from_matrix(6, 1, |row, _| (row as f64).sin()).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    let filter = PairFilter::new(&model, &ContactFilter::default());
+    let none = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 0);
+    assert_eq!(none, LocalCertificates::default());
+    let some = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+    assert_eq!((some.nodes.as_slice(), some.modes.as_slice()), (&[0][..], &[0][..]));
+    assert!(some.bytes() > 0 && some.bounds[0].per_error >= 1.0);
+}

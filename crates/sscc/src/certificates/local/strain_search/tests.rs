@@ -1,0 +1,240 @@
+//! Ratios and spreads against all pairs, in double precision.
+
+use sscc_testing::{FlexibleShape, Numbers, Shape};
+
+use super::*;
+use crate::certificates::local::patch_model::PatchModel;
+use crate::filter::{PairFilter, Relation};
+use crate::hierarchy::Hierarchy;
+use crate::{ContactFilter, Modes, Neighbours, ReducedModel, TriMesh};
+
+/// The largest singular value of three rows from below, by power iteration on their Gram matrix.
+fn singular_value(rows: &[f64]) -> f64 {
+    let row_len = rows.len() / 3;
+    let row = |c: usize| &rows[c * row_len..][..row_len];
+    let dot = |a: usize, b: usize| row(a).iter().zip(row(b)).map(|(x, y)| x * y).sum::<f64>();
+    let gram: [[f64; 3]; 3] = std::array::from_fn(|a| std::array::from_fn(|b| dot(a, b)));
+    let times =
+        |x: [f64; 3]| -> [f64; 3] { std::array::from_fn(|a| (0..3).map(|b| gram[a][b] * x[b]).sum()) };
+    let length = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut best = 0.0_f64;
+    for start in [[1.0, 0.3, 0.2], [0.1, 1.0, -0.4], [-0.3, 0.2, 1.0]] {
+        let mut x = start;
+        for _ in 0..60 {
+            let next = times(x);
+            let size = length(&next);
+            if size > 0.0 {
+                x = next.map(|y| y / size);
+            }
+        }
+        let size = length(&x);
+        let quotient: f64 = times(x).iter().zip(&x).map(|(a, b)| a * b).sum::<f64>() / (size * size);
+        best = best.max(quotient);
+    }
+    best.sqrt()
+}
+
+#[test]
+fn singular_values_are_at_least_exact() {
+    let random = &mut Numbers(9);
+    for case in 0..3000 {
+        let row_len = [8, 16, 40, 200][case % 4];
+        let size = random.power(-12.0, 12.0);
+        let base: Vec<f64> = (0..row_len).map(|_| random.signed()).collect();
+        let mix = random.power(-6.0, 0.5);
+        // Rows that are nearly one row times three numbers have a singular value of up to the root of three times the longest.
+        let weights = random.vector();
+        let weights = if case % 3 == 0 { [1.0; 3] } else { weights.to_array() };
+        let x: Vec<f32> = (0..3 * row_len)
+            .map(|i| ((weights[i / row_len] * base[i % row_len] + mix * random.signed()) * size) as f32)
+            .collect();
+        let y = vec![0.0; 3 * row_len];
+        let exact = singular_value(&x.iter().map(|x| f64::from(*x)).collect::<Vec<_>>());
+        let bound = f64::from(largest_singular_value(&x, &y) * ROUND_UP);
+        assert!(bound >= exact, "case {case}: {bound} {exact}");
+        assert!(bound <= exact * 1.05, "case {case}: {bound} {exact}");
+        let frobenius = f64::from(squared_distance(&x, &y).sqrt() * ROUND_UP);
+        let exact = x.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
+        assert!(frobenius >= exact && bound <= frobenius * 1.04, "case {case}: {frobenius} {exact}");
+    }
+    assert_eq!(largest_singular_value(&[0.0; 24], &[0.0; 24]), 0.0);
+    for odd in [f32::NAN, f32::INFINITY, 1e30] {
+        assert!(!largest_singular_value(&[odd; 24], &[0.0; 24]).is_finite());
+    }
+}
+
+#[test]
+fn nan_is_the_largest_ratio() {
+    for other in [0.0, 1.0, f32::INFINITY, f32::NAN] {
+        assert!(larger(f32::NAN, other).is_nan() && larger(other, f32::NAN).is_nan());
+    }
+    assert_eq!(larger(1.0, 2.0), 2.0);
+    assert_eq!(larger(f32::INFINITY, 2.0), f32::INFINITY);
+    assert_eq!(larger(0.0, f32::INFINITY), f32::INFINITY);
+}
+
+/// A patch of all of a mesh, whose images are given.
+struct Case {
+    model: ReducedModel,
+    hierarchy: Hierarchy,
+    filter: PairFilter,
+}
+
+impl Case {
+    fn new(positions: Vec<DVec3>, faces: Vec<[u32; 3]>, neighbours: Neighbours) -> Self {
+        let vertices = positions.len();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let modes = Modes::from_matrix(vertices, 1, |row, _| (row as f64).sin()).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::new(neighbours, false));
+        Self { model, hierarchy, filter }
+    }
+}
+
+/// Random images with a common part: three rows for each vertex of the patch.
+fn images(random: &mut Numbers, count: usize, width: usize) -> Vec<f64> {
+    let common: Vec<f64> = (0..width).map(|_| random.signed() * 1e3).collect();
+    let size = random.power(-5.0, 2.0);
+    (0..count * width).map(|i| common[i % width] + size * random.signed()).collect()
+}
+
+/// The search over all of a mesh with random images.
+fn with_search(
+    case: &Case,
+    random: &mut Numbers,
+    check: impl FnOnce(&mut StrainSearch, &CornerGaps<'_>, &Patch, &[f64]),
+) {
+    let Case { model, hierarchy, filter } = case;
+    let patch_model = PatchModel::new(model, &vec![0.0; model.rank()]).unwrap();
+    let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions);
+    let mut patch = Patch::new(model.mesh().rest_positions().len());
+    patch.load(&patch_model, hierarchy, filter.faces(), [0].into_iter(), 200).unwrap();
+    let mut search = StrainSearch::default();
+    search.load(&gaps, &patch, [0].into_iter());
+    let exact = images(random, patch.vertices.len(), search.width);
+    search.images = exact.iter().map(|x| *x as f32).collect();
+    let norm = |rows: &[f64]| rows.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let largest = exact.chunks(search.width).map(norm).fold(0.0, f64::max) * (1.0 + 1e-12);
+    search.begin(largest, true);
+    check(&mut search, &gaps, &patch, &exact);
+}
+
+#[test]
+fn images_are_within_the_spread_of_their_part() {
+    let mut checked = 0;
+    for seed in 0..14 {
+        let random = &mut Numbers(seed);
+        let shape = FlexibleShape::new(seed, Shape::ALL[seed as usize % 7], 1);
+        let case = Case::new(shape.positions, shape.faces, Neighbours::Exclude);
+        with_search(&case, random, |search, _, _, _| {
+            for part in 0..search.parts.len() as u32 {
+                let mut below = vec![part];
+                while let Some(next) = below.pop() {
+                    let Part { first_child, child_count, .. } = search.parts[next as usize];
+                    below.extend(first_child..first_child + child_count);
+                    for i in search.leaf_vertices(next) {
+                        let pairs = search.mean(part).iter().zip(search.image(*i));
+                        let square: f64 = pairs.map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum();
+                        assert!(square.sqrt() <= f64::from(search.parts[part as usize].spread));
+                        checked += 1;
+                    }
+                }
+            }
+        });
+    }
+    assert!(checked > 10_000, "{checked}");
+}
+
+/// The widest gap that the search may have used for two vertices of two leaves.
+fn gap(gaps: &CornerGaps<'_>, parents: &[u32], (n, m): (u32, u32), (i, j): (u32, u32)) -> f64 {
+    let ((n, m), (i, j)) = if n <= m { ((n, m), (i, j)) } else { ((m, n), (j, i)) };
+    let at = |leaf: u32, v: u32| gaps.vertices(leaf).binary_search(&v).unwrap();
+    let mut widest = match gaps.near((n, m)) {
+        Some(Some(table)) => {
+            let len = gaps.vertices(m).len();
+            let one = f64::from(table.gaps[at(n, i) * len + at(m, j)]);
+            let other = if n == m { f64::from(table.gaps[at(n, j) * len + at(m, i)]) } else { f64::INFINITY };
+            one.min(other)
+        }
+        Some(None) => 0.0,
+        None => {
+            let mut components = [Vec::new(), Vec::new()];
+            let is_apart = gaps.components((n, m), &mut components).is_some();
+            let [a, b] = [components[0][at(n, i)], components[1][at(m, j)]];
+            if is_apart { CornerGaps::gap_between(a, b) } else { 0.0 }
+        }
+    };
+    let above = |mut n: u32| {
+        let mut all = vec![n];
+        while parents[n as usize] != n {
+            n = parents[n as usize];
+            all.push(n);
+        }
+        all
+    };
+    for x in above(n) {
+        for y in above(m) {
+            let [x, y] = [x, y].map(|n| gaps.spheres[n as usize]);
+            widest = widest.max((y.center - x.center).length() - x.radius - y.radius);
+        }
+    }
+    widest
+}
+
+#[test]
+fn ratios_are_at_least_those_of_all_pairs() {
+    let (mut finite, mut close) = (0, 0);
+    for seed in 0..420 {
+        let random = &mut Numbers(seed + 31);
+        let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize % 2];
+        let case = if seed % 10 == 0 {
+            let shape = FlexibleShape::new(seed, Shape::ALL[seed as usize / 10 % 7], 1);
+            Case::new(shape.positions, shape.faces, neighbours)
+        } else {
+            // Few pairs, so that rounding decides which ratio is the largest.
+            let count = 2 + random.below(3) as u32;
+            let corner = |i: u32| DVec3::X * f64::from(i / 3) * 3.0 + random.vector();
+            let positions = (0..3 * count).map(corner).collect();
+            Case::new(positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(), neighbours)
+        };
+        with_search(&case, random, |search, gaps, patch, exact| {
+            let ratio = search.within(gaps, 0);
+            if !ratio.is_finite() {
+                return;
+            }
+            finite += 1;
+            let nodes = case.hierarchy.nodes();
+            let mut parents = vec![0; nodes.len()];
+            for (n, node) in nodes.iter().enumerate() {
+                node.children().for_each(|child| parents[child as usize] = n as u32);
+            }
+            let leaves = (0..nodes.len() as u32).filter(|n| nodes[*n as usize].is_leaf());
+            let triangles: Vec<(u32, u32)> = leaves
+                .flat_map(|n| case.hierarchy.triangles(&nodes[n as usize]).iter().map(move |t| (n, *t)))
+                .collect();
+            let width = search.width;
+            let mut largest = 0.0_f64;
+            for (at, (n, s)) in triangles.iter().enumerate() {
+                for (m, t) in &triangles[at + 1..] {
+                    if case.filter.relation(*s, *t) == Relation::Adjacent {
+                        continue;
+                    }
+                    for simplices in case.filter.simplex_pairs(*s, *t) {
+                        for (i, j) in simplices.a.into_iter().flat_map(|i| simplices.b.map(|j| (i, j))) {
+                            let [x, y] = [i, j].map(|v| patch.numbers[v as usize] as usize * width);
+                            let rows: Vec<f64> = (0..width).map(|k| exact[y + k] - exact[x + k]).collect();
+                            let one = singular_value(&rows) / gap(gaps, &parents, (*n, *m), (i, j));
+                            assert!(one <= f64::from(ratio), "seed {seed}: {one} {ratio}");
+                            let widest = gap(gaps, &parents, (*n, *m), (i, j));
+                            assert!(search.smallest_gap <= widest * (1.0 + 1e-12), "seed {seed}");
+                            largest = largest.max(one);
+                        }
+                    }
+                }
+            }
+            close += usize::from(largest > 0.8 * f64::from(ratio));
+        });
+    }
+    assert!(finite > 200 && close > 100, "{finite} {close}");
+}

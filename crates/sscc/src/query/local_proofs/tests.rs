@@ -1,0 +1,260 @@
+//! The comparison of local certificates against exact arithmetic.
+
+use num_rational::BigRational;
+use num_traits::Signed;
+use sscc_testing::Numbers;
+
+use super::*;
+use crate::LocalBounds;
+use crate::detect::vertex_motion::DeformedMotion;
+
+type Matrix = [[BigRational; 3]; 3];
+
+fn exact(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap()
+}
+
+fn matrix(of: impl Fn(usize, usize) -> BigRational) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| of(i, j)))
+}
+
+fn of_map(map: &DMat3) -> Matrix {
+    matrix(|i, j| exact(map.col(j)[i]))
+}
+
+/// Whether a symmetric matrix less a multiple of the identity is positive definite.
+fn is_above(a: &Matrix, least: &BigRational) -> bool {
+    let m = matrix(|i, j| if i == j { &a[i][j] - least } else { a[i][j].clone() });
+    let two = &m[0][0] * &m[1][1] - &m[0][1] * &m[1][0];
+    let minor = |i: usize, j: usize| &m[1][i] * &m[2][j] - &m[1][j] * &m[2][i];
+    let three = &m[0][0] * minor(1, 2) - &m[0][1] * minor(0, 2) + &m[0][2] * minor(0, 1);
+    m[0][0].is_positive() && two.is_positive() && three.is_positive()
+}
+
+fn gram(f: &Matrix) -> Matrix {
+    matrix(|i, j| (0..3).map(|k| &f[k][i] * &f[k][j]).sum())
+}
+
+/// Rotations and maps of every kind.
+fn random_map(random: &mut Numbers, case: usize) -> DMat3 {
+    let turn = |random: &mut Numbers| {
+        DMat3::from_axis_angle((random.vector() + DVec3::X * 1e-3).normalize(), 4.0 * random.signed())
+    };
+    let stretch = match case % 6 {
+        0 => random.vector() * 2.0,
+        1 => DVec3::new(1.0, 1.0, random.signed()),
+        2 => DVec3::new(1.0, 1.0 + random.power(-16.0, -1.0), random.power(-16.0, 0.0)),
+        3 => DVec3::splat(1.0),
+        4 => DVec3::new(random.power(-8.0, 8.0), random.power(-8.0, 8.0), random.power(-8.0, 8.0)),
+        _ => DVec3::new(1.0, random.signed(), 0.0),
+    };
+    let size = if case % 4 == 3 { random.power(-60.0, 60.0) } else { 1.0 };
+    turn(random) * DMat3::from_diagonal(stretch) * turn(random) * size
+}
+
+#[test]
+fn eigenvalues_are_lower_bounds() {
+    let random = &mut Numbers(1);
+    let (mut close, mut stretches) = (0, 0);
+    for case in 0..3000 {
+        let map = random_map(random, case);
+        let symmetric = (map + map.transpose()) * 0.5;
+        let least = smallest_eigenvalue(&map);
+        let exact_symmetric = of_map(&symmetric);
+        assert!(least < f64::INFINITY);
+        let size: f64 = symmetric.to_cols_array().iter().map(|x| x.abs()).sum();
+        if least > f64::NEG_INFINITY {
+            assert!(is_above(&exact_symmetric, &exact(least)), "case {case}: {map}");
+            close += usize::from(!is_above(&exact_symmetric, &exact(least + 3e-6 * size)));
+        }
+        // The single values of the map itself.
+        let stretch = smallest_stretch(&map);
+        if stretch > 0.0 {
+            assert!(is_above(&gram(&of_map(&map)), &(exact(stretch) * exact(stretch))), "case {case}: {map}");
+            stretches += 1;
+        }
+    }
+    assert!(close > 2900 && stretches > 1500, "{close} {stretches}");
+    let nan = DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0));
+    let infinite = DMat3::IDENTITY * f64::INFINITY;
+    for map in [nan, infinite, DMat3::from_diagonal(DVec3::new(1.0, f64::INFINITY, 1.0))] {
+        assert!(smallest_stretch(&map) <= 0.0 && smallest_eigenvalue(&map) == f64::NEG_INFINITY);
+        assert!(nearest_rotation(&map).is_none());
+    }
+    // Closed forms of equal eigenvalues lose half of the digits.
+    for case in 0..20_000 {
+        let off = random.power(-9.0, -7.0);
+        let map = random_map(random, 3) * DMat3::IDENTITY;
+        let near = map.transpose() * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 + off)) * map;
+        let near = (near + near.transpose()) * 0.5;
+        assert!(is_above(&of_map(&near), &exact(smallest_eigenvalue(&near))), "case {case}: {near}");
+    }
+}
+
+#[test]
+fn rotations_are_orthogonal() {
+    let random = &mut Numbers(2);
+    let (mut found, mut good) = (0, 0);
+    for case in 0..6000 {
+        let map = random_map(random, case);
+        let Some(turn) = nearest_rotation(&map) else { continue };
+        found += 1;
+        let wrong = turn.transpose() * turn - DMat3::IDENTITY;
+        let worst = wrong.to_cols_array().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(worst < 4e-15, "case {case}: {worst}");
+        let stretch = smallest_stretch(&map);
+        let size = map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let along = smallest_eigenvalue(&(turn.transpose() * map));
+        assert!(along <= stretch + 2e-3 * size, "case {case}: {along} {stretch}");
+        good += usize::from(stretch > 1e-3 * size && along > 0.99 * stretch);
+    }
+    assert!(found > 4000 && good > 2500, "{found} {good}");
+}
+
+/// Numbers of a certificate in the layout of its arrays, and the same as matrices.
+struct Certificate {
+    local: LocalCertificates,
+    /// For each mode.
+    gradients: Vec<DMat3>,
+    /// Upper triangular.
+    ellipsoid: Vec<Vec<f64>>,
+}
+
+fn certificate(gradients: Vec<DMat3>, ellipsoid: Vec<Vec<f64>>) -> Certificate {
+    let rank = gradients.len();
+    let mut numbers = Vec::new();
+    gradients.iter().for_each(|g| numbers.extend(g.to_cols_array()[..8].iter().map(|x| *x as f32)));
+    numbers.extend(gradients.iter().map(|g| g.z_axis.z as f32));
+    numbers.resize(gradient_len(rank), 0.0);
+    let mut halves = Vec::new();
+    for first in (0..rank).step_by(8) {
+        for column in first..rank {
+            for row in ellipsoid.iter().map(Some).chain(std::iter::repeat(None)).skip(first).take(8) {
+                halves.push((row.map_or(0.0, |row| row[column] as f32).to_bits() >> 16) as u16);
+            }
+        }
+    }
+    let norm = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let column = |k: usize| norm(&ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>());
+    let bounds = LocalBounds {
+        ratio: 1.0,
+        steepest: gradients.iter().map(|g| norm(&g.to_cols_array())).fold(0.0, f64::max) * (1.0 + 1e-12),
+        widest: (0..rank).map(column).fold(0.0, f64::max) * (1.0 + 1e-12),
+        ..LocalBounds::default()
+    };
+    let local = LocalCertificates {
+        nodes: vec![0],
+        mode_starts: vec![0, rank as u32],
+        modes: (0..rank as u32).collect(),
+        gradients: numbers,
+        ellipsoids: halves,
+        bounds: vec![bounds],
+        list_starts: vec![0, 0],
+        ..LocalCertificates::default()
+    };
+    Certificate { local, gradients, ellipsoid }
+}
+
+/// What is allowed at these q, of a model with that many modes.
+fn allowed<const E: usize>(local: &LocalCertificates, rank: usize, q: [&[f64]; E]) -> f64 {
+    let center = vec![0.0; rank];
+    let tables = LocalTables {
+        certificates: local,
+        center: &center,
+        scales: FactorScales { sizes: vec![1.0; rank], scale: 1.0, reach: 1.0 },
+        of_node: vec![0],
+        starts: vec![[0, 0]],
+        buckets: std::iter::once(0..1).collect(),
+    };
+    let mut proofs = LocalProofs::<E>::new(&tables);
+    assert!(proofs.begin(&tables, &DeformedMotion::new(q, 1.0)));
+    f64::from(proofs.allowed(&tables, 0))
+}
+
+/// Whether `ratio |W f| < sigma_min(I + G f)`.
+fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
+    let map = matrix(|i, j| {
+        let unit = exact(f64::from(u8::from(i == j)));
+        certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<BigRational>()
+            + unit
+    });
+    let strain: BigRational = certificate
+        .ellipsoid
+        .iter()
+        .map(|row| row.iter().zip(f).map(|(w, f)| exact(*w) * exact(*f)).sum::<BigRational>())
+        .map(|x| &x * &x)
+        .sum();
+    is_above(&gram(&map), &(strain * exact(ratio) * exact(ratio)))
+}
+
+#[test]
+fn allowed_ratios_are_at_most_exact() {
+    let random = &mut Numbers(4);
+    let single = |x: f64| f64::from(x as f32);
+    let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+    let (mut positive, mut swept) = (0, 0);
+    for case in 0..1200 {
+        let rank = 2 + random.below(if case % 20 == 0 { 30 } else { 6 });
+        let size = random.power(-2.0, 0.5);
+        let mut gradients: Vec<DMat3> = (0..rank)
+            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * size))))
+            .collect();
+        let mut ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
+            .collect();
+        // Sums that cancel in F, or in W f.
+        let mut draw = |random: &mut Numbers| -> Vec<f64> {
+            let mut f: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            let large = random.power(2.0, 7.0);
+            match case % 3 {
+                0 => {
+                    (f[0], f[1]) = (large + 0.3 * random.signed(), -large);
+                    gradients[1] = gradients[0];
+                }
+                1 => {
+                    (f[0], f[1]) = (large + 0.01 * random.signed(), -large);
+                    f[2..].iter_mut().for_each(|f| *f *= 1e-3);
+                    gradients[..2].fill(DMat3::ZERO);
+                    ellipsoid[0][0] = 1.0;
+                    ellipsoid[0][1] = 1.0;
+                    ellipsoid[1][1] = half(1e-6);
+                }
+                _ => {}
+            }
+            f
+        };
+        let [f, g] = [draw(random), draw(random)];
+        let certificate = certificate(gradients, ellipsoid);
+        let one = allowed(&certificate.local, rank, [&f]);
+        if one > 0.0 {
+            positive += 1;
+            assert!(holds(&certificate, one, &f), "case {case}: {one} at {f:?}");
+        }
+        let two = allowed(&certificate.local, rank, [&f, &g]);
+        assert!(two <= 0.0 || two <= one * (1.0 + 1e-4));
+        if two > 0.0 {
+            swept += 1;
+            for t in [0.0, 0.125, 0.5, 0.75, 1.0] {
+                let between: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
+                assert!(holds(&certificate, two * (1.0 - 1e-6), &between), "case {case}: {two} at {t}");
+            }
+        }
+    }
+    assert!(positive > 500 && swept > 150, "{positive} {swept}");
+}
+
+#[test]
+fn nan_at_either_end_is_no_proof() {
+    assert!(smaller(f64::NAN, 1.0).is_nan() && smaller(1.0, f64::NAN).is_nan());
+    assert_eq!((smaller(1.0, 2.0), smaller(2.0, 1.0), smaller(f64::INFINITY, 2.0)), (1.0, 1.0, 2.0));
+    // Two terms of W f beyond single precision, of opposite signs.
+    let large = f64::from(1e14_f32.to_bits() >> 16 << 16);
+    let large = f64::from(f32::from_bits(large as u32));
+    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![large, large], vec![0.0, 1.0]]);
+    let (far, near) = ([4e29, -4e29], [1e-16, 1e-16]);
+    assert!(allowed(&certificate.local, 2, [&near]) > 0.0);
+    for ends in [[&far, &near], [&near, &far], [&far, &far]] {
+        let allowed = allowed(&certificate.local, 2, ends.map(|q| q.as_slice()));
+        assert!(!(allowed > 0.0), "{allowed}");
+    }
+}

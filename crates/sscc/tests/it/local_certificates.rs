@@ -1,0 +1,381 @@
+//! Queries with local certificates against brute force, far from the centre and where certificates only just hold.
+
+use glam::DVec3;
+use sscc::{
+    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, KineticQuery,
+    LocalCertificates, Method, Metric, MetricKind, Modes, Neighbours, PairTree, Proof, Query, ReducedModel,
+    TriMesh, TriangleGroups, audit,
+};
+use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
+
+use crate::common::{random_model, random_options};
+
+fn model_of(shape: &FlexibleShape) -> ReducedModel {
+    let mesh = TriMesh::new(shape.positions.clone(), shape.faces.clone()).unwrap();
+    ReducedModel::new(mesh, Modes::new(shape.rank, shape.displacements.clone()).unwrap()).unwrap()
+}
+
+fn options_of(model: &ReducedModel, seed: u64, random: &mut Numbers) -> CertifyOptions {
+    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let rank = model.rank();
+    let metric = (seed.is_multiple_of(2) && rank < 40).then(|| {
+        let entry = |i: usize, j: usize| scales[i] * scales[j] * if i == j { 1.0 } else { 0.2 / rank as f64 };
+        let matrix: Vec<f64> = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
+        Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
+    });
+    let center = seed.is_multiple_of(3).then(|| {
+        let size = random.power(-4.0, -1.0) / (rank as f64).sqrt();
+        scales.iter().map(|scale| size * random.signed() / scale).collect()
+    });
+    let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
+    let mut filter = ContactFilter::new(neighbours, seed % 5 < 3);
+    if seed % 6 == 5 {
+        let triangles = model.mesh().faces().len() as u32;
+        let groups =
+            TriangleGroups::new(&(0..triangles).map(|t| 2 * t / triangles).collect::<Vec<_>>()).unwrap();
+        filter = filter.with_groups(groups.ignoring([(0, 0)]).unwrap());
+    }
+    CertifyOptions {
+        metric,
+        center,
+        filter: Some(filter),
+        ignore_rest: seed % 4 == 3,
+        budget: 512,
+        local_budget: 1 << 20,
+        epsilon: 0.9,
+        reach: 1.0,
+        threads: Some(1),
+        ..CertifyOptions::default()
+    }
+}
+
+/// The same certificates with no radius above 0, so that local certificates alone prove nodes.
+fn without_radii(certificates: &Certificates) -> Certificates {
+    let parts = certificates.parts();
+    let (nodes, pairs) = (parts.node_radii.len(), parts.root_pair_radii.len());
+    Certificates::from_parts(CertificateParts {
+        node_radii: vec![0.0; nodes],
+        root_pair_radii: vec![0.0; pairs],
+        pair_tree: PairTree::default(),
+        ..parts.clone()
+    })
+    .unwrap()
+}
+
+fn without_local(certificates: &Certificates) -> Certificates {
+    let parts = certificates.parts().clone();
+    Certificates::from_parts(CertificateParts { local: LocalCertificates::default(), ..parts }).unwrap()
+}
+
+/// How often local certificates decided.
+#[derive(Debug, Default)]
+struct Seen {
+    roots: usize,
+    nodes: usize,
+    swept_roots: usize,
+    swept_nodes: usize,
+    hits_beside: usize,
+    swept_hits_beside: usize,
+    states: usize,
+}
+
+fn compare(
+    model: &ReducedModel,
+    certificates: &Certificates,
+    rays: impl Iterator<Item = Vec<f64>>,
+    name: &str,
+    seen: &mut Seen,
+) {
+    let alone = without_radii(certificates);
+    let none = without_local(&alone);
+    let query = |certificates, method| Query::with_method(model, certificates, method).unwrap();
+    let mut oracle = query(certificates, Method::BruteForce);
+    let [mut full, mut alone, mut none] = [
+        query(certificates, Method::Certified),
+        query(&alone, Method::Certified),
+        query(&none, Method::Certified),
+    ];
+    let center = certificates.center();
+    let mut last: Option<Vec<f64>> = None;
+    for ray in rays {
+        let at = |scale: f64| -> Vec<f64> { center.iter().zip(&ray).map(|(c, d)| c + scale * d).collect() };
+        // The last scale at which the root's local certificate holds.
+        let mut is_proven =
+            |scale: f64| alone.discrete(&at(scale)).is_ok() && alone.statistics().proof == Proof::Local;
+        let first = [1.0, 0.3, 0.1, 0.01, 1e-3].into_iter().find(|scale| is_proven(*scale));
+        let mut edge = first.unwrap_or(0.1);
+        if first.is_some() {
+            let mut high = 2.0 * edge;
+            for _ in 0..40 {
+                if !is_proven(high) {
+                    break;
+                }
+                (edge, high) = (high, 2.0 * high);
+            }
+            for _ in 0..20 {
+                let middle = 0.5 * (edge + high);
+                if is_proven(middle) { edge = middle } else { high = middle }
+            }
+        }
+        for scale in [edge, edge * (1.0 + 1e-5), 1.5 * edge, 3.0 * edge, 8.0 * edge] {
+            let q = at(scale);
+            let Ok(expected) = oracle.discrete(&q) else { continue };
+            let expected = expected.to_vec();
+            assert_eq!(alone.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
+            assert_eq!(full.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
+            seen.states += 1;
+            none.discrete(&q).unwrap();
+            let of_node = alone.statistics().proof == Proof::Search
+                && alone.statistics().box_tests < none.statistics().box_tests;
+            seen.roots += usize::from(alone.statistics().proof == Proof::Local);
+            seen.nodes += usize::from(of_node);
+            seen.hits_beside += usize::from(of_node && !expected.is_empty());
+            if let Some(start) = last.replace(q.clone()) {
+                let expected = oracle.continuous(&start, &q).unwrap().to_vec();
+                assert_eq!(alone.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
+                assert_eq!(full.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
+                none.continuous(&start, &q).unwrap();
+                let of_node = alone.statistics().proof == Proof::Search
+                    && alone.statistics().box_tests < none.statistics().box_tests;
+                seen.swept_roots += usize::from(alone.statistics().proof == Proof::Local);
+                seen.swept_nodes += usize::from(of_node);
+                seen.swept_hits_beside += usize::from(of_node && !expected.is_empty());
+            }
+        }
+    }
+}
+
+fn random_ray(model: &ReducedModel, shape: Option<&FlexibleShape>, random: &mut Numbers) -> Vec<f64> {
+    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let (decay, few) = (random.below(3) as i32, random.below(3) == 0);
+    let mut entry = |(k, scale): (usize, &f64)| {
+        let weight = if few && random.below(4) > 0 { 0.0 } else { (1.0 + k as f64).powi(-decay) };
+        0.3 * random.signed() * weight / scale
+    };
+    let mut ray: Vec<f64> = scales.iter().enumerate().map(&mut entry).collect();
+    let angle = 3.0 * random.signed();
+    if random.below(2) == 0
+        && let Some(turned) = shape.and_then(|shape| shape.turned(random.vector() + DVec3::X * 0.01, angle))
+    {
+        let share = random.power(-3.0, 0.0);
+        ray.iter_mut().zip(turned).for_each(|(x, y)| *x = *x * share + y);
+    }
+    ray
+}
+
+#[test]
+fn answers_are_those_of_brute_force() {
+    let mut seen = Seen::default();
+    for seed in 0..cases(112_u64) {
+        let random = &mut Numbers(seed + 900);
+        let kind = Shape::ALL[seed as usize % Shape::ALL.len()];
+        let rank = [2, 1, 5, 12, 28][seed as usize / 7 % 5];
+        let shape = FlexibleShape::new(seed + 500, kind, rank);
+        let model = model_of(&shape);
+        let options = options_of(&model, seed, random);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let rays = (0..12).map(|_| random_ray(&model, Some(&shape), random));
+        compare(&model, &certificates, rays, &format!("{kind:?} {seed}"), &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.roots > threshold(500) && seen.nodes > threshold(500), "{seen:?}");
+    assert!(seen.hits_beside > threshold(200), "{seen:?}");
+    assert!(seen.swept_roots > threshold(100) && seen.swept_nodes > threshold(300), "{seen:?}");
+    assert!(seen.swept_hits_beside > threshold(100), "{seen:?}");
+}
+
+/// Meshes and modes of every odd kind, in one bucket or a few.
+#[test]
+fn answers_of_odd_models_are_those_of_brute_force() {
+    let mut seen = Seen::default();
+    for seed in 0..cases(800_u64) {
+        let random = &mut Numbers(seed + 7000);
+        let model = random_model(70_000 + seed);
+        let options =
+            CertifyOptions { epsilon: 0.9, local_budget: 1 << 20, budget: 0, ..random_options(seed, &model) };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let rays = (0..3).map(|_| random_ray(&model, None, random));
+        compare(&model, &certificates, rays, &format!("model {seed}"), &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.roots > threshold(1000) && seen.swept_roots > threshold(500), "{seen:?}");
+}
+
+/// A turn of any shape is no strain.
+#[test]
+fn shapes_that_turn_within_q_are_proven() {
+    let mut turned = 0;
+    for kind in [Shape::Box, Shape::Sheet, Shape::Helix] {
+        // The map of a flat shape across its plane is linear in q, so it turns exactly about few axes.
+        let is_flat = kind == Shape::Sheet;
+        let others = if is_flat { 0 } else { 2 };
+        for seed in (0..40).filter(|seed| FlexibleShape::new(*seed, kind, others).is_affine).take(3) {
+            let mut shape = FlexibleShape::new(seed, kind, others);
+            if is_flat {
+                // Without roughness: the modes of height are nothing but that.
+                shape.positions.iter_mut().for_each(|p| p.z = 0.0);
+                for of_vertex in shape.displacements.chunks_mut(shape.rank) {
+                    [2, 5, 8].iter().for_each(|k| of_vertex[*k] = DVec3::ZERO);
+                }
+            }
+            // Without duplicates, which no root's certificate proves.
+            let mut faces = shape.faces.clone();
+            let corners = |face: &[u32; 3]| {
+                let mut corners = *face;
+                corners.sort_unstable();
+                corners
+            };
+            faces.sort_unstable_by_key(corners);
+            faces.dedup_by_key(|face| corners(face));
+            shape.faces = faces;
+            let model = model_of(&shape);
+            let options = CertifyOptions {
+                filter: Some(ContactFilter::new(Neighbours::Exclude, true)),
+                budget: 0,
+                local_budget: 1 << 16,
+                ..CertifyOptions::default()
+            };
+            let certificates = Certificates::compute(&model, &options, &()).unwrap();
+            if !certificates.exceptions().is_empty() {
+                continue;
+            }
+            let alone = without_radii(&certificates);
+            let mut query = Query::new(&model, &alone).unwrap();
+            let oblique = if is_flat { DVec3::Z } else { DVec3::new(1.0, -2.0, 0.7) };
+            for axis in [DVec3::X, DVec3::Y, oblique] {
+                for angle in [40.0_f64, 90.0, 180.0] {
+                    let q = shape.turned(axis, angle.to_radians()).unwrap();
+                    assert!(query.discrete(&q).unwrap().is_empty());
+                    assert_eq!(query.statistics().proof, Proof::Local, "{kind:?} {seed}: {angle} degrees");
+                    turned += 1;
+                    // Motions may pass a map that is singular.
+                    if is_flat {
+                        continue;
+                    }
+                    let next = shape.turned(axis, (angle + 45.0).to_radians()).unwrap();
+                    assert!(query.continuous(&q, &next).unwrap().is_empty());
+                    assert_eq!(
+                        query.statistics().proof,
+                        Proof::Local,
+                        "{kind:?} {seed}: from {angle} degrees"
+                    );
+                }
+            }
+        }
+    }
+    assert!(turned > 60, "{turned}");
+}
+
+/// A patch that no mode moves.
+#[test]
+fn parts_that_stand_still_are_certified() {
+    let n = 12_u32;
+    let point = |i: u32| DVec3::new(f64::from(i / (n + 1)), f64::from(i % (n + 1)), 0.0);
+    let corner = |i: u32| i / n * (n + 1) + i % n;
+    let faces = (0..n * n).map(corner).flat_map(|a| [[a, a + 1, a + n + 1], [a + 1, a + n + 2, a + n + 1]]);
+    let mesh = TriMesh::new((0..(n + 1) * (n + 1)).map(point).collect(), faces.collect()).unwrap();
+    let modes = Modes::from_matrix(169, 1, |row, _| if row == 2 { 1.0 } else { 0.0 }).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let local = &certificates.parts().local;
+    let still = local.mode_starts.windows(2).filter(|range| range[0] == range[1]).count();
+    assert!(still > 2 && still < local.nodes.len(), "{still} of {}", local.nodes.len());
+    compare(&model, &certificates, [vec![1.0], vec![-40.0]].into_iter(), "still", &mut Seen::default());
+}
+
+/// Certificates whose ratios are a tenth of what they are.
+#[test]
+fn audits_find_local_certificates_that_claim_too_much() {
+    let (mut lies, mut found, mut local_samples) = (0, 0, 0);
+    for seed in 0..cases(28_u64) {
+        let random = &mut Numbers(seed + 60);
+        let kind = Shape::ALL[seed as usize % Shape::ALL.len()];
+        let shape = FlexibleShape::new(seed + 40, kind, 3);
+        let model = model_of(&shape);
+        let options = options_of(&model, seed, random);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert_eq!(report.violations, Vec::<String>::new(), "{kind:?} {seed}");
+        local_samples += report.local_samples;
+        assert!(report.local_samples < report.samples.max(1));
+        let mut parts = certificates.parts().clone();
+        parts.local.bounds.iter_mut().for_each(|bounds| bounds.ratio *= 0.1);
+        parts.local.list_ratios.iter_mut().for_each(|ratio| *ratio *= 0.1);
+        let forged = Certificates::from_parts(parts).unwrap();
+        lies += 1;
+        let report = audit(&model, &forged, &asked, &()).unwrap();
+        found += usize::from(report.violations.iter().any(|line| line.contains("local certificate")));
+    }
+    println!("{found} of {lies}, {local_samples}");
+    assert!(found * 10 >= 7 * lies && local_samples > 100 * lies, "{found} of {lies}, {local_samples}");
+}
+
+/// Two square sheets one above the other, one apart, with so many vertices along each side.
+fn two_sheets(side: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let (mut p, mut faces) = (Vec::new(), Vec::new());
+    for sheet in 0..2 {
+        let first = p.len() as u32;
+        let at = |i: u32| DVec3::new(f64::from(i / side), f64::from(i % side), f64::from(sheet));
+        p.extend((0..side * side).map(at));
+        for i in (0..side * (side - 1)).filter(|i| i % side != side - 1) {
+            let [a, b, c, d] = [i, i + 1, i + side, i + side + 1].map(|v| first + v);
+            faces.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    (p, faces)
+}
+
+/// A region contains more than its segment: what a certificate proves on it may collide beside it.
+#[test]
+fn kinetic_answers_are_those_of_brute_force() {
+    let (p, faces) = two_sheets(10);
+    let (vertices, lower) = (p.len(), p.len() / 2);
+    let modes =
+        Modes::from_matrix(vertices, 1, |row, _| if row / 3 >= lower && row % 3 == 2 { -1.0 } else { 0.0 });
+    let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes.unwrap()).unwrap();
+    let options = CertifyOptions { budget: 0, local_budget: 1 << 20, ..CertifyOptions::default() };
+    let certificates = without_radii(&Certificates::compute(&model, &options, &()).unwrap());
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let mut certified = Query::new(&model, &certificates).unwrap();
+    let (mut proven, mut hits) = (0, 0);
+    for step in [1e-4, 1e-3, 5e-3] {
+        let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+        for i in 0..200 {
+            let q = [1.0 + step * f64::from((i % 100) - 50)];
+            let expected = oracle.discrete(&q).unwrap().to_vec();
+            assert_eq!(kinetic.discrete(&q).unwrap(), expected, "{step} {i}");
+            assert_eq!(certified.discrete(&q).unwrap(), expected, "{step} {i}");
+            proven += usize::from(certified.statistics().proof == Proof::Local);
+            hits += usize::from(!expected.is_empty());
+        }
+    }
+    assert!(proven > 200 && hits > 5, "{proven} {hits}");
+}
+
+/// Pairs that collide at the centre are tested in every query, so the rest of the shape is proven without them.
+#[test]
+fn exceptions_do_not_spoil_the_root() {
+    let (mut p, mut faces) = two_sheets(10);
+    // A triangle through the upper sheet.
+    let first = p.len() as u32;
+    p.extend([DVec3::new(4.3, 4.3, 0.6), DVec3::new(4.4, 4.3, 1.4), DVec3::new(4.3, 4.5, 1.4)]);
+    faces.push([first, first + 1, first + 2]);
+    let turn = |row: usize, k: usize| -> f64 { if row % 3 == k / 3 { p[row / 3][k % 3] } else { 0.0 } };
+    let modes = Modes::from_matrix(p.len(), 9, turn).unwrap();
+    let model = ReducedModel::new(TriMesh::new(p.clone(), faces).unwrap(), modes).unwrap();
+    let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    assert!(!certificates.exceptions().is_empty());
+    let (sin, cos) = 1.2_f64.sin_cos();
+    let q = [cos - 1.0, -sin, 0.0, sin, cos - 1.0, 0.0, 0.0, 0.0, 0.0];
+    let mut query = Query::new(&model, &certificates).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let expected = oracle.discrete(&q).unwrap().to_vec();
+    assert_eq!(query.discrete(&q).unwrap(), expected);
+    assert_eq!((query.statistics().proof, expected), (Proof::Local, certificates.exceptions().to_vec()));
+    let expected = oracle.continuous(&[0.0; 9], &q).unwrap().to_vec();
+    assert_eq!(query.continuous(&[0.0; 9], &q).unwrap(), expected);
+    assert_eq!(query.statistics().proof, Proof::Local);
+}
