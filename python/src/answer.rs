@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use sscc::{Pair, Statistics};
+use sscc::{Pair, Proof, Statistics};
 use sscc_sim::text::{counted, length};
 
 use crate::arrays::{CachedArray, cached, pairs};
@@ -138,7 +138,9 @@ pub fn pairs_of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Pair>> {
 /// If the bytes are not a whole number of pairs.
 pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answer> {
     let (root_certified, complete, opened, box_tests, triangle_tests) = *cost;
-    let statistics = Statistics { root_certified, complete, opened, box_tests, triangle_tests };
+    // Answers in Python do not tell which certificate of the root it was.
+    let proof = if root_certified { Proof::Radius } else { Proof::Search };
+    let statistics = Statistics { root_certified, proof, complete, opened, box_tests, triangle_tests };
     Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, norm: *norm, statistics })
 }
 

@@ -83,6 +83,7 @@ impl CertifyArguments<'_, '_> {
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,
+            local_budget: CertifyOptions::DEFAULT_LOCAL_BUDGET,
             reach,
             threads: threads(self.threads)?,
         })

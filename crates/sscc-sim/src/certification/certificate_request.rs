@@ -65,6 +65,7 @@ impl CertificateRequest {
             ignore_rest: self.ignore_rest,
             max_exceptions: self.max_exceptions,
             budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
+            local_budget: CertifyOptions::DEFAULT_LOCAL_BUDGET,
             reach: self.reach()?.unwrap_or(CertifyOptions::DEFAULT_REACH),
             threads: Some(self.threads.unwrap_or_else(available_threads)),
         })

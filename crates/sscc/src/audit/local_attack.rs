@@ -61,7 +61,7 @@ impl LocalAttack<'_> {
         {
             let t = random.uniform();
             let between: Vec<f64> = q.iter().zip(&end).map(|(x, y)| x + t * (y - x)).collect();
-            return Some(self.test(claim, &between, exact).ok()?);
+            return self.test(claim, &between, exact).ok();
         }
         Some(None)
     }

@@ -38,7 +38,8 @@ pub struct CertifyOptions {
     /// since the tree takes most of the time.
     pub budget: usize,
     /// Memory for local certificates ([`LocalCertificates`](crate::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
-    /// pair tree leaves of its own. The largest nodes come first. 0: none.
+    /// pair tree leaves of its own. The largest nodes come first. 0, the default: none, because they take about as long as
+    /// the radii (docs/notes/2026-11-26-local-certificates.md).
     pub local_budget: usize,
     /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
     /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of

@@ -452,7 +452,8 @@ fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
     let y = (y - x * x.dot(y)).try_normalize()?;
     // Of a map that is nearly singular the iteration may leave two columns along one line.
-    if !(x.dot(y).abs() <= ORTHOGONAL) {
+    let cosine = x.dot(y).abs();
+    if cosine.is_nan() || cosine > ORTHOGONAL {
         return None;
     }
     let z = x.cross(y);

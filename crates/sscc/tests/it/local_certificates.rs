@@ -177,7 +177,6 @@ fn answers_are_those_of_brute_force() {
         let rays = (0..12).map(|_| random_ray(&model, Some(&shape), random));
         compare(&model, &certificates, rays, &format!("{kind:?} {seed}"), &mut seen);
     }
-    println!("{seen:?}");
     assert!(seen.roots > threshold(500) && seen.nodes > threshold(500), "{seen:?}");
     assert!(seen.hits_beside > threshold(200), "{seen:?}");
     assert!(seen.swept_roots > threshold(100) && seen.swept_nodes > threshold(300), "{seen:?}");
@@ -197,7 +196,6 @@ fn answers_of_odd_models_are_those_of_brute_force() {
         let rays = (0..3).map(|_| random_ray(&model, None, random));
         compare(&model, &certificates, rays, &format!("model {seed}"), &mut seen);
     }
-    println!("{seen:?}");
     assert!(seen.roots > threshold(1000) && seen.swept_roots > threshold(500), "{seen:?}");
 }
 
@@ -308,7 +306,6 @@ fn audits_find_local_certificates_that_claim_too_much() {
         let report = audit(&model, &forged, &asked, &()).unwrap();
         found += usize::from(report.violations.iter().any(|line| line.contains("local certificate")));
     }
-    println!("{found} of {lies}, {local_samples}");
     assert!(found * 10 >= 7 * lies && local_samples > 100 * lies, "{found} of {lies}, {local_samples}");
 }
 

@@ -239,8 +239,9 @@ fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
     let along = |dir: DVec3| {
         let dir = dir.try_normalize()?;
         let gaps = differences.map(|d| {
-            let d = right_or!(d, LocalGapOfCentroids, differences.iter().sum::<DVec3>() / 9.0);
-            right_or!(dir.dot(d) * (1.0 - 1e-14) - GAP_ROUNDING, LocalGapsExact, dir.dot(d))
+            let between = right_or!(d, LocalGapOfCentroids, differences.iter().sum::<DVec3>() / 9.0);
+            let gap = dir.dot(between);
+            right_or!(gap * (1.0 - 1e-14) - GAP_ROUNDING, LocalGapsExact, gap)
         });
         let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         (smallest > SMALLEST).then_some((smallest, gaps))

@@ -351,7 +351,7 @@ fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
     let [xx, yy, zz, xy, xz, yz] = sums.map(|lanes| lanes.iter().map(|x| f64::from(*x)).sum::<f64>());
     // The longest of three rows may be shorter by up to the root of three.
     let trace = right_or!(xx + yy + zz, LocalRowsAlone, return (xx.max(yy).max(zz)).sqrt() as f32);
-    if !(trace > 0.0) {
+    if trace.is_nan() || trace <= 0.0 {
         return if trace == 0.0 { 0.0 } else { f32::INFINITY };
     }
     let mut power = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| row.map(|x| x / trace));

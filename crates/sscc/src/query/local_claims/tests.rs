@@ -248,7 +248,6 @@ fn claims_hold_up_to_where_they_end() {
         let rank = [1, 2, 5, 12, 28][seed as usize / 7 % 5];
         attack(&FlexibleShape::new(seed, shape, rank), seed, 50, &mut seen);
     }
-    println!("{seen:?}");
     assert!(seen.claims > threshold(20_000) && seen.pairs_of_nodes > threshold(10_000), "{seen:?}");
     assert!(seen.swept > threshold(800) && seen.with_collisions > threshold(200), "{seen:?}");
     assert!(seen.largest_share > 0.6, "{seen:?}");
@@ -263,7 +262,6 @@ fn claims_hold_for_many_modes_and_at_every_size() {
         let (shape, seed) = (Shape::ALL[seed], 2 * seed as u64 + 1);
         attack(&FlexibleShape::new(seed, shape, 4).scaled(size), seed, 60, &mut seen);
     }
-    println!("{seen:?}");
     assert!(seen.claims > 1000 && seen.pairs_of_nodes > 300, "{seen:?}");
 }
 

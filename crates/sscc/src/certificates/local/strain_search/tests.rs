@@ -116,7 +116,7 @@ fn with_search(
     search.images = exact.iter().map(|x| *x as f32).collect();
     let norm = |rows: &[f64]| rows.iter().map(|x| x * x).sum::<f64>().sqrt();
     let largest = exact.chunks(search.width).map(norm).fold(0.0, f64::max) * (1.0 + 1e-12);
-    search.begin(largest, true);
+    search.begin(largest);
     check(&mut search, &gaps, &patch, &exact);
 }
 
