@@ -36,7 +36,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
     for (case, options) in [
         CertifyOptions::default(),
         CertifyOptions { budget: 0, ..Default::default() },
-        CertifyOptions { budget: 400, epsilon: 0.03, ..Default::default() },
+        CertifyOptions { budget: 400, local_budget: 64, epsilon: 0.03, ..Default::default() },
         CertifyOptions {
             budget: 4,
             center,

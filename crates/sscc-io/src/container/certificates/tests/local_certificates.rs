@@ -52,7 +52,7 @@ fn every_field_round_trips_bit_for_bit() {
 fn groups_and_local_certificates_are_in_one_file() {
     let groups = TriangleGroups::new(&(0..22).map(|t| t / 6).collect::<Vec<u32>>()).unwrap().between_only();
     let filter = ContactFilter::default().with_groups(groups);
-    let options = CertifyOptions { filter: Some(filter), ..CertifyOptions::default() };
+    let options = CertifyOptions { filter: Some(filter), local_budget: 64, ..CertifyOptions::default() };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
     assert_eq!(Container::parse(&bytes, CERTIFICATES).unwrap().version(), 6);
