@@ -178,9 +178,9 @@ fn answers_are_those_of_brute_force() {
         compare(&model, &certificates, rays, &format!("{kind:?} {seed}"), &mut seen);
     }
     assert!(seen.roots > threshold(500) && seen.nodes > threshold(500), "{seen:?}");
-    assert!(seen.hits_beside > threshold(200), "{seen:?}");
+    assert!(seen.hits_beside > threshold(50), "{seen:?}");
     assert!(seen.swept_roots > threshold(100) && seen.swept_nodes > threshold(300), "{seen:?}");
-    assert!(seen.swept_hits_beside > threshold(100), "{seen:?}");
+    assert!(seen.swept_hits_beside > threshold(50), "{seen:?}");
 }
 
 /// Meshes and modes of every odd kind, in one bucket or a few.
