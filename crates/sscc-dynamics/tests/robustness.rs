@@ -3,12 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "common/random_scene.rs"]
+mod random_scene;
 
 use common::{block, certified, cubes, elastic, fork, octahedron};
 use glam::{DMat3, DQuat, DVec3};
+use random_scene::{Random, RandomScene};
 use sscc::{Modes, ReducedModel};
-use sscc_dynamics::{ContactOptions, Damping, Ground, Shape, Start, World, WorldOptions};
-use sscc_modes::natural_frequencies;
+use sscc_dynamics::{Ground, Shape, Start, World, WorldOptions};
 use sscc_solid::{Elasticity, MassProperties, Material, PartialMaterial, ReducedForces, Stiffness};
 
 /// Number of random scenes.
@@ -21,30 +23,11 @@ const STEPS: usize = 200;
 /// the modes.
 const MAX_ENERGY: f64 = 1.02;
 
-/// Random numbers (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        low * libm::pow(high / low, self.unit())
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| 2.0 * self.unit() - 1.0))
-    }
-}
-
-/// A random shape, with a first mode whose half period is longer than the step.
-fn shape(random: &mut Random, step: f64) -> Shape {
+/// A random scene and its shape.
+fn draw(random: &mut Random) -> (RandomScene, Shape) {
     loop {
-        let youngs_modulus = Some(random.log(1e4, 1e9));
+        let scene = RandomScene::draw(random);
+        let youngs_modulus = Some(scene.youngs);
         let material = Material::new(&PartialMaterial { youngs_modulus, ..PartialMaterial::default() });
         let (material, kind) = (material.unwrap(), (4.0 * random.unit()) as u32);
         let solid = match kind {
@@ -54,8 +37,8 @@ fn shape(random: &mut Random, step: f64) -> Shape {
             _ => cubes(&[[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [2, 1, 1]], 0.06, material),
         };
         let shape = elastic(&solid, 8, random.unit() < 0.8, &[]);
-        if 2.0 * step * natural_frequencies(shape.elasticity().stiffness()).unwrap()[0] < 1.0 {
-            return shape;
+        if scene.resolves(shape.elasticity()) {
+            return (scene, shape);
         }
     }
 }
@@ -63,18 +46,7 @@ fn shape(random: &mut Random, step: f64) -> Shape {
 /// Runs a random scene. Returns its largest energy, with what contacts have dissipated, over the first one.
 fn run(seed: u64) -> f64 {
     let mut random = Random(seed);
-    let step = 1.0 / random.log(500.0, 4000.0);
-    let shape = shape(&mut random, step);
-    let contact = ContactOptions {
-        frequency: random.log(10.0, 125.0),
-        damping: random.unit(),
-        friction: random.unit(),
-        ..ContactOptions::default()
-    };
-    let ground = Some(Ground { friction: random.unit(), ..Ground::default() });
-    let mut some = |low, high| if random.unit() < 0.25 { 0.0 } else { random.log(low, high) };
-    let damping = Damping { mass: some(1e-2, 3.0), stiffness: some(1e-6, 1e-3) };
-    let options = WorldOptions { step, contact, ground, ..WorldOptions::default() };
+    let (RandomScene { damping, options, .. }, shape) = draw(&mut random);
     let mut world = World::new(options).unwrap();
     let (radius, speed) = (shape.radius(), 12.0 * random.unit());
     for n in 0..2 {

@@ -11,12 +11,15 @@
 //! The arguments are the number of scenes and the seed. The exit code is 1 if a scene did not run to its end.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "../../sscc-dynamics/tests/common/random_scene.rs"]
+mod random_scene;
+
 use std::path::Path;
 use std::process::ExitCode;
 
 use glam::{DQuat, DVec3};
-use sscc_dynamics::{ContactOptions, Damping, Ground, Shape, Start, World, WorldOptions};
-use sscc_modes::natural_frequencies;
+use random_scene::{Random, RandomScene};
+use sscc_dynamics::{Damping, Shape, Start, World};
 use sscc_sim::{Cache, PreparedModel, PreparedScene, Scene, models_folder};
 use sscc_solid::{Elasticity, ReducedForces, Stiffness};
 
@@ -54,99 +57,53 @@ model = "spring"
 model = "linear"
 "#;
 
-/// Numbers that are the same on every machine (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    /// Returns a number from 0 to 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Returns a number whose logarithm is uniform.
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.unit())
-    }
-
-    /// Returns a vector in the unit ball.
-    fn vector(&mut self) -> DVec3 {
-        loop {
-            let x = DVec3::from_array([(); 3].map(|()| self.between(-1.0, 1.0)));
-            if x.length() <= 1.0 {
-                return x;
-            }
-        }
-    }
-}
-
-/// A random scene.
+/// A random scene of one model.
 struct Trial<'m> {
     model: &'m PreparedModel,
     name: &'m str,
-    youngs: f64,
-    damping: Damping,
     speed: f64,
-    options: WorldOptions,
+    scene: RandomScene,
 }
 
 impl<'m> Trial<'m> {
     fn draw(random: &mut Random, models: &'m [PreparedModel], names: &'m [String]) -> Self {
         loop {
             let n = (random.unit() * models.len() as f64) as usize;
-            let (youngs, steps) = (random.log(1e4, 1e9), random.log(500.0, 4000.0));
-            let frequency = random.log(10.0, 200.0).min(steps / 4.0);
-            let contact = ContactOptions {
-                frequency,
-                damping: random.between(0.0, 1.0),
-                friction: random.unit(),
-                ..ContactOptions::default()
-            };
-            let mut some = |low, high| if random.unit() < 0.25 { 0.0 } else { random.log(low, high) };
-            let damping = Damping { mass: some(1e-2, 3.0), stiffness: some(1e-6, 1e-3) };
-            let ground = Some(Ground { normal: DVec3::Z, friction: random.unit(), ..Ground::default() });
-            let gravity = DVec3::NEG_Z * 9.81;
-            let options =
-                WorldOptions { step: 1.0 / steps, gravity, contact, ground, ..WorldOptions::default() };
-            let model = &models[n];
-            let trial =
-                Self { model, name: &names[n], youngs, damping, speed: random.between(0.0, 6.0), options };
-            let lowest = natural_frequencies(trial.shape().elasticity().stiffness()).unwrap()[0];
-            if 2.0 * trial.options.step * lowest < 1.0 {
+            let scene = RandomScene::draw(random);
+            let trial = Self { model: &models[n], name: &names[n], speed: 6.0 * random.unit(), scene };
+            if trial.scene.resolves(&trial.elasticity()) {
                 return trial;
             }
         }
     }
 
+    fn elasticity(&self) -> Elasticity {
+        stiffened(&self.model.certified.elasticity, self.scene.youngs / YOUNGS)
+    }
+
     fn shape(&self) -> Shape {
         let certified = &self.model.certified;
-        let elasticity = stiffened(&certified.elasticity, self.youngs / YOUNGS);
         let (model, certificates) = (certified.model.clone(), certified.full.certificates.clone());
-        Shape::new(model, certificates, elasticity, certified.mass.properties).unwrap()
+        Shape::new(model, certificates, self.elasticity(), certified.mass.properties).unwrap()
     }
 
     /// Runs the scene. Returns its largest energy over the first one, the number of steps and of shortened bodies, and the
     /// error if it did not run to its end.
     fn run(&self, random: &mut Random) -> (f64, usize, usize, Option<String>) {
         let shape = self.shape();
-        let mut world = World::new(self.options).unwrap();
+        let RandomScene { damping, options, .. } = self.scene;
+        let mut world = World::new(options).unwrap();
         let radius = shape.radius();
         for n in 0..4 {
             let (column, row) = (f64::from(n / 2), f64::from(n % 2));
-            let place = DVec3::new(2.1 * column, 0.2 * column, 1.1 + (2.1 + random.unit()) * row);
+            let place = DVec3::new(2.1 * column, 1.1 + (2.1 + random.unit()) * row, 0.2 * column);
             let towards = DVec3::X * (0.5 - column) * self.speed;
             let start = Start {
                 position: Some(place * radius),
                 orientation: DQuat::from_scaled_axis(random.vector() * std::f64::consts::PI),
-                velocity: towards + random.vector() * self.speed * 0.5 - DVec3::Z * self.speed,
+                velocity: towards + random.vector() * self.speed * 0.5 - DVec3::Y * self.speed,
                 spin: random.vector() * 10.0,
-                damping: self.damping,
+                damping,
                 ..Start::default()
             };
             world.add(&shape, &start).unwrap();
@@ -154,7 +111,7 @@ impl<'m> Trial<'m> {
         world.check_start().unwrap();
         let first = world.energy();
         let (mut largest, mut shortened) = (first, 0);
-        let steps = (DURATION / self.options.step).round() as usize;
+        let steps = (DURATION / options.step).round() as usize;
         for step in 0..steps {
             if let Err(error) = world.advance(&mut ()) {
                 return (largest / first, step, shortened, Some(error.to_string()));
@@ -192,8 +149,8 @@ fn main() -> ExitCode {
         let mut random = Random(seed.wrapping_mul(1_000_003).wrapping_add(n));
         let trial = Trial::draw(&mut random, &prepared.models, &names);
         let (largest, steps, shortened, error) = trial.run(&mut random);
-        let Trial { name, youngs, damping: Damping { mass, stiffness }, speed, options, .. } = &trial;
-        let rate = 1.0 / options.step;
+        let Trial { name, speed, scene: RandomScene { youngs, damping, options }, .. } = &trial;
+        let (Damping { mass, stiffness }, rate) = (damping, 1.0 / options.step);
         println!(
             "{n} {name} {youngs:.1e} {mass:.1e},{stiffness:.1e} {rate:.0} {speed:.1} | {steps} {shortened} \
              {largest:.6} {}",

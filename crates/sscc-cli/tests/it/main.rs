@@ -24,6 +24,7 @@ mod readme;
 mod real_data;
 mod resolve;
 mod rows;
+mod samples;
 mod scopes;
 mod simulate;
 mod sweep;
