@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::smallest_stretch::{nearest_rotation, smallest_eigenvalue, smallest_stretch};
 use crate::certificates::{
     EllipsoidBlocks, FactorScales, GRADIENT, LocalCertificates, MOST_MODES, gradient_len,
 };
@@ -18,11 +19,12 @@ const DIAGONAL: f64 = 1.7321;
 /// Rounds a sum of a handful of non-negative numbers up.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// A search goes on from the root down while it has evaluated no more certificates than this share of all buckets, and one for each two
-/// buckets that were proven.
-const FEW: usize = 16;
+/// A search stops evaluating certificates from the root down once it has evaluated more than [`MOST_LOST`], one for so many
+/// buckets, and one for each proven bucket. Only the time of queries depends on that.
+const BUCKETS_OF_EVALUATION: usize = 16;
 
-/// A search tries certificates of buckets on pairs of buckets until so many more were in vain than not.
+/// Certificates that a search may evaluate in vain. It evaluates those of buckets for pairs of buckets until so many more
+/// proved nothing than proved their pair.
 const MOST_LOST: usize = 32;
 
 /// No certificate.
@@ -143,8 +145,8 @@ impl<const E: usize> LocalProofs<E> {
         }
     }
 
-    /// Starts a new search: finds from the root down the largest nodes that are proven, among those for which `is_open` (their radius is
-    /// reached).
+    /// Starts a new search: finds from the root down the largest nodes that are proven, among those for which `is_open`
+    /// (their radius is reached).
     pub(super) fn prove<M: VertexMotion<E>>(
         &mut self,
         tables: &LocalTables<'_>,
@@ -159,7 +161,7 @@ impl<const E: usize> LocalProofs<E> {
         stack.clear();
         stack.push(0);
         while let Some(n) = stack.pop() {
-            if self.evaluated > MOST_LOST + self.proven.len() / FEW + self.proven_buckets {
+            if self.evaluated > MOST_LOST + self.proven.len() / BUCKETS_OF_EVALUATION + self.proven_buckets {
                 break;
             }
             if let Some(index) = tables.certificate_of(n) {
@@ -377,88 +379,6 @@ impl<const E: usize> LocalProofs<E> {
 /// The smaller of two numbers, and NaN where one is NaN: it allows nothing.
 fn smaller(a: f64, b: f64) -> f64 {
     right_or!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
-}
-
-/// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
-fn smallest_stretch(map: &DMat3) -> f64 {
-    let gram = map.transpose() * *map;
-    smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
-}
-
-/// A lower bound of the smallest eigenvalue of the symmetric part of a matrix: at most its smallest singular value, for each matrix on the line
-/// between two such ones, too. The rotation before it is one up to rounding, which the share of the norm covers.
-fn smallest_eigenvalue(map: &DMat3) -> f64 {
-    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12)
-}
-
-/// A lower bound of the smallest eigenvalue of a symmetric matrix, which may be below zero by more than needed. `error`: of its entries, relative to their sum.
-fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
-    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    let size = [x, y, z].iter().map(|x| x.abs().element_sum()).sum::<f64>();
-    // The closed form; any candidate would do.
-    let mean = (x.x + y.y + z.z) / 3.0;
-    let [a, b, c] = [x.x - mean, y.y - mean, z.z - mean];
-    let spread = ((a * a + b * b + c * c + 2.0 * (x.y * x.y + x.z * x.z + y.z * y.z)) / 6.0).sqrt();
-    let candidate = if spread > 1e-12 * size {
-        let [a, b, c, d, e, f] = [a, b, c, x.y, x.z, y.z].map(|x| x / spread);
-        let half = 0.5 * (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e));
-        let angle = half.clamp(-1.0, 1.0).acos() / 3.0 + 2.0 * std::f64::consts::FRAC_PI_3;
-        mean + 2.0 * spread * angle.cos()
-    } else {
-        mean
-    };
-    // Rounding of the closed form may be as large as the root of that of its numbers.
-    for slack in [1e-9, 1e-6] {
-        let shift = candidate - slack * size;
-        if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
-            return shift;
-        }
-    }
-    f64::NEG_INFINITY
-}
-
-/// Whether the Cholesky factorisation of a symmetric matrix minus `shift` times the identity succeeds. (Rump, *Verification of
-/// positive definiteness*, 2006: its rounding is relative to the trace.) NaN fails.
-fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
-    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    let first = x.x - shift;
-    let (b, c) = (x.y / first, x.z / first);
-    let second = (y.y - shift) - b * x.y;
-    let e = y.z - b * x.z;
-    let third = (z.z - shift) - c * x.z - e * e / second;
-    first > 0.0 && second > 0.0 && third > 0.0
-}
-
-/// Steps of the iteration towards the rotation.
-const STEPS: usize = 8;
-
-/// A rotation is orthogonal up to this: more than rounding leaves of two vectors that were orthogonal before, and far less than
-/// [`smallest_eigenvalue`] covers.
-const ORTHOGONAL: f64 = 1e-15;
-
-/// The rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; none near a singular
-/// one.
-fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
-    let mut next = *map;
-    for _ in 0..STEPS {
-        let inverse = next.inverse().transpose();
-        // Scaled towards the rotation: singular values become close to 1.
-        let size = |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>();
-        let factor = (size(&inverse) / size(&next)).sqrt().sqrt();
-        next = (next * factor + inverse * (1.0 / factor)) * 0.5;
-    }
-    // Orthogonal to rounding, whatever the iteration did.
-    let x = next.x_axis.try_normalize()?;
-    let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
-    let y = (y - x * x.dot(y)).try_normalize()?;
-    // Of a map that is nearly singular the iteration may leave two columns along one line.
-    let cosine = x.dot(y).abs();
-    if cosine.is_nan() || cosine > ORTHOGONAL {
-        return None;
-    }
-    let z = x.cross(y);
-    let z = if z.dot(next.z_axis) < 0.0 { -z } else { z };
-    Some(DMat3::from_cols(x, y, z))
 }
 
 /// Vectors of the longest column of W.

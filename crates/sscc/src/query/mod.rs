@@ -21,6 +21,7 @@ mod query;
 mod resolve;
 mod safe_scale;
 mod search_group;
+mod smallest_stretch;
 mod statistics;
 mod sweep;
 mod swept_search;

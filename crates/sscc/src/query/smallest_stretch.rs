@@ -1,0 +1,87 @@
+//! Lower bounds of the smallest singular value of a 3 x 3 matrix: how little the map stretches any direction.
+
+use glam::DMat3;
+
+/// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
+pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
+    let gram = map.transpose() * *map;
+    smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
+}
+
+/// A lower bound of the smallest eigenvalue of the symmetric part of a matrix, which is at most its smallest singular value.
+/// It is concave, so what it is at least at two matrices it is at least between them. The rotation by which the
+/// matrix was multiplied is one up to rounding, which the share of the norm covers.
+pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
+    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12)
+}
+
+/// A lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity where none was found. `error`: that of its
+/// entries, relative to the sum of their magnitudes.
+pub(super) fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let size = [x, y, z].iter().map(|x| x.abs().element_sum()).sum::<f64>();
+    // The closed form; any candidate would do.
+    let mean = (x.x + y.y + z.z) / 3.0;
+    let [a, b, c] = [x.x - mean, y.y - mean, z.z - mean];
+    let spread = ((a * a + b * b + c * c + 2.0 * (x.y * x.y + x.z * x.z + y.z * y.z)) / 6.0).sqrt();
+    let candidate = if spread > 1e-12 * size {
+        let [a, b, c, d, e, f] = [a, b, c, x.y, x.z, y.z].map(|x| x / spread);
+        let half = 0.5 * (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e));
+        let angle = half.clamp(-1.0, 1.0).acos() / 3.0 + 2.0 * std::f64::consts::FRAC_PI_3;
+        mean + 2.0 * spread * angle.cos()
+    } else {
+        mean
+    };
+    // Rounding of the closed form may be as large as the root of that of its numbers.
+    for slack in [1e-9, 1e-6] {
+        let shift = candidate - slack * size;
+        if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
+            return shift;
+        }
+    }
+    f64::NEG_INFINITY
+}
+
+/// Whether the Cholesky factorisation of a symmetric matrix minus `shift` times the identity succeeds. (Rump, *Verification of
+/// positive definiteness*, 2006: its rounding is relative to the trace.) NaN fails.
+fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let first = x.x - shift;
+    let (b, c) = (x.y / first, x.z / first);
+    let second = (y.y - shift) - b * x.y;
+    let e = y.z - b * x.z;
+    let third = (z.z - shift) - c * x.z - e * e / second;
+    first > 0.0 && second > 0.0 && third > 0.0
+}
+
+/// Steps of the iteration towards the rotation.
+const STEPS: usize = 8;
+
+/// A rotation is orthogonal up to this: more than rounding leaves of two vectors that were orthogonal before, and far less than
+/// [`smallest_eigenvalue`] covers.
+const ORTHOGONAL: f64 = 1e-15;
+
+/// The rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; none near a singular
+/// one.
+pub(super) fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
+    let mut next = *map;
+    for _ in 0..STEPS {
+        let inverse = next.inverse().transpose();
+        // Scaled towards the rotation: singular values become close to 1.
+        let size = |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>();
+        let factor = (size(&inverse) / size(&next)).sqrt().sqrt();
+        next = (next * factor + inverse * (1.0 / factor)) * 0.5;
+    }
+    // Orthogonal to rounding, whatever the iteration did.
+    let x = next.x_axis.try_normalize()?;
+    let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
+    let y = (y - x * x.dot(y)).try_normalize()?;
+    // Of a map that is nearly singular the iteration may leave two columns along one line.
+    let cosine = x.dot(y).abs();
+    if cosine.is_nan() || cosine > ORTHOGONAL {
+        return None;
+    }
+    let z = x.cross(y);
+    let z = if z.dot(next.z_axis) < 0.0 { -z } else { z };
+    Some(DMat3::from_cols(x, y, z))
+}
