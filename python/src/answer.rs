@@ -11,8 +11,12 @@ use crate::errors::{kind, value};
 /// The result of `__reduce__`: a function and its arguments.
 pub type Reduction<'py, A> = (Bound<'py, PyAny>, A);
 
-/// The pickled form of an answer: pairs (little-endian), norm, and the cost as in [`pickled`].
-pub type PickledAnswer<'py> = (Bound<'py, PyBytes>, f64, (bool, bool, u64, u64, u64));
+/// The pickled form of an answer: pairs (little-endian), norm, and the cost as in [`pickled`]: the first number is the proof. Earlier
+/// versions have there whether the root's radius was the proof.
+pub type PickledAnswer<'py> = (Bound<'py, PyBytes>, f64, (u8, bool, u64, u64, u64));
+
+/// The proofs by their pickled numbers.
+const PROOFS: [Proof; 3] = [Proof::Search, Proof::Radius, Proof::Local];
 
 #[pyclass(frozen, module = "sscc", name = "Answer")]
 pub struct Answer {
@@ -62,6 +66,11 @@ impl Answer {
     }
 
     #[getter]
+    fn proof(&self) -> &'static str {
+        self.core.statistics.proof.name()
+    }
+
+    #[getter]
     fn opened(&self) -> u64 {
         self.core.statistics.opened
     }
@@ -107,7 +116,8 @@ pub fn result(count: usize, is_complete: bool) -> String {
 /// Returns the pickled form of an answer.
 pub fn pickled<'py>(py: Python<'py>, answer: &sscc::Answer) -> PickledAnswer<'py> {
     let s = &answer.statistics;
-    let cost = (s.root_certified, s.complete, s.opened, s.box_tests, s.triangle_tests);
+    let proof = PROOFS.iter().position(|proof| *proof == s.proof).unwrap_or_default() as u8;
+    let cost = (proof, s.complete, s.opened, s.box_tests, s.triangle_tests);
     (pair_bytes(py, &answer.pairs), answer.norm, cost)
 }
 
@@ -135,11 +145,13 @@ pub fn pairs_of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Pair>> {
 /// Returns the answer of a pickled form.
 ///
 /// # Errors
-/// If the bytes are not a whole number of pairs.
+/// If the bytes are not a whole number of pairs, or the proof has another number.
 pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answer> {
-    let (root_certified, complete, opened, box_tests, triangle_tests) = *cost;
-    // Answers in Python do not tell which certificate of the root it was.
-    let proof = if root_certified { Proof::Radius } else { Proof::Search };
+    let (proof, complete, opened, box_tests, triangle_tests) = *cost;
+    let Some(&proof) = PROOFS.get(usize::from(proof)) else {
+        return Err(value("the pickled answer is damaged: its proof is not known"));
+    };
+    let root_certified = proof != Proof::Search;
     let statistics = Statistics { root_certified, proof, complete, opened, box_tests, triangle_tests };
     Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, norm: *norm, statistics })
 }

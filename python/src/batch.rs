@@ -1,6 +1,6 @@
 //! `sscc.Batch`: the answers for many q.
 
-use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{PyFixedUnicode, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -17,7 +17,7 @@ use crate::pool::{self, Pool};
 pub struct Batch {
     pub answers: Vec<sscc::Answer>,
     /// The arrays of the getters, in their order below.
-    arrays: [CachedArray; 9],
+    arrays: [CachedArray; 10],
 }
 
 impl Batch {
@@ -64,6 +64,11 @@ impl Batch {
     #[getter]
     fn root_certified<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.column(py, 4, |answer| answer.statistics.root_certified)
+    }
+
+    #[getter]
+    fn proof<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.column(py, 9, |answer| fixed(answer.statistics.proof.name()))
     }
 
     #[getter]
@@ -137,6 +142,13 @@ impl Batch {
             grouped(colliding)
         )
     }
+}
+
+/// Returns a short ASCII text as an entry of an array.
+fn fixed(text: &str) -> PyFixedUnicode<6> {
+    let mut entry = [0; 6];
+    entry.iter_mut().zip(text.bytes()).for_each(|(entry, byte)| *entry = u32::from(byte));
+    entry.into()
 }
 
 /// Constructor for pickled batches.

@@ -263,6 +263,11 @@ impl Certificates {
     }
 
     #[getter]
+    fn local_certificates(&self) -> usize {
+        self.core().parts().local.nodes.len()
+    }
+
+    #[getter]
     fn digest(&self) -> String {
         self.core().parts().digest.0.iter().map(|byte| format!("{byte:02x}")).collect()
     }

@@ -22,6 +22,7 @@ pub struct CertifyArguments<'a, 'py> {
     pub center: Option<&'a Bound<'py, PyAny>>,
     pub scheme: Option<&'a Bound<'py, PyAny>>,
     pub budget: Option<&'a Bound<'py, PyAny>>,
+    pub local_budget: Option<&'a Bound<'py, PyAny>>,
     pub reach: Option<&'a Bound<'py, PyAny>>,
     pub neighbours: Option<&'a Bound<'py, PyAny>>,
     pub weld: Option<&'a Bound<'py, PyAny>>,
@@ -60,7 +61,14 @@ impl CertifyArguments<'_, '_> {
         if scheme == Some(Scheme::Paper) && budget.is_some() {
             return Err(value("scheme 'paper' stores no pair tree: leave budget out"));
         }
-        let budget = if scheme == Some(Scheme::Paper) { 0 } else { budget.unwrap_or(default.budget) };
+        let local_budget = count(self.local_budget, "local_budget", 0..=u32::MAX as usize)?;
+        if scheme == Some(Scheme::Paper) && local_budget.is_some() {
+            return Err(value("scheme 'paper' stores no local certificates: leave local_budget out"));
+        }
+        let (budget, local_budget) = match scheme {
+            Some(Scheme::Paper) => (0, 0),
+            _ => (budget.unwrap_or(default.budget), local_budget.unwrap_or(default.local_budget)),
+        };
         let reach = number(self.reach, "reach")?;
         if scheme == Some(Scheme::Paper) && reach.is_some() {
             return Err(value("scheme 'paper' ends radii at the global radius: leave reach out"));
@@ -83,7 +91,7 @@ impl CertifyArguments<'_, '_> {
             ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
             max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
             budget,
-            local_budget: CertifyOptions::DEFAULT_LOCAL_BUDGET,
+            local_budget,
             reach,
             threads: threads(self.threads)?,
         })

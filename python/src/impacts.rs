@@ -73,6 +73,11 @@ impl Impacts {
     }
 
     #[getter]
+    fn proof(&self) -> &'static str {
+        self.answer.statistics.proof.name()
+    }
+
+    #[getter]
     fn opened(&self) -> u64 {
         self.answer.statistics.opened
     }

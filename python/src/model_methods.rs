@@ -71,8 +71,8 @@ impl Model {
     }
 
     #[allow(clippy::too_many_arguments)]
-    #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, reach=None, neighbours=None,
-        weld=None, ignore_rest=None, max_exceptions=None, groups=None, ignore_groups=None, threads=None, progress=None))]
+    #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, local_budget=None, reach=None,
+        neighbours=None, weld=None, ignore_rest=None, max_exceptions=None, groups=None, ignore_groups=None, threads=None, progress=None))]
     fn certify(
         slf: &Bound<'_, Self>,
         epsilon: Option<&Bound<'_, PyAny>>,
@@ -80,6 +80,7 @@ impl Model {
         center: Option<&Bound<'_, PyAny>>,
         scheme: Option<&Bound<'_, PyAny>>,
         budget: Option<&Bound<'_, PyAny>>,
+        local_budget: Option<&Bound<'_, PyAny>>,
         reach: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         weld: Option<&Bound<'_, PyAny>>,
@@ -96,6 +97,7 @@ impl Model {
             center,
             scheme,
             budget,
+            local_budget,
             reach,
             neighbours,
             weld,

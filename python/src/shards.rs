@@ -18,12 +18,13 @@ use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
 /// The keywords of `Model.certify`, except `progress`.
-const KEYWORDS: [&str; 13] = [
+const KEYWORDS: [&str; 14] = [
     "epsilon",
     "metric",
     "center",
     "scheme",
     "budget",
+    "local_budget",
     "reach",
     "neighbours",
     "weld",
@@ -57,6 +58,7 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         center,
         scheme,
         budget,
+        local_budget,
         reach,
         neighbours,
         weld,
@@ -75,6 +77,7 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         center: center.as_ref(),
         scheme: scheme.as_ref(),
         budget: budget.as_ref(),
+        local_budget: local_budget.as_ref(),
         reach: reach.as_ref(),
         neighbours: neighbours.as_ref(),
         weld: weld.as_ref(),

@@ -20,6 +20,7 @@ _I64 = NDArray[np.int64]
 _U32 = NDArray[np.uint32]
 _U64 = NDArray[np.uint64]
 _F64 = NDArray[np.float64]
+_Str = NDArray[np.str_]
 
 @final
 class Model:
@@ -60,6 +61,7 @@ class Model:
         center: ArrayLike | None = None,
         scheme: Literal["full", "paper"] | None = None,
         budget: int | None = None,
+        local_budget: int | None = None,
         reach: float | None = None,
         neighbours: Literal["exclude", "include-one-vertex"] | None = None,
         weld: bool | None = None,
@@ -75,7 +77,10 @@ class Model:
         epsilon: allowed relative error of the root's radius; None: 0.1.
         metric: as in ``Model``; None: the model's own.
         center: the q from which radii are measured (r,); None: 0, the rest pose.
-        scheme: "full" (default) stores a pair tree of up to ``budget`` (64) bytes for each triangle; "paper" does not.
+        scheme: "full" (default) stores a pair tree of up to ``budget`` (64) bytes for each triangle,
+            and local certificates; "paper" does not.
+        local_budget: bytes for each triangle that local certificates may take, beside what the pair tree leaves of its own;
+            0: none; None: 64.
         reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 16.
         neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
@@ -236,6 +241,9 @@ class Certificates:
     def pair_limit(self) -> float:
         """The norm below which the pair tree has every node pair that can collide; 0 without a pair tree."""
     @property
+    def local_certificates(self) -> int:
+        """Number of nodes with a local certificate."""
+    @property
     def digest(self) -> str:
         """BLAKE3 of the model and the scope of the certificates, in hexadecimal."""
     @property
@@ -290,7 +298,10 @@ class Answer:
         """Whether all pairs are listed; False if ``limit`` stopped the search."""
     @property
     def root_certified(self) -> bool:
-        """Whether one comparison proved the shape free, apart from exceptions."""
+        """Whether the root's certificate proved the shape free, apart from exceptions: its radius or its local one."""
+    @property
+    def proof(self) -> Literal["radius", "local", "search"]:
+        """The proof of the answer, apart from exceptions: the root's radius, the root's local certificate, or a search."""
     @property
     def opened(self) -> int:
         """Number of opened nodes and node pairs."""
@@ -324,6 +335,8 @@ class Impacts:
     @property
     def root_certified(self) -> bool: ...
     @property
+    def proof(self) -> Literal["radius", "local", "search"]: ...
+    @property
     def opened(self) -> int: ...
     @property
     def box_tests(self) -> int: ...
@@ -344,6 +357,9 @@ class Batch:
     def complete(self) -> _Bool: ...
     @property
     def root_certified(self) -> _Bool: ...
+    @property
+    def proof(self) -> _Str:
+        """The proof of each answer, as ``Answer.proof``."""
     @property
     def opened(self) -> _U64: ...
     @property

@@ -132,6 +132,8 @@ export interface Answer {
     triangles?: number[];
     microseconds: number;
     root_certified: boolean;
+    /** What proved the answer, apart from exceptions. */
+    proof: "radius" | "local" | "search";
     opened: number;
     box_tests: number;
     triangle_tests: number;

@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let Some(folder) = sscc_testing::models("the bench of resolve") else { return Ok(()) };
     let (letter, modes) = (folder.join("vega_A/A.obj"), folder.join("vega_A/A.URendering.float"));
     let letter = sscc_io::load_model(&letter, Some(&modes))?.0;
-    let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions { budget: 0, local_budget: 0, ..CertifyOptions::default() };
     measure("vega_A", &letter, &options, samples)?;
     if let Some((face, _)) = models::face()? {
         let mut open = vec![0.0; face.rank()];

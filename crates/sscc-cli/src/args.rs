@@ -215,6 +215,10 @@ pub struct Options {
     /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
+    /// Memory for local certificates of the scheme full, in bytes for each triangle, beside what the pair tree leaves of its own;
+    /// 0: none [default: 64]
+    #[arg(long, value_name = "BYTES")]
+    pub local_budget: Option<u32>,
     /// How far radii of the scheme full may reach, in units of the paper's global radius, at least 1; they end before where
     /// the budget does [default: 16]
     #[arg(long, value_name = "X", value_parser = parse_reach)]
@@ -272,8 +276,9 @@ pub struct Threads {
 pub enum Scheme {
     /// A radius for each node of the BVH, and for each pair of the root's children
     Paper,
-    /// Also the pair tree: the node pairs with radii below a limit, within the budget. Queries are faster where the
-    /// root's certificate fails, but the file is larger and takes longer to compute
+    /// Also the pair tree: the node pairs with radii below a limit, within the budget; and local certificates, which prove nodes
+    /// free far beyond their radii. Queries are faster where the root's radius is reached, but the file is larger and takes
+    /// longer to compute
     Full,
 }
 

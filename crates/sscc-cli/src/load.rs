@@ -52,6 +52,7 @@ pub fn request(
             args::Scheme::Full => Scheme::Full,
         }),
         budget: typed.budget.map(|bytes| bytes as usize),
+        local_budget: typed.local_budget.map(|bytes| bytes as usize),
         reach: typed.reach,
         threads: Some(threads(&typed.threads)),
     })
@@ -79,16 +80,17 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
     computed.with_context(|| path.display().to_string())
 }
 
-/// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree unless
-/// `--scheme`, `--budget` or `--reach` requests one: a few queries do not save the time that it takes to compute.
+/// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree and no local
+/// certificates unless `--scheme`, `--budget`, `--local-budget` or `--reach` requests them: a few queries do not save the time that
+/// these take to compute.
 pub fn certificates_now(
     loaded: &LoadedModel,
     files: &args::Model,
     typed: &args::Options,
 ) -> Result<Certificates> {
     let mut options = request(loaded, files, typed)?.options(&loaded.model)?;
-    if (typed.scheme, typed.budget, typed.reach) == (None, None, None) {
-        options.budget = 0;
+    if (typed.scheme, typed.budget, typed.local_budget, typed.reach) == (None, None, None, None) {
+        (options.budget, options.local_budget) = (0, 0);
     }
     note("no --certificates given: computing them first (sscc certify keeps them in a file)");
     certify(&loaded.model, &files.path, &options)

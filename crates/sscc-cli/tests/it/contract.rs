@@ -14,7 +14,7 @@ const CERTIFICATES: &str = "strips.sscc.safetensors";
 
 const CERTIFY: &str = "triangles, vertices, rank, nodes, pairs, seconds, threads, root_radius, global_radius, bytes, \
     rest_collisions, exceptions";
-const CHECK: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, opened, box_tests, \
+const CHECK: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, proof, opened, box_tests, \
     triangle_tests";
 const AUDIT: &str = "samples, local_samples, violations, root_tightness, tightness_median, tightness_min";
 

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::common::{Run, keys, sorted, sscc};
 
-const KEYS: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, opened, box_tests, \
+const KEYS: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, proof, opened, box_tests, \
                     triangle_tests";
 
 /// Two triangles, the second at the given height.

@@ -88,6 +88,7 @@ fn a_page_answers_as_check_does_until_ctrl_c() {
             "complete",
             "pairs",
             "root_certified",
+            "proof",
             "opened",
             "box_tests",
             "triangle_tests",

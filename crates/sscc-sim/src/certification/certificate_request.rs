@@ -36,6 +36,8 @@ pub struct CertificateRequest {
     pub scheme: Option<Scheme>,
     /// Memory for the pair tree (`--budget`), in bytes for each triangle.
     pub budget: Option<usize>,
+    /// Memory for local certificates (`--local-budget`), in bytes for each triangle, beside what the pair tree leaves of its own.
+    pub local_budget: Option<usize>,
     /// How far radii may reach (`--reach`), in units of the global radius of the paper.
     pub reach: Option<f64>,
     /// Number of threads; none: all cores.
@@ -47,7 +49,7 @@ pub struct CertificateRequest {
 pub enum Scheme {
     /// Those of the nodes and of the pairs of the root's children.
     Paper,
-    /// Also the pair tree.
+    /// Also the pair tree and local certificates.
     Full,
 }
 
@@ -65,7 +67,7 @@ impl CertificateRequest {
             ignore_rest: self.ignore_rest,
             max_exceptions: self.max_exceptions,
             budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
-            local_budget: CertifyOptions::DEFAULT_LOCAL_BUDGET,
+            local_budget: self.local_budget()?.unwrap_or(CertifyOptions::DEFAULT_LOCAL_BUDGET),
             reach: self.reach()?.unwrap_or(CertifyOptions::DEFAULT_REACH),
             threads: Some(self.threads.unwrap_or_else(available_threads)),
         })
@@ -110,6 +112,18 @@ impl CertificateRequest {
                 Err(SimError::refused("--scheme paper", "it stores no pair tree: leave --budget out"))
             }
             (Some(Scheme::Full), None) => Ok(Some(CertifyOptions::DEFAULT_BUDGET)),
+            (_, budget) => Ok(budget),
+        }
+    }
+
+    /// Returns the budget of local certificates; none without one and the scheme of the paper, which has none of them.
+    pub(super) fn local_budget(&self) -> Result<Option<usize>> {
+        match (self.scheme, self.local_budget) {
+            (Some(Scheme::Paper), None) => Ok(Some(0)),
+            (Some(Scheme::Paper), Some(_)) => Err(SimError::refused(
+                "--scheme paper",
+                "it stores no local certificates: leave --local-budget out",
+            )),
             (_, budget) => Ok(budget),
         }
     }

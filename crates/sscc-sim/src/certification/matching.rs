@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sscc::{Certificates, ContactFilter, ReducedModel};
+use sscc::{CertificateParts, Certificates, CertifyOptions, ContactFilter, ReducedModel};
 use sscc_io::read_certificates;
 
 use super::certificate_request::{CertificateRequest, Scheme};
@@ -62,13 +62,23 @@ impl CertificateRequest {
         let (tree, triangles) = (&certificates.parts().pair_tree, certificates.hierarchy().order().len());
         self.budget()?;
         let has_tree = tree.limit() > 0.0;
-        let is_of_scheme = self.scheme.is_none_or(|scheme| has_tree == (scheme == Scheme::Full));
+        let is_full = has_tree || !certificates.parts().local.nodes.is_empty();
+        let is_of_scheme = self.scheme.is_none_or(|scheme| is_full == (scheme == Scheme::Full));
         let is_in_budget = |bytes: usize| has_tree && tree.bytes() <= bytes.saturating_mul(triangles);
         if !is_of_scheme || !self.budget.is_none_or(is_in_budget) {
             return Ok(Some(format!(
                 "its pair tree of {} bytes for {triangles} triangles contradicts --scheme or --budget; leave the flag out, \
                  or certify anew",
                 tree.bytes()
+            )));
+        }
+        self.local_budget()?;
+        if !self.is_in_local_budget(certificates.parts()) {
+            let local = &certificates.parts().local;
+            return Ok(Some(format!(
+                "its local certificates of {} bytes for {triangles} triangles contradict --local-budget; leave the flag out, or \
+                 certify anew",
+                local.bytes()
             )));
         }
         if let Some(reach) = self.reach()? {
@@ -95,5 +105,20 @@ impl CertificateRequest {
                  anew"
             )
         }))
+    }
+
+    /// Whether local certificates take no more than their budget and what the pair tree leaves of its own: that of `--budget`, else
+    /// the default. A budget of 0 allows none.
+    fn is_in_local_budget(
+        &self,
+        CertificateParts { hierarchy, pair_tree, local, .. }: &CertificateParts,
+    ) -> bool {
+        let bytes = |budget: usize| budget.saturating_mul(hierarchy.order().len());
+        let left =
+            bytes(self.budget.unwrap_or(CertifyOptions::DEFAULT_BUDGET)).saturating_sub(pair_tree.bytes());
+        self.local_budget.is_none_or(|budget| {
+            local.nodes.is_empty()
+                || budget > 0 && local.budgeted_bytes() <= bytes(budget).saturating_add(left)
+        })
     }
 }

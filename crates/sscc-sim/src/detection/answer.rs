@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::{ContactCurves, Impact, Pair, Penetration, TriMesh};
+use sscc::{ContactCurves, Impact, Pair, Penetration, Proof, TriMesh};
 
 use crate::LeftOut;
 
@@ -39,6 +39,8 @@ pub struct DetectionAnswer<'a> {
     pub norm: Option<f64>,
     /// Whether the root's certificate held, of a model.
     pub root_certified: Option<bool>,
+    /// What proved the answer, of a model.
+    pub proof: Option<Proof>,
     /// Number of pairs that no certificate covers, so that each query tests them, of a model.
     pub exceptions: usize,
     /// The pairs that the run does not test.

@@ -148,6 +148,7 @@ fn answer<'a>(
         microseconds: found.microseconds,
         norm: None,
         root_certified: None,
+        proof: None,
         exceptions: 0,
         left_out: mesh.left_out,
         opened: found.statistics.opened,

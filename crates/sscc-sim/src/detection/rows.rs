@@ -98,6 +98,7 @@ pub fn check_rows<E: From<SimError>>(
                 microseconds,
                 norm: Some(found.norm),
                 root_certified: Some(found.statistics.root_certified),
+                proof: Some(found.statistics.proof),
                 exceptions,
                 left_out: &left_out,
                 opened: found.statistics.opened,

@@ -57,7 +57,7 @@ impl CertifiedModel {
         Ok(Self { paper: Some(paper), ..self })
     }
 
-    /// Whether the root's certificate alone proves the shape free.
+    /// Whether the root's radius alone proves the shape free.
     pub fn is_root_certified(&self, q: &[f64]) -> bool {
         let certificates = &self.full.certificates;
         certificates.metric().norm(q) < certificates.root_radius()

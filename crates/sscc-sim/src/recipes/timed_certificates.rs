@@ -35,8 +35,8 @@ pub struct CertificateCost {
 }
 
 impl TimedCertificates {
-    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle).
-    /// They ignore pairs that collide at rest.
+    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle). Without a
+    /// budget they are those of the paper, without local certificates; else these have the default budget. They ignore pairs that collide at rest.
     /// `source` names the origin of the model in errors.
     pub(crate) fn get(
         cache: &Cache,
@@ -47,7 +47,7 @@ impl TimedCertificates {
         budget: usize,
         watch: &dyn Watch,
     ) -> Result<Self, SimError> {
-        let options = format!("{budget} ignore-rest {metric:?}");
+        let options = format!("{budget} {} ignore-rest {metric:?}", local_budget(budget));
         let key = Key::new("certificates").text(cache.program()?).text(&options).model(model);
         cache.get(
             &format!("{name}-{key}.sscc.safetensors"),
@@ -68,6 +68,7 @@ impl TimedCertificates {
         let options = CertifyOptions {
             metric,
             budget,
+            local_budget: local_budget(budget),
             ignore_rest: true,
             threads: Some(threads),
             ..CertifyOptions::default()
@@ -102,4 +103,9 @@ impl TimedCertificates {
             .map_err(|error| SimError::refused(beside.display(), error.to_string()))?;
         Ok(write_whole(&beside, &cost)?)
     }
+}
+
+/// The budget of local certificates beside this one of the pair tree.
+fn local_budget(budget: usize) -> usize {
+    if budget == 0 { 0 } else { CertifyOptions::DEFAULT_LOCAL_BUDGET }
 }

@@ -46,8 +46,10 @@ pub struct CheckAnswer {
     pub triangles: Vec<u32>,
     /// Time of the query (microseconds).
     pub microseconds: f64,
-    /// Whether the root's certificate alone proved the shape free, apart from exceptions.
+    /// Whether the root's certificate alone proved the shape free, apart from exceptions: its radius or its local certificate.
     pub root_certified: bool,
+    /// What proved the answer, apart from exceptions: `radius`, `local` or `search`.
+    pub proof: &'static str,
     /// Number of opened nodes and node pairs.
     pub opened: u64,
     /// Number of AABB tests.
@@ -85,6 +87,7 @@ pub(super) fn check(
         triangles,
         microseconds,
         root_certified: statistics.root_certified,
+        proof: statistics.proof.name(),
         opened: statistics.opened,
         box_tests: statistics.box_tests,
         triangle_tests: statistics.triangle_tests,

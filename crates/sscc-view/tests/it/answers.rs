@@ -1,7 +1,7 @@
 //! Answers of a live page equal those of the core.
 
 use serde_json::{Value, json};
-use sscc::{Method, Query};
+use sscc::{Method, Proof, Query};
 use sscc_view::{Arrays, ModelDetails, ModelScene};
 
 use crate::common::{Client, scene, strips, with_server};
@@ -31,8 +31,8 @@ fn answers_are_those_of_the_query() {
                 (&json!(!pairs.is_empty()), &json!(true))
             );
             assert_eq!(
-                (&answer["norm"], &answer["root_certified"]),
-                (&json!(query.norm()), &json!(statistics.root_certified))
+                (&answer["norm"], &answer["root_certified"], &answer["proof"]),
+                (&json!(query.norm()), &json!(statistics.root_certified), &json!(statistics.proof.name()))
             );
             assert_eq!(
                 (&answer["opened"], &answer["box_tests"], &answer["triangle_tests"]),
@@ -44,7 +44,7 @@ fn answers_are_those_of_the_query() {
             triangles.dedup();
             assert_eq!(answer["triangles"], json!(triangles));
             let opened = answer["nodes"]["opened"].as_array().unwrap().len();
-            assert_eq!(opened == 0, statistics.root_certified);
+            assert_eq!(opened == 0, statistics.proof == Proof::Radius);
             kinds[if pairs.is_empty() { usize::from(statistics.root_certified) } else { 2 }] += 1;
             let slow = client.post("/api/traditional", &json!({"q": q}).to_string()).json();
             assert_eq!(slow["count"], json!(pairs.len()));

@@ -56,6 +56,7 @@ fn answer<'a>(
         microseconds: 2000.0,
         norm: None,
         root_certified: None,
+        proof: None,
         exceptions: 0,
         left_out: &LEFT_OUT,
         opened: 0,

@@ -73,7 +73,7 @@ impl CertifyOptions {
     pub const DEFAULT_BUDGET: usize = 64;
 
     /// The default of [`CertifyOptions::local_budget`], in bytes for each triangle.
-    pub const DEFAULT_LOCAL_BUDGET: usize = 0;
+    pub const DEFAULT_LOCAL_BUDGET: usize = 64;
 
     /// The default of [`CertifyOptions::reach`].
     pub const DEFAULT_REACH: f64 = 16.0;

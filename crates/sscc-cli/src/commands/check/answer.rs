@@ -1,7 +1,7 @@
 //! The answer of `sscc check` to one query: the keys of its JSON line.
 
 use serde::Serialize;
-use sscc::Pair;
+use sscc::{Pair, Proof};
 use sscc_sim::{DetectionAnswer, LeftOut};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
@@ -35,6 +35,8 @@ pub struct Answer<'a> {
     pub directions: Option<Vec<[f64; 3]>>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
+    /// What proved the answer: `radius`, `local` or `search`; none without modes.
+    pub proof: Option<&'static str>,
     /// Pairs that no certificate covers, where there are any.
     #[serde(skip_serializing_if = "is_zero")]
     pub exceptions: usize,
@@ -71,6 +73,7 @@ impl<'a> Answer<'a> {
                 .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
+            proof: found.proof.map(Proof::name),
             exceptions: found.exceptions,
             ignored: found.left_out.ignored(),
             listed_left_out: (found.left_out.ignored() > 0).then(|| found.left_out.to_string()),

@@ -89,6 +89,7 @@ fn check_flags(args: &Check) -> Result<()> {
         ("max-exceptions", options.max_exceptions.is_some()),
         ("scheme", options.scheme.is_some()),
         ("budget", options.budget.is_some()),
+        ("local-budget", options.local_budget.is_some()),
         ("reach", options.reach.is_some()),
     ] {
         ensure!(!is_given, "--{flag} is for models with modes: add --q or --trajectory, or leave it out");

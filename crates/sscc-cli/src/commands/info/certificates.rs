@@ -32,6 +32,8 @@ pub struct CertificatesInfo {
     pairs: usize,
     pair_limit: f64,
     pair_bytes: usize,
+    local_certificates: usize,
+    local_bytes: usize,
     levels: Vec<Level>,
 }
 
@@ -56,7 +58,7 @@ impl CertificatesInfo {
         };
         Self {
             digest: hexadecimal(parts.digest),
-            scheme: if tree.limit() > 0.0 { "full" } else { "paper" },
+            scheme: if tree.limit() > 0.0 || !parts.local.nodes.is_empty() { "full" } else { "paper" },
             neighbours: parts.scope.filter.neighbours.name(),
             weld: parts.scope.filter.weld,
             triangles: parts.hierarchy.order().len(),
@@ -77,6 +79,8 @@ impl CertificatesInfo {
             pairs: parts.root_pair_radii.len() + tree.len(),
             pair_limit: tree.limit(),
             pair_bytes: tree.bytes(),
+            local_certificates: parts.local.nodes.len(),
+            local_bytes: parts.local.bytes(),
             levels: levels(certificates).into_iter().map(level).collect(),
         }
     }
@@ -117,6 +121,14 @@ impl CertificatesInfo {
                     grouped(self.pairs as u64),
                     length(self.pair_limit),
                     grouped(bytes as u64)
+                ),
+            },
+            match self.local_certificates {
+                0 => "local          no certificates".to_owned(),
+                n => format!(
+                    "local          {} ({:.1} bytes a triangle)",
+                    counted(n as u64, "certificate"),
+                    self.local_bytes as f64 / self.triangles as f64
                 ),
             },
             format!(

@@ -106,6 +106,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         max_exceptions,
         scheme,
         budget,
+        local_budget,
         reach,
         threads,
     } = options;
@@ -126,6 +127,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         (max_exceptions.is_some(), "--max-exceptions"),
         (scheme.is_some(), "--scheme"),
         (budget.is_some(), "--budget"),
+        (local_budget.is_some(), "--local-budget"),
         (reach.is_some(), "--reach"),
         (threads.threads.is_some(), "--threads"),
     ];

@@ -100,6 +100,13 @@ impl LocalCertificates {
         4 * gradient_len(modes) + 2 * EllipsoidBlocks(modes).len() + 4 * modes + size_of::<LocalBounds>() + 12
     }
 
+    /// The part of the memory that [`CertifyOptions::local_budget`](crate::CertifyOptions::local_budget) limits, in bytes: without the
+    /// ends of lists.
+    pub fn budgeted_bytes(&self) -> usize {
+        let ends = self.mode_starts.len() + self.list_starts.len() - 2 * self.nodes.len();
+        self.bytes() - 4 * ends
+    }
+
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         let words = self.nodes.len()
