@@ -60,7 +60,7 @@ pub use recipes::{
 pub use resolve::{ResolveReport, resolve_rows};
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
-    StateLayout, StateLog, StepRecord, Summary, run,
+    StateLayout, StateLog, StepRecord, Summary, TraditionalCost, run,
 };
 pub use scenes::{BodySpec, GENTLE, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
 pub use simulate::{Request, make_folder, simulate};

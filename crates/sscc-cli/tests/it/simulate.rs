@@ -159,6 +159,13 @@ fn a_scene_is_simulated_and_written() {
     let costs = arrays(&out.join("costs.npz"));
     assert_eq!(costs["self_seconds"].0, [800]);
     assert!(costs["traditional_self_seconds"].1.iter().all(|seconds| *seconds > 0.0));
+    // The body is awake in all of the sampled steps.
+    assert_eq!(costs["traditional_awake_seconds"].1, costs["traditional_self_seconds"].1);
+    let samples = costs["traditional_time"].1.iter().zip(&costs["sampled_self_seconds"].1);
+    for (time, seconds) in samples {
+        let step = costs["time"].1.iter().position(|t| t == time).unwrap();
+        assert_eq!(costs["self_seconds"].1[step], *seconds);
+    }
 
     // The animation contains the model.
     let model = sscc_io::gltf::read(&out.join("animation.glb"), Some("spring")).unwrap();

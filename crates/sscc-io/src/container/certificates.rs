@@ -28,7 +28,7 @@
 //! | `local_modes` | U32 | m | the modes that move the patch of each, ascending |
 //! | `local_gradients` | F32 | | of each the gradients G of its modes: for each mode eight entries of the 3 x 3 matrix, column by column, then the ninth of all its modes, padded with zeros to a multiple of eight |
 //! | `local_ellipsoids` | U32 | | of each W, upper triangular: for each eight rows their entries in all columns from the first row's diagonal on. Two entries in each number, the first in the lower half; an entry is the upper half of a single-precision number |
-//! | `local_bounds` | F64 | l x 5 | of each the ratio of the pairs within the node (infinite: none was found), rho, 1 / s, the largest Frobenius norm of a gradient, the largest norm of a column of W |
+//! | `local_bounds` | F64 | l x 9 | of each the ratio of the pairs within the node (infinite: none was found), rho, 1 / s, the largest Frobenius norm of a gradient, the largest norm of a column of W, the direction across a flat patch (3 numbers; else zeros), phi (infinite where the patch is not flat). l x 5 in version 6, which knows no flat patches |
 //! | `local_list_starts` | U32 | l + 1 | where the list of each starts in `local_list_nodes`, and the end |
 //! | `local_list_nodes` | U32 | k | the nodes of each list, ascending |
 //! | `local_list_ratios` | F32 | k | the ratio of the pairs between the certificate's node and each node of its list; may be infinite |

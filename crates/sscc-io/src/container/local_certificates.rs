@@ -19,8 +19,17 @@ const LIST_RATIOS: &str = "local_list_ratios";
 pub(super) const TENSORS: [&str; 9] =
     [BOUNDS, ELLIPSOIDS, GRADIENTS, LIST_NODES, LIST_RATIOS, LIST_STARTS, MODE_STARTS, MODES, NODES];
 
-/// The first version with local certificates.
-pub(super) const VERSION: u32 = 6;
+/// The version of files with local certificates.
+pub(super) const VERSION: u32 = 7;
+
+/// The first one. It knows no flat patches.
+const FIRST_VERSION: u32 = 6;
+
+/// Count of bounds of a certificate, and how many of them the first version has.
+const BOUND_COUNT: usize = 9;
+
+/// See [`BOUND_COUNT`].
+const FIRST_BOUND_COUNT: usize = 5;
 
 /// Writes local certificates, if there are any.
 pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
@@ -34,7 +43,10 @@ pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
     let bounds: Vec<f64> = local
         .bounds
         .iter()
-        .flat_map(|b| [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest])
+        .flat_map(|b| {
+            let [x, y, z] = b.across;
+            [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest, x, y, z, b.flatness]
+        })
         .collect();
     writer
         .u32(NODES, &[local.nodes.len()], &local.nodes)
@@ -42,7 +54,7 @@ pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
         .u32(MODES, &[local.modes.len()], &local.modes)
         .f32(GRADIENTS, &[local.gradients.len()], &local.gradients)
         .u32(ELLIPSOIDS, &[ellipsoids.len()], &ellipsoids)
-        .f64(BOUNDS, &[local.bounds.len(), 5], &bounds)
+        .f64(BOUNDS, &[local.bounds.len(), BOUND_COUNT], &bounds)
         .u32(LIST_STARTS, &[local.list_starts.len()], &local.list_starts)
         .u32(LIST_NODES, &[local.list_nodes.len()], &local.list_nodes)
         .f32(LIST_RATIOS, &[local.list_ratios.len()], &local.list_ratios);
@@ -54,7 +66,7 @@ pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatErro
     let Some(name) = names.into_iter().find(|name| TENSORS.contains(&name.as_str())) else {
         return Ok(LocalCertificates::default());
     };
-    if file.version() < VERSION {
+    if file.version() < FIRST_VERSION {
         return Err(FormatError::new(Place::Tensor(name), "not known in this version of the format"));
     }
     let u32s = |name: &str| -> Result<Vec<u32>, FormatError> { Ok(file.u32(name)?.shaped(&[ANY])?.values) };
@@ -69,13 +81,14 @@ pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatErro
         ));
     }
     let pairs = u32s(ELLIPSOIDS)?;
-    let bounds = file.f64(BOUNDS)?.shaped(&[nodes.len(), 5])?.values;
-    let bound = |&[ratio, per_factor, per_error, steepest, widest]: &[f64; 5]| LocalBounds {
-        ratio,
-        per_factor,
-        per_error,
-        steepest,
-        widest,
+    let count = if file.version() < VERSION { FIRST_BOUND_COUNT } else { BOUND_COUNT };
+    let bounds = file.f64(BOUNDS)?.shaped(&[nodes.len(), count])?.values;
+    let bound = |of: &[f64]| {
+        let at = |i: usize| of.get(i).copied();
+        let [ratio, per_factor, per_error, steepest, widest] = std::array::from_fn(|i| of[i]);
+        let across = std::array::from_fn(|i| at(FIRST_BOUND_COUNT + i).unwrap_or(0.0));
+        let flatness = at(BOUND_COUNT - 1).unwrap_or(f64::INFINITY);
+        LocalBounds { ratio, per_factor, per_error, steepest, widest, across, flatness }
     };
     let list_nodes = u32s(LIST_NODES)?;
     Ok(LocalCertificates {
@@ -83,7 +96,7 @@ pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatErro
         modes: u32s(MODES)?,
         gradients: f32s(GRADIENTS, ANY)?,
         ellipsoids: pairs.iter().flat_map(|pair| [*pair as u16, (*pair >> 16) as u16]).collect(),
-        bounds: bounds.as_chunks().0.iter().map(bound).collect(),
+        bounds: bounds.chunks_exact(count).map(bound).collect(),
         list_starts: u32s(LIST_STARTS)?,
         list_ratios: f32s(LIST_RATIOS, list_nodes.len())?,
         nodes,

@@ -5,7 +5,7 @@ use std::path::Path;
 use sscc_io::{NamedArray, write_npz};
 
 use crate::error::Result;
-use crate::run::{FinishedRun, STEP_PARTS};
+use crate::run::{FinishedRun, STEP_PARTS, TraditionalCost};
 
 /// Writes the whole motion, bit for bit.
 pub fn trajectories(path: &Path, run: &FinishedRun) -> Result<()> {
@@ -73,12 +73,17 @@ pub fn costs(path: &Path, run: &FinishedRun) -> Result<()> {
             (format!("{name}_seconds"), (0..history.len()).map(of).collect())
         })
         .collect();
-    let (at, traditional): (Vec<f64>, Vec<f64>) =
-        run.traditional.iter().map(|(state, seconds)| (run.time(*state), *seconds)).unzip();
+    let sampled = |of: &dyn Fn(&TraditionalCost) -> f64| run.traditional.iter().map(of).collect::<Vec<_>>();
+    let at = sampled(&|cost| run.time(cost.state));
+    let all = sampled(&|cost| cost.seconds);
+    let awake = sampled(&|cost| cost.awake_seconds);
+    let own = sampled(&|cost| history.step(cost.state).self_seconds());
     let mut arrays = vec![
         line("time", &time),
         line("traditional_time", &at),
-        line("traditional_self_seconds", &traditional),
+        line("traditional_self_seconds", &all),
+        line("traditional_awake_seconds", &awake),
+        line("sampled_self_seconds", &own),
     ];
     arrays.extend(parts.iter().map(|(name, values)| line(name, values)));
     Ok(write_npz(path, &arrays)?)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::history::History;
 use super::prepared::PreparedScene;
 use super::summary::Summary;
+use super::traditional::TraditionalCost;
 use crate::error::SimError;
 use crate::scenes::Scene;
 
@@ -20,8 +21,8 @@ pub struct FinishedRun {
     pub history: History,
     /// Its results in numbers.
     pub summary: Summary,
-    /// States at which the traditional method was measured, with its processor time for all bodies (s).
-    pub traditional: Vec<(usize, f64)>,
+    /// The traditional method at some states.
+    pub traditional: Vec<TraditionalCost>,
     /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,
 }

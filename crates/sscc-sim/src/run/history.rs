@@ -192,6 +192,13 @@ impl History {
         (0..self.layout.bodies()).map(move |body| self.body(state, body))
     }
 
+    /// Whether a body moves in the step from a state, or in the last step before the end. A body that sleeps does not.
+    pub fn moves(&self, state: usize, body: usize) -> bool {
+        let next = if state + 1 < self.len() { state + 1 } else { state.saturating_sub(1) };
+        let [a, b] = [state, next].map(|state| self.body(state, body));
+        state == next || (a.position, a.orientation, a.q) != (b.position, b.orientation, b.q)
+    }
+
     /// Returns the number of colliding triangle pairs within bodies.
     pub fn self_pairs(&self, state: usize) -> usize {
         self.bodies(state).map(|body| body.pairs).sum()

@@ -19,4 +19,4 @@ pub use log::StateLog;
 pub use prepared::{PreparedModel, PreparedScene};
 pub use steps::{RunOutcome, run};
 pub use summary::{ModelSummary, Summary};
-pub use traditional::traditional_costs;
+pub use traditional::{TraditionalCost, traditional_costs};

@@ -1,6 +1,6 @@
 //! The plots of a simulation's report.
 
-use sscc_sim::FinishedRun;
+use sscc_sim::{FinishedRun, TraditionalCost};
 
 use crate::{Axis, Plot, Series};
 
@@ -11,7 +11,7 @@ const MAX_POINTS: usize = 700;
 /// the maximum of each run of consecutive steps, the traditional method single states.
 pub fn costs(run: &FinishedRun) -> Plot {
     let own = line(run, |state| 1e3 * run.history.step(state).self_seconds());
-    let of = |(state, seconds): &(usize, f64)| [run.time(*state), 1e3 * seconds];
+    let of = |cost: &TraditionalCost| [run.time(cost.state), 1e3 * cost.seconds];
     Plot {
         title: "Cost over time".into(),
         x: time(),

@@ -38,12 +38,12 @@ pub struct CertifyOptions {
     /// since the tree takes most of the time.
     pub budget: usize,
     /// Memory for local certificates ([`LocalCertificates`](crate::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
-    /// pair tree leaves of its own. The largest nodes come first. 0, the default: none, because they take about as long as
-    /// the radii (docs/notes/2026-11-26-local-certificates.md).
+    /// pair tree leaves of its own. The largest nodes come first. 0: none; they take about as long as the radii, which suits
+    /// certificates that serve a few queries only.
     pub local_budget: usize,
     /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
-    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of
-    /// the budget, because they take time. Radii of nodes are capped at the radius up to which the tree was
+    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use a
+    /// fiftieth of the budget, because they take time and local certificates prove most of what is there. Radii of nodes are capped at the radius up to which the tree was
     /// built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
     /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.
     pub reach: f64,

@@ -112,6 +112,11 @@ impl VertexMotion<2> for CapsuleMotion<'_> {
     }
 
     #[inline]
+    fn region_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
+    #[inline]
     fn coarse_slack(&self, node: u32) -> Option<DVec3> {
         Some(self.node_change(node))
     }

@@ -32,6 +32,12 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
 
+    /// The distance in z within which all configurations of the motion are around the segment between
+    /// [`Self::coarse_coordinates`]; none where positions are not those of the modes alone.
+    fn region_radius(&self) -> Option<f64> {
+        None
+    }
+
     /// Where a shape in the world is; none for positions in axes of the model.
     fn in_world(&self) -> Option<InWorld<E>> {
         None
@@ -86,6 +92,11 @@ impl<const E: usize> VertexMotion<E> for DeformedMotion<'_, E> {
     #[inline]
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
         Some(self.q)
+    }
+
+    #[inline]
+    fn region_radius(&self) -> Option<f64> {
+        Some(0.0)
     }
 
     #[inline]

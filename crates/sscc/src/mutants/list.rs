@@ -296,6 +296,14 @@ mutants! {
     LocalProofOfOnePart: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
     /// Local certificates that hold on the segment of a capsule hold in the capsule.
     LocalProofsInRegions: CaughtBy("it local_certificates::kinetic_answers_are_those_of_brute_force");
+    /// F is the same in a whole region.
+    LocalRegionMapStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    /// `W f` is the same in a whole region.
+    LocalRegionStrainStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    /// Maps near their mean stretch as it does.
+    LocalMotionForgotten: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    /// The heights of a flat patch turn with its plane, whatever the map does to them.
+    LocalPlaneTurnsAlong: CaughtBy("it local_certificates::heights_that_become_lengths_are_no_proof");
     /// Local certificates omit the rounding of positions.
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
     /// The rounding of a position along each axis is that along any direction.

@@ -5,7 +5,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::smallest_stretch::{nearest_rotation, smallest_eigenvalue, smallest_stretch};
+use super::region_rates::{CertificateRates, RegionRates};
+use super::smallest_stretch::{smallest_stretch, stretches_between};
+use crate::Metric;
 use crate::certificates::{
     EllipsoidBlocks, FactorScales, GRADIENT, LocalCertificates, MOST_MODES, gradient_len,
 };
@@ -40,6 +42,10 @@ pub(super) struct LocalTables<'a> {
     of_node: Vec<u32>,
     /// For each certificate where its gradients and its ellipsoid start, in vectors.
     starts: Vec<[u32; 2]>,
+    /// For proofs in regions; none where there are none.
+    rates: Option<RegionRates>,
+    /// For each certificate the [bits](list_bit) of the nodes of its list: most nodes are on none.
+    list_bits: Vec<u64>,
     /// For each node its buckets, as a range of positions in the order of triangles.
     buckets: Vec<std::ops::Range<u32>>,
 }
@@ -65,7 +71,19 @@ impl<'a> LocalTables<'a> {
             gradient += (gradient_len(count) / LANES) as u32;
             ellipsoid += (EllipsoidBlocks(count).len() / LANES) as u32;
         }
-        Some(Self { certificates, center, scales, of_node, starts, buckets: bucket_ranges(hierarchy) })
+        let bits = |range: &[u32]| {
+            let list = &certificates.list_nodes[range[0] as usize..range[1] as usize];
+            list.iter().fold(0, |bits, node| bits | list_bit(*node))
+        };
+        let list_bits = certificates.list_starts.windows(2).map(bits).collect();
+        let buckets = bucket_ranges(hierarchy);
+        Some(Self { certificates, center, scales, of_node, starts, rates: None, list_bits, buckets })
+    }
+
+    /// Adds what proofs in regions need. A dense metric has none: its factor may be nearly singular.
+    pub(super) fn add_region_rates(&mut self, metric: &Metric) {
+        let rates = || RegionRates::new(self.certificates, &self.scales, &metric.scales());
+        self.rates = metric.dense_factor().is_none().then(rates);
     }
 
     #[inline]
@@ -77,11 +95,20 @@ impl<'a> LocalTables<'a> {
     /// The ratio of the pairs of a certificate's node with another one.
     #[inline]
     fn ratio_with(&self, certificate: usize, node: u32) -> Option<f32> {
+        if self.list_bits[certificate] & list_bit(node) == 0 {
+            return None;
+        }
         let LocalCertificates { list_starts, list_nodes, list_ratios, .. } = self.certificates;
         let [start, end] = [certificate, certificate + 1].map(|i| list_starts[i] as usize);
         let at = list_nodes[start..end].binary_search(&node).ok()?;
         Some(list_ratios[start + at])
     }
+}
+
+/// One of 64 bits for each node. Multiplied by an odd number, numbers that follow each other have other upper bits (Knuth).
+#[inline]
+fn list_bit(node: u32) -> u64 {
+    1 << (node.wrapping_mul(0x9e37_79b9) >> 26)
 }
 
 /// For each node the positions of its buckets in the order of triangles; for a node within a bucket that of the bucket.
@@ -114,6 +141,8 @@ pub(super) struct LocalProofs<const E: usize> {
     factors: [Vec<f32>; E],
     /// `T` at each configuration, rounded up.
     sums: [f64; E],
+    /// The radius of the region in z around the segment between the configurations.
+    radius: f64,
     /// `eta`
     error: f64,
     is_usable: bool,
@@ -136,6 +165,7 @@ impl<const E: usize> LocalProofs<E> {
             stack: Vec::new(),
             factors: [const { Vec::new() }; E],
             sums: [0.0; E],
+            radius: 0.0,
             error: f64::INFINITY,
             is_usable: false,
             evaluated: 0,
@@ -286,10 +316,11 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Sets the factors. False where the positions of the motion are not those of the modes alone.
     fn begin_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
-        let Some(coordinates) = motion.coarse_coordinates().filter(|_| motion.margin() == 0.0) else {
+        let (Some(coordinates), Some(radius)) = (motion.coarse_coordinates(), motion.region_radius()) else {
             return false;
         };
-        if right_or!(motion.coarse_slack(0).is_some(), LocalProofsInRegions, false) {
+        self.radius = right_or!(radius, LocalProofsInRegions, 0.0);
+        if self.radius > 0.0 && tables.rates.is_none() {
             return false;
         }
         let FactorScales { sizes, scale, reach } = &tables.scales;
@@ -333,6 +364,16 @@ impl<const E: usize> LocalProofs<E> {
         let ellipsoid =
             &all.ellipsoids.as_chunks().0[ellipsoid..][..EllipsoidBlocks(modes.len()).len() / LANES];
         let is_dense = modes.len() == tables.center.len();
+        // What the numbers may change within the radius.
+        let [more_sum, more_map, more_strain] = match &tables.rates {
+            Some(rates) if self.radius > 0.0 => {
+                let CertificateRates { map, strain } = rates.certificates[index];
+                let map = right_or!(map, LocalRegionMapStill, 0.0);
+                [rates.sum, map, right_or!(strain, LocalRegionStrainStill, 0.0)]
+                    .map(|rate| rate * self.radius)
+            }
+            _ => [0.0; 3],
+        };
         // The error of sums of products in single precision, and of the factors.
         let single = 2.0 * (modes.len() as f64 + 4.0) * f64::from(f32::EPSILON);
         let at = |end: usize| {
@@ -348,32 +389,54 @@ impl<const E: usize> LocalProofs<E> {
                 sum = sum.min(local * (1.0 + 1e-6) + 1e-30);
                 &gathered[..modes.len().next_multiple_of(LANES)]
             };
+            sum += more_sum;
             let (gradient, strain) =
                 self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
             let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
-            let strain = strain + rounding + 1e-30;
+            let strain = strain + rounding + more_strain + 1e-30;
             let error = bounds.per_factor * sum
                 + bounds.per_error * self.error
                 + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
+                + more_map
                 + 1e-30;
             (DMat3::IDENTITY + gradient, strain * ROUND_UP, error * ROUND_UP)
         };
-        if E == 1 {
-            let (map, strain, error) = at(0);
-            return (smallest_stretch(&map) - error) / strain * (1.0 - 1e-12);
-        }
         let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
-        let middle = ends.iter().fold(DMat3::ZERO, |sum, (map, _, _)| sum + *map);
-        let Some(turn) = nearest_rotation(&middle) else { return 0.0 };
-        let turn = turn.transpose();
-        let allowed = ends.iter().map(|(map, strain, error)| {
-            // Any rotation will do, but the same one at both ends.
-            let stretch =
-                right_or!(smallest_eigenvalue(&(turn * *map)), LocalTurnAtEachEnd, smallest_stretch(map));
-            (stretch - error) / strain * (1.0 - 1e-12)
-        });
-        allowed.fold(f64::INFINITY, smaller)
+        let allowed = |stretches: [f64; E], lost: [f64; E]| {
+            let each = ends.iter().zip(stretches).zip(lost).map(|(((_, strain, error), stretch), lost)| {
+                (stretch - error - lost) / strain * (1.0 - 1e-12)
+            });
+            each.fold(f64::INFINITY, smaller)
+        };
+        let maps = ends.map(|(map, _, _)| map);
+        let plain = allowed(stretches_of(&maps), [0.0; E]);
+        if bounds.flatness == f64::INFINITY {
+            return plain;
+        }
+        // The error of the map is one of its part across, too, and the new map is rounded.
+        let (maps, turned) = flat_maps(&maps, DVec3::from_array(bounds.across));
+        let lost =
+            std::array::from_fn(|end| (bounds.flatness + 1e-14) * (turned[end] + ends[end].2) * ROUND_UP);
+        let flat = allowed(stretches_of(&maps), right_or!(lost, LocalPlaneTurnsAlong, [0.0; E]));
+        // NaN allows nothing.
+        if flat > plain { flat } else { plain }
     }
+}
+
+/// The stretches of maps, as [`stretches_between`].
+fn stretches_of<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
+    if E == 1 { maps.map(|map| smallest_stretch(&map)) } else { stretches_between(maps) }
+}
+
+/// Maps of a flat patch with another image of the direction across it: the same for all, a unit vector across the image of the plane by
+/// their mean. Also how far that is from their own images of the direction.
+fn flat_maps<const E: usize>(maps: &[DMat3; E], across: DVec3) -> ([DMat3; E], [f64; E]) {
+    let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map);
+    let (x, y) = across.any_orthonormal_pair();
+    let image = (mean * x).cross(mean * y).normalize_or_zero();
+    let outer = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
+    let turned = maps.map(|map| (map * across - image).length());
+    (maps.map(|map| map + outer(image - map * across, across)), turned)
 }
 
 /// The smaller of two numbers, and NaN where one is NaN: it allows nothing.

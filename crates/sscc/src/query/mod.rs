@@ -18,6 +18,7 @@ mod method;
 mod pair_hulls;
 mod pair_tree_traversal;
 mod query;
+mod region_rates;
 mod resolve;
 mod safe_scale;
 mod search_group;

@@ -2,6 +2,8 @@
 
 use glam::DMat3;
 
+use crate::model::rounding::larger_or_nan;
+
 /// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
 pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
     let gram = map.transpose() * *map;
@@ -17,7 +19,7 @@ pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
 
 /// A lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity where none was found. `error`: that of its
 /// entries, relative to the sum of their magnitudes.
-pub(super) fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
+fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let size = [x, y, z].iter().map(|x| x.abs().element_sum()).sum::<f64>();
     // The closed form; any candidate would do.
@@ -25,21 +27,39 @@ pub(super) fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     let [a, b, c] = [x.x - mean, y.y - mean, z.z - mean];
     let spread = ((a * a + b * b + c * c + 2.0 * (x.y * x.y + x.z * x.z + y.z * y.z)) / 6.0).sqrt();
     let candidate = if spread > 1e-12 * size {
-        let [a, b, c, d, e, f] = [a, b, c, x.y, x.z, y.z].map(|x| x / spread);
+        let one = 1.0 / spread;
+        let [a, b, c, d, e, f] = [a, b, c, x.y, x.z, y.z].map(|x| x * one);
         let half = 0.5 * (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e));
-        let angle = half.clamp(-1.0, 1.0).acos() / 3.0 + 2.0 * std::f64::consts::FRAC_PI_3;
-        mean + 2.0 * spread * angle.cos()
+        mean - spread * (1.0 + least_root_below_one(half.clamp(-1.0, 1.0)))
     } else {
         mean
     };
-    // Rounding of the closed form may be as large as the root of that of its numbers.
-    for slack in [1e-9, 1e-6] {
+    // The candidate has an error, and rounding of the closed form may be as large as the root of that of its numbers.
+    for slack in [2e-7, 2e-6] {
         let shift = candidate - slack * size;
         if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
             return shift;
         }
     }
     f64::NEG_INFINITY
+}
+
+/// The coefficients of `u / v` in [`least_root_below_one`], fitted at Chebyshev's points.
+const ROOT: [f64; 8] = [
+    0.999_999_921_1,
+    -0.166_661_520_9,
+    0.069_361_579_8,
+    -0.036_464_460_9,
+    0.020_176_493_3,
+    -0.009_808_234_7,
+    0.003_326_470_8,
+    -0.000_545_020_9,
+];
+
+/// The u in [0, 1] for which `x = -1 - u` is the least root of `x^3 - 3 x = 2 h`, up to 1e-7: `u^2 (3 + u) = 2 (1 - h) = 3 v^2`.
+fn least_root_below_one(h: f64) -> f64 {
+    let v = (2.0 / 3.0 * (1.0 - h)).sqrt();
+    v * ROOT.iter().rev().fold(0.0, |sum, c| sum * v + c)
 }
 
 /// Whether the Cholesky factorisation of a symmetric matrix minus `shift` times the identity succeeds. (Rump, *Verification of
@@ -52,6 +72,31 @@ fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
     let e = y.z - b * x.z;
     let third = (z.z - shift) - c * x.z - e * e / second;
     first > 0.0 && second > 0.0 && third > 0.0
+}
+
+/// A motion is short where maps are at most this far from their mean, in Frobenius norms.
+const SHORT: f64 = 1.0 / 16.0;
+
+/// For each of some maps a lower bound of its smallest singular value; the mean of the bounds with any weights is one of the mean of
+/// the maps with these weights. 0 where none was found.
+///
+/// Near their mean all maps stretch by at most their distance from it less than the mean does. Others are turned by one
+/// rotation, and have the smallest eigenvalues of their symmetric parts.
+pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
+    let norm = |map: &DMat3| map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map) * (1.0 / E as f64);
+    let distance = maps.iter().map(|map| norm(&(*map - mean))).fold(0.0, larger_or_nan);
+    if distance <= SHORT {
+        let rounding = 1e-14 * norm(&mean);
+        let lost = right_or!(distance * (1.0 + 1e-12) + rounding, LocalMotionForgotten, rounding);
+        return [(smallest_stretch(&mean) - lost).max(0.0); E];
+    }
+    let Some(turn) = nearest_rotation(&mean) else { return [0.0; E] };
+    let turn = turn.transpose();
+    // Any rotation will do, but the same one for all.
+    maps.map(|map| {
+        right_or!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map)).max(0.0)
+    })
 }
 
 /// Steps of the iteration towards the rotation.

@@ -332,7 +332,7 @@ fn the_scheme_agrees_with_the_pair_tree() {
         let bytes = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
         let file = Container::parse(&bytes, CERTIFICATES).unwrap();
         assert_eq!(file.text("scheme").unwrap(), scheme, "{budget} {local_budget}");
-        assert_eq!(file.version(), if local_budget == 0 { 4 } else { 6 });
+        assert_eq!(file.version(), if local_budget == 0 { 4 } else { 7 });
         certificates_from_bytes(&bytes).unwrap();
     }
 }

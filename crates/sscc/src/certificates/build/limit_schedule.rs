@@ -26,7 +26,7 @@ const BUDGET_MARGIN: f64 = 1.1;
 
 /// Limits beyond the global radius may use the budget divided by this. So certificates of models that have few pairs below the
 /// global radius take at most about twice as long as with a reach of 1 (docs/notes/2026-11-26-reach.md).
-const REACH_DIVISOR: usize = 2;
+const REACH_DIVISOR: usize = 12;
 
 /// The outer limit is this many times the last one.
 const OUTER_FACTOR: f64 = 1.5;

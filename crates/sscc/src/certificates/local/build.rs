@@ -1,8 +1,9 @@
 //! The computation of local certificates.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
-use super::corner_gaps::CornerGaps;
+use super::corner_gaps::{CornerGaps, TightPair};
 use super::local_certificates::{LocalBounds, LocalCertificates, MOST_MODES, gradient_len};
 use super::patch::Patch;
 use super::patch_model::PatchModel;
@@ -24,6 +25,9 @@ const LARGEST: f64 = 1e12;
 
 /// Ratios with other nodes are not told apart below this share of the ratio within the node.
 const OWN_SHARE: f32 = 1.0;
+
+/// Smaller bounds of heights are not told apart: a turn costs a multiple of them.
+const LEAST_FLATNESS: f32 = 1e-3;
 
 /// The certificate of one node.
 struct LocalCertificate {
@@ -52,8 +56,7 @@ pub(crate) fn compute_local_certificates(
     let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions);
     let touching = TouchingNodes::new(hierarchy, filter);
     let builder = Builder { model: &patch_model, gaps: &gaps, touching: &touching };
-    let within = hierarchy.nodes_within_buckets();
-    let mut wanted: Vec<u32> = (0..within.len() as u32).filter(|n| !within[*n as usize]).collect();
+    let mut wanted = certified_nodes(hierarchy);
     wanted.sort_by_key(|n| std::cmp::Reverse(hierarchy.nodes()[*n as usize].triangle_count));
     let scratch = || Scratch::new(patch_model.positions.len());
     let mut found: Vec<(u32, LocalCertificate)> = wanted
@@ -84,6 +87,18 @@ pub(crate) fn compute_local_certificates(
         all.list_starts.push(all.list_nodes.len() as u32);
     }
     all
+}
+
+/// The nodes that get a certificate: buckets, the nodes above them, of the others those of every second height, and the root.
+fn certified_nodes(hierarchy: &Hierarchy) -> Vec<u32> {
+    let (nodes, within) = (hierarchy.nodes(), hierarchy.nodes_within_buckets());
+    // How far buckets are below.
+    let mut heights = vec![0_u32; nodes.len()];
+    for n in (0..nodes.len()).rev().filter(|n| !nodes[*n].fits_in_bucket()) {
+        heights[n] = 1 + nodes[n].children().map(|child| heights[child as usize]).max().unwrap_or(0);
+    }
+    let is_wanted = |n: usize| !within[n] && (n == 0 || heights[n] == 0 || heights[n] % 2 == 1);
+    (0..nodes.len() as u32).filter(|n| is_wanted(*n as usize)).collect()
 }
 
 struct Builder<'b> {
@@ -122,19 +137,29 @@ impl Builder<'_> {
         patch.load(self.model, hierarchy, filter.faces(), nodes(), MOST_MODES)?;
         let parts = search.load(self.gaps, patch, nodes());
         let rank = patch.modes.len();
-        let blocks = self.blocks(n, patch);
+        let (blocks, tight) = self.blocks(n, patch);
         let ellipsoid = instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
         let largest_image = patch.images(&ellipsoid, images, &mut search.images);
         search.begin(largest_image);
-        let ratio = infinite_for_nan(search.within(self.gaps, 0));
+        let floor = search.largest_ratio(&tight);
+        let ratio = infinite_for_nan(search.within(self.gaps, 0, floor));
         let mut list = Vec::new();
         for part in &parts[1..] {
             self.list(search, &around, *part, OWN_SHARE * ratio, &mut list);
         }
         list.iter_mut().for_each(|(_, ratio)| *ratio = infinite_for_nan(*ratio));
         list.sort_unstable_by_key(|(m, _)| *m);
+        let (mut across, mut flatness, mut smallest_gap) = (DVec3::ZERO, f32::INFINITY, search.smallest_gap);
+        if let Some(direction) = patch.across() {
+            let highest = patch.heights(direction, &mut search.images);
+            search.begin(highest);
+            let ratios = [search.within(self.gaps, 0, LEAST_FLATNESS)].into_iter();
+            let others = parts[1..].iter().map(|part| search.between(self.gaps, (0, *part), LEAST_FLATNESS));
+            (across, flatness) = (direction, infinite_for_nan(ratios.chain(others).fold(0.0, larger)));
+            smallest_gap = smallest_gap.min(search.smallest_gap);
+        }
         let (steepest, widest) = (patch.steepest(), ellipsoid.largest_column());
-        let per_error = (1.0 + 1e-12) / search.smallest_gap.min(1.0);
+        let per_error = (1.0 + 1e-12) / smallest_gap.min(1.0);
         // The error of residuals, then that of their images.
         let unit = f64::EPSILON / 2.0;
         let of_residuals = 64.0 * unit * (2.0 + steepest * patch.longest()) * per_error;
@@ -151,6 +176,8 @@ impl Builder<'_> {
             per_error,
             steepest,
             widest,
+            across: across.to_array(),
+            flatness: f64::from(flatness),
         };
         let numbers = [bounds.per_factor, per_error, steepest, widest];
         numbers.iter().all(|x| *x < LARGEST).then(|| LocalCertificate {
@@ -198,8 +225,9 @@ impl Builder<'_> {
     }
 
     /// The blocks that the ellipsoid is fitted to: the residual of some vertices over their distance from the first one, and differences of
-    /// residuals over the gap, of the tight pairs within the node where they are largest.
-    fn blocks(&self, n: u32, patch: &Patch) -> Vec<f64> {
+    /// residuals over the gap, of the tight pairs within the node where they are largest. Also returns these pairs, by their numbers in the
+    /// patch.
+    fn blocks(&self, n: u32, patch: &Patch) -> (Vec<f64>, Vec<TightPair>) {
         let width = 3 * patch.row_len;
         let residual = |i: u32| &patch.residuals[width * i as usize..][..width];
         let mut blocks = Vec::new();
@@ -217,22 +245,23 @@ impl Builder<'_> {
                 let [i, j] = [pair.i, pair.j].map(|v| patch.numbers[v as usize]);
                 if i.max(j) != u32::MAX {
                     let ratio = squared_distance(residual(i), residual(j)).sqrt() / f64::from(pair.gap);
-                    tight.push((ratio, i, j, f64::from(pair.gap)));
+                    tight.push((ratio, TightPair { i, j, gap: pair.gap }));
                 }
             }
         }
         // The largest of each part, so that no crease alone decides, and the largest of all.
-        let larger = |a: &(f64, u32, u32, f64), b: &(f64, u32, u32, f64)| b.0.total_cmp(&a.0);
+        let larger = |a: &(f64, TightPair), b: &(f64, TightPair)| b.0.total_cmp(&a.0);
         let mut chosen: Vec<_> = tight
             .chunks(tight.len().div_ceil(TIGHT_BLOCKS).max(1))
             .filter_map(|part| part.iter().min_by(|a, b| larger(a, b)).copied())
             .collect();
         tight.sort_by(larger);
         chosen.extend(tight.into_iter().take(TIGHT_BLOCKS / 2));
-        for (_, i, j, gap) in chosen {
-            blocks.extend(residual(i).iter().zip(residual(j)).map(|(x, y)| (y - x) / gap));
+        let chosen: Vec<TightPair> = chosen.into_iter().map(|(_, pair)| pair).collect();
+        for TightPair { i, j, gap } in &chosen {
+            blocks.extend(residual(*i).iter().zip(residual(*j)).map(|(x, y)| (y - x) / f64::from(*gap)));
         }
-        blocks
+        (blocks, chosen)
     }
 }
 

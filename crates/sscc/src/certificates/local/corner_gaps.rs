@@ -3,8 +3,6 @@
 //! For leaves that are near each other a table has, for each two vertices, the smallest gap over all pairs of triangles that
 //! have them as corners. Leaves that are farther apart have one direction for all their triangles.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -58,8 +56,12 @@ pub(super) struct CornerGaps<'g> {
     starts: Vec<u32>,
     vertices: Vec<u32>,
     pub(super) spheres: Vec<Sphere>,
+    /// For each node where its tables with later leaves start if it is a leaf, and the end.
+    table_starts: Vec<u32>,
+    /// The later leaf of each table, ascending for each first one.
+    table_leaves: Vec<u32>,
     /// None where two triangles that count have no gap.
-    tables: HashMap<NodePair, Option<GapTable>>,
+    tables: Vec<Option<GapTable>>,
     /// For each node where the tight pairs of its tables with later leaves start if it is a leaf, and the end.
     tight_starts: Vec<u32>,
     tight: Vec<TightPair>,
@@ -82,7 +84,9 @@ impl<'g> CornerGaps<'g> {
             starts,
             vertices,
             spheres: Vec::new(),
-            tables: HashMap::new(),
+            table_starts: Vec::new(),
+            table_leaves: Vec::new(),
+            tables: Vec::new(),
             tight_starts: Vec::new(),
             tight: Vec::new(),
         };
@@ -90,8 +94,9 @@ impl<'g> CornerGaps<'g> {
         let mut near = gaps.near_leaves();
         near.sort_unstable();
         let tables: Vec<Option<GapTable>> = near.par_iter().map(|pair| gaps.table(*pair)).collect();
-        gaps.tight_starts = vec![0; nodes.len() + 1];
+        (gaps.tight_starts, gaps.table_starts) = (vec![0; nodes.len() + 1], vec![0; nodes.len() + 1]);
         for (pair, table) in near.iter().zip(&tables) {
+            gaps.table_starts[pair.0 as usize + 1] += 1;
             if let Some(tight) = table.as_ref().and_then(|table| gaps.tightest(*pair, table)) {
                 gaps.tight.push(tight);
                 gaps.tight_starts[pair.0 as usize + 1] += 1;
@@ -99,8 +104,10 @@ impl<'g> CornerGaps<'g> {
         }
         for n in 0..nodes.len() {
             gaps.tight_starts[n + 1] += gaps.tight_starts[n];
+            gaps.table_starts[n + 1] += gaps.table_starts[n];
         }
-        gaps.tables = near.into_iter().zip(tables).collect();
+        gaps.table_leaves = near.into_iter().map(|(_, m)| m).collect();
+        gaps.tables = tables;
         gaps
     }
 
@@ -130,8 +137,10 @@ impl<'g> CornerGaps<'g> {
 
     /// The table of two leaves, the smaller number first, if they are near.
     #[inline]
-    pub(super) fn near(&self, pair: NodePair) -> Option<&Option<GapTable>> {
-        self.tables.get(&pair)
+    pub(super) fn near(&self, (n, m): NodePair) -> Option<&Option<GapTable>> {
+        let [start, end] = [n, n + 1].map(|n| self.table_starts[n as usize] as usize);
+        let at = self.table_leaves[start..end].binary_search(&m).ok()?;
+        Some(&self.tables[start + at])
     }
 
     /// For leaves that are not near: the components of all vertices of the first leaf along a direction, and those of the

@@ -19,8 +19,19 @@
 //! kappa |W f| + rho T + eta / s  <  sigma_min(F)
 //! ```
 //!
-//! where s is the smallest `s_ij`, and eta bounds how far computed positions are from the exact ones. A certificate has a ratio
-//! for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
+//! where s is the smallest `s_ij`, and eta bounds how far computed positions are from the exact ones.
+//!
+//! A patch that is nearly flat leaves the map across its plane open: the one of least norm does not turn with the patch, and F becomes
+//! singular where the patch turns by a right angle. Let a be the direction across, and `nu` any vector, best a unit vector across the
+//! image of the plane. With `F~ = F (I - a a') + nu a'` in place of F,
+//!
+//! ```text
+//! x_j - x_i = F~ (p_j - p_i) + (E_j - E_i) f + (F a - nu) (a.(p_j - p_i))
+//! ```
+//!
+//! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` will do as well, if `|a.(p_j - p_i)| <= phi s_ij`.
+//!
+//! A certificate has a ratio for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
 //! sets.
 
@@ -62,6 +73,10 @@ pub struct LocalBounds {
     pub steepest: f64,
     /// The largest norm of a column of W, rounded up: so is `W f`.
     pub widest: f64,
+    /// `a`, a direction across a patch that is nearly flat; zero for others.
+    pub across: [f64; 3],
+    /// `phi`, which bounds `|a.(p_j - p_i)| / s_ij` of all pairs; infinite where a patch is not flat.
+    pub flatness: f64,
 }
 
 /// A patch that more modes move has no certificate.

@@ -1,6 +1,6 @@
 //! A patch: a node with the nodes around it, the affine map of its modes, and the residuals that this leaves.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::patch_model::PatchModel;
 use super::residual_ellipsoid::ResidualEllipsoid;
@@ -9,6 +9,12 @@ use crate::hierarchy::Hierarchy;
 use crate::model::mode_rows::{dot, padded_rank};
 use crate::model::rounding::larger_or_nan;
 use crate::vectors::{InstructionSet, Kernel, Vectors};
+
+/// A patch is flat if its height is at most this share of its length.
+const FLAT: f64 = 0.05;
+
+/// Steps towards the direction across a patch.
+const INVERSE_STEPS: usize = 8;
 
 /// The vertices of a patch, and what their modes leave beside an affine map. Owns its memory.
 pub(super) struct Patch {
@@ -107,6 +113,37 @@ impl Patch {
     /// The longest offset; NaN where one is.
     pub(super) fn longest(&self) -> f64 {
         self.offsets.iter().map(|d| d.length()).fold(0.0, larger_or_nan)
+    }
+
+    /// A unit vector across the patch, if it is nearly flat.
+    pub(super) fn across(&self) -> Option<DVec3> {
+        let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        let mean = self.offsets.iter().sum::<DVec3>() / self.offsets.len() as f64;
+        let moments = self.offsets.iter().fold(DMat3::ZERO, |sum, d| sum + outer(*d - mean));
+        // Inverse iteration towards the direction of the smallest moment.
+        let trace = moments.x_axis.x + moments.y_axis.y + moments.z_axis.z;
+        let inverse = (moments + DMat3::from_diagonal(DVec3::splat(1e-12 * trace))).inverse();
+        let mut across = DVec3::new(0.6, 0.64, 0.48);
+        for _ in 0..INVERSE_STEPS {
+            across = (inverse * across).try_normalize()?;
+        }
+        let heights = self.offsets.iter().map(|d| across.dot(*d));
+        let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), h| (low.min(h), high.max(h)));
+        (high - low <= FLAT * self.longest()).then_some(across)
+    }
+
+    /// The components of all vertices along a direction, as if they were images: the first number of the rows of each. Returns the
+    /// largest magnitude before it was rounded.
+    pub(super) fn heights(&self, direction: DVec3, images: &mut Vec<f32>) -> f64 {
+        images.clear();
+        images.resize(self.residuals.len(), 0.0);
+        let mut largest = 0.0;
+        for (d, rows) in self.offsets.iter().zip(images.chunks_exact_mut(3 * self.row_len)) {
+            let height = direction.dot(*d);
+            rows[0] = height as f32;
+            largest = larger_or_nan(largest, height.abs());
+        }
+        largest
     }
 
     /// The images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of one before it

@@ -3,7 +3,7 @@
 //! Any W serves: `strain_search` finds its ratios. The one here is that of the smallest volume for some pairs (Khachiyan's
 //! iteration, which is multiplicative), with entries of the upper half of a single-precision number, as they are stored.
 
-use super::local_certificates::{EllipsoidBlocks, MOST_MODES};
+use super::local_certificates::EllipsoidBlocks;
 use crate::model::mode_rows::LANES;
 use crate::vectors::{Kernel, Vectors};
 
@@ -13,6 +13,9 @@ const STEPS: usize = 2;
 /// What is added to the diagonal, relative to the trace: W is invertible, and a motion that leaves no residual still has a small
 /// `W f`.
 const FLOOR: f64 = 1e-4;
+
+/// Columns whose sums are in registers. Rows are padded to whole blocks.
+const BLOCK: usize = crate::vectors::LANES;
 
 /// The smallest trace: W is in the range of single precision.
 const SMALLEST: f64 = 1e-20;
@@ -138,20 +141,26 @@ impl ResidualEllipsoid {
         self
     }
 
-    /// `Y Z` for these rows Y, in their place, which is close to the rows divided by W ([`Self::defect`]).
+    /// `Y Z` for these rows Y, three of each vertex, in their place, which is close to the rows divided by W ([`Self::defect`]).
     #[inline(always)]
     pub(super) fn divide(&self, rows: &mut [f64]) {
         let row_len = self.row_len;
-        let mut image = [0.0; MOST_MODES];
-        let image = &mut image[..row_len];
-        for out in rows.chunks_exact_mut(row_len) {
-            image.fill(0.0);
-            for (i, y) in out[..self.rank].iter().enumerate() {
-                let start = i / LANES * LANES;
-                let z = &self.inverse[i * row_len + start..][..row_len - start];
-                image[start..].iter_mut().zip(z).for_each(|(image, z)| *image += y * z);
+        for rows in rows.chunks_exact_mut(3 * row_len) {
+            // The last columns first: those before them do not need them.
+            for first in (0..row_len).step_by(BLOCK).rev() {
+                let mut sums = [[0.0; BLOCK]; 3];
+                for i in 0..self.rank.min(first + BLOCK) {
+                    let z: &[f64; BLOCK] =
+                        self.inverse[i * row_len + first..].first_chunk().expect("whole rows");
+                    for (c, sums) in sums.iter_mut().enumerate() {
+                        let y = rows[c * row_len + i];
+                        sums.iter_mut().zip(z).for_each(|(sum, z)| *sum += y * z);
+                    }
+                }
+                for (c, sums) in sums.iter().enumerate() {
+                    rows[c * row_len + first..][..BLOCK].copy_from_slice(sums);
+                }
             }
-            out.copy_from_slice(image);
         }
     }
 

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::corner_gaps::CornerGaps;
+use super::corner_gaps::{CornerGaps, TightPair};
 use super::patch::Patch;
 use crate::hierarchy::BUCKET_TRIANGLES;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
@@ -99,10 +99,19 @@ impl StrainSearch {
         instructions.run(Means(self));
     }
 
-    /// The ratio of all pairs within a part, and infinity where none was found.
-    pub(super) fn within(&mut self, gaps: &CornerGaps<'_>, part: u32) -> f32 {
+    /// The largest ratio of some pairs of vertices, by their numbers in the patch.
+    pub(super) fn largest_ratio(&self, pairs: &[TightPair]) -> f32 {
+        let mut largest = 0.0;
+        for TightPair { i, j, gap } in pairs {
+            self.compare(self.image(*i), *j, *gap, &mut largest);
+        }
+        largest
+    }
+
+    /// The ratio of all pairs within a part, and infinity where none was found; not below `floor`.
+    pub(super) fn within(&mut self, gaps: &CornerGaps<'_>, part: u32, floor: f32) -> f32 {
         let instructions = self.instructions;
-        instructions.run(Search { search: self, gaps, start: (part, part), floor: 0.0 })
+        instructions.run(Search { search: self, gaps, start: (part, part), floor })
     }
 
     /// A number that the ratio of two parts does not exceed, not above `floor` where the ratio is below that.

@@ -60,10 +60,12 @@ impl LocalCertificates {
         if self.bounds.len() != self.nodes.len() {
             return Err("the number of bounds is not the number of certificates");
         }
-        for LocalBounds { ratio, per_factor, per_error, steepest, widest } in &self.bounds {
+        for LocalBounds { ratio, per_factor, per_error, steepest, widest, across, flatness } in &self.bounds {
             let finite = [per_factor, per_error, steepest, widest];
             let is_finite = finite.iter().all(|x| (0.0..f64::INFINITY).contains(*x));
-            if ratio.is_nan() || *ratio < 0.0 || !is_finite {
+            let is_direction = across.iter().all(|x| x.abs() <= 1.0);
+            let are_ratios = [ratio, flatness].iter().all(|x| **x >= 0.0);
+            if !(are_ratios && is_finite && is_direction) {
                 return Err("a bound is negative or not a number");
             }
         }

@@ -1,6 +1,8 @@
 //! `KineticQuery`: tests only active pairs while z stays in a region, searches a new region when z leaves it, and falls
 //! back to an ordinary query where no region pays.
 
+use std::sync::Arc;
+
 use super::region::Region;
 use super::region_control::{MAX_BALL, MAX_CAPSULE, MIN_STEPS, RegionControl, RegionKind};
 use super::region_pairs::RegionPairs;
@@ -71,11 +73,14 @@ impl<'a> KineticQuery<'a> {
     /// # Errors
     /// When the certificates were computed for another model, or their metric does not fit it.
     pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
-        let query = Query::new(model, certificates)?;
+        let mut query = Query::new(model, certificates)?;
         let scope = &certificates.parts().scope;
         // Ordinary queries use the metric for radii alone; safe distances are computed anew.
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
+        if let Some(locals) = &mut query.context.locals {
+            Arc::make_mut(locals).add_region_rates(&scope.metric);
+        }
         let layout = &query.context.detect.layout;
         Ok(Self {
             search: RegionSearch::new(&query.context),

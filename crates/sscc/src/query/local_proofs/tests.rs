@@ -4,9 +4,12 @@ use num_rational::BigRational;
 use num_traits::Signed;
 use sscc_testing::Numbers;
 
+use super::super::smallest_stretch::{nearest_rotation, smallest_eigenvalue};
 use super::*;
 use crate::LocalBounds;
+use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::DeformedMotion;
+use crate::geometry::Aabb;
 
 type Matrix = [[BigRational; 3]; 3];
 
@@ -157,17 +160,29 @@ fn certificate(gradients: Vec<DMat3>, ellipsoid: Vec<Vec<f64>>) -> Certificate {
 
 /// What is allowed at these q, of a model with that many modes.
 fn allowed<const E: usize>(local: &LocalCertificates, rank: usize, q: [&[f64]; E]) -> f64 {
+    allowed_during(local, rank, &DeformedMotion::new(q, 1.0))
+}
+
+/// What is allowed during a motion.
+fn allowed_during<const E: usize, M: VertexMotion<E>>(
+    local: &LocalCertificates,
+    rank: usize,
+    motion: &M,
+) -> f64 {
     let center = vec![0.0; rank];
-    let tables = LocalTables {
+    let mut tables = LocalTables {
         certificates: local,
         center: &center,
         scales: FactorScales { sizes: vec![1.0; rank], scale: 1.0, reach: 1.0 },
         of_node: vec![0],
         starts: vec![[0, 0]],
+        rates: None,
+        list_bits: vec![0],
         buckets: std::iter::once(0..1).collect(),
     };
+    tables.add_region_rates(&Metric::identity(rank));
     let mut proofs = LocalProofs::<E>::new(&tables);
-    assert!(proofs.begin(&tables, &DeformedMotion::new(q, 1.0)));
+    assert!(proofs.begin(&tables, motion));
     f64::from(proofs.allowed(&tables, 0))
 }
 
@@ -192,7 +207,7 @@ fn allowed_ratios_are_at_most_exact() {
     let random = &mut Numbers(4);
     let single = |x: f64| f64::from(x as f32);
     let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
-    let (mut positive, mut swept) = (0, 0);
+    let (mut positive, mut swept, mut short) = (0, 0, 0);
     for case in 0..1200 {
         let rank = 2 + random.below(if case % 20 == 0 { 30 } else { 6 });
         let size = random.power(-2.0, 0.5);
@@ -223,7 +238,13 @@ fn allowed_ratios_are_at_most_exact() {
             }
             f
         };
-        let [f, g] = [draw(random), draw(random)];
+        let [f, mut g] = [draw(random), draw(random)];
+        // A motion along which the map changes little.
+        if case % 2 == 1 {
+            let share = 0.03 / size.max(1.0);
+            g = f.iter().map(|f| f + share * random.signed()).collect();
+            short += 1;
+        }
         let certificate = certificate(gradients, ellipsoid);
         let one = allowed(&certificate.local, rank, [&f]);
         if one > 0.0 {
@@ -240,7 +261,7 @@ fn allowed_ratios_are_at_most_exact() {
             }
         }
     }
-    assert!(positive > 500 && swept > 150, "{positive} {swept}");
+    assert!(positive > 500 && swept > 150 && short > 500, "{positive} {swept} {short}");
 }
 
 #[test]
@@ -257,4 +278,114 @@ fn nan_at_either_end_is_no_proof() {
         let allowed = allowed(&certificate.local, 2, ends.map(|q| q.as_slice()));
         assert!(allowed.is_nan() || allowed <= 0.0, "{allowed}");
     }
+}
+
+/// All z within a radius of a segment.
+struct InRegion<'q> {
+    ends: [&'q [f64]; 2],
+    radius: f64,
+}
+
+impl VertexMotion<2> for InRegion<'_> {
+    const HAS_ERROR_BOUND: bool = false;
+
+    fn rounding(&self) -> f64 {
+        1e-15
+    }
+
+    fn overall_aabb(&self, _: &Layout) -> Aabb {
+        unreachable!("no positions are needed")
+    }
+
+    fn coarse_coordinates(&self) -> Option<[&[f64]; 2]> {
+        Some(self.ends)
+    }
+
+    fn region_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
+    fn coarse_slack(&self, _: u32) -> Option<DVec3> {
+        unreachable!("no positions are needed")
+    }
+
+    fn positions(&self, _: &Layout, _: u32) -> [DVec3; 2] {
+        unreachable!("no positions are needed")
+    }
+
+    fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
+        unreachable!("no positions are needed")
+    }
+}
+
+/// `W d`, and the product of its transpose with that.
+fn strained(ellipsoid: &[Vec<f64>], d: &[f64]) -> [Vec<f64>; 2] {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    let image: Vec<f64> = ellipsoid.iter().map(|row| dot(row, d)).collect();
+    let column = |k: usize| ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>();
+    let back = (0..d.len()).map(|k| dot(&column(k), &image)).collect();
+    [image, back]
+}
+
+fn of_length(d: &[f64], length: f64) -> Vec<f64> {
+    let norm = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+    d.iter().map(|x| x * length / norm).collect()
+}
+
+/// Also at the border of the region, in the directions that spoil a proof soonest.
+#[test]
+fn proofs_in_regions_hold_in_all_of_them() {
+    let random = &mut Numbers(5);
+    let (mut proven, mut checked, mut close) = (0, 0, 0);
+    for case in 0..400 {
+        let rank = 2 + random.below(if case % 20 == 0 { 70 } else { 6 });
+        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+        let size = if case % 2 == 0 { 0.0 } else { 0.3 / (rank as f64).sqrt() };
+        let gradients: Vec<DMat3> = (0..rank)
+            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| f64::from((random.signed() * size) as f32))))
+            .collect();
+        // No strain that matters, or no map that does.
+        let of_strain = if case % 2 == 0 { 1.0 } else { 1e-3 };
+        let ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| {
+                (0..rank).map(|k| if k >= i { half(of_strain * random.signed()) } else { 0.0 }).collect()
+            })
+            .collect();
+        let mut worst: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        for _ in 0..200 {
+            worst = of_length(&strained(&ellipsoid, &worst)[1], 1.0);
+        }
+        let start = of_length(&worst, random.power(-2.0, 0.0));
+        let end = if case % 3 == 0 { start.clone() } else { start.iter().map(|x| x * 1.1).collect() };
+        let radius = random.power(-3.0, -0.5);
+        let certificate = certificate(gradients, ellipsoid);
+        let allowed = allowed_during(&certificate.local, rank, &InRegion { ends: [&start, &end], radius });
+        if allowed <= 0.0 {
+            continue;
+        }
+        proven += 1;
+        let map = |f: &[f64]| {
+            certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |sum, (g, f)| sum + *g * *f)
+        };
+        let from = smallest_stretch(&map(&end));
+        let slopes: Vec<f64> = (0..rank)
+            .map(|k| {
+                let mut moved = end.clone();
+                moved[k] += 1e-4;
+                from - smallest_stretch(&map(&moved))
+            })
+            .collect();
+        let any: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        for direction in [worst, slopes, any] {
+            if direction.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            let d = of_length(&direction, radius * (1.0 - 1e-9));
+            let at: Vec<f64> = end.iter().zip(&d).map(|(x, d)| x + d).collect();
+            assert!(holds(&certificate, allowed * (1.0 - 1e-6), &at), "case {case}: {allowed} at {at:?}");
+            checked += 1;
+            close += usize::from(!holds(&certificate, allowed * 1.5, &at));
+        }
+    }
+    assert!(proven > 300 && checked > 800 && close > 150, "{proven} {checked} {close}");
 }

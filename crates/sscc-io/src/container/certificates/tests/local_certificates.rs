@@ -30,12 +30,14 @@ fn every_field_round_trips_bit_for_bit() {
         per_error: 1.0 + f64::EPSILON,
         steepest: 3.0,
         widest: 1e300,
+        across: [0.6, -0.8, 1e-320],
+        flatness: 0.25,
     };
     let changed = Certificates::from_parts(parts).unwrap();
     for certificates in [certificates, changed] {
         let bytes = certificates_to_bytes(&certificates).unwrap();
         let file = Container::parse(&bytes, CERTIFICATES).unwrap();
-        assert_eq!((file.version(), file.text("scheme").unwrap()), (6, "full"));
+        assert_eq!((file.version(), file.text("scheme").unwrap()), (7, "full"));
         let read = certificates_from_bytes(&bytes).unwrap();
         read.check_model(&model).unwrap();
         let [a, b] = [&read, &certificates].map(|certificates| &certificates.parts().local);

@@ -199,7 +199,7 @@ fn ratios_are_at_least_those_of_all_pairs() {
             Case::new(positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(), neighbours)
         };
         with_search(&case, random, |search, gaps, patch, exact| {
-            let ratio = search.within(gaps, 0);
+            let ratio = search.within(gaps, 0, 0.0);
             if !ratio.is_finite() {
                 return;
             }

@@ -1,0 +1,107 @@
+//! How fast the numbers of local certificates change with z, for proofs that hold at all z of a region.
+
+use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, gradient_len};
+use crate::vectors::LANES;
+
+/// More modes have a coarser bound, which takes less time.
+const MOST_MODES: usize = 64;
+
+/// Covers rounding: eighth powers of singular values that sum up to more than 1e-8 err by less than 1e-12.
+const ROUND_UP: f64 = 1.0 + 1e-6;
+
+/// Squares of smaller norms lose digits.
+const SMALLEST: f64 = 1e-140;
+
+/// Upper bounds of changes of the numbers of local certificates for each unit of `|z|`.
+#[derive(Clone)]
+pub(super) struct RegionRates {
+    /// Of the sum of the magnitudes of all factors.
+    pub(super) sum: f64,
+    pub(super) certificates: Vec<CertificateRates>,
+}
+
+/// The rates of one certificate. Infinite ones prove nothing.
+#[derive(Clone, Copy)]
+pub(super) struct CertificateRates {
+    /// Of F, in the Frobenius norm.
+    pub(super) map: f64,
+    /// Of `W f`.
+    pub(super) strain: f64,
+}
+
+impl RegionRates {
+    /// The rates in a diagonal metric. `scales`: its factor, for each mode.
+    pub(super) fn new(local: &LocalCertificates, factors: &FactorScales, scales: &[f64]) -> Self {
+        // A unit of z in mode k changes the factor by this.
+        let units: Vec<f64> = factors.sizes.iter().zip(scales).map(|(size, scale)| size / scale).collect();
+        let (mut gradients, mut ellipsoids) = (&local.gradients[..], &local.ellipsoids[..]);
+        let certificates = local.mode_starts.windows(2).map(|range| {
+            let modes = &local.modes[range[0] as usize..range[1] as usize];
+            let count = modes.len();
+            let units: Vec<f64> = modes.iter().map(|k| units[*k as usize]).collect();
+            let (gradient, rest) = gradients.split_at(gradient_len(count));
+            gradients = rest;
+            let (ellipsoid, rest) = ellipsoids.split_at(EllipsoidBlocks(count).len());
+            ellipsoids = rest;
+            CertificateRates {
+                map: largest_singular_value(&gradient_rows(gradient, &units), count),
+                strain: largest_singular_value(&ellipsoid_rows(ellipsoid, &units), count),
+            }
+        });
+        let certificates = certificates.collect();
+        Self { sum: norm(&units), certificates }
+    }
+}
+
+/// Nine rows: an entry of G for each mode, times the mode's unit.
+fn gradient_rows(gradient: &[f32], units: &[f64]) -> Vec<f64> {
+    let count = units.len();
+    let entry =
+        |e: usize, k: usize| if e < LANES { gradient[LANES * k + e] } else { gradient[LANES * count + k] };
+    (0..=LANES).flat_map(|e| (0..count).map(move |k| f64::from(entry(e, k)) * units[k])).collect()
+}
+
+/// The rows of W, each column times the mode's unit.
+fn ellipsoid_rows(ellipsoid: &[u16], units: &[f64]) -> Vec<f64> {
+    let count = units.len();
+    let mut rows = vec![0.0; count * count];
+    let mut numbers = ellipsoid.chunks_exact(LANES);
+    for (block, columns) in EllipsoidBlocks(count).columns().enumerate() {
+        for (k, column) in columns.zip(&mut numbers) {
+            for (i, half) in (LANES * block..count).zip(column) {
+                rows[i * count + k] = f64::from(f32::from_bits(u32::from(*half) << 16)) * units[k];
+            }
+        }
+    }
+    rows
+}
+
+/// An upper bound of the largest singular value of a matrix of rows of this length; infinite where one is no number. Its
+/// eighth power is at most the trace of the fourth power of the Gram matrix.
+fn largest_singular_value(rows: &[f64], len: usize) -> f64 {
+    let frobenius = norm(rows);
+    if !(frobenius > SMALLEST && frobenius < f64::INFINITY) {
+        return if rows.iter().all(|x| *x == 0.0) { 0.0 } else { f64::INFINITY };
+    }
+    if len > MOST_MODES {
+        return frobenius;
+    }
+    // Numbers of at most 1.
+    let rows: Vec<f64> = rows.iter().map(|x| x / frobenius).collect();
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    // The Gram matrix of the rows has the same eigenvalues as that of the columns, apart from zeros.
+    let gram = |rows: &[f64], len: usize| -> Vec<f64> {
+        rows.chunks_exact(len).flat_map(|x| rows.chunks_exact(len).map(move |y| dot(x, y))).collect()
+    };
+    let square = gram(&rows, len);
+    let size = rows.len() / len;
+    // It is symmetric: its square is the Gram matrix of its rows.
+    let fourth = gram(&square, size);
+    let trace = fourth.iter().map(|x| x * x).sum::<f64>();
+    trace.sqrt().sqrt().sqrt() * frobenius * ROUND_UP
+}
+
+/// The Euclidean norm, rounded up.
+fn norm(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|x| x * x).sum::<f64>().sqrt() * ROUND_UP
+}
