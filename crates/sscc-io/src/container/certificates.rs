@@ -43,7 +43,8 @@
 //! `groups` also `group_pairs`: what the tensor of that name lists ("ignored": pairs that do not count, the others do;
 //! "counted": pairs that count, the others do not). The name of the scheme implies nothing. A bucket has at most 64
 //! triangles and is not the root; the tree holds no pairs within a bucket. Local certificates are new in version 6, groups
-//! in version 5; files without are written in the oldest of 4, 5 and 6 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
+//! in version 5; version 6 has no flat patches. Files are written in
+//! the oldest of 4, 5 and 7 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
 //! tree, and a text `pairs` ("root-children").
 
 use std::path::Path;

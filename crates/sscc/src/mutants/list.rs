@@ -300,6 +300,10 @@ mutants! {
     LocalRegionMapStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
     /// `W f` is the same in a whole region.
     LocalRegionStrainStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    /// The factors are the same in a whole region.
+    LocalRegionSumStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    /// Without rates local certificates hold in a whole region.
+    LocalRegionUnknown: CaughtBy("lib query::local_proofs::tests::regions_of_dense_metrics_have_no_proofs");
     /// Maps near their mean stretch as it does.
     LocalMotionForgotten: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
     /// The heights of a flat patch turn with its plane, whatever the map does to them.

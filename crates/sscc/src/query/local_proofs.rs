@@ -320,7 +320,7 @@ impl<const E: usize> LocalProofs<E> {
             return false;
         };
         self.radius = right_or!(radius, LocalProofsInRegions, 0.0);
-        if self.radius > 0.0 && tables.rates.is_none() {
+        if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
             return false;
         }
         let FactorScales { sizes, scale, reach } = &tables.scales;
@@ -369,8 +369,8 @@ impl<const E: usize> LocalProofs<E> {
             Some(rates) if self.radius > 0.0 => {
                 let CertificateRates { map, strain } = rates.certificates[index];
                 let map = right_or!(map, LocalRegionMapStill, 0.0);
-                [rates.sum, map, right_or!(strain, LocalRegionStrainStill, 0.0)]
-                    .map(|rate| rate * self.radius)
+                let sum = right_or!(rates.sum, LocalRegionSumStill, 0.0);
+                [sum, map, right_or!(strain, LocalRegionStrainStill, 0.0)].map(|rate| rate * self.radius)
             }
             _ => [0.0; 3],
         };

@@ -105,3 +105,49 @@ fn largest_singular_value(rows: &[f64], len: usize) -> f64 {
 fn norm(numbers: &[f64]) -> f64 {
     numbers.iter().map(|x| x * x).sum::<f64>().sqrt() * ROUND_UP
 }
+
+#[cfg(test)]
+mod tests {
+    use sscc_testing::Numbers;
+
+    use super::*;
+
+    /// Of matrices of both kinds of shapes, of rank one and of more, large, small and out of range.
+    #[test]
+    fn singular_values_are_bounded() {
+        let random = &mut Numbers(8);
+        let mut close = 0;
+        let shapes = [(9, 1), (9, 8), (9, 64), (9, 65), (1, 1), (8, 8), (9, 9), (64, 64), (65, 65)];
+        for (case, (size, len)) in shapes.into_iter().cycle().take(90).enumerate() {
+            let scale = random.power(-100.0, 100.0);
+            let mut rows = vec![0.0; size * len];
+            for _ in 0..1 + random.below(3) {
+                let x: Vec<f64> = (0..size).map(|_| random.signed()).collect();
+                let y: Vec<f64> = (0..len).map(|_| random.signed()).collect();
+                for (row, x) in rows.chunks_mut(len).zip(&x) {
+                    row.iter_mut().zip(&y).for_each(|(out, y)| *out += x * y * scale);
+                }
+            }
+            // The power iteration finds it from below.
+            let mut way: Vec<f64> = (0..len).map(|_| random.signed()).collect();
+            let mut longest = 0.0;
+            for _ in 0..300 {
+                let length = norm(&way);
+                let of_row = |row: &[f64]| row.iter().zip(&way).map(|(a, x)| a / scale * (x / length)).sum();
+                let image: Vec<f64> = rows.chunks(len).map(of_row).collect();
+                longest = norm(&image) / ROUND_UP * (1.0 - 1e-9) * scale;
+                let back = |k: usize| rows.chunks(len).zip(&image).map(|(row, y)| row[k] / scale * y).sum();
+                way = (0..len).map(back).collect();
+            }
+            let bound = largest_singular_value(&rows, len);
+            assert!(longest <= bound, "case {case}: {longest} {bound}");
+            close += usize::from(bound < 1.2 * longest);
+        }
+        assert!(close > 60, "{close}");
+        assert_eq!(largest_singular_value(&[], 0), 0.0);
+        assert_eq!(largest_singular_value(&[0.0; 18], 2), 0.0);
+        for out_of_range in [1e-150, 1e200, f64::INFINITY, f64::NAN] {
+            assert_eq!(largest_singular_value(&[out_of_range; 18], 2), f64::INFINITY);
+        }
+    }
+}

@@ -14,7 +14,8 @@ pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
 /// It is concave, so what it is at least at two matrices it is at least between them. The rotation by which the
 /// matrix was multiplied is one up to rounding, which the share of the norm covers.
 pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
-    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12)
+    // The part that is not symmetric is rounded, too.
+    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12) - 1e-14 * norm(map)
 }
 
 /// A lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity where none was found. `error`: that of its
@@ -83,7 +84,6 @@ const SHORT: f64 = 1.0 / 16.0;
 /// Near their mean all maps stretch by at most their distance from it less than the mean does. Others are turned by one
 /// rotation, and have the smallest eigenvalues of their symmetric parts.
 pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
-    let norm = |map: &DMat3| map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
     let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map) * (1.0 / E as f64);
     let distance = maps.iter().map(|map| norm(&(*map - mean))).fold(0.0, larger_or_nan);
     if distance <= SHORT {
@@ -94,9 +94,14 @@ pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     let Some(turn) = nearest_rotation(&mean) else { return [0.0; E] };
     let turn = turn.transpose();
     // Any rotation will do, but the same one for all.
-    maps.map(|map| {
-        right_or!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map)).max(0.0)
-    })
+    let bounds = maps
+        .map(|map| right_or!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map)));
+    if bounds.iter().all(|bound| *bound > 0.0) { bounds } else { [0.0; E] }
+}
+
+/// The Frobenius norm.
+fn norm(map: &DMat3) -> f64 {
+    map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Steps of the iteration towards the rotation.

@@ -474,6 +474,7 @@ fn one_leaf_is_a_tree() {
         node_radii: vec![certificates.root_radius()],
         root_pair_radii: vec![],
         pair_tree: PairTree::default(),
+        local: sscc::LocalCertificates::default(),
         ..parts.clone()
     })
     .unwrap();

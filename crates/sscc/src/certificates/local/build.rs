@@ -137,11 +137,11 @@ impl Builder<'_> {
         patch.load(self.model, hierarchy, filter.faces(), nodes(), MOST_MODES)?;
         let parts = search.load(self.gaps, patch, nodes());
         let rank = patch.modes.len();
-        let (blocks, tight) = self.blocks(n, patch);
+        let blocks = self.blocks(n, patch);
         let ellipsoid = instructions.run(FitEllipsoid { blocks: &blocks, rank, row_len: patch.row_len })?;
         let largest_image = patch.images(&ellipsoid, images, &mut search.images);
         search.begin(largest_image);
-        let floor = search.largest_ratio(&tight);
+        let floor = search.largest_ratio(&self.tight_within(n, patch));
         let ratio = infinite_for_nan(search.within(self.gaps, 0, floor));
         let mut list = Vec::new();
         for part in &parts[1..] {
@@ -225,9 +225,8 @@ impl Builder<'_> {
     }
 
     /// The blocks that the ellipsoid is fitted to: the residual of some vertices over their distance from the first one, and differences of
-    /// residuals over the gap, of the tight pairs within the node where they are largest. Also returns these pairs, by their numbers in the
-    /// patch.
-    fn blocks(&self, n: u32, patch: &Patch) -> (Vec<f64>, Vec<TightPair>) {
+    /// residuals over the gap, of the tight pairs within the patch where they are largest.
+    fn blocks(&self, n: u32, patch: &Patch) -> Vec<f64> {
         let width = 3 * patch.row_len;
         let residual = |i: u32| &patch.residuals[width * i as usize..][..width];
         let mut blocks = Vec::new();
@@ -237,18 +236,11 @@ impl Builder<'_> {
                 blocks.extend(residual(i as u32).iter().map(|e| e / distance));
             }
         }
-        let nodes = self.gaps.hierarchy.nodes();
-        let (mut tight, mut stack) = (Vec::new(), vec![n]);
-        while let Some(n) = stack.pop() {
-            stack.extend(nodes[n as usize].children());
-            for pair in self.gaps.tight(n) {
-                let [i, j] = [pair.i, pair.j].map(|v| patch.numbers[v as usize]);
-                if i.max(j) != u32::MAX {
-                    let ratio = squared_distance(residual(i), residual(j)).sqrt() / f64::from(pair.gap);
-                    tight.push((ratio, TightPair { i, j, gap: pair.gap }));
-                }
-            }
-        }
+        let with_ratio = |(_, pair): (u32, TightPair)| {
+            let ratio = squared_distance(residual(pair.i), residual(pair.j)).sqrt() / f64::from(pair.gap);
+            (ratio, pair)
+        };
+        let mut tight: Vec<(f64, TightPair)> = self.tight(n, patch).into_iter().map(with_ratio).collect();
         // The largest of each part, so that no crease alone decides, and the largest of all.
         let larger = |a: &(f64, TightPair), b: &(f64, TightPair)| b.0.total_cmp(&a.0);
         let mut chosen: Vec<_> = tight
@@ -257,11 +249,37 @@ impl Builder<'_> {
             .collect();
         tight.sort_by(larger);
         chosen.extend(tight.into_iter().take(TIGHT_BLOCKS / 2));
-        let chosen: Vec<TightPair> = chosen.into_iter().map(|(_, pair)| pair).collect();
-        for TightPair { i, j, gap } in &chosen {
-            blocks.extend(residual(*i).iter().zip(residual(*j)).map(|(x, y)| (y - x) / f64::from(*gap)));
+        for (_, TightPair { i, j, gap }) in chosen {
+            blocks.extend(residual(i).iter().zip(residual(j)).map(|(x, y)| (y - x) / f64::from(gap)));
         }
-        (blocks, chosen)
+        blocks
+    }
+
+    /// The tight pairs of the node's leaves with later ones, of which both vertices are in the patch, by their numbers there, and the later
+    /// leaf.
+    fn tight(&self, n: u32, patch: &Patch) -> Vec<(u32, TightPair)> {
+        let nodes = self.gaps.hierarchy.nodes();
+        let (mut tight, mut stack) = (Vec::new(), vec![n]);
+        while let Some(n) = stack.pop() {
+            stack.extend(nodes[n as usize].children());
+            for (leaf, pair) in self.gaps.tight(n) {
+                let [i, j] = [pair.i, pair.j].map(|v| patch.numbers[v as usize]);
+                if i.max(j) != u32::MAX {
+                    tight.push((*leaf, TightPair { i, j, gap: pair.gap }));
+                }
+            }
+        }
+        tight
+    }
+
+    /// Those of two leaves of the node: the ratio of all pairs within it is at least theirs.
+    fn tight_within(&self, n: u32, patch: &Patch) -> Vec<TightPair> {
+        let nodes = self.gaps.hierarchy.nodes();
+        let node = &nodes[n as usize];
+        let own = node.first_triangle..node.first_triangle + node.triangle_count;
+        let mut tight = self.tight(n, patch);
+        tight.retain(|(leaf, _)| own.contains(&nodes[*leaf as usize].first_triangle));
+        tight.into_iter().map(|(_, pair)| pair).collect()
     }
 }
 

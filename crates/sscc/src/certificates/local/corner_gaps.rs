@@ -64,7 +64,8 @@ pub(super) struct CornerGaps<'g> {
     tables: Vec<Option<GapTable>>,
     /// For each node where the tight pairs of its tables with later leaves start if it is a leaf, and the end.
     tight_starts: Vec<u32>,
-    tight: Vec<TightPair>,
+    /// The later leaf, and the pair.
+    tight: Vec<(u32, TightPair)>,
 }
 
 impl<'g> CornerGaps<'g> {
@@ -98,7 +99,7 @@ impl<'g> CornerGaps<'g> {
         for (pair, table) in near.iter().zip(&tables) {
             gaps.table_starts[pair.0 as usize + 1] += 1;
             if let Some(tight) = table.as_ref().and_then(|table| gaps.tightest(*pair, table)) {
-                gaps.tight.push(tight);
+                gaps.tight.push((pair.1, tight));
                 gaps.tight_starts[pair.0 as usize + 1] += 1;
             }
         }
@@ -118,8 +119,8 @@ impl<'g> CornerGaps<'g> {
         &self.vertices[start..end]
     }
 
-    /// The tight pairs of a leaf and later ones.
-    pub(super) fn tight(&self, leaf: u32) -> &[TightPair] {
+    /// The tight pairs of a leaf and later ones, with these.
+    pub(super) fn tight(&self, leaf: u32) -> &[(u32, TightPair)] {
         let [start, end] = [leaf, leaf + 1].map(|n| self.tight_starts[n as usize] as usize);
         &self.tight[start..end]
     }

@@ -29,7 +29,10 @@
 //! x_j - x_i = F~ (p_j - p_i) + (E_j - E_i) f + (F a - nu) (a.(p_j - p_i))
 //! ```
 //!
-//! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` will do as well, if `|a.(p_j - p_i)| <= phi s_ij`.
+//! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` will do as well, if `|a.(p_j - p_i)| <= phi s_ij`. The searches for
+//! kappa and phi may accept one pair along different directions n and n', with gaps s and s'. For `A = kappa |W f|` and
+//! `B = phi |F a - nu|` the direction `(A n + B n') / (A + B)`, of length at most 1, serves for both: its gap is `(A s + B s') / (A + B)`,
+//! at least the smaller of both, which is why eta and rho are over the smallest gap of both searches.
 //!
 //! A certificate has a ratio for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
@@ -61,7 +64,7 @@ pub struct LocalCertificates {
 }
 
 /// The numbers of a certificate's comparison.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalBounds {
     /// The ratio `kappa` of the pairs within the node; infinite where none was found.
     pub ratio: f64,
@@ -77,6 +80,21 @@ pub struct LocalBounds {
     pub across: [f64; 3],
     /// `phi`, which bounds `|a.(p_j - p_i)| / s_ij` of all pairs; infinite where a patch is not flat.
     pub flatness: f64,
+}
+
+impl Default for LocalBounds {
+    /// Zeros, of a patch that is not flat.
+    fn default() -> Self {
+        Self {
+            ratio: 0.0,
+            per_factor: 0.0,
+            per_error: 0.0,
+            steepest: 0.0,
+            widest: 0.0,
+            across: [0.0; 3],
+            flatness: f64::INFINITY,
+        }
+    }
 }
 
 /// A patch that more modes move has no certificate.

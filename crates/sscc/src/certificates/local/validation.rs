@@ -63,7 +63,7 @@ impl LocalCertificates {
         for LocalBounds { ratio, per_factor, per_error, steepest, widest, across, flatness } in &self.bounds {
             let finite = [per_factor, per_error, steepest, widest];
             let is_finite = finite.iter().all(|x| (0.0..f64::INFINITY).contains(*x));
-            let is_direction = across.iter().all(|x| x.abs() <= 1.0);
+            let is_direction = across.iter().map(|x| x * x).sum::<f64>() <= 1.0 + 1e-12;
             let are_ratios = [ratio, flatness].iter().all(|x| **x >= 0.0);
             if !(are_ratios && is_finite && is_direction) {
                 return Err("a bound is negative or not a number");

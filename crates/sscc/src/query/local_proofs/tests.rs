@@ -186,13 +186,18 @@ fn allowed_during<const E: usize, M: VertexMotion<E>>(
     f64::from(proofs.allowed(&tables, 0))
 }
 
-/// Whether `ratio |W f| < sigma_min(I + G f)`.
-fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
-    let map = matrix(|i, j| {
+/// `I + G f`, exactly.
+fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
+    matrix(|i, j| {
         let unit = exact(f64::from(u8::from(i == j)));
         certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<BigRational>()
             + unit
-    });
+    })
+}
+
+/// Whether `ratio |W f| < sigma_min(I + G f)`.
+fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
+    let map = exact_map(certificate, f);
     let strain: BigRational = certificate
         .ellipsoid
         .iter()
@@ -280,6 +285,87 @@ fn nan_at_either_end_is_no_proof() {
     }
 }
 
+/// `|W f|`, up to rounding.
+fn strain_of(certificate: &Certificate, f: &[f64]) -> f64 {
+    let image = certificate.ellipsoid.iter().map(|row| row.iter().zip(f).map(|(w, f)| w * f).sum::<f64>());
+    image.map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Whether a sum is less than the smallest singular value of a map.
+fn is_below(sum: f64, map: &Matrix) -> bool {
+    is_above(&gram(map), &(exact(sum) * exact(sum)))
+}
+
+/// Maps of patches that turn as planes do, with other images of the direction across.
+#[test]
+fn flat_patches_allow_at_most_what_is_exact() {
+    let random = &mut Numbers(6);
+    let (mut flat, mut swept, mut close) = (0, 0, 0);
+    for case in 0..600 {
+        let rank = 9 + random.below(3);
+        // The modes are the entries of the map.
+        let mut gradients: Vec<DMat3> = (0..9)
+            .map(|e| DMat3::from_cols_array(&std::array::from_fn(|i| f64::from(u8::from(i == e)))))
+            .collect();
+        gradients.resize(rank, DMat3::ZERO);
+        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+        let ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
+            .collect();
+        let mut certificate = certificate(gradients, ellipsoid);
+        let across = (random.vector() + DVec3::X * 1e-3).normalize();
+        let flatness = [0.0, 0.02, 0.3][case % 3];
+        let bounds = &mut certificate.local.bounds[0];
+        (bounds.across, bounds.flatness) = (across.to_array(), flatness);
+        // A turn of the plane, while the direction across stays.
+        let axis = (random.vector() + DVec3::Y * 1e-3).normalize();
+        let factors = |angle: f64, random: &mut Numbers| -> Vec<f64> {
+            let turn = DMat3::from_axis_angle(axis, angle);
+            let outer = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
+            let map = turn + outer(across - turn * across, across) - DMat3::IDENTITY;
+            let mut f = map.to_cols_array().to_vec();
+            f.resize_with(rank, || random.signed() * 0.1);
+            f.iter().map(|x| x + 0.02 * random.signed()).collect()
+        };
+        let angle = 3.0 * random.signed();
+        let f = factors(angle, random);
+        let g = factors(angle + [0.02, 0.5][case % 2] * random.signed(), random);
+        let map_of =
+            |f: &[f64]| certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |m, (g, f)| m + *g * *f);
+        // Whether the inequality of either kind holds at f, with the image of the direction across that the mean of the ends has.
+        let is_right = |ratio: f64, ends: &[DMat3; 2], at: &[f64]| {
+            let ratio = ratio * (1.0 - 1e-3);
+            if holds(&certificate, ratio, at) {
+                return true;
+            }
+            let mean = (ends[0] + ends[1]) * 0.5;
+            let ([flat], _) = flat_maps(&[mean], across);
+            let image = flat * across;
+            let map = exact_map(&certificate, at);
+            let own: [BigRational; 3] =
+                std::array::from_fn(|i| (0..3).map(|k| &map[i][k] * exact(across[k])).sum());
+            let map = matrix(|i, j| &map[i][j] + (exact(image[i]) - &own[i]) * exact(across[j]));
+            let turned = (map_of(at) * across - image).length();
+            is_below(ratio * strain_of(&certificate, at) + flatness * turned * (1.0 - 1e-3), &map)
+        };
+        let one = allowed(&certificate.local, rank, [&f]);
+        if one > 0.0 {
+            assert!(is_right(one, &[map_of(&f); 2], &f), "case {case}: {one} at {f:?}");
+            flat += usize::from(!holds(&certificate, one * (1.0 - 1e-3), &f));
+            close += usize::from(!is_right(one * 1.1, &[map_of(&f); 2], &f));
+        }
+        let two = allowed(&certificate.local, rank, [&f, &g]);
+        if two > 0.0 {
+            for t in [0.0, 0.3, 0.5, 1.0] {
+                let at: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
+                assert!(is_right(two, &[map_of(&f), map_of(&g)], &at), "case {case}: {two} at {t}");
+                swept += usize::from(!holds(&certificate, two * (1.0 - 1e-3), &at));
+            }
+        }
+    }
+    assert!(flat > 100 && swept > 200 && close > 200, "{flat} {swept} {close}");
+}
+
 /// All z within a radius of a segment.
 struct InRegion<'q> {
     ends: [&'q [f64]; 2],
@@ -358,7 +444,9 @@ fn proofs_in_regions_hold_in_all_of_them() {
         let start = of_length(&worst, random.power(-2.0, 0.0));
         let end = if case % 3 == 0 { start.clone() } else { start.iter().map(|x| x * 1.1).collect() };
         let radius = random.power(-3.0, -0.5);
-        let certificate = certificate(gradients, ellipsoid);
+        let mut certificate = certificate(gradients, ellipsoid);
+        let per_factor = [0.0, 0.1][case / 2 % 2];
+        certificate.local.bounds[0].per_factor = per_factor;
         let allowed = allowed_during(&certificate.local, rank, &InRegion { ends: [&start, &end], radius });
         if allowed <= 0.0 {
             continue;
@@ -376,16 +464,49 @@ fn proofs_in_regions_hold_in_all_of_them() {
             })
             .collect();
         let any: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
-        for direction in [worst, slopes, any] {
+        // Along all axes at once the sum of the factors grows fastest.
+        let all: Vec<f64> = end.iter().map(|x| if *x < 0.0 { -1.0 } else { 1.0 }).collect();
+        for direction in [worst, slopes, any, all] {
             if direction.iter().all(|x| *x == 0.0) {
                 continue;
             }
             let d = of_length(&direction, radius * (1.0 - 1e-9));
             let at: Vec<f64> = end.iter().zip(&d).map(|(x, d)| x + d).collect();
-            assert!(holds(&certificate, allowed * (1.0 - 1e-6), &at), "case {case}: {allowed} at {at:?}");
+            let is_right = |ratio: f64| {
+                let sum = ratio * strain_of(&certificate, &at)
+                    + per_factor * at.iter().map(|x| x.abs()).sum::<f64>();
+                is_below(sum, &exact_map(&certificate, &at))
+            };
+            assert!(is_right(allowed * (1.0 - 1e-6)), "case {case}: {allowed} at {at:?}");
             checked += 1;
-            close += usize::from(!holds(&certificate, allowed * 1.5, &at));
+            close += usize::from(!is_right(allowed * 1.5));
         }
     }
     assert!(proven > 300 && checked > 800 && close > 150, "{proven} {checked} {close}");
+}
+
+#[test]
+fn regions_of_dense_metrics_have_no_proofs() {
+    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![1.0, 0.5], vec![0.0, 1.0]]);
+    let center = vec![0.0; 2];
+    let mut tables = LocalTables {
+        certificates: &certificate.local,
+        center: &center,
+        scales: FactorScales { sizes: vec![1.0; 2], scale: 1.0, reach: 1.0 },
+        of_node: vec![0],
+        starts: vec![[0, 0]],
+        rates: None,
+        list_bits: vec![0],
+        buckets: std::iter::once(0..1).collect(),
+    };
+    let q = [0.1, 0.1];
+    let region = |radius: f64| InRegion { ends: [&q, &q], radius };
+    let dense = Metric::from_factor(crate::MetricKind::Given, 2, vec![1.0, 0.1, 0.0, 1.0]).unwrap();
+    for (metric, has_proofs) in [(dense, false), (Metric::identity(2), true)] {
+        tables.add_region_rates(&metric);
+        let mut proofs = LocalProofs::<2>::new(&tables);
+        assert_eq!(proofs.begin(&tables, &region(0.1)), has_proofs);
+        // Without a radius it is a motion as any other.
+        assert!(proofs.begin(&tables, &region(0.0)));
+    }
 }
