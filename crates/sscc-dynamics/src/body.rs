@@ -347,6 +347,14 @@ impl<'a> Body<'a> {
         Ok(self.posed.place(&self.q, &pose)?)
     }
 
+    /// Checks that all positions of the body in the world are in the range of numbers. [`Body::place`] checks this too, but a
+    /// step needs no placed shape where no other body and no ground is near.
+    pub(crate) fn check_range(&self) -> Result<(), DynamicsError> {
+        let own = self.shape.model().check_coordinates(&self.q)?;
+        self.pose().check_reach(own)?;
+        Ok(())
+    }
+
     /// Advances the body by one step without contacts. Half of the impulse of the weight acts before and half after the
     /// displacement, which is exact for the position of the centre of mass.
     pub(crate) fn advance(

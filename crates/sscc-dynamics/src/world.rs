@@ -194,7 +194,7 @@ impl<'a> World<'a> {
     /// Returns counts of collisions and contacts at the start of the step.
     ///
     /// # Errors
-    /// When the motion diverges or a number is not finite. After an error the world can be read, but not advanced.
+    /// When the motion diverges, a number is not finite, or a position is beyond the range of numbers. After an error the world can be read, but not advanced.
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
         let mut counts = Counts::default();
         self.bodies.iter_mut().filter(|body| !body.is_asleep()).for_each(Body::save_start);
@@ -242,6 +242,7 @@ impl<'a> World<'a> {
         self.record_impulses();
         self.contacts.end_step(self.sorted_contacts);
         self.check_energy()?;
+        self.bodies.iter().filter(|body| !body.is_asleep()).try_for_each(Body::check_range)?;
         self.settle();
         observer.enter(Phase::Done);
         self.step += 1;

@@ -309,6 +309,27 @@ fn a_diverging_motion_names_step_body_and_energy() {
     assert!(error.to_string().contains("body 1"));
 }
 
+/// A body that no other one and no ground is near: a step needs none of its positions, but its state is given to others.
+#[test]
+fn a_body_that_leaves_the_range_of_numbers_is_refused_in_that_step() {
+    let shapes = shapes();
+    for ground in [None, Some(Ground::default())] {
+        let options = WorldOptions { ground, gravity: DVec3::ZERO, step: 1e-3, ..WorldOptions::default() };
+        let mut world = World::new(options).unwrap();
+        // 2^200 is about 1.607e60.
+        let velocity = DVec3::new(0.0, 1e62, -1e61);
+        let start = Start { position: Some(DVec3::Y), velocity, ..Start::default() };
+        world.add(&shapes[0], &start).unwrap();
+        for _ in 0..16 {
+            world.advance(&mut ()).unwrap();
+        }
+        assert!(world.bodies()[0].rigid().position.y > 1.59e60);
+        let error = world.advance(&mut ()).unwrap_err();
+        assert_eq!(error, DynamicsError::Core(sscc::Error::CoordinatesRange));
+        assert_eq!(world.steps(), 16);
+    }
+}
+
 #[test]
 fn phases_come_in_order_and_quiet_steps_allocate_nothing() {
     let shapes = shapes();

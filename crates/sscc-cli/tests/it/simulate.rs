@@ -317,6 +317,39 @@ fn a_diverging_motion_is_named_and_kept() {
     assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("[\"stopped early\",\"step "));
 }
 
+/// A motion that fails in a later step: all states before are written, and are those of a run that ends there.
+#[test]
+fn the_steps_before_a_failure_are_written() {
+    // Coordinates are at most 2^200, about 1.6e60, which the body leaves after 128 steps.
+    let text = SCENE
+        .replace("velocity = [0, 0, -2]", "velocity = [0, 0, 1e62]")
+        .replace("[sound]\nmodes = 30\n", "");
+    let folder = folder(&text);
+    let run = simulate(folder.path(), &["scene.toml"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    let message = run.stderr.lines().last().unwrap();
+    let failed = message.strip_prefix("error: step ").and_then(|rest| rest.split_once(' ')).unwrap().0;
+    let failed: usize = failed.parse().unwrap();
+    assert!((100..200).contains(&failed), "{message}");
+    let cause = "diverges (energy ";
+    assert!(message.contains(cause) && message.contains("beyond 2^200 (about 1.6e60)"), "{message}");
+    // The state at the start of each step, the failed one included.
+    let states = arrays(&folder.path().join("scene/trajectories.npz"));
+    assert_eq!(states["time"].0, [failed + 1]);
+    let steps = failed.to_string();
+    let short = simulate(folder.path(), &["scene.toml", "--steps", &steps, "--out", "short"]);
+    // It has no failure but the animation, which is in single precision.
+    assert!(short.stderr.lines().last().unwrap().starts_with("error: short/animation.glb: "), "{short:?}");
+    let before = arrays(&folder.path().join("short/trajectories.npz"));
+    for name in ["time", "positions", "orientations", "q_spring"] {
+        let (shape, numbers) = &before[name];
+        assert_eq!((shape[0], &states[name].1[..numbers.len()]), (failed, &numbers[..]), "{name}");
+    }
+    // No run can continue there.
+    let again = simulate(folder.path(), &["scene.toml"]);
+    assert_eq!((again.code, again.stderr.lines().last()), (Some(2), Some(message)), "{again:?}");
+}
+
 #[test]
 fn refusals() {
     let folder = folder(SCENE);

@@ -52,7 +52,7 @@ impl Grid {
         let size = (surface.extent / spacing + (MARGIN - 1e-3)).ceil();
         Ok(Self {
             spacing,
-            size: size.as_uvec3().to_array(),
+            size: size.to_array().map(|cells| cells as u32),
             middle: surface.middle,
             center: 0.5 * size + SHIFT,
         })

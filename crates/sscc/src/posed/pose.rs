@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::geometry::Aabb;
+use crate::{Error, limits};
 
 /// Where a shape is: `x -> rotation x + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +38,17 @@ impl Pose {
         Aabb { lower: center - half, upper: center + half }
     }
 
-    /// An upper bound (up to rounding) of every sum of magnitudes where a coordinate of the shape is at most `reach`.
-    pub(super) fn reach(&self, reach: f64) -> f64 {
+    /// Returns an upper bound (up to rounding) of every sum of magnitudes in a position in the world, where coordinates of the
+    /// shape are at most `own`, as of [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates).
+    ///
+    /// # Errors
+    /// When the pose is not finite, or the bound is beyond [`limits::LARGEST`].
+    pub fn check_reach(&self, own: f64) -> Result<f64, Error> {
         let r = &self.rotation;
         let row = r.x_axis.abs() + r.y_axis.abs() + r.z_axis.abs();
-        row.max_element() * reach + self.translation.abs().max_element()
+        let reach = row.max_element() * own + self.translation.abs().max_element();
+        // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
+        let is_finite = self.rotation.is_finite() && self.translation.is_finite();
+        if is_finite && reach * 1.001 <= limits::LARGEST { Ok(reach) } else { Err(Error::CoordinatesRange) }
     }
 }

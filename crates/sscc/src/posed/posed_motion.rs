@@ -6,7 +6,7 @@ use super::pose::Pose;
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{InWorld, VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
-use crate::{Error, ReducedModel, limits};
+use crate::{Error, ReducedModel};
 
 /// A shape at some q and pose, or on straight lines from one to another.
 #[derive(Clone)]
@@ -55,13 +55,7 @@ impl<const E: usize> PosedMotion<E> {
         let (mut all, mut all_own) = (0.0_f64, 0.0_f64);
         for (q, pose) in places {
             let own = model.check_coordinates(q)?;
-            let reach = pose.reach(own);
-            // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
-            let is_finite = pose.rotation.is_finite() && pose.translation.is_finite();
-            if !(is_finite && reach * 1.001 <= limits::LARGEST) {
-                return Err(Error::CoordinatesRange);
-            }
-            (all, all_own) = (all.max(reach), all_own.max(own));
+            (all, all_own) = (all.max(pose.check_reach(own)?), all_own.max(own));
         }
         (self.reach, self.own_reach, self.margin) = (all, all_own, 0.0);
         for (end, (q, pose)) in places.into_iter().enumerate() {

@@ -138,3 +138,80 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     }
     broad.test_deferred_bucket_pair(context, motion, narrow);
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::detect::narrow_phase::DiscreteHits;
+    use crate::detect::vertex_motion::DeformedMotion;
+    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
+
+    /// A square of 3200 triangles, and two modes that cancel each other: where both coordinates are the same, AABBs of the BD-tree
+    /// grow, and the square does not move. The mean of a mode over each triangle is 0, so the hierarchy is that of the positions.
+    fn square() -> ReducedModel {
+        let (side, row) = (40_u32, 41);
+        let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
+        let cells = (0..side * side).map(|i| i / side * row + i % side);
+        let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
+        let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
+        let colours = [DVec3::new(4.0, 0.0, 0.0), DVec3::new(-2.0, 2.0, 1.0), DVec3::new(-2.0, -2.0, -1.0)];
+        let modes = (0..row * row).flat_map(|i| {
+            let u = colours[((i % row + 2 * (i / row)) % 3) as usize];
+            [u, -u]
+        });
+        ReducedModel::new(mesh, Modes::new(2, modes.collect()).unwrap()).unwrap()
+    }
+
+    /// Below the limit of a tree that stores all node pairs, at norms that reach the radii of all of them, where no hull separates
+    /// nodes.
+    #[test]
+    fn loose_boxes_are_refitted_before_all_node_pairs_are_opened() {
+        let model = square();
+        let options = CertifyOptions { budget: 1 << 12, local_budget: 0, ..CertifyOptions::default() };
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let (tree, node_radii) = (&certificates.parts().pair_tree, &certificates.parts().node_radii);
+        let query = Query::new(&model, &certificates).unwrap();
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        let context = &query.context.detect;
+        for q in [[10.0, 10.0], [10.0, 9.8]] {
+            let norm = certificates.norm(&q);
+            assert!(norm < tree.limit() && tree.entries().all(|(radius, _)| f64::from(radius) < norm));
+            let motion = DeformedMotion::new([&q[..]], model.check_coordinates(&q).unwrap());
+            let [tight, found] = [false, true].map(|is_certified| {
+                let mut broad = BroadPhase::new(&context.layout, is_certified, None);
+                let mut narrow = DiscreteHits::default();
+                broad.begin();
+                broad.begin_volumes(context, &motion);
+                if is_certified {
+                    let mut stack = PairTreeStack::default();
+                    traverse_pair_tree(
+                        &mut broad,
+                        None,
+                        None,
+                        &mut stack,
+                        context,
+                        tree,
+                        node_radii,
+                        norm,
+                        &motion,
+                        &mut narrow,
+                    );
+                } else {
+                    broad.traverse(context, (0, 0), &motion, &mut narrow);
+                }
+                narrow.0.list.sort_unstable();
+                assert_eq!(narrow.0.list, oracle.discrete(&q).unwrap());
+                (broad.counters.opened, broad.loose_pairs, broad.volumes.closed_buckets())
+            });
+            let ((tight, ..), (opened, loose, closed)) = (tight, found);
+            // Without refitting 1,033 against 343, and 108 loose pairs.
+            let buckets = context.layout.buckets.count();
+            assert!(
+                closed == 0 && opened < 2 * tight && loose < buckets,
+                "{opened} {tight} {loose} {buckets}"
+            );
+        }
+    }
+}
