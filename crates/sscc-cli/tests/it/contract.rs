@@ -141,7 +141,7 @@ fn check_continuous() {
     let text = run(&["--certificates", CERTIFICATES]);
     assert_eq!(text.code, Some(1));
     assert!(text.stdout.contains(" at t = 0.6667\n"), "{}", text.stdout);
-    assert!(text.stdout.contains("\n4 steps: 2 free (1 by the root's certificate alone), 2 colliding; "));
+    assert!(text.stdout.contains("\n4 steps: 2 free (2 by the root's certificate alone), 2 colliding; "));
     sscc_io::write_npy(&folder.path().join("free.npy"), &[2, 2], &[0.5, 0.0, -0.5, 0.1]).unwrap();
     let args = ["check", MODEL, "--trajectory", "free.npy", "--continuous", "--certificates", CERTIFICATES];
     let free = sscc(folder.path(), &args);
@@ -234,8 +234,19 @@ fn check_at_one_q() {
     assert!(
         free.stdout.starts_with("free: proven by the root's certificate alone (|z| = 0.5590, root radius ")
     );
+    // Beyond the radius, by the root's local certificate; without local certificates, by a search.
     let free = run("--q=0,4");
     assert_eq!(free.code, Some(0));
+    let start = "free: proven by the root's certificate alone (|z| = 4.000, root radius ";
+    assert!(free.stdout.starts_with(start), "{}", free.stdout);
+    let radii = ["certify", "strips.model.safetensors", "-o", "radii.sscc.safetensors", "--local-budget=0"];
+    assert_eq!(sscc(folder.path(), &radii).code, Some(0));
+    for (certificates, proof) in [(CERTIFICATES, "local"), ("radii.sscc.safetensors", "search")] {
+        let run = sscc(folder.path(), &["check", MODEL, "--certificates", certificates, "--q=0,4", "--json"]);
+        assert_eq!(run.json()[0]["proof"], proof);
+    }
+    let args = ["check", MODEL, "--certificates", "radii.sscc.safetensors", "--q=0,4"];
+    let free = sscc(folder.path(), &args);
     assert!(free.stdout.starts_with("free: proven (|z| = 4.000, root radius "), "{}", free.stdout);
     let colliding = run("--q=1,0");
     assert_eq!(colliding.code, Some(1));

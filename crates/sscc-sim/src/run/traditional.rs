@@ -44,14 +44,13 @@ pub fn traditional_costs(
     for sample in 0..count {
         check_cancelled(watch)?;
         let state = sample * history.len() / count;
-        // Those awake first, then the others.
+        let bodies = scene.bodies.iter().zip(history.bodies(state)).enumerate();
+        let (awake, asleep): (Vec<_>, Vec<_>) = bodies.partition(|(n, _)| history.moves(state, *n));
         let mut seconds = [0.0; 2];
-        for (seconds, is_awake) in seconds.iter_mut().zip([true, false]) {
+        for (seconds, bodies) in seconds.iter_mut().zip([awake, asleep]).filter(|(_, all)| !all.is_empty()) {
             let start = ThreadTime::now();
-            for (n, (body, record)) in scene.bodies.iter().zip(history.bodies(state)).enumerate() {
-                if history.moves(state, n) == is_awake {
-                    queries[body.model].discrete(record.q)?;
-                }
+            for (_, (body, record)) in bodies {
+                queries[body.model].discrete(record.q)?;
             }
             *seconds = start.elapsed().as_secs_f64();
         }

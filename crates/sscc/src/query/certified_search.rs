@@ -44,6 +44,8 @@ impl<const E: usize> CertifiedSearch<E> {
                 return true;
             }
         }
+        // Where few buckets are proven, the pairs of others are seldom: asking for each takes longer.
+        locals = locals.filter(|(proofs, _)| proofs.is_worth_asking());
         // Of a search without local certificates all buckets are open.
         let is_open = |(proofs, _): &(&mut LocalProofs<E>, _)| proofs.is_mostly_open();
         let is_mostly_open = locals.as_ref().is_none_or(is_open);

@@ -29,6 +29,9 @@ const BUCKETS_OF_EVALUATION: usize = 16;
 /// proved nothing than proved their pair.
 const MOST_LOST: usize = 32;
 
+/// Certificates are asked about pairs of nodes if they prove at least one of so many buckets.
+const LEAST_SHARE: usize = 5;
+
 /// No certificate.
 const NONE: u32 = u32::MAX;
 
@@ -244,6 +247,11 @@ impl<const E: usize> LocalProofs<E> {
         (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
         self.is_usable = self.begin_motion(tables, motion);
         self.is_usable
+    }
+
+    /// Whether so many buckets are proven that pairs of nodes are worth asking for.
+    pub(super) fn is_worth_asking(&self) -> bool {
+        self.proven_buckets * LEAST_SHARE >= self.proven.len()
     }
 
     /// Whether most buckets are proven by no certificate.

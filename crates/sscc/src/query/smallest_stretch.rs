@@ -14,8 +14,10 @@ pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
 /// It is concave, so what it is at least at two matrices it is at least between them. The rotation by which the
 /// matrix was multiplied is one up to rounding, which the share of the norm covers.
 pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
+    let least = smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12);
     // The part that is not symmetric is rounded, too.
-    smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12) - 1e-14 * norm(map)
+    let lost = 1e-14 * norm(map);
+    if lost.is_finite() { least - lost } else { f64::NEG_INFINITY }
 }
 
 /// A lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity where none was found. `error`: that of its
