@@ -220,7 +220,7 @@ pub struct Options {
     #[arg(long, value_name = "BYTES")]
     pub local_budget: Option<u32>,
     /// How far radii of the scheme full may reach, in units of the paper's global radius, at least 1; they end before where
-    /// the budget does [default: 16]
+    /// the budget does [default: 1]
     #[arg(long, value_name = "X", value_parser = parse_reach)]
     pub reach: Option<f64>,
     #[command(flatten)]

@@ -42,9 +42,9 @@ pub struct CertifyOptions {
     /// certificates that serve a few queries only.
     pub local_budget: usize,
     /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
-    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use a
-    /// fiftieth of the budget, because they take time and local certificates prove most of what is there. Radii of nodes are capped at the radius up to which the tree was
-    /// built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
+    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an
+    /// eighth of the budget. That takes longer than local certificates, which prove most of what is there, so the default is 1. Radii of
+    /// nodes are capped at the radius up to which the tree was built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
     /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.
     pub reach: f64,
     /// Number of threads; none: all cores. The result is the same for any number.
@@ -76,7 +76,7 @@ impl CertifyOptions {
     pub const DEFAULT_LOCAL_BUDGET: usize = 64;
 
     /// The default of [`CertifyOptions::reach`].
-    pub const DEFAULT_REACH: f64 = 16.0;
+    pub const DEFAULT_REACH: f64 = 1.0;
 
     /// Whether a number can be a [`CertifyOptions::reach`]: finite and at least 1.
     pub fn is_reach(reach: f64) -> bool {

@@ -38,17 +38,12 @@ impl<const E: usize> CertifiedSearch<E> {
         narrow: &mut N,
     ) -> bool {
         let mut locals = self.locals.as_mut().zip(context.locals.as_deref());
-        if let (Some((proofs, tables)), Some(parts)) = (&mut locals, context.used_certificates()) {
-            proofs.prove(tables, &context.detect.hierarchy, motion, |n| parts.node_radii[n as usize] <= norm);
-            if proofs.is_node_proven(tables, 0) {
-                return true;
-            }
+        if let Some((proofs, tables)) = &mut locals
+            && proofs.begin(tables, motion)
+            && proofs.prove_root(tables)
+        {
+            return true;
         }
-        // Where few buckets are proven, the pairs of others are seldom: asking for each takes longer.
-        locals = locals.filter(|(proofs, _)| proofs.is_worth_asking());
-        // Of a search without local certificates all buckets are open.
-        let is_open = |(proofs, _): &(&mut LocalProofs<E>, _)| proofs.is_mostly_open();
-        let is_mostly_open = locals.as_ref().is_none_or(is_open);
         match (context.complete_pair_tree(norm), context.used_certificates()) {
             (Some(tree), Some(parts)) => {
                 let radii = &parts.node_radii;
@@ -71,8 +66,14 @@ impl<const E: usize> CertifiedSearch<E> {
             }
             (_, Some(parts)) => {
                 // A search that ends at its first hits may open few nodes.
-                if norm >= context.refit_norm && is_mostly_open && narrow.hits().is_unlimited() {
-                    self.broad.volumes.refit(&context.detect.hierarchy, motion);
+                if norm >= context.refit_norm && narrow.hits().is_unlimited() {
+                    let is_mostly_open = locals.as_mut().is_none_or(|(proofs, tables)| {
+                        proofs.prove(tables, &context.detect.hierarchy, &parts.node_radii, norm);
+                        proofs.is_mostly_open()
+                    });
+                    if is_mostly_open {
+                        self.broad.volumes.refit(&context.detect.hierarchy, motion);
+                    }
                 }
                 traverse_certified(&mut self.broad, locals, &context.detect, parts, norm, motion, narrow);
             }

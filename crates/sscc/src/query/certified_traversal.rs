@@ -16,6 +16,9 @@ use crate::detect::vertex_motion::VertexMotion;
 /// little longer than the traditional method (docs/notes/2026-11-26-loose-pairs.md).
 pub(super) const LOOSE_PAIRS: usize = 2;
 
+/// AABBs that are compared at once.
+const PACKET: u64 = crate::vectors::LANES as u64;
+
 /// Finds all hits but exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
@@ -28,11 +31,19 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
 ) {
     // A search that ends at its first hits may open few nodes.
     let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
+    let mut visits = 0;
     broad.begin_traversal((0, 0), motion);
     while let Some((n, m)) = broad.next_visit(context, narrow) {
         if can_refit && broad.loose_pairs > LOOSE_PAIRS * broad.volumes.closed_buckets() {
             broad.volumes.refit(&context.hierarchy, motion);
             can_refit = false;
+        }
+        visits += 1;
+        let work = visits + broad.counters.box_tests / PACKET;
+        if let Some((proofs, tables)) = &mut locals
+            && proofs.is_due(work)
+        {
+            proofs.prove(tables, &context.hierarchy, &certificates.node_radii, norm);
         }
         if n != m {
             let buckets = &broad.volumes.layout.buckets;

@@ -32,6 +32,9 @@ const MOST_LOST: usize = 32;
 /// Certificates are asked about pairs of nodes if they prove at least one of so many buckets.
 const LEAST_SHARE: usize = 5;
 
+/// Work of a search, in visits of nodes and packets of AABBs, after which it finds proven nodes. Finding them takes about twice as long.
+const WORK_BEFORE: u64 = 192;
+
 /// No certificate.
 const NONE: u32 = u32::MAX;
 
@@ -149,6 +152,8 @@ pub(super) struct LocalProofs<const E: usize> {
     /// `eta`
     error: f64,
     is_usable: bool,
+    /// Whether this search finds no more proven nodes.
+    is_complete: bool,
     /// How many certificates the search evaluated from the root down, and how many buckets they proved.
     evaluated: usize,
     proven_buckets: usize,
@@ -171,6 +176,7 @@ impl<const E: usize> LocalProofs<E> {
             radius: 0.0,
             error: f64::INFINITY,
             is_usable: false,
+            is_complete: false,
             evaluated: 0,
             proven_buckets: 0,
             won: 0,
@@ -178,22 +184,33 @@ impl<const E: usize> LocalProofs<E> {
         }
     }
 
-    /// Starts a new search: finds from the root down the largest nodes that are proven, among those for which `is_open`
-    /// (their radius is reached).
-    pub(super) fn prove<M: VertexMotion<E>>(
+    /// Whether the certificate of the root proves it.
+    pub(super) fn prove_root(&mut self, tables: &LocalTables<'_>) -> bool {
+        let Some(index) = tables.certificate_of(0) else { return false };
+        tables.certificates.bounds[index].ratio < f64::from(self.allowed(tables, index))
+    }
+
+    /// Whether a search that has done so much work, in visits of nodes and packets of AABBs, should find proven nodes now. Short searches
+    /// end before it would pay.
+    #[inline]
+    pub(super) fn is_due(&self, work: u64) -> bool {
+        self.is_usable && !self.is_complete && work > WORK_BEFORE
+    }
+
+    /// Finds, from the root down, the largest nodes that are proven, among those whose radius is reached at a norm, once in a search. Where few buckets are proven in the end, the certificates are asked no more: pairs of the others
+    /// are seldom proven, and asking for each takes longer.
+    pub(super) fn prove(
         &mut self,
         tables: &LocalTables<'_>,
         hierarchy: &Hierarchy,
-        motion: &M,
-        is_open: impl Fn(u32) -> bool,
+        node_radii: &[f64],
+        norm: f64,
     ) {
-        if !self.begin(tables, motion) {
+        let is_open = |n: u32| node_radii[n as usize] <= norm;
+        if !self.is_usable || self.is_complete {
             return;
         }
-        let mut stack = std::mem::take(&mut self.stack);
-        stack.clear();
-        stack.push(0);
-        while let Some(n) = stack.pop() {
+        while let Some(n) = self.stack.pop() {
             if self.evaluated > MOST_LOST + self.proven.len() / BUCKETS_OF_EVALUATION + self.proven_buckets {
                 break;
             }
@@ -209,10 +226,11 @@ impl<const E: usize> LocalProofs<E> {
             }
             let node = &hierarchy.nodes()[n as usize];
             if !node.fits_in_bucket() {
-                stack.extend(node.children().filter(|child| is_open(*child)));
+                self.stack.extend(node.children().filter(|child| is_open(*child)));
             }
         }
-        self.stack = stack;
+        self.is_complete = true;
+        self.is_usable = self.proven_buckets * LEAST_SHARE >= self.proven.len();
     }
 
     /// The pairs of nodes that one certificate proves free during a motion, in a search of its own: its node with itself, and with
@@ -237,7 +255,7 @@ impl<const E: usize> LocalProofs<E> {
     }
 
     /// Begins a new search: forgets what the last one proved. False where certificates prove nothing about the motion.
-    fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+    pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
         self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
         if self.search == 0 {
             self.proven.fill((0, 0));
@@ -245,13 +263,11 @@ impl<const E: usize> LocalProofs<E> {
             self.search = 1;
         }
         (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
+        self.is_complete = false;
+        self.stack.clear();
+        self.stack.push(0);
         self.is_usable = self.begin_motion(tables, motion);
         self.is_usable
-    }
-
-    /// Whether so many buckets are proven that pairs of nodes are worth asking for.
-    pub(super) fn is_worth_asking(&self) -> bool {
-        self.proven_buckets * LEAST_SHARE >= self.proven.len()
     }
 
     /// Whether most buckets are proven by no certificate.
@@ -283,7 +299,7 @@ impl<const E: usize> LocalProofs<E> {
         (n, m): (u32, u32),
         is_last: bool,
     ) -> bool {
-        if !self.is_usable {
+        if !(self.is_usable && self.is_complete) {
             return false;
         }
         // A certificate proves nothing about two nodes of its list.

@@ -30,6 +30,9 @@ struct Visit {
 /// So many visits of stored pairs take as long as a pair of buckets that is tested in vain ([`LOOSE_PAIRS`]).
 const VISITS_OF_LOOSE_PAIR: usize = 8;
 
+/// AABBs that are compared at once.
+const PACKET: u64 = crate::vectors::LANES as u64;
+
 /// The entry of a node.
 const NODE: u32 = u32::MAX;
 
@@ -71,6 +74,12 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         {
             broad.volumes.refit(&context.hierarchy, motion);
             can_refit = false;
+        }
+        let work = visits as u64 + broad.counters.box_tests / PACKET;
+        if let Some((proofs, tables)) = &mut locals
+            && proofs.is_due(work)
+        {
+            proofs.prove(tables, &context.hierarchy, node_radii, norm);
         }
         let buckets = &broad.volumes.layout.buckets;
         if entry == NODE {

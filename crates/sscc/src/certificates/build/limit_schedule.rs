@@ -24,12 +24,8 @@ const MIN_STEP: f64 = 1.2;
 /// are estimated for one tenth too many, which are dropped in the end.
 const BUDGET_MARGIN: f64 = 1.1;
 
-/// Limits beyond the global radius may use the budget divided by this: local certificates prove most of what is there, so few
-/// pairs pay (docs/notes/2026-11-27-local-certificates-by-default.md).
-const REACH_DIVISOR: usize = 12;
-
-/// But as many pairs at least, as far as the budget goes: they take no time.
-const LEAST_BEYOND: usize = 1024;
+/// Limits beyond the global radius may use the budget divided by this (docs/notes/2026-11-26-reach.md).
+const REACH_DIVISOR: usize = 2;
 
 /// The outer limit is this many times the last one.
 const OUTER_FACTOR: f64 = 1.5;
@@ -115,8 +111,7 @@ impl LimitSchedule {
         let count_below = |radius: f64| count_below(radius).max(1) as f64;
         let (stored, at_half) = (count_below(self.complete_below), count_below(self.complete_below / 2.0));
         let is_beyond = self.complete_below >= self.global_radius;
-        let beyond = (self.budget / REACH_DIVISOR).max(LEAST_BEYOND).min(self.budget);
-        let budget = if is_beyond { beyond } else { self.budget };
+        let budget = if is_beyond { self.budget / REACH_DIVISOR } else { self.budget };
         let room = budget as f64 / stored;
         if self.complete_below >= self.end() || room < BUDGET_MARGIN {
             return None;
