@@ -81,7 +81,7 @@ class Model:
             and local certificates; "paper" does not.
         local_budget: bytes for each triangle that local certificates may take, beside what the pair tree leaves of its own;
             0: none; None: 64.
-        reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 16.
+        reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 1.
         neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
         ignore_rest: whether pairs that collide at rest never count.
