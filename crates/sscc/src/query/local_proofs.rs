@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::region_rates::{CertificateRates, RegionRates};
+use super::region_rates::RegionRates;
 use super::smallest_stretch::{smallest_stretch, stretches_between};
 use crate::Metric;
 use crate::certificates::{
@@ -391,10 +391,13 @@ impl<const E: usize> LocalProofs<E> {
         // What the numbers may change within the radius.
         let [more_sum, more_map, more_strain] = match &tables.rates {
             Some(rates) if self.radius > 0.0 => {
-                let CertificateRates { map, strain } = rates.certificates[index];
-                let map = right_or!(map, LocalRegionMapStill, 0.0);
-                let sum = right_or!(rates.sum, LocalRegionSumStill, 0.0);
-                [sum, map, right_or!(strain, LocalRegionStrainStill, 0.0)].map(|rate| rate * self.radius)
+                let of_certificate = rates.certificates[index];
+                [
+                    right_or!(rates.sum, LocalRegionSumStill, 0.0),
+                    right_or!(of_certificate.map, LocalRegionMapStill, 0.0),
+                    right_or!(of_certificate.strain, LocalRegionStrainStill, 0.0),
+                ]
+                .map(|rate| rate * self.radius)
             }
             _ => [0.0; 3],
         };
