@@ -178,7 +178,8 @@ mod tests {
     #[test]
     fn loose_boxes_are_refitted_before_all_node_pairs_are_opened() {
         let model = square();
-        let options = CertifyOptions { budget: 1 << 12, local_budget: 0, ..CertifyOptions::default() };
+        let options =
+            CertifyOptions { budget: 1 << 12, local_budget: 0, reach: 16.0, ..CertifyOptions::default() };
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let (tree, node_radii) = (&certificates.parts().pair_tree, &certificates.parts().node_radii);
         let query = Query::new(&model, &certificates).unwrap();
