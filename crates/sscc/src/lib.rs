@@ -175,20 +175,20 @@
 //!
 //! ```
 //! # use glam::DVec3;
-//! # use sscc::{Certificates, CertifyOptions, Modes, Query, ReducedModel, TriMesh};
+//! # use sscc::{Certificates, CertifyOptions, Modes, Proof, Query, ReducedModel, TriMesh};
 //! # fn main() -> Result<(), sscc::Error> {
 //! # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
 //! # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
 //! # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
 //! # let model = ReducedModel::new(mesh, modes)?;
-//! // The two triangles of the first example, far apart.
+//! // The two triangles of the first example, far apart: beyond the root's radius about the rest pose.
 //! let q = [-2.0];
 //! let options = CertifyOptions { center: Some(vec![-1.0]), ..CertifyOptions::default() };
-//! for (options, certified) in [(CertifyOptions::default(), false), (options, true)] {
+//! for (options, proof) in [(CertifyOptions::default(), Proof::Local), (options, Proof::Radius)] {
 //!     let certificates = Certificates::compute(&model, &options, &())?;
 //!     let mut query = Query::new(&model, &certificates)?;
 //!     assert!(query.discrete(&q)?.is_empty());
-//!     assert_eq!(query.statistics().root_certified, certified);
+//!     assert_eq!(query.statistics().proof, proof);
 //! }
 //! # Ok(())
 //! # }
