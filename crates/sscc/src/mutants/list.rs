@@ -307,7 +307,7 @@ mutants! {
     /// Maps near their mean stretch as it does.
     LocalMotionForgotten: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
     /// The heights of a flat patch turn with its plane, whatever the map does to them.
-    LocalPlaneTurnsAlong: CaughtBy("it local_certificates::heights_that_become_lengths_are_no_proof");
+    LocalPlaneTurnsAlong: CaughtBy("lib query::local_proofs::tests::flat_patches_allow_at_most_what_is_exact");
     /// Local certificates omit the rounding of positions.
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
     /// The rounding of a position along each axis is that along any direction.
