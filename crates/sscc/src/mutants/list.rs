@@ -288,6 +288,10 @@ mutants! {
     LocalImagesExact: CaughtBy("lib certificates::local::residual_ellipsoid::tests::images_times_the_matrix_are_the_rows");
     /// Residuals of a patch have no rounding error.
     LocalResidualsExact: CaughtBy("lib certificates::local::build::tests::strains_are_at_least_those_of_exact_residuals");
+    /// Heights of a flat patch are exact in single precision.
+    LocalHeightsUnrounded: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
+    /// The heights of a flat patch are those within its node.
+    LocalHeightsOfNodeAlone: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
     /// Ratios omit what is left of residuals where images times W differ from them.
     LocalDefectForgotten: Covered("W is no worse than its floor makes it, so ratios are rounded up by more");
     /// Nodes that one search proved are proven in the next one.

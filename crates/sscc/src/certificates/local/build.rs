@@ -149,17 +149,9 @@ impl Builder<'_> {
         }
         list.iter_mut().for_each(|(_, ratio)| *ratio = infinite_for_nan(*ratio));
         list.sort_unstable_by_key(|(m, _)| *m);
-        let (mut across, mut flatness, mut smallest_gap) = (DVec3::ZERO, f32::INFINITY, search.smallest_gap);
-        if let Some(direction) = patch.across() {
-            let highest = patch.heights(direction, &mut search.images);
-            search.begin(highest);
-            let ratios = [search.within(self.gaps, 0, LEAST_FLATNESS)].into_iter();
-            let others = parts[1..].iter().map(|part| search.between(self.gaps, (0, *part), LEAST_FLATNESS));
-            (across, flatness) = (direction, infinite_for_nan(ratios.chain(others).fold(0.0, larger)));
-            smallest_gap = smallest_gap.min(search.smallest_gap);
-        }
+        let (across, flatness) = self.flatness(search, patch, &parts);
         let (steepest, widest) = (patch.steepest(), ellipsoid.largest_column());
-        let per_error = (1.0 + 1e-12) / smallest_gap.min(1.0);
+        let per_error = (1.0 + 1e-12) / search.smallest_gap.min(1.0);
         // The error of residuals, then that of their images.
         let unit = f64::EPSILON / 2.0;
         let of_residuals = 64.0 * unit * (2.0 + steepest * patch.longest()) * per_error;
@@ -187,6 +179,18 @@ impl Builder<'_> {
             bounds,
             list,
         })
+    }
+
+    /// A direction across a patch that is nearly flat, and the largest height of one corner above another along it for each unit of their
+    /// gap. Zero and infinity for other patches.
+    fn flatness(&self, search: &mut StrainSearch, patch: &Patch, parts: &[u32]) -> (DVec3, f32) {
+        let Some(across) = patch.across() else { return (DVec3::ZERO, f32::INFINITY) };
+        let highest = patch.heights(across, &mut search.images);
+        search.begin(right_or!(highest, LocalHeightsUnrounded, 0.0));
+        let within = search.within(self.gaps, 0, LEAST_FLATNESS);
+        let others: &[u32] = right_or!(&parts[1..], LocalHeightsOfNodeAlone, &[]);
+        let others = others.iter().map(|part| search.between(self.gaps, (0, *part), LEAST_FLATNESS));
+        (across, infinite_for_nan(others.fold(within, larger)))
     }
 
     /// Adds the ratios of the patch's node with a part and the nodes below it that share a vertex with that node, down to buckets.

@@ -14,6 +14,8 @@ mod residual_ellipsoid;
 mod strain_search;
 mod touching_nodes;
 mod validation;
+#[cfg(test)]
+mod widest_gap;
 
 pub(crate) use build::compute_local_certificates;
 pub(crate) use local_certificates::{EllipsoidBlocks, GRADIENT, MOST_MODES, gradient_len};

@@ -44,7 +44,7 @@ pub(super) struct StrainSearch {
     image_error: f32,
     stack: Vec<(u32, u32)>,
     components: [Vec<f64>; 2],
-    /// The smallest gap that a ratio assumes.
+    /// The smallest gap that a ratio of the patch assumes, whichever images it was found with.
     pub(super) smallest_gap: f64,
 }
 
@@ -62,6 +62,7 @@ impl StrainSearch {
         self.vertices.clear();
         self.vertex_starts.clear();
         self.vertex_starts.push(0);
+        self.smallest_gap = f64::INFINITY;
         let mut roots = Vec::new();
         let part = |n: u32| {
             let (node, sphere) = (&all[n as usize], gaps.spheres[n as usize]);
@@ -90,11 +91,10 @@ impl StrainSearch {
         roots
     }
 
-    /// Takes images, of which the largest norm is known: computes means and spreads, and forgets what was found with others.
+    /// Takes images, of which the largest norm is known: computes their means and spreads.
     pub(super) fn begin(&mut self, largest_image: f64) {
         // Squares below the range of single precision are lost, too.
         self.image_error = right_or!((largest_image * 1.2e-7 + 1e-18) as f32, LocalImagesUnrounded, 0.0);
-        self.smallest_gap = f64::INFINITY;
         let instructions = self.instructions;
         instructions.run(Means(self));
     }

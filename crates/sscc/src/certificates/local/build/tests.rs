@@ -1,10 +1,13 @@
 //! The inequality of a certificate against exact arithmetic.
 
-use glam::DVec3;
+use std::collections::BTreeSet;
+
+use glam::{DMat3, DVec3};
 use num_rational::BigRational;
 use sscc_testing::Numbers;
 
 use super::*;
+use crate::certificates::local::widest_gap::{parents, widest_gap};
 use crate::filter::Relation;
 use crate::{ContactFilter, Modes, TriMesh};
 
@@ -97,6 +100,116 @@ fn strains_are_at_least_those_of_exact_residuals() {
         }
     }
     assert!(checked > 5000 && close > 300, "{checked} {close}");
+}
+
+/// A sheet of 14 x 14 cells with bumps in one corner, or two sheets with one wave whose heights are a little apart.
+fn flat_sheets(random: &mut Numbers, layers: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let side = 14_u32;
+    let row = side + 1;
+    let (apart, phase) = (random.power(-7.0, -4.0), 3.0 * random.signed());
+    let mut positions = Vec::new();
+    for layer in 0..layers {
+        for i in 0..row * row {
+            let [x, y] = [i % row, i / row].map(|x| f64::from(x) / f64::from(side));
+            let bump = if x.max(y) < 0.35 { 0.02 * random.signed() } else { 0.0 };
+            let wave = 0.01 * (3.0 * x + 2.0 * y + phase).sin();
+            positions.push(DVec3::new(
+                x,
+                y,
+                if layers == 1 { bump } else { wave + f64::from(layer) * apart },
+            ));
+        }
+    }
+    let corners = |i: u32| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]];
+    let of_layer = |layer: u32| {
+        (0..side * side).flat_map(move |i| corners(layer * row * row + i / side * row + i % side))
+    };
+    (positions, (0..layers).flat_map(of_layer).collect())
+}
+
+/// Two triangles one above the other, far above the middle of two that are as long as the patch and come first. Few pairs, so that the
+/// rounding of heights decides which share is the largest.
+fn flat_triangles(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let (apart, height) = (random.power(-7.0, -5.0), 0.03 * random.signed());
+    let mut positions = Vec::new();
+    for (middle, size, height, roughness) in [
+        (-DVec3::X, 0.5, 0.0, 0.0),
+        (DVec3::X, 0.5, 0.0, 0.0),
+        (DVec3::ZERO, 0.01, height, 0.2 * apart),
+        (DVec3::ZERO, 0.01, height + apart, 0.2 * apart),
+    ] {
+        // With their centroid in the middle, so that the direction across is the third axis.
+        for corner in [DVec3::X, DVec3::Y, -DVec3::X - DVec3::Y] {
+            positions.push(middle + corner * size + DVec3::Z * (height + roughness * random.signed()));
+        }
+    }
+    (positions, (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+}
+
+/// `|a.(p_j - p_i)| <= phi s_ij` for the pairs of a flat patch, exactly wherever it nearly fails.
+#[test]
+fn heights_are_at_most_their_share_of_gaps() {
+    let random = &mut Numbers(21);
+    let (mut checked, mut close, mut outside) = (0, 0, 0);
+    for case in 0..306 {
+        let (positions, faces) =
+            if case < 6 { flat_sheets(random, 1 + case % 2) } else { flat_triangles(random) };
+        let axis = (random.vector() + DVec3::X * 1e-3).normalize();
+        let turn = DMat3::from_axis_angle(axis, 3.0 * random.signed());
+        let positions: Vec<DVec3> = positions.into_iter().map(|p| turn * p).collect();
+        let modes = Modes::from_matrix(positions.len(), 1, |row, _| (row as f64).sin()).unwrap();
+        let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+        let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions);
+        let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
+        let leaves = |n: u32| {
+            let node = &nodes[n as usize];
+            let own = node.first_triangle..node.first_triangle + node.triangle_count;
+            (0..nodes.len() as u32).filter(move |leaf| {
+                let node = &nodes[*leaf as usize];
+                node.is_leaf() && own.contains(&node.first_triangle)
+            })
+        };
+        for (index, n) in all.nodes.iter().enumerate() {
+            let bounds = all.bounds[index];
+            if !bounds.flatness.is_finite() {
+                continue;
+            }
+            let across = DVec3::from_array(bounds.across);
+            let list = &all.list_nodes[all.list_starts[index] as usize..all.list_starts[index + 1] as usize];
+            let own: BTreeSet<u32> = leaves(*n).collect();
+            let around: BTreeSet<u32> = list.iter().flat_map(|m| leaves(*m)).collect();
+            for (x, y) in own.iter().flat_map(|x| own.range(x..).chain(&around).map(|y| (*x, *y))) {
+                let (x, y) = (x.min(y), x.max(y));
+                let Some(Some(table)) = gaps.near((x, y)) else { continue };
+                let pairs =
+                    gaps.vertices(x).iter().flat_map(|i| gaps.vertices(y).iter().map(move |j| (*i, *j)));
+                for ((i, j), gap) in pairs.zip(&table.gaps).filter(|(_, gap)| **gap < f32::INFINITY) {
+                    checked += 1;
+                    let [p, q] = [i, j].map(|v| patch_model.positions[v as usize]);
+                    let is_near = |gap: f64| across.dot(q - p).abs() >= 0.98 * bounds.flatness * gap;
+                    if x != y && !is_near(f64::from(*gap)) {
+                        continue;
+                    }
+                    let gap = widest_gap(&gaps, &parents, (x, y), (i, j));
+                    if !is_near(gap) {
+                        continue;
+                    }
+                    // Exact arithmetic takes long.
+                    let height: BigRational =
+                        (0..3).map(|c| exact(across[c]) * (exact(q[c]) - exact(p[c]))).sum();
+                    let limit = exact(bounds.flatness) * exact(gap);
+                    assert!(height <= limit && -height <= limit, "case {case}: {i} {j} of node {n}");
+                    close += 1;
+                    outside += usize::from(!(own.contains(&x) && own.contains(&y)));
+                }
+            }
+        }
+    }
+    assert!(checked > 1_000_000 && close > 1000 && outside > 30, "{checked} {close} {outside}");
 }
 
 /// A ratio that is NaN stays so in the lists of nodes above.

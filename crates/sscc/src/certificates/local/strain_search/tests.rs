@@ -4,6 +4,7 @@ use sscc_testing::{FlexibleShape, Numbers, Shape};
 
 use super::*;
 use crate::certificates::local::patch_model::PatchModel;
+use crate::certificates::local::widest_gap::{parents, widest_gap};
 use crate::filter::{PairFilter, Relation};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Modes, Neighbours, ReducedModel, TriMesh};
@@ -146,42 +147,6 @@ fn images_are_within_the_spread_of_their_part() {
     assert!(checked > 10_000, "{checked}");
 }
 
-/// The widest gap that the search may have used for two vertices of two leaves.
-fn gap(gaps: &CornerGaps<'_>, parents: &[u32], (n, m): (u32, u32), (i, j): (u32, u32)) -> f64 {
-    let ((n, m), (i, j)) = if n <= m { ((n, m), (i, j)) } else { ((m, n), (j, i)) };
-    let at = |leaf: u32, v: u32| gaps.vertices(leaf).binary_search(&v).unwrap();
-    let mut widest = match gaps.near((n, m)) {
-        Some(Some(table)) => {
-            let len = gaps.vertices(m).len();
-            let one = f64::from(table.gaps[at(n, i) * len + at(m, j)]);
-            let other = if n == m { f64::from(table.gaps[at(n, j) * len + at(m, i)]) } else { f64::INFINITY };
-            one.min(other)
-        }
-        Some(None) => 0.0,
-        None => {
-            let mut components = [Vec::new(), Vec::new()];
-            let is_apart = gaps.components((n, m), &mut components).is_some();
-            let [a, b] = [components[0][at(n, i)], components[1][at(m, j)]];
-            if is_apart { CornerGaps::gap_between(a, b) } else { 0.0 }
-        }
-    };
-    let above = |mut n: u32| {
-        let mut all = vec![n];
-        while parents[n as usize] != n {
-            n = parents[n as usize];
-            all.push(n);
-        }
-        all
-    };
-    for x in above(n) {
-        for y in above(m) {
-            let [x, y] = [x, y].map(|n| gaps.spheres[n as usize]);
-            widest = widest.max((y.center - x.center).length() - x.radius - y.radius);
-        }
-    }
-    widest
-}
-
 #[test]
 fn ratios_are_at_least_those_of_all_pairs() {
     let (mut finite, mut close) = (0, 0);
@@ -205,10 +170,7 @@ fn ratios_are_at_least_those_of_all_pairs() {
             }
             finite += 1;
             let nodes = case.hierarchy.nodes();
-            let mut parents = vec![0; nodes.len()];
-            for (n, node) in nodes.iter().enumerate() {
-                node.children().for_each(|child| parents[child as usize] = n as u32);
-            }
+            let parents = parents(&case.hierarchy);
             let leaves = (0..nodes.len() as u32).filter(|n| nodes[*n as usize].is_leaf());
             let triangles: Vec<(u32, u32)> = leaves
                 .flat_map(|n| case.hierarchy.triangles(&nodes[n as usize]).iter().map(move |t| (n, *t)))
@@ -224,9 +186,9 @@ fn ratios_are_at_least_those_of_all_pairs() {
                         for (i, j) in simplices.a.into_iter().flat_map(|i| simplices.b.map(|j| (i, j))) {
                             let [x, y] = [i, j].map(|v| patch.numbers[v as usize] as usize * width);
                             let rows: Vec<f64> = (0..width).map(|k| exact[y + k] - exact[x + k]).collect();
-                            let one = singular_value(&rows) / gap(gaps, &parents, (*n, *m), (i, j));
+                            let widest = widest_gap(gaps, &parents, (*n, *m), (i, j));
+                            let one = singular_value(&rows) / widest;
                             assert!(one <= f64::from(ratio), "seed {seed}: {one} {ratio}");
-                            let widest = gap(gaps, &parents, (*n, *m), (i, j));
                             assert!(search.smallest_gap <= widest * (1.0 + 1e-12), "seed {seed}");
                             largest = largest.max(one);
                         }
