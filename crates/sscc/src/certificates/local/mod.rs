@@ -2,7 +2,7 @@
 //!
 //! `local_certificates` has the inequality and the numbers. `build` computes them: `patch_model` has the positions and modes
 //! of the model in units of its size, `corner_gaps` the gaps between the corners of near leaves, `touching_nodes` the nodes that
-//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_proofs.rs` evaluates them. `validation`
+//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_inequality.rs` evaluates them. `validation`
 //! checks those of a file.
 
 mod build;

@@ -114,7 +114,7 @@ impl StrainSearch {
         instructions.run(Search { search: self, gaps, start: (part, part), floor })
     }
 
-    /// A number that the ratio of two parts does not exceed, not above `floor` where the ratio is below that.
+    /// A number that the ratio of two parts does not exceed, at most [`ACCEPTED`] times `floor` where the ratio is below that.
     pub(super) fn between(&mut self, gaps: &CornerGaps<'_>, parts: (u32, u32), floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: parts, floor })

@@ -8,6 +8,7 @@ use sscc_testing::Numbers;
 
 use super::*;
 use crate::certificates::local::widest_gap::{parents, widest_gap};
+use crate::certificates::test_models::ring;
 use crate::filter::Relation;
 use crate::{ContactFilter, Modes, TriMesh};
 
@@ -234,4 +235,34 @@ fn certificates_of_no_numbers_are_not_stored() {
     let some = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
     assert_eq!((some.nodes.as_slice(), some.modes.as_slice()), (&[0][..], &[0][..]));
     assert!(some.bytes() > 0 && some.bounds[0].per_error >= 1.0);
+}
+
+/// Buckets, nodes at odd heights above them, and the root: nodes within buckets never.
+#[test]
+fn certified_nodes_are_at_odd_heights_and_buckets() {
+    for quads in [3, 40, 200, 3000] {
+        let model = ring(quads, 1, 0.4);
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
+        let is_bucket = |n: u32| {
+            let is_small = |n: u32| nodes[n as usize].fits_in_bucket();
+            is_small(n) && (n == 0 || !is_small(parents[n as usize]))
+        };
+        // From each bucket up.
+        let mut heights = vec![None; nodes.len()];
+        for mut n in (0..nodes.len() as u32).filter(|n| is_bucket(*n)) {
+            let mut height = 0;
+            loop {
+                heights[n as usize] = heights[n as usize].max(Some(height));
+                if n == 0 {
+                    break;
+                }
+                (n, height) = (parents[n as usize], height + 1);
+            }
+        }
+        let wanted = |n: &u32| heights[*n as usize].is_some_and(|h| *n == 0 || h == 0 || h % 2 == 1);
+        let expected: Vec<u32> = (0..nodes.len() as u32).filter(wanted).collect();
+        assert_eq!(certified_nodes(&hierarchy), expected, "{quads} quads");
+        assert_eq!(quads == 3000, heights.iter().flatten().any(|h| *h > 2), "{quads} quads");
+    }
 }

@@ -200,3 +200,42 @@ fn ratios_are_at_least_those_of_all_pairs() {
     }
     assert!(finite > 200 && close > 100, "{finite} {close}");
 }
+
+/// A floor spares the search what is below it, and hides nothing above it.
+#[test]
+fn floors_are_never_above_the_result_and_nan_stays() {
+    let mut finite = 0;
+    for seed in 0..28 {
+        let random = &mut Numbers(seed + 77);
+        let shape = FlexibleShape::new(seed, Shape::ALL[seed as usize % 7], 1);
+        let case = Case::new(shape.positions, shape.faces, Neighbours::Exclude);
+        with_search(&case, random, |search, gaps, _, _| {
+            for is_within in [true, false] {
+                let last = search.parts[0].child_count;
+                let mut ratio = |floor: f32| match is_within || last < 2 {
+                    true => search.within(gaps, 0, floor),
+                    false => search.between(gaps, (1, last), floor),
+                };
+                let plain = ratio(0.0);
+                assert_eq!(ratio(f32::INFINITY), f32::INFINITY, "seed {seed}");
+                assert!(ratio(f32::NAN).is_nan() || plain == f32::INFINITY, "seed {seed}");
+                if plain == f32::INFINITY {
+                    assert_eq!((ratio(1.0), ratio(1e30)), (plain, plain), "seed {seed}");
+                    continue;
+                }
+                finite += 1;
+                for share in [1e-3, 0.5, 0.99] {
+                    let found = ratio(share * plain);
+                    // Bounds of singular values are up to 7% too large.
+                    assert!(found >= plain / (1.08 * ACCEPTED) && found >= share * plain, "seed {seed}");
+                    assert!(found <= plain * 1.08 * ACCEPTED, "seed {seed}: {found} {plain}");
+                }
+                for share in [1.1, 10.0] {
+                    let floor = 1.08 * share * plain;
+                    assert!((floor..=floor * ACCEPTED * 1.0001).contains(&ratio(floor)), "seed {seed}");
+                }
+            }
+        });
+    }
+    assert!(finite > 10, "{finite}");
+}

@@ -38,6 +38,7 @@ fn each_inconsistent_part_is_refused() {
     assert_eq!(changed(&|local| *local = LocalCertificates::default()), "");
     let infinite = |local: &mut LocalCertificates| {
         local.bounds[1].ratio = f64::INFINITY;
+        local.bounds[2].flatness = f64::INFINITY;
         local.list_ratios[0] = f32::INFINITY;
     };
     assert_eq!(changed(&infinite), "");
@@ -125,6 +126,12 @@ fn each_inconsistent_part_is_refused() {
                 &|local| local.bounds[0].steepest = f64::NEG_INFINITY,
                 &|local| local.bounds[0].widest = f64::NAN,
                 &|local| local.bounds[0].widest = -1.0,
+                &|local| local.bounds[0].across = [1.5, 0.0, 0.0],
+                &|local| local.bounds[1].across = [0.0, f64::NAN, 0.0],
+                &|local| local.bounds[2].across[2] = f64::INFINITY,
+                &|local| local.bounds[0].flatness = f64::NAN,
+                &|local| local.bounds[1].flatness = -1.0,
+                &|local| local.bounds[0].flatness = f64::NEG_INFINITY,
             ],
         ),
         (
