@@ -4,6 +4,8 @@ use super::local_proofs::LocalProofs;
 use super::query::Query;
 use crate::Error;
 use crate::detect::vertex_motion::DeformedMotion;
+#[cfg(test)]
+use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::NodePair;
 
 impl Query<'_> {
@@ -23,6 +25,17 @@ impl Query<'_> {
         }
         let Some(tables) = self.context.locals.as_deref() else { return Ok(Vec::new()) };
         Ok(LocalProofs::new(tables).claims(tables, &DeformedMotion::new(q, reach), index))
+    }
+
+    /// The same during a motion, for tests of regions.
+    #[cfg(test)]
+    fn local_claims_during<const E: usize, M: VertexMotion<E>>(
+        &self,
+        index: usize,
+        motion: &M,
+    ) -> Vec<NodePair> {
+        let Some(tables) = self.context.locals.as_deref() else { return Vec::new() };
+        LocalProofs::new(tables).claims(tables, motion, index)
     }
 }
 

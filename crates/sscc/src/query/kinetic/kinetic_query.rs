@@ -50,7 +50,7 @@ const FIND_COST: u64 = 150;
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
 /// cost the same as in a [`Query`]. Takes three times its memory.
 pub struct KineticQuery<'a> {
-    query: Query<'a>,
+    pub(in crate::query) query: Query<'a>,
     search: RegionSearch,
     rates: CapsuleRates,
     distances: SafeDistances,

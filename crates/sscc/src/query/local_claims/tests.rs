@@ -3,10 +3,12 @@
 use glam::{DMat3, DVec3};
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
+use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::hierarchy::{Node, NodePair};
+use crate::model::ScaledModel;
 use crate::{
-    Certificates, CertifyOptions, ContactFilter, Method, Metric, MetricKind, Modes, Neighbours, Pair, Query,
-    ReducedModel, TriMesh,
+    Certificates, CertifyOptions, ContactFilter, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours,
+    Pair, Query, ReducedModel, TriMesh,
 };
 
 fn model_of(shape: &FlexibleShape) -> ReducedModel {
@@ -263,6 +265,128 @@ fn claims_hold_for_many_modes_and_at_every_size() {
         attack(&FlexibleShape::new(seed, shape, 4).scaled(size), seed, 60, &mut seen);
     }
     assert!(seen.claims > 1000 && seen.pairs_of_nodes > 300, "{seen:?}");
+}
+
+/// What an attack on regions saw.
+#[derive(Debug, Default)]
+struct SeenInRegions {
+    claims: usize,
+    checks: usize,
+    capsules: usize,
+    /// Configurations beyond a region at which the claim's pairs collide.
+    beyond: usize,
+}
+
+/// Claims in the capsules and balls of kinetic queries, as large as they can be, against exact tests within them.
+fn attack_regions(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut SeenInRegions) {
+    let random = &mut Numbers(seed + 9000);
+    let model = model_of(shape);
+    let certificates = certify(&model, seed, random);
+    let (metric, center) = (&certificates.parts().scope.metric, certificates.center());
+    let scales = metric.scales();
+    let kinetic = KineticQuery::new(&model, &certificates).unwrap();
+    let rates = {
+        let scaled = ScaledModel::new(&model, metric, center);
+        CapsuleRates::new(&scaled, certificates.hierarchy(), &kinetic.query.context.detect.layout)
+    };
+    let mut attack = Attack::new(&model, &certificates);
+    let local = &certificates.parts().local;
+    let length = |d: &[f64]| d.iter().zip(&scales).map(|(d, s)| (d * s).powi(2)).sum::<f64>().sqrt();
+    for _ in 0..if local.nodes.is_empty() { 0 } else { rays } {
+        let index = random.below(local.nodes.len());
+        let n = local.nodes[index];
+        let list =
+            &local.list_nodes[local.list_starts[index] as usize..local.list_starts[index + 1] as usize];
+        let claim = if list.is_empty() || random.below(3) == 0 {
+            (n, n)
+        } else {
+            (n, list[random.below(list.len())])
+        };
+        let approach = (random.below(3) > 0).then(|| attack.approach(claim, random)).flatten();
+        let ray = approach.unwrap_or_else(|| attack.ray(shape, random));
+        let Some([edge, _]) = attack.edge(index, claim, &ray) else { continue };
+        let of_ray = length(&ray);
+        if !(of_ray * edge > 0.0 && of_ray * edge < 1e6) {
+            continue;
+        }
+        let start = attack.at(&ray, edge * [0.0, 0.5, 0.9][random.below(3)]);
+        // A ball, or a capsule of any direction.
+        let stretch = if random.below(2) == 0 { 0.0 } else { 0.1 * edge * random.signed() };
+        let other = attack.ray(shape, random);
+        let share = stretch * of_ray / length(&other).max(1e-300);
+        let end: Vec<f64> = start.iter().zip(&other).map(|(x, d)| x + share * d).collect();
+        let claims_within = |radius: f64| {
+            // Terms of positions in the region: twice those of its ends, as in kinetic queries.
+            let reach = [&start, &end].map(|q| model.check_coordinates(q).unwrap_or(f64::INFINITY));
+            let motion = CapsuleMotion::new(&rates, [&start, &end], radius, 2.0 * reach[0].max(reach[1]));
+            kinetic.query.local_claims_during(index, &motion)
+        };
+        let holds = |radius: f64| claims_within(radius).contains(&claim);
+        let whole = of_ray * edge;
+        let Some(mut radius) = [1.0, 0.3, 0.1, 0.03, 0.01].map(|r| r * whole).into_iter().find(|r| holds(*r))
+        else {
+            continue;
+        };
+        let mut high = 4.0 * radius;
+        for _ in 0..20 {
+            let middle = 0.5 * (radius + high);
+            if holds(middle) { radius = middle } else { high = middle }
+        }
+        let claims = claims_within(radius);
+        seen.claims += claims.len();
+        seen.capsules += usize::from(stretch != 0.0);
+        let mut seen_beyond = false;
+        for step in 0..28 {
+            let is_within = step < 24;
+            let distance = if is_within {
+                radius * [1.0 - 1e-9, random.signed().abs()][usize::from(step % 4 == 3)]
+            } else {
+                radius * 3.0 * f64::from(1 << (step - 24))
+            };
+            // Along the claim's ray, towards a meeting of its triangles, or anywhere.
+            let approach = (is_within && step % 3 == 1).then(|| attack.approach(claim, random)).flatten();
+            let direction = match approach {
+                Some(approach) => approach,
+                None if is_within && step % 3 == 2 => scales.iter().map(|s| random.signed() / s).collect(),
+                None => ray.clone(),
+            };
+            let sign = if is_within && step % 8 == 0 { -1.0 } else { 1.0 };
+            let share = sign * distance / length(&direction).max(1e-300);
+            let t = [0.0, 1.0, random.signed().abs()][step % 3];
+            let between = start.iter().zip(&end).map(|(x, y)| x * (1.0 - t) + y * t);
+            let q: Vec<f64> = between.zip(&direction).map(|(x, d)| x + share * d).collect();
+            if model.check_coordinates(&q).is_err() {
+                continue;
+            }
+            let collisions = attack.collisions(&q);
+            if !is_within {
+                seen_beyond |= collisions.iter().any(|pair| attack.is_of(claim, *pair));
+                continue;
+            }
+            for nodes in &claims {
+                let hit = collisions.iter().find(|pair| attack.is_of(*nodes, **pair));
+                assert_eq!(
+                    hit, None,
+                    "seed {seed}: {nodes:?} at {q:?} within {radius} of {start:?}, {end:?}"
+                );
+                seen.checks += 1;
+            }
+        }
+        seen.beyond += usize::from(seen_beyond);
+    }
+}
+
+#[test]
+fn claims_in_regions_hold_in_all_of_them() {
+    let mut seen = SeenInRegions::default();
+    for seed in 0..cases(28) {
+        // Odd numbers have diagonal metrics.
+        let (seed, shape) = (2 * seed + 1, Shape::ALL[seed as usize % Shape::ALL.len()]);
+        let rank = [1, 2, 5, 12, 28][seed as usize / 2 % 5];
+        attack_regions(&FlexibleShape::new(seed, shape, rank), seed, 30, &mut seen);
+    }
+    assert!(seen.claims > threshold(1000) && seen.checks > threshold(20_000), "{seen:?}");
+    assert!(seen.capsules > threshold(100) && seen.beyond > threshold(16), "{seen:?}");
 }
 
 /// Two triangles one above the other far from the origin, one unit in the last place apart, and modes that move them by less: rounding
