@@ -295,37 +295,39 @@ mutants! {
     /// Ratios omit what is left of residuals where images times W differ from them.
     LocalDefectForgotten: Covered("W is no worse than its floor makes it, so ratios are rounded up by more");
     /// Nodes that one search proved are proven in the next one.
-    LocalProofsKept: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
+    LocalProofsKept: CaughtBy("lib query::local_proofs::tests::what_one_search_allowed_is_forgotten_in_the_next");
     /// A node is proven if its first bucket is.
-    LocalProofOfOnePart: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
+    LocalProofOfOnePart: CaughtBy("lib query::local_proofs::tests::certificates_prove_their_node_and_its_pairs_with_their_list_alone");
     /// Local certificates that hold on the segment of a capsule hold in the capsule.
     LocalProofsInRegions: CaughtBy("it local_certificates::kinetic_answers_are_those_of_brute_force");
     /// F is the same in a whole region.
-    LocalRegionMapStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    LocalRegionMapStill: CaughtBy("lib query::local_inequality::tests::proofs_in_regions_hold_in_all_of_them");
     /// `W f` is the same in a whole region.
-    LocalRegionStrainStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    LocalRegionStrainStill: CaughtBy("lib query::local_inequality::tests::proofs_in_regions_hold_in_all_of_them");
     /// The factors are the same in a whole region.
-    LocalRegionSumStill: CaughtBy("lib query::local_proofs::tests::proofs_in_regions_hold_in_all_of_them");
+    LocalRegionSumStill: CaughtBy("lib query::local_inequality::tests::proofs_in_regions_hold_in_all_of_them");
     /// Without rates local certificates hold in a whole region.
-    LocalRegionUnknown: CaughtBy("lib query::local_proofs::tests::regions_of_dense_metrics_have_no_proofs");
+    LocalRegionUnknown: CaughtBy("lib query::local_inequality::tests::regions_of_dense_metrics_have_no_proofs");
     /// Maps near their mean stretch as it does.
-    LocalMotionForgotten: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    LocalMotionForgotten: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// The heights of a flat patch turn with its plane, whatever the map does to them.
-    LocalPlaneTurnsAlong: CaughtBy("lib query::local_proofs::tests::flat_patches_allow_at_most_what_is_exact");
+    LocalPlaneTurnsAlong: CaughtBy("lib query::local_inequality::tests::flat_patches_allow_at_most_what_is_exact");
+    /// The map of a flat patch has an error in the plane, but not across it.
+    LocalPlaneMapExact: CaughtBy("lib query::local_inequality::tests::flat_patches_in_regions_allow_at_most_what_is_exact");
     /// Local certificates omit the rounding of positions.
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
     /// The rounding of a position along each axis is that along any direction.
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
     /// `W f` in single precision is exact.
-    LocalStrainExact: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    LocalStrainExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// F in single precision is exact.
-    LocalMapExact: CaughtBy("lib query::local_proofs::tests::allowed_ratios_are_at_most_exact");
+    LocalMapExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// The map at each end of a motion is turned back by its own rotation.
     LocalTurnAtEachEnd: CaughtBy("lib query::local_claims::tests::half_a_turn_is_no_proof");
     /// Of two ends of a motion the one that is no number is ignored.
-    LocalSweptNanIgnored: CaughtBy("lib query::local_proofs::tests::nan_at_either_end_is_no_proof");
+    LocalSweptNanIgnored: CaughtBy("lib query::local_inequality::tests::nan_at_either_end_is_no_proof");
     /// The closed form of an eigenvalue is a lower bound.
-    LocalEigenvalueUnproven: CaughtBy("lib query::local_proofs::tests::eigenvalues_are_lower_bounds");
+    LocalEigenvalueUnproven: CaughtBy("lib query::smallest_stretch::tests::eigenvalues_of_tiny_matrices_are_lower_bounds");
     /// A certificate proves pairs of two nodes of its list.
-    LocalRingWithRing: CaughtBy("it local_certificates::answers_are_those_of_brute_force");
+    LocalRingWithRing: CaughtBy("lib query::local_proofs::tests::certificates_prove_their_node_and_its_pairs_with_their_list_alone");
 }

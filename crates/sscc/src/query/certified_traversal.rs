@@ -4,7 +4,8 @@
 //! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, all AABBs are refitted, as the
 //! traditional method does, and the traversal goes on with those.
 
-use super::local_proofs::{LocalProofs, LocalTables};
+use super::local_proofs::LocalProofs;
+use super::local_tables::LocalTables;
 use crate::CertificateParts;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::context::Context;
@@ -15,9 +16,6 @@ use crate::detect::vertex_motion::VertexMotion;
 /// about a tenth of the time in which a bucket is opened, so a search never loses much more than it can gain, and takes
 /// little longer than the traditional method (docs/notes/2026-11-26-loose-pairs.md).
 pub(super) const LOOSE_PAIRS: usize = 2;
-
-/// AABBs that are compared at once.
-const PACKET: u64 = crate::vectors::LANES as u64;
 
 /// Finds all hits but exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
@@ -39,9 +37,8 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             can_refit = false;
         }
         visits += 1;
-        let work = visits + broad.counters.box_tests / PACKET;
         if let Some((proofs, tables)) = &mut locals
-            && proofs.is_due(work)
+            && proofs.is_due(visits, broad.counters.box_tests)
         {
             proofs.prove(tables, &context.hierarchy, &certificates.node_radii, norm);
         }

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::local_proofs::LocalTables;
+use super::local_tables::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
 use crate::certificates::FactorScales;

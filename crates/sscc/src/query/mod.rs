@@ -11,9 +11,13 @@ mod context;
 mod continuous;
 mod discrete_between;
 mod discrete_search;
+#[cfg(test)]
+mod exact_matrix;
 mod kinetic;
 mod local_claims;
+mod local_inequality;
 mod local_proofs;
+mod local_tables;
 mod method;
 mod pair_hulls;
 mod pair_tree_traversal;

@@ -4,7 +4,8 @@
 //! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
 use super::certified_traversal::LOOSE_PAIRS;
-use super::local_proofs::{LocalProofs, LocalTables};
+use super::local_proofs::LocalProofs;
+use super::local_tables::LocalTables;
 use super::pair_hulls::PairHulls;
 use crate::PairTree;
 use crate::certificates::StoredPair;
@@ -29,9 +30,6 @@ struct Visit {
 
 /// So many visits of stored pairs take as long as a pair of buckets that is tested in vain ([`LOOSE_PAIRS`]).
 const VISITS_OF_LOOSE_PAIR: usize = 8;
-
-/// AABBs that are compared at once.
-const PACKET: u64 = crate::vectors::LANES as u64;
 
 /// The entry of a node.
 const NODE: u32 = u32::MAX;
@@ -75,9 +73,8 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             broad.volumes.refit(&context.hierarchy, motion);
             can_refit = false;
         }
-        let work = visits as u64 + broad.counters.box_tests / PACKET;
         if let Some((proofs, tables)) = &mut locals
-            && proofs.is_due(work)
+            && proofs.is_due(visits as u64, broad.counters.box_tests)
         {
             proofs.prove(tables, &context.hierarchy, node_radii, norm);
         }

@@ -44,8 +44,8 @@ impl RegionRates {
             let (ellipsoid, rest) = ellipsoids.split_at(EllipsoidBlocks(count).len());
             ellipsoids = rest;
             CertificateRates {
-                map: largest_singular_value(&gradient_rows(gradient, &units), count),
-                strain: largest_singular_value(&ellipsoid_rows(ellipsoid, &units), count),
+                map: singular_value_bound(&gradient_rows(gradient, &units), count),
+                strain: singular_value_bound(&ellipsoid_rows(ellipsoid, &units), count),
             }
         });
         let certificates = certificates.collect();
@@ -78,7 +78,7 @@ fn ellipsoid_rows(ellipsoid: &[u16], units: &[f64]) -> Vec<f64> {
 
 /// An upper bound of the largest singular value of a matrix of rows of this length; infinite where one is no number. Its
 /// eighth power is at most the trace of the fourth power of the Gram matrix.
-fn largest_singular_value(rows: &[f64], len: usize) -> f64 {
+fn singular_value_bound(rows: &[f64], len: usize) -> f64 {
     let frobenius = norm(rows);
     if !(frobenius > SMALLEST && frobenius < f64::INFINITY) {
         return if rows.iter().all(|x| *x == 0.0) { 0.0 } else { f64::INFINITY };
@@ -139,15 +139,15 @@ mod tests {
                 let back = |k: usize| rows.chunks(len).zip(&image).map(|(row, y)| row[k] / scale * y).sum();
                 way = (0..len).map(back).collect();
             }
-            let bound = largest_singular_value(&rows, len);
+            let bound = singular_value_bound(&rows, len);
             assert!(longest <= bound, "case {case}: {longest} {bound}");
             close += usize::from(bound < 1.2 * longest);
         }
         assert!(close > 60, "{close}");
-        assert_eq!(largest_singular_value(&[], 0), 0.0);
-        assert_eq!(largest_singular_value(&[0.0; 18], 2), 0.0);
+        assert_eq!(singular_value_bound(&[], 0), 0.0);
+        assert_eq!(singular_value_bound(&[0.0; 18], 2), 0.0);
         for out_of_range in [1e-150, 1e200, f64::INFINITY, f64::NAN] {
-            assert_eq!(largest_singular_value(&[out_of_range; 18], 2), f64::INFINITY);
+            assert_eq!(singular_value_bound(&[out_of_range; 18], 2), f64::INFINITY);
         }
     }
 }

@@ -73,7 +73,8 @@ fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
     let (b, c) = (x.y / first, x.z / first);
     let second = (y.y - shift) - b * x.y;
     let e = y.z - b * x.z;
-    let third = (z.z - shift) - c * x.z - e * e / second;
+    // The square alone may underflow.
+    let third = (z.z - shift) - c * x.z - e * (e / second);
     first > 0.0 && second > 0.0 && third > 0.0
 }
 
@@ -137,3 +138,6 @@ pub(super) fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let z = if z.dot(next.z_axis) < 0.0 { -z } else { z };
     Some(DMat3::from_cols(x, y, z))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,512 +1,103 @@
-//! The comparison of local certificates against exact arithmetic.
+//! Which nodes and pairs of nodes a search takes as proven.
 
-use num_rational::BigRational;
-use num_traits::Signed;
-use sscc_testing::Numbers;
+use glam::DVec3;
 
-use super::super::smallest_stretch::{nearest_rotation, smallest_eigenvalue};
+use super::super::local_tables::tables_of;
 use super::*;
-use crate::LocalBounds;
-use crate::detect::layout::Layout;
+use crate::certificates::{EllipsoidBlocks, FactorScales, gradient_len};
 use crate::detect::vertex_motion::DeformedMotion;
-use crate::geometry::Aabb;
+use crate::{LocalBounds, Metric, Modes, ReducedModel, TriMesh};
 
-type Matrix = [[BigRational; 3]; 3];
-
-fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+/// The certificate of one node with ratio 1 that allows ratios below `1 / |q|`, for two modes.
+fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {
+    let mut ellipsoids = vec![0; EllipsoidBlocks(2).len()];
+    [0, 9].iter().for_each(|at| ellipsoids[*at] = (1.0_f32.to_bits() >> 16) as u16);
+    LocalCertificates {
+        nodes: vec![node],
+        mode_starts: vec![0, 2],
+        modes: vec![0, 1],
+        gradients: vec![0.0; gradient_len(2)],
+        ellipsoids,
+        bounds: vec![LocalBounds { ratio: 1.0, widest: 1.0, ..LocalBounds::default() }],
+        list_starts: vec![0, list.len() as u32],
+        list_nodes: list.iter().map(|(m, _)| *m).collect(),
+        list_ratios: list.iter().map(|(_, ratio)| *ratio).collect(),
+    }
 }
 
-fn matrix(of: impl Fn(usize, usize) -> BigRational) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| of(i, j)))
-}
-
-fn of_map(map: &DMat3) -> Matrix {
-    matrix(|i, j| exact(map.col(j)[i]))
-}
-
-/// Whether a symmetric matrix less a multiple of the identity is positive definite.
-fn is_above(a: &Matrix, least: &BigRational) -> bool {
-    let m = matrix(|i, j| if i == j { &a[i][j] - least } else { a[i][j].clone() });
-    let two = &m[0][0] * &m[1][1] - &m[0][1] * &m[1][0];
-    let minor = |i: usize, j: usize| &m[1][i] * &m[2][j] - &m[1][j] * &m[2][i];
-    let three = &m[0][0] * minor(1, 2) - &m[0][1] * minor(0, 2) + &m[0][2] * minor(0, 1);
-    m[0][0].is_positive() && two.is_positive() && three.is_positive()
-}
-
-fn gram(f: &Matrix) -> Matrix {
-    matrix(|i, j| (0..3).map(|k| &f[k][i] * &f[k][j]).sum())
-}
-
-/// Rotations and maps of every kind.
-fn random_map(random: &mut Numbers, case: usize) -> DMat3 {
-    let turn = |random: &mut Numbers| {
-        DMat3::from_axis_angle((random.vector() + DVec3::X * 1e-3).normalize(), 4.0 * random.signed())
-    };
-    let stretch = match case % 6 {
-        0 => random.vector() * 2.0,
-        1 => DVec3::new(1.0, 1.0, random.signed()),
-        2 => DVec3::new(1.0, 1.0 + random.power(-16.0, -1.0), random.power(-16.0, 0.0)),
-        3 => DVec3::splat(1.0),
-        4 => DVec3::new(random.power(-8.0, 8.0), random.power(-8.0, 8.0), random.power(-8.0, 8.0)),
-        _ => DVec3::new(1.0, random.signed(), 0.0),
-    };
-    let size = if case % 4 == 3 { random.power(-60.0, 60.0) } else { 1.0 };
-    turn(random) * DMat3::from_diagonal(stretch) * turn(random) * size
+/// Begins a search at q, and finds its proven nodes.
+fn search(proofs: &mut LocalProofs<1>, tables: &LocalTables<'_>, hierarchy: &Hierarchy, q: &[f64; 2]) {
+    assert!(proofs.begin(tables, &DeformedMotion::new([&q[..]], 1.0)));
+    proofs.prove(tables, hierarchy, &vec![0.0; hierarchy.nodes().len()], 1.0);
 }
 
 #[test]
-fn eigenvalues_are_lower_bounds() {
-    let random = &mut Numbers(1);
-    let (mut close, mut stretches) = (0, 0);
-    for case in 0..3000 {
-        let map = random_map(random, case);
-        let symmetric = (map + map.transpose()) * 0.5;
-        let least = smallest_eigenvalue(&map);
-        let exact_symmetric = of_map(&symmetric);
-        assert!(least < f64::INFINITY);
-        let size: f64 = symmetric.to_cols_array().iter().map(|x| x.abs()).sum();
-        if least > f64::NEG_INFINITY {
-            assert!(is_above(&exact_symmetric, &exact(least)), "case {case}: {map}");
-            close += usize::from(!is_above(&exact_symmetric, &exact(least + 3e-6 * size)));
-        }
-        // The single values of the map itself.
-        let stretch = smallest_stretch(&map);
-        if stretch > 0.0 {
-            assert!(is_above(&gram(&of_map(&map)), &(exact(stretch) * exact(stretch))), "case {case}: {map}");
-            stretches += 1;
-        }
+fn what_one_search_allowed_is_forgotten_in_the_next() {
+    let local = certificate(0, &[]);
+    let (tables, hierarchy) = tables_of(&local, &[0.0; 2], &Metric::identity(2));
+    let mut proofs = LocalProofs::<1>::new(&tables);
+    for (q, is_proven) in [([0.5, 0.0], true), ([1.5, 0.0], false), ([0.0, 0.7], true), ([0.0, 1.2], false)] {
+        assert!(proofs.begin(&tables, &DeformedMotion::new([&q[..]], 1.0)));
+        assert_eq!(proofs.prove_root(&tables), is_proven, "{q:?}");
+        search(&mut proofs, &tables, &hierarchy, &q);
+        assert_eq!(proofs.is_node_proven(&tables, 0), is_proven, "{q:?}");
     }
-    assert!(close > 2900 && stretches > 1500, "{close} {stretches}");
-    let nan = DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0));
-    let infinite = DMat3::IDENTITY * f64::INFINITY;
-    for map in [nan, infinite, DMat3::from_diagonal(DVec3::new(1.0, f64::INFINITY, 1.0))] {
-        assert!(smallest_stretch(&map) <= 0.0 && smallest_eigenvalue(&map) == f64::NEG_INFINITY);
-        assert!(nearest_rotation(&map).is_none());
+    // After the last number of a search the first one comes again.
+    for (q, is_proven) in [([0.5, 0.0], true), ([1.5, 0.0], false)] {
+        proofs.search = u32::MAX;
+        search(&mut proofs, &tables, &hierarchy, &q);
+        assert_eq!((proofs.search, proofs.is_node_proven(&tables, 0)), (1, is_proven), "{q:?}");
     }
-    // Closed forms of equal eigenvalues lose half of the digits.
-    for case in 0..20_000 {
-        let off = random.power(-9.0, -7.0);
-        let map = random_map(random, 3) * DMat3::IDENTITY;
-        let near = map.transpose() * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 + off)) * map;
-        let near = (near + near.transpose()) * 0.5;
-        assert!(is_above(&of_map(&near), &exact(smallest_eigenvalue(&near))), "case {case}: {near}");
-    }
+}
+
+/// A sheet of several buckets.
+fn sheet() -> Hierarchy {
+    let (side, row) = (20_u32, 21);
+    let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
+    let cells = (0..side * side).map(|i| i / side * row + i % side);
+    let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
+    let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
+    let modes = Modes::from_matrix((row * row) as usize, 2, |_, _| 1e-3).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    Hierarchy::build(&model, model.metric())
 }
 
 #[test]
-fn rotations_are_orthogonal() {
-    let random = &mut Numbers(2);
-    let (mut found, mut good) = (0, 0);
-    for case in 0..6000 {
-        let map = random_map(random, case);
-        let Some(turn) = nearest_rotation(&map) else { continue };
-        found += 1;
-        let wrong = turn.transpose() * turn - DMat3::IDENTITY;
-        let worst = wrong.to_cols_array().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        assert!(worst < 4e-15, "case {case}: {worst}");
-        let stretch = smallest_stretch(&map);
-        let size = map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
-        let along = smallest_eigenvalue(&(turn.transpose() * map));
-        assert!(along <= stretch + 2e-3 * size, "case {case}: {along} {stretch}");
-        good += usize::from(stretch > 1e-3 * size && along > 0.99 * stretch);
-    }
-    assert!(found > 4000 && good > 2500, "{found} {good}");
-}
-
-/// Numbers of a certificate in the layout of its arrays, and the same as matrices.
-struct Certificate {
-    local: LocalCertificates,
-    /// For each mode.
-    gradients: Vec<DMat3>,
-    /// Upper triangular.
-    ellipsoid: Vec<Vec<f64>>,
-}
-
-fn certificate(gradients: Vec<DMat3>, ellipsoid: Vec<Vec<f64>>) -> Certificate {
-    let rank = gradients.len();
-    let mut numbers = Vec::new();
-    gradients.iter().for_each(|g| numbers.extend(g.to_cols_array()[..8].iter().map(|x| *x as f32)));
-    numbers.extend(gradients.iter().map(|g| g.z_axis.z as f32));
-    numbers.resize(gradient_len(rank), 0.0);
-    let mut halves = Vec::new();
-    for first in (0..rank).step_by(8) {
-        for column in first..rank {
-            for row in ellipsoid.iter().map(Some).chain(std::iter::repeat(None)).skip(first).take(8) {
-                halves.push((row.map_or(0.0, |row| row[column] as f32).to_bits() >> 16) as u16);
-            }
+fn certificates_prove_their_node_and_its_pairs_with_their_list_alone() {
+    let hierarchy = sheet();
+    let nodes = hierarchy.nodes();
+    let children: Vec<u32> = nodes[0].children().collect();
+    let [n, a, b, c] = children[..] else { panic!("{children:?}") };
+    let local = certificate(n, &[(a, 0.5), (b, 2.0), (c, 0.5)]);
+    let scales = FactorScales { sizes: vec![1.0; 2], scale: 1.0, reach: 1.0 };
+    let tables = LocalTables::new(&local, &hierarchy, &[0.0; 2], scales).unwrap();
+    let first = nodes[n as usize].first_child;
+    let range = &tables.buckets[n as usize];
+    // Enough of all for the search to go on.
+    assert!(range.len() > 1 && range.len() * LEAST_SHARE >= tables.buckets[0].len(), "{:?}", tables.buckets);
+    let mut proofs = LocalProofs::<1>::new(&tables);
+    for is_last in [false, true] {
+        search(&mut proofs, &tables, &hierarchy, &[0.9, 0.0]);
+        // The root begins with a proven bucket.
+        assert_eq!(tables.buckets[0].start, tables.buckets[n as usize].start);
+        let proven = [0, n, first, a, b, c].map(|n| proofs.is_node_proven(&tables, n));
+        assert_eq!(proven, [false, true, true, false, false, false]);
+        for (pair, is_proven) in [
+            ((n, a), true),
+            ((c, n), true),
+            ((n, b), false),
+            // A part of the node with nodes of the list.
+            ((first, a), true),
+            ((b, first), false),
+            // Two nodes of the list.
+            ((a, c), false),
+            ((c, a), false),
+            ((0, a), false),
+        ] {
+            assert_eq!(proofs.is_pair_proven(&tables, pair, is_last), is_proven, "{pair:?}");
         }
-    }
-    let norm = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let column = |k: usize| norm(&ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>());
-    let bounds = LocalBounds {
-        ratio: 1.0,
-        steepest: gradients.iter().map(|g| norm(&g.to_cols_array())).fold(0.0, f64::max) * (1.0 + 1e-12),
-        widest: (0..rank).map(column).fold(0.0, f64::max) * (1.0 + 1e-12),
-        ..LocalBounds::default()
-    };
-    let local = LocalCertificates {
-        nodes: vec![0],
-        mode_starts: vec![0, rank as u32],
-        modes: (0..rank as u32).collect(),
-        gradients: numbers,
-        ellipsoids: halves,
-        bounds: vec![bounds],
-        list_starts: vec![0, 0],
-        ..LocalCertificates::default()
-    };
-    Certificate { local, gradients, ellipsoid }
-}
-
-/// What is allowed at these q, of a model with that many modes.
-fn allowed<const E: usize>(local: &LocalCertificates, rank: usize, q: [&[f64]; E]) -> f64 {
-    allowed_during(local, rank, &DeformedMotion::new(q, 1.0))
-}
-
-/// What is allowed during a motion.
-fn allowed_during<const E: usize, M: VertexMotion<E>>(
-    local: &LocalCertificates,
-    rank: usize,
-    motion: &M,
-) -> f64 {
-    let center = vec![0.0; rank];
-    let mut tables = LocalTables {
-        certificates: local,
-        center: &center,
-        scales: FactorScales { sizes: vec![1.0; rank], scale: 1.0, reach: 1.0 },
-        of_node: vec![0],
-        starts: vec![[0, 0]],
-        rates: None,
-        list_bits: vec![0],
-        buckets: std::iter::once(0..1).collect(),
-    };
-    tables.add_region_rates(&Metric::identity(rank));
-    let mut proofs = LocalProofs::<E>::new(&tables);
-    assert!(proofs.begin(&tables, motion));
-    f64::from(proofs.allowed(&tables, 0))
-}
-
-/// `I + G f`, exactly.
-fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
-    matrix(|i, j| {
-        let unit = exact(f64::from(u8::from(i == j)));
-        certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<BigRational>()
-            + unit
-    })
-}
-
-/// Whether `ratio |W f| < sigma_min(I + G f)`.
-fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
-    let map = exact_map(certificate, f);
-    let strain: BigRational = certificate
-        .ellipsoid
-        .iter()
-        .map(|row| row.iter().zip(f).map(|(w, f)| exact(*w) * exact(*f)).sum::<BigRational>())
-        .map(|x| &x * &x)
-        .sum();
-    is_above(&gram(&map), &(strain * exact(ratio) * exact(ratio)))
-}
-
-#[test]
-fn allowed_ratios_are_at_most_exact() {
-    let random = &mut Numbers(4);
-    let single = |x: f64| f64::from(x as f32);
-    let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
-    let (mut positive, mut swept, mut short) = (0, 0, 0);
-    for case in 0..1200 {
-        let rank = 2 + random.below(if case % 20 == 0 { 30 } else { 6 });
-        let size = random.power(-2.0, 0.5);
-        let mut gradients: Vec<DMat3> = (0..rank)
-            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * size))))
-            .collect();
-        let mut ellipsoid: Vec<Vec<f64>> = (0..rank)
-            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
-            .collect();
-        // Sums that cancel in F, or in W f.
-        let mut draw = |random: &mut Numbers| -> Vec<f64> {
-            let mut f: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
-            let large = random.power(2.0, 7.0);
-            match case % 3 {
-                0 => {
-                    (f[0], f[1]) = (large + 0.3 * random.signed(), -large);
-                    gradients[1] = gradients[0];
-                }
-                1 => {
-                    (f[0], f[1]) = (large + 0.01 * random.signed(), -large);
-                    f[2..].iter_mut().for_each(|f| *f *= 1e-3);
-                    gradients[..2].fill(DMat3::ZERO);
-                    ellipsoid[0][0] = 1.0;
-                    ellipsoid[0][1] = 1.0;
-                    ellipsoid[1][1] = half(1e-6);
-                }
-                _ => {}
-            }
-            f
-        };
-        let [f, mut g] = [draw(random), draw(random)];
-        // A motion along which the map changes little.
-        if case % 2 == 1 {
-            let share = 0.03 / size.max(1.0);
-            g = f.iter().map(|f| f + share * random.signed()).collect();
-            short += 1;
-        }
-        let certificate = certificate(gradients, ellipsoid);
-        let one = allowed(&certificate.local, rank, [&f]);
-        if one > 0.0 {
-            positive += 1;
-            assert!(holds(&certificate, one, &f), "case {case}: {one} at {f:?}");
-        }
-        let two = allowed(&certificate.local, rank, [&f, &g]);
-        assert!(two <= 0.0 || two <= one * (1.0 + 1e-4));
-        if two > 0.0 {
-            swept += 1;
-            for t in [0.0, 0.125, 0.5, 0.75, 1.0] {
-                let between: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
-                assert!(holds(&certificate, two * (1.0 - 1e-6), &between), "case {case}: {two} at {t}");
-            }
-        }
-    }
-    assert!(positive > 500 && swept > 150 && short > 500, "{positive} {swept} {short}");
-}
-
-#[test]
-fn nan_at_either_end_is_no_proof() {
-    assert!(smaller(f64::NAN, 1.0).is_nan() && smaller(1.0, f64::NAN).is_nan());
-    assert_eq!((smaller(1.0, 2.0), smaller(2.0, 1.0), smaller(f64::INFINITY, 2.0)), (1.0, 1.0, 2.0));
-    // Two terms of W f beyond single precision, of opposite signs.
-    let large = f64::from(1e14_f32.to_bits() >> 16 << 16);
-    let large = f64::from(f32::from_bits(large as u32));
-    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![large, large], vec![0.0, 1.0]]);
-    let (far, near) = ([4e29, -4e29], [1e-16, 1e-16]);
-    assert!(allowed(&certificate.local, 2, [&near]) > 0.0);
-    for ends in [[&far, &near], [&near, &far], [&far, &far]] {
-        let allowed = allowed(&certificate.local, 2, ends.map(|q| q.as_slice()));
-        assert!(allowed.is_nan() || allowed <= 0.0, "{allowed}");
-    }
-}
-
-/// `|W f|`, up to rounding.
-fn strain_of(certificate: &Certificate, f: &[f64]) -> f64 {
-    let image = certificate.ellipsoid.iter().map(|row| row.iter().zip(f).map(|(w, f)| w * f).sum::<f64>());
-    image.map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// Whether a sum is less than the smallest singular value of a map.
-fn is_below(sum: f64, map: &Matrix) -> bool {
-    is_above(&gram(map), &(exact(sum) * exact(sum)))
-}
-
-/// Maps of patches that turn as planes do, with other images of the direction across.
-#[test]
-fn flat_patches_allow_at_most_what_is_exact() {
-    let random = &mut Numbers(6);
-    let (mut flat, mut swept, mut close) = (0, 0, 0);
-    for case in 0..600 {
-        let rank = 9 + random.below(3);
-        // The modes are the entries of the map.
-        let mut gradients: Vec<DMat3> = (0..9)
-            .map(|e| DMat3::from_cols_array(&std::array::from_fn(|i| f64::from(u8::from(i == e)))))
-            .collect();
-        gradients.resize(rank, DMat3::ZERO);
-        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
-        let ellipsoid: Vec<Vec<f64>> = (0..rank)
-            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
-            .collect();
-        let mut certificate = certificate(gradients, ellipsoid);
-        let across = (random.vector() + DVec3::X * 1e-3).normalize();
-        let flatness = [0.0, 0.02, 0.3][case % 3];
-        let bounds = &mut certificate.local.bounds[0];
-        (bounds.across, bounds.flatness) = (across.to_array(), flatness);
-        // A turn of the plane, while the direction across stays.
-        let axis = (random.vector() + DVec3::Y * 1e-3).normalize();
-        let factors = |angle: f64, random: &mut Numbers| -> Vec<f64> {
-            let turn = DMat3::from_axis_angle(axis, angle);
-            let outer = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
-            let map = turn + outer(across - turn * across, across) - DMat3::IDENTITY;
-            let mut f = map.to_cols_array().to_vec();
-            f.resize_with(rank, || random.signed() * 0.1);
-            f.iter().map(|x| x + 0.02 * random.signed()).collect()
-        };
-        let angle = 3.0 * random.signed();
-        let f = factors(angle, random);
-        let g = factors(angle + [0.02, 0.5][case % 2] * random.signed(), random);
-        let map_of =
-            |f: &[f64]| certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |m, (g, f)| m + *g * *f);
-        // Whether the inequality of either kind holds at f, with the image of the direction across that the mean of the ends has.
-        let is_right = |ratio: f64, ends: &[DMat3; 2], at: &[f64]| {
-            let ratio = ratio * (1.0 - 1e-3);
-            if holds(&certificate, ratio, at) {
-                return true;
-            }
-            let mean = (ends[0] + ends[1]) * 0.5;
-            let ([flat], _) = flat_maps(&[mean], across);
-            let image = flat * across;
-            let map = exact_map(&certificate, at);
-            let own: [BigRational; 3] =
-                std::array::from_fn(|i| (0..3).map(|k| &map[i][k] * exact(across[k])).sum());
-            let map = matrix(|i, j| &map[i][j] + (exact(image[i]) - &own[i]) * exact(across[j]));
-            let turned = (map_of(at) * across - image).length();
-            is_below(ratio * strain_of(&certificate, at) + flatness * turned * (1.0 - 1e-3), &map)
-        };
-        let one = allowed(&certificate.local, rank, [&f]);
-        if one > 0.0 {
-            assert!(is_right(one, &[map_of(&f); 2], &f), "case {case}: {one} at {f:?}");
-            flat += usize::from(!holds(&certificate, one * (1.0 - 1e-3), &f));
-            close += usize::from(!is_right(one * 1.1, &[map_of(&f); 2], &f));
-        }
-        let two = allowed(&certificate.local, rank, [&f, &g]);
-        if two > 0.0 {
-            for t in [0.0, 0.3, 0.5, 1.0] {
-                let at: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
-                assert!(is_right(two, &[map_of(&f), map_of(&g)], &at), "case {case}: {two} at {t}");
-                swept += usize::from(!holds(&certificate, two * (1.0 - 1e-3), &at));
-            }
-        }
-    }
-    assert!(flat > 100 && swept > 200 && close > 200, "{flat} {swept} {close}");
-}
-
-/// All z within a radius of a segment.
-struct InRegion<'q> {
-    ends: [&'q [f64]; 2],
-    radius: f64,
-}
-
-impl VertexMotion<2> for InRegion<'_> {
-    const HAS_ERROR_BOUND: bool = false;
-
-    fn rounding(&self) -> f64 {
-        1e-15
-    }
-
-    fn overall_aabb(&self, _: &Layout) -> Aabb {
-        unreachable!("no positions are needed")
-    }
-
-    fn coarse_coordinates(&self) -> Option<[&[f64]; 2]> {
-        Some(self.ends)
-    }
-
-    fn region_radius(&self) -> Option<f64> {
-        Some(self.radius)
-    }
-
-    fn coarse_slack(&self, _: u32) -> Option<DVec3> {
-        unreachable!("no positions are needed")
-    }
-
-    fn positions(&self, _: &Layout, _: u32) -> [DVec3; 2] {
-        unreachable!("no positions are needed")
-    }
-
-    fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
-        unreachable!("no positions are needed")
-    }
-}
-
-/// `W d`, and the product of its transpose with that.
-fn strained(ellipsoid: &[Vec<f64>], d: &[f64]) -> [Vec<f64>; 2] {
-    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
-    let image: Vec<f64> = ellipsoid.iter().map(|row| dot(row, d)).collect();
-    let column = |k: usize| ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>();
-    let back = (0..d.len()).map(|k| dot(&column(k), &image)).collect();
-    [image, back]
-}
-
-fn of_length(d: &[f64], length: f64) -> Vec<f64> {
-    let norm = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-    d.iter().map(|x| x * length / norm).collect()
-}
-
-/// Also at the border of the region, in the directions that spoil a proof soonest.
-#[test]
-fn proofs_in_regions_hold_in_all_of_them() {
-    let random = &mut Numbers(5);
-    let (mut proven, mut checked, mut close) = (0, 0, 0);
-    for case in 0..400 {
-        let rank = 2 + random.below(if case % 20 == 0 { 70 } else { 6 });
-        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
-        let size = if case % 2 == 0 { 0.0 } else { 0.3 / (rank as f64).sqrt() };
-        let gradients: Vec<DMat3> = (0..rank)
-            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| f64::from((random.signed() * size) as f32))))
-            .collect();
-        // No strain that matters, or no map that does.
-        let of_strain = if case % 2 == 0 { 1.0 } else { 1e-3 };
-        let ellipsoid: Vec<Vec<f64>> = (0..rank)
-            .map(|i| {
-                (0..rank).map(|k| if k >= i { half(of_strain * random.signed()) } else { 0.0 }).collect()
-            })
-            .collect();
-        let mut worst: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
-        for _ in 0..200 {
-            worst = of_length(&strained(&ellipsoid, &worst)[1], 1.0);
-        }
-        let start = of_length(&worst, random.power(-2.0, 0.0));
-        let end = if case % 3 == 0 { start.clone() } else { start.iter().map(|x| x * 1.1).collect() };
-        let radius = random.power(-3.0, -0.5);
-        let mut certificate = certificate(gradients, ellipsoid);
-        let per_factor = [0.0, 0.1][case / 2 % 2];
-        certificate.local.bounds[0].per_factor = per_factor;
-        let allowed = allowed_during(&certificate.local, rank, &InRegion { ends: [&start, &end], radius });
-        if allowed <= 0.0 {
-            continue;
-        }
-        proven += 1;
-        let map = |f: &[f64]| {
-            certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |sum, (g, f)| sum + *g * *f)
-        };
-        let from = smallest_stretch(&map(&end));
-        let slopes: Vec<f64> = (0..rank)
-            .map(|k| {
-                let mut moved = end.clone();
-                moved[k] += 1e-4;
-                from - smallest_stretch(&map(&moved))
-            })
-            .collect();
-        let any: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
-        // Along all axes at once the sum of the factors grows fastest.
-        let all: Vec<f64> = end.iter().map(|x| if *x < 0.0 { -1.0 } else { 1.0 }).collect();
-        for direction in [worst, slopes, any, all] {
-            if direction.iter().all(|x| *x == 0.0) {
-                continue;
-            }
-            let d = of_length(&direction, radius * (1.0 - 1e-9));
-            let at: Vec<f64> = end.iter().zip(&d).map(|(x, d)| x + d).collect();
-            let is_right = |ratio: f64| {
-                let sum = ratio * strain_of(&certificate, &at)
-                    + per_factor * at.iter().map(|x| x.abs()).sum::<f64>();
-                is_below(sum, &exact_map(&certificate, &at))
-            };
-            assert!(is_right(allowed * (1.0 - 1e-6)), "case {case}: {allowed} at {at:?}");
-            checked += 1;
-            close += usize::from(!is_right(allowed * 1.5));
-        }
-    }
-    assert!(proven > 300 && checked > 800 && close > 150, "{proven} {checked} {close}");
-}
-
-#[test]
-fn regions_of_dense_metrics_have_no_proofs() {
-    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![1.0, 0.5], vec![0.0, 1.0]]);
-    let center = vec![0.0; 2];
-    let mut tables = LocalTables {
-        certificates: &certificate.local,
-        center: &center,
-        scales: FactorScales { sizes: vec![1.0; 2], scale: 1.0, reach: 1.0 },
-        of_node: vec![0],
-        starts: vec![[0, 0]],
-        rates: None,
-        list_bits: vec![0],
-        buckets: std::iter::once(0..1).collect(),
-    };
-    let q = [0.1, 0.1];
-    let region = |radius: f64| InRegion { ends: [&q, &q], radius };
-    let dense = Metric::from_factor(crate::MetricKind::Given, 2, vec![1.0, 0.1, 0.0, 1.0]).unwrap();
-    for (metric, has_proofs) in [(dense, false), (Metric::identity(2), true)] {
-        tables.add_region_rates(&metric);
-        let mut proofs = LocalProofs::<2>::new(&tables);
-        assert_eq!(proofs.begin(&tables, &region(0.1)), has_proofs);
-        // Without a radius it is a motion as any other.
-        assert!(proofs.begin(&tables, &region(0.0)));
+        // The ratios of the list alone are allowed.
+        search(&mut proofs, &tables, &hierarchy, &[1.5, 0.0]);
+        assert!(!proofs.is_node_proven(&tables, n) && !proofs.is_pair_proven(&tables, (n, a), is_last));
     }
 }

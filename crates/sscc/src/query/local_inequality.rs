@@ -1,0 +1,225 @@
+//! The inequality of local certificates at the configurations of a search: which ratios it allows.
+
+use glam::{DMat3, DVec3};
+
+use super::local_tables::LocalTables;
+use super::smallest_stretch::{smallest_stretch, stretches_between};
+use crate::certificates::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, gradient_len};
+use crate::detect::vertex_motion::{VertexMotion, rounding_bound};
+use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
+
+/// The root of three, rounded up: errors are along each axis, gaps along any direction.
+const DIAGONAL: f64 = 1.7321;
+
+/// Rounds a sum of a handful of non-negative numbers up.
+const ROUND_UP: f64 = 1.0 + 1e-12;
+
+/// The factors of one motion, and the errors of its positions.
+#[derive(Clone)]
+pub(super) struct LocalInequality<const E: usize> {
+    instructions: InstructionSet,
+    /// The factors of the modes at each configuration, in single precision, padded with zeros.
+    factors: [Vec<f32>; E],
+    /// `T` at each configuration, rounded up.
+    sums: [f64; E],
+    /// The radius of the region in z around the segment between the configurations.
+    radius: f64,
+    /// `eta`
+    error: f64,
+}
+
+impl<const E: usize> LocalInequality<E> {
+    /// About no motion.
+    pub(super) fn new() -> Self {
+        Self {
+            instructions: InstructionSet::default(),
+            factors: [const { Vec::new() }; E],
+            sums: [0.0; E],
+            radius: 0.0,
+            error: f64::INFINITY,
+        }
+    }
+
+    /// Sets the factors of a motion. False where its positions are not those of the modes alone, or certificates prove nothing about it.
+    pub(super) fn set_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+        let (Some(coordinates), Some(radius)) = (motion.coarse_coordinates(), motion.region_radius()) else {
+            return false;
+        };
+        self.radius = right_or!(radius, LocalProofsInRegions, 0.0);
+        if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
+            return false;
+        }
+        let FactorScales { sizes, scale, reach } = &tables.scales;
+        for (end, q) in coordinates.into_iter().enumerate() {
+            let all = &mut self.factors[end];
+            all.clear();
+            let mut sum = 0.0;
+            all.extend(q.iter().zip(tables.center).zip(sizes).map(|((q, c), size)| {
+                let factor = (q - c) * size;
+                sum += factor.abs();
+                factor as f32
+            }));
+            all.resize(all.len().next_multiple_of(LANES), 0.0);
+            self.sums[end] = sum * ROUND_UP;
+        }
+        let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
+        let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
+        self.error = right_or!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
+        self.error.is_finite() && self.sums.iter().all(|sum| *sum < 1e30)
+    }
+
+    /// The ratios that a certificate allows: those below this.
+    pub(super) fn allowed(&self, tables: &LocalTables<'_>, index: usize) -> f32 {
+        let all = tables.certificates;
+        let bounds = &all.bounds[index];
+        let [start, end] = [index, index + 1].map(|i| all.mode_starts[i] as usize);
+        let modes = &all.modes[start..end];
+        let [gradient, ellipsoid] = tables.starts[index].map(|start| start as usize);
+        let gradients = &all.gradients.as_chunks().0[gradient..][..gradient_len(modes.len()) / LANES];
+        let ellipsoid =
+            &all.ellipsoids.as_chunks().0[ellipsoid..][..EllipsoidBlocks(modes.len()).len() / LANES];
+        let is_dense = modes.len() == tables.center.len();
+        // What the numbers may change within the radius.
+        let [more_sum, more_map, more_strain] = match &tables.rates {
+            Some(rates) if self.radius > 0.0 => {
+                let of_certificate = rates.certificates[index];
+                [
+                    right_or!(rates.sum, LocalRegionSumStill, 0.0),
+                    right_or!(of_certificate.map, LocalRegionMapStill, 0.0),
+                    right_or!(of_certificate.strain, LocalRegionStrainStill, 0.0),
+                ]
+                .map(|rate| rate * self.radius)
+            }
+            _ => [0.0; 3],
+        };
+        // The error of sums of products in single precision, and of the factors.
+        let single = 2.0 * (modes.len() as f64 + 4.0) * f64::from(f32::EPSILON);
+        let at = |end: usize| {
+            let (mut gathered, mut sum) = ([0.0_f32; MOST_MODES], self.sums[end]);
+            let factors = if is_dense {
+                &*self.factors[end]
+            } else {
+                let mut local = 0.0;
+                for (g, k) in gathered.iter_mut().zip(modes) {
+                    *g = self.factors[end][*k as usize];
+                    local += f64::from(g.abs());
+                }
+                sum = sum.min(local * (1.0 + 1e-6) + 1e-30);
+                &gathered[..modes.len().next_multiple_of(LANES)]
+            };
+            sum += more_sum;
+            let (gradient, strain) =
+                self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
+            let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
+            let strain = strain + rounding + more_strain + 1e-30;
+            let error = bounds.per_factor * sum
+                + bounds.per_error * self.error
+                + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
+                + more_map
+                + 1e-30;
+            (DMat3::IDENTITY + gradient, strain * ROUND_UP, error * ROUND_UP)
+        };
+        let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
+        let allowed = |stretches: [f64; E], lost: [f64; E]| {
+            let each = ends.iter().zip(stretches).zip(lost).map(|(((_, strain, error), stretch), lost)| {
+                (stretch - error - lost) / strain * (1.0 - 1e-12)
+            });
+            each.fold(f64::INFINITY, smaller)
+        };
+        let maps = ends.map(|(map, _, _)| map);
+        let plain = allowed(stretches_of(&maps), [0.0; E]);
+        if bounds.flatness == f64::INFINITY {
+            return (plain as f32).next_down();
+        }
+        // The error of the map is one of its part across, too, and the new map is rounded.
+        let (maps, turned) = flat_maps(&maps, DVec3::from_array(bounds.across));
+        let lost = std::array::from_fn(|end| {
+            (bounds.flatness + 1e-14)
+                * (turned[end] + right_or!(ends[end].2, LocalPlaneMapExact, 0.0))
+                * ROUND_UP
+        });
+        let flat = allowed(stretches_of(&maps), right_or!(lost, LocalPlaneTurnsAlong, [0.0; E]));
+        // NaN allows nothing.
+        (if flat > plain { flat } else { plain } as f32).next_down()
+    }
+}
+
+/// The stretches of maps, as [`stretches_between`].
+fn stretches_of<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
+    if E == 1 { maps.map(|map| smallest_stretch(&map)) } else { stretches_between(maps) }
+}
+
+/// Maps of a flat patch with another image of the direction across it: the same for all, a unit vector across the image of the plane by
+/// their mean. Also how far that is from their own images of the direction.
+fn flat_maps<const E: usize>(maps: &[DMat3; E], across: DVec3) -> ([DMat3; E], [f64; E]) {
+    let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map);
+    let (x, y) = across.any_orthonormal_pair();
+    let image = (mean * x).cross(mean * y).normalize_or_zero();
+    let outer = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
+    let turned = maps.map(|map| (map * across - image).length());
+    (maps.map(|map| map + outer(image - map * across, across)), turned)
+}
+
+/// The smaller of two numbers, and NaN where one is NaN: it allows nothing.
+fn smaller(a: f64, b: f64) -> f64 {
+    right_or!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
+}
+
+/// Vectors of the longest column of W.
+const MOST_VECTORS: usize = MOST_MODES.div_ceil(LANES);
+
+/// `G f`, and the norm of `W f` as computed, for the numbers of one certificate.
+struct Sums<'c> {
+    gradients: &'c [[f32; LANES]],
+    ellipsoid: &'c [[u16; LANES]],
+    factors: &'c [f32],
+    count: usize,
+}
+
+impl Kernel for Sums<'_> {
+    type Output = (DMat3, f64);
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, vectors: V) -> Self::Output {
+        let Self { gradients, ellipsoid, factors, count } = self;
+        let (columns, last) = gradients.split_at(count);
+        let mut gradient = [vectors.splat(0.0); 2];
+        for (k, (column, factor)) in columns.iter().zip(factors).enumerate() {
+            gradient[k & 1] =
+                vectors.multiply_add(vectors.load(column), vectors.splat(*factor), gradient[k & 1]);
+        }
+        let mut ninth = vectors.splat(0.0);
+        for (row, factors) in last.iter().zip(factors.as_chunks().0) {
+            ninth = vectors.multiply_add(vectors.load(row), vectors.load(factors), ninth);
+        }
+        let mut image = [[0.0_f32; LANES]; MOST_VECTORS];
+        let mut blocks = ellipsoid;
+        for (first, image) in (0..count).step_by(LANES).zip(&mut image) {
+            let (rows, rest) = blocks.split_at(count - first);
+            blocks = rest;
+            let mut sums = [vectors.splat(0.0); 2];
+            for (i, (column, factor)) in rows.iter().zip(&factors[first..]).enumerate() {
+                let column = vectors.load_upper_halves(column);
+                sums[i & 1] = vectors.multiply_add(column, vectors.splat(*factor), sums[i & 1]);
+            }
+            let one = vectors.splat(1.0);
+            *image = vectors.array(vectors.multiply_add(sums[0], one, sums[1]));
+        }
+        let [even, odd] = gradient.map(|sum| vectors.array(sum));
+        let entry = |e: usize| f64::from(even[e]) + f64::from(odd[e]);
+        let ninth = vectors.array(ninth).iter().map(|x| f64::from(*x)).sum();
+        let map = DMat3::from_cols(
+            DVec3::new(entry(0), entry(1), entry(2)),
+            DVec3::new(entry(3), entry(4), entry(5)),
+            DVec3::new(entry(6), entry(7), ninth),
+        );
+        let used = &image[..count.div_ceil(LANES)];
+        let square: f64 = used.as_flattened().iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
+        (map, square.sqrt() * ROUND_UP)
+    }
+}
+
+const _: () = assert!(GRADIENT == LANES + 1);
+
+#[cfg(test)]
+mod tests;

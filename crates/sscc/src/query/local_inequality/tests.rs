@@ -1,0 +1,430 @@
+//! The inequality of local certificates against exact arithmetic.
+
+use num_rational::BigRational;
+use sscc_testing::Numbers;
+
+use super::super::exact_matrix::{Matrix, exact, gram, is_above, matrix, of_map};
+use super::super::local_tables::tables_of;
+use super::*;
+use crate::certificates::LocalCertificates;
+use crate::detect::layout::Layout;
+use crate::detect::vertex_motion::DeformedMotion;
+use crate::geometry::Aabb;
+use crate::{LocalBounds, Metric};
+
+/// Numbers of a certificate in the layout of its arrays, and the same as matrices.
+struct Certificate {
+    local: LocalCertificates,
+    /// For each mode.
+    gradients: Vec<DMat3>,
+    /// Upper triangular.
+    ellipsoid: Vec<Vec<f64>>,
+}
+
+fn certificate(gradients: Vec<DMat3>, ellipsoid: Vec<Vec<f64>>) -> Certificate {
+    let rank = gradients.len();
+    let mut numbers = Vec::new();
+    gradients.iter().for_each(|g| numbers.extend(g.to_cols_array()[..8].iter().map(|x| *x as f32)));
+    numbers.extend(gradients.iter().map(|g| g.z_axis.z as f32));
+    numbers.resize(gradient_len(rank), 0.0);
+    let mut halves = Vec::new();
+    for first in (0..rank).step_by(8) {
+        for column in first..rank {
+            for row in ellipsoid.iter().map(Some).chain(std::iter::repeat(None)).skip(first).take(8) {
+                halves.push((row.map_or(0.0, |row| row[column] as f32).to_bits() >> 16) as u16);
+            }
+        }
+    }
+    let norm = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let column = |k: usize| norm(&ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>());
+    let bounds = LocalBounds {
+        ratio: 1.0,
+        steepest: gradients.iter().map(|g| norm(&g.to_cols_array())).fold(0.0, f64::max) * (1.0 + 1e-12),
+        widest: (0..rank).map(column).fold(0.0, f64::max) * (1.0 + 1e-12),
+        ..LocalBounds::default()
+    };
+    let local = LocalCertificates {
+        nodes: vec![0],
+        mode_starts: vec![0, rank as u32],
+        modes: (0..rank as u32).collect(),
+        gradients: numbers,
+        ellipsoids: halves,
+        bounds: vec![bounds],
+        list_starts: vec![0, 0],
+        ..LocalCertificates::default()
+    };
+    Certificate { local, gradients, ellipsoid }
+}
+
+/// What is allowed at these q, of a model with that many modes.
+fn allowed<const E: usize>(local: &LocalCertificates, rank: usize, q: [&[f64]; E]) -> f64 {
+    allowed_during(local, rank, &DeformedMotion::new(q, 1.0))
+}
+
+/// What is allowed during a motion.
+fn allowed_during<const E: usize, M: VertexMotion<E>>(
+    local: &LocalCertificates,
+    rank: usize,
+    motion: &M,
+) -> f64 {
+    allowed_in(local, &Metric::identity(rank), motion)
+}
+
+/// The same in a metric.
+fn allowed_in<const E: usize, M: VertexMotion<E>>(
+    local: &LocalCertificates,
+    metric: &Metric,
+    motion: &M,
+) -> f64 {
+    let center = vec![0.0; metric.rank()];
+    let (tables, _) = tables_of(local, &center, metric);
+    let mut inequality = LocalInequality::<E>::new();
+    assert!(inequality.set_motion(&tables, motion));
+    f64::from(inequality.allowed(&tables, 0))
+}
+
+/// `I + G f`, exactly.
+fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
+    matrix(|i, j| {
+        let unit = exact(f64::from(u8::from(i == j)));
+        certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<BigRational>()
+            + unit
+    })
+}
+
+/// Whether `ratio |W f| < sigma_min(I + G f)`.
+fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
+    let map = exact_map(certificate, f);
+    let strain: BigRational = certificate
+        .ellipsoid
+        .iter()
+        .map(|row| row.iter().zip(f).map(|(w, f)| exact(*w) * exact(*f)).sum::<BigRational>())
+        .map(|x| &x * &x)
+        .sum();
+    is_above(&gram(&map), &(strain * exact(ratio) * exact(ratio)))
+}
+
+#[test]
+fn allowed_ratios_are_at_most_exact() {
+    let random = &mut Numbers(4);
+    let single = |x: f64| f64::from(x as f32);
+    let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+    let (mut positive, mut swept, mut short) = (0, 0, 0);
+    for case in 0..1200 {
+        let rank = 2 + random.below(if case % 20 == 0 { 30 } else { 6 });
+        let size = random.power(-2.0, 0.5);
+        let mut gradients: Vec<DMat3> = (0..rank)
+            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * size))))
+            .collect();
+        let mut ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
+            .collect();
+        // Sums that cancel in F, or in W f.
+        let mut draw = |random: &mut Numbers| -> Vec<f64> {
+            let mut f: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            let large = random.power(2.0, 7.0);
+            match case % 3 {
+                0 => {
+                    (f[0], f[1]) = (large + 0.3 * random.signed(), -large);
+                    gradients[1] = gradients[0];
+                }
+                1 => {
+                    (f[0], f[1]) = (large + 0.01 * random.signed(), -large);
+                    f[2..].iter_mut().for_each(|f| *f *= 1e-3);
+                    gradients[..2].fill(DMat3::ZERO);
+                    ellipsoid[0][0] = 1.0;
+                    ellipsoid[0][1] = 1.0;
+                    ellipsoid[1][1] = half(1e-6);
+                }
+                _ => {}
+            }
+            f
+        };
+        let [f, mut g] = [draw(random), draw(random)];
+        // A motion along which the map changes little.
+        if case % 2 == 1 {
+            let share = 0.03 / size.max(1.0);
+            g = f.iter().map(|f| f + share * random.signed()).collect();
+            short += 1;
+        }
+        let certificate = certificate(gradients, ellipsoid);
+        let one = allowed(&certificate.local, rank, [&f]);
+        if one > 0.0 {
+            positive += 1;
+            assert!(holds(&certificate, one, &f), "case {case}: {one} at {f:?}");
+        }
+        let two = allowed(&certificate.local, rank, [&f, &g]);
+        assert!(two <= 0.0 || two <= one * (1.0 + 1e-4));
+        if two > 0.0 {
+            swept += 1;
+            for t in [0.0, 0.125, 0.5, 0.75, 1.0] {
+                let between: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
+                assert!(holds(&certificate, two * (1.0 - 1e-6), &between), "case {case}: {two} at {t}");
+            }
+        }
+    }
+    assert!(positive > 500 && swept > 150 && short > 500, "{positive} {swept} {short}");
+}
+
+#[test]
+fn nan_at_either_end_is_no_proof() {
+    assert!(smaller(f64::NAN, 1.0).is_nan() && smaller(1.0, f64::NAN).is_nan());
+    assert_eq!((smaller(1.0, 2.0), smaller(2.0, 1.0), smaller(f64::INFINITY, 2.0)), (1.0, 1.0, 2.0));
+    // Two terms of W f beyond single precision, of opposite signs.
+    let large = f64::from(1e14_f32.to_bits() >> 16 << 16);
+    let large = f64::from(f32::from_bits(large as u32));
+    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![large, large], vec![0.0, 1.0]]);
+    let (far, near) = ([4e29, -4e29], [1e-16, 1e-16]);
+    assert!(allowed(&certificate.local, 2, [&near]) > 0.0);
+    for ends in [[&far, &near], [&near, &far], [&far, &far]] {
+        let allowed = allowed(&certificate.local, 2, ends.map(|q| q.as_slice()));
+        assert!(allowed.is_nan() || allowed <= 0.0, "{allowed}");
+    }
+}
+
+/// `|W f|`, up to rounding.
+fn strain_of(certificate: &Certificate, f: &[f64]) -> f64 {
+    let image = certificate.ellipsoid.iter().map(|row| row.iter().zip(f).map(|(w, f)| w * f).sum::<f64>());
+    image.map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Whether a sum is less than the smallest singular value of a map.
+fn is_below(sum: f64, map: &Matrix) -> bool {
+    is_above(&gram(map), &(exact(sum) * exact(sum)))
+}
+
+/// Maps of patches that turn as planes do, with other images of the direction across.
+#[test]
+fn flat_patches_allow_at_most_what_is_exact() {
+    let random = &mut Numbers(6);
+    let (mut flat, mut swept, mut close) = (0, 0, 0);
+    for case in 0..600 {
+        let rank = 9 + random.below(3);
+        // The modes are the entries of the map.
+        let mut gradients: Vec<DMat3> = (0..9)
+            .map(|e| DMat3::from_cols_array(&std::array::from_fn(|i| f64::from(u8::from(i == e)))))
+            .collect();
+        gradients.resize(rank, DMat3::ZERO);
+        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+        let ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
+            .collect();
+        let mut certificate = certificate(gradients, ellipsoid);
+        let across = (random.vector() + DVec3::X * 1e-3).normalize();
+        let flatness = [0.0, 0.02, 0.3][case % 3];
+        let bounds = &mut certificate.local.bounds[0];
+        (bounds.across, bounds.flatness) = (across.to_array(), flatness);
+        // A turn of the plane, while the direction across stays.
+        let axis = (random.vector() + DVec3::Y * 1e-3).normalize();
+        let factors = |angle: f64, random: &mut Numbers| -> Vec<f64> {
+            let turn = DMat3::from_axis_angle(axis, angle);
+            let outer = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
+            let map = turn + outer(across - turn * across, across) - DMat3::IDENTITY;
+            let mut f = map.to_cols_array().to_vec();
+            f.resize_with(rank, || random.signed() * 0.1);
+            f.iter().map(|x| x + 0.02 * random.signed()).collect()
+        };
+        let angle = 3.0 * random.signed();
+        let f = factors(angle, random);
+        let g = factors(angle + [0.02, 0.5][case % 2] * random.signed(), random);
+        let map_of =
+            |f: &[f64]| certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |m, (g, f)| m + *g * *f);
+        // Whether the inequality of either kind holds at f, with the image of the direction across that the mean of the ends has.
+        let is_right = |ratio: f64, ends: &[DMat3; 2], at: &[f64]| {
+            let ratio = ratio * (1.0 - 1e-3);
+            if holds(&certificate, ratio, at) {
+                return true;
+            }
+            let mean = (ends[0] + ends[1]) * 0.5;
+            let ([flat], _) = flat_maps(&[mean], across);
+            let image = flat * across;
+            let map = exact_map(&certificate, at);
+            let own: [BigRational; 3] =
+                std::array::from_fn(|i| (0..3).map(|k| &map[i][k] * exact(across[k])).sum());
+            let map = matrix(|i, j| &map[i][j] + (exact(image[i]) - &own[i]) * exact(across[j]));
+            let turned = (map_of(at) * across - image).length();
+            is_below(ratio * strain_of(&certificate, at) + flatness * turned * (1.0 - 1e-3), &map)
+        };
+        let one = allowed(&certificate.local, rank, [&f]);
+        if one > 0.0 {
+            assert!(is_right(one, &[map_of(&f); 2], &f), "case {case}: {one} at {f:?}");
+            flat += usize::from(!holds(&certificate, one * (1.0 - 1e-3), &f));
+            close += usize::from(!is_right(one * 1.1, &[map_of(&f); 2], &f));
+        }
+        let two = allowed(&certificate.local, rank, [&f, &g]);
+        if two > 0.0 {
+            for t in [0.0, 0.3, 0.5, 1.0] {
+                let at: Vec<f64> = f.iter().zip(&g).map(|(x, y)| x * (1.0 - t) + y * t).collect();
+                assert!(is_right(two, &[map_of(&f), map_of(&g)], &at), "case {case}: {two} at {t}");
+                swept += usize::from(!holds(&certificate, two * (1.0 - 1e-3), &at));
+            }
+        }
+    }
+    assert!(flat > 100 && swept > 200 && close > 200, "{flat} {swept} {close}");
+}
+
+/// All z within a radius of a segment.
+struct InRegion<'q> {
+    ends: [&'q [f64]; 2],
+    radius: f64,
+}
+
+impl VertexMotion<2> for InRegion<'_> {
+    const HAS_ERROR_BOUND: bool = false;
+
+    fn rounding(&self) -> f64 {
+        1e-15
+    }
+
+    fn overall_aabb(&self, _: &Layout) -> Aabb {
+        unreachable!("no positions are needed")
+    }
+
+    fn coarse_coordinates(&self) -> Option<[&[f64]; 2]> {
+        Some(self.ends)
+    }
+
+    fn region_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
+    fn coarse_slack(&self, _: u32) -> Option<DVec3> {
+        unreachable!("no positions are needed")
+    }
+
+    fn positions(&self, _: &Layout, _: u32) -> [DVec3; 2] {
+        unreachable!("no positions are needed")
+    }
+
+    fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
+        unreachable!("no positions are needed")
+    }
+}
+
+/// `W d`, and the product of its transpose with that.
+fn strained(ellipsoid: &[Vec<f64>], d: &[f64]) -> [Vec<f64>; 2] {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    let image: Vec<f64> = ellipsoid.iter().map(|row| dot(row, d)).collect();
+    let column = |k: usize| ellipsoid.iter().map(|row| row[k]).collect::<Vec<_>>();
+    let back = (0..d.len()).map(|k| dot(&column(k), &image)).collect();
+    [image, back]
+}
+
+fn of_length(d: &[f64], length: f64) -> Vec<f64> {
+    let norm = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+    d.iter().map(|x| x * length / norm).collect()
+}
+
+/// Also at the border of the region, in the directions that spoil a proof soonest.
+#[test]
+fn proofs_in_regions_hold_in_all_of_them() {
+    let random = &mut Numbers(5);
+    let (mut proven, mut checked, mut close) = (0, 0, 0);
+    for case in 0..400 {
+        let rank = 2 + random.below(if case % 20 == 0 { 70 } else { 6 });
+        let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+        let size = if case % 2 == 0 { 0.0 } else { 0.3 / (rank as f64).sqrt() };
+        let gradients: Vec<DMat3> = (0..rank)
+            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| f64::from((random.signed() * size) as f32))))
+            .collect();
+        // No strain that matters, or no map that does.
+        let of_strain = if case % 2 == 0 { 1.0 } else { 1e-3 };
+        let ellipsoid: Vec<Vec<f64>> = (0..rank)
+            .map(|i| {
+                (0..rank).map(|k| if k >= i { half(of_strain * random.signed()) } else { 0.0 }).collect()
+            })
+            .collect();
+        let mut worst: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        for _ in 0..200 {
+            worst = of_length(&strained(&ellipsoid, &worst)[1], 1.0);
+        }
+        let start = of_length(&worst, random.power(-2.0, 0.0));
+        let end = if case % 3 == 0 { start.clone() } else { start.iter().map(|x| x * 1.1).collect() };
+        let radius = random.power(-3.0, -0.5);
+        let mut certificate = certificate(gradients, ellipsoid);
+        let per_factor = [0.0, 0.1][case / 2 % 2];
+        certificate.local.bounds[0].per_factor = per_factor;
+        let allowed = allowed_during(&certificate.local, rank, &InRegion { ends: [&start, &end], radius });
+        if allowed <= 0.0 {
+            continue;
+        }
+        proven += 1;
+        let map = |f: &[f64]| {
+            certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |sum, (g, f)| sum + *g * *f)
+        };
+        let from = smallest_stretch(&map(&end));
+        let slopes: Vec<f64> = (0..rank)
+            .map(|k| {
+                let mut moved = end.clone();
+                moved[k] += 1e-4;
+                from - smallest_stretch(&map(&moved))
+            })
+            .collect();
+        let any: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+        // Along all axes at once the sum of the factors grows fastest.
+        let all: Vec<f64> = end.iter().map(|x| if *x < 0.0 { -1.0 } else { 1.0 }).collect();
+        for direction in [worst, slopes, any, all] {
+            if direction.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            let d = of_length(&direction, radius * (1.0 - 1e-9));
+            let at: Vec<f64> = end.iter().zip(&d).map(|(x, d)| x + d).collect();
+            let is_right = |ratio: f64| {
+                let sum = ratio * strain_of(&certificate, &at)
+                    + per_factor * at.iter().map(|x| x.abs()).sum::<f64>();
+                is_below(sum, &exact_map(&certificate, &at))
+            };
+            assert!(is_right(allowed * (1.0 - 1e-6)), "case {case}: {allowed} at {at:?}");
+            checked += 1;
+            close += usize::from(!is_right(allowed * 1.5));
+        }
+    }
+    assert!(proven > 300 && checked > 800 && close > 150, "{proven} {checked} {close}");
+}
+
+/// A map that keeps a plane and presses the direction across it. The second mode presses one direction of the plane, and the one across
+/// by as much as costs the most; a region is that mode's alone.
+#[test]
+fn flat_patches_in_regions_allow_at_most_what_is_exact() {
+    let mut close = 0;
+    for flatness in [0.25, 0.5, 0.75] {
+        let press = DMat3::from_diagonal(DVec3::new(0.0, 0.0, -0.9375));
+        let change = DMat3::from_diagonal(DVec3::new(-1.0, 0.0, -flatness));
+        let mut certificate =
+            certificate(vec![press, change], vec![vec![1.0, 0.0], vec![0.0, 2.0_f64.powi(-20)]]);
+        let bounds = &mut certificate.local.bounds[0];
+        (bounds.across, bounds.flatness) = ([0.0, 0.0, 1.0], flatness);
+        let metric = Metric::from_scales(crate::MetricKind::Given, vec![1e9, 1.0]).unwrap();
+        for radius in [0.01, 0.03, 0.05] {
+            let start = [1.0, 0.0];
+            let region = InRegion { ends: [&start, &start], radius };
+            let allowed = allowed_in(&certificate.local, &metric, &region);
+            let at = [1.0, radius * (1.0 - 1e-9)];
+            // Without the image of the direction across the ratio would not be allowed.
+            assert!(!holds(&certificate, allowed, &at), "{flatness} {radius}");
+            let flat = of_map(&DMat3::from_diagonal(DVec3::new(1.0 - at[1], 1.0, 1.0)));
+            let turned = 0.9375 + flatness * at[1];
+            let is_right =
+                |ratio: f64| is_below(ratio * strain_of(&certificate, &at) + flatness * turned, &flat);
+            assert!(is_right(allowed * (1.0 - 1e-4)), "{flatness} {radius}: {allowed}");
+            close += usize::from(!is_right(allowed * 1.2));
+        }
+    }
+    assert!(close > 4, "{close}");
+}
+
+#[test]
+fn regions_of_dense_metrics_have_no_proofs() {
+    let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![1.0, 0.5], vec![0.0, 1.0]]);
+    let center = vec![0.0; 2];
+    let q = [0.1, 0.1];
+    let region = |radius: f64| InRegion { ends: [&q, &q], radius };
+    let dense = Metric::from_factor(crate::MetricKind::Given, 2, vec![1.0, 0.1, 0.0, 1.0]).unwrap();
+    for (metric, has_proofs) in [(dense, false), (Metric::identity(2), true)] {
+        let (tables, _) = tables_of(&certificate.local, &center, &metric);
+        let mut inequality = LocalInequality::<2>::new();
+        assert_eq!(inequality.set_motion(&tables, &region(0.1)), has_proofs);
+        // Without a radius it is a motion as any other.
+        assert!(inequality.set_motion(&tables, &region(0.0)));
+    }
+}
