@@ -290,6 +290,8 @@ mutants! {
     LocalResidualsExact: CaughtBy("lib certificates::local::build::tests::strains_are_at_least_those_of_exact_residuals");
     /// Heights of a flat patch are exact in single precision.
     LocalHeightsUnrounded: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
+    /// Heights of a flat patch are exact in double precision.
+    LocalHeightsExact: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
     /// The heights of a flat patch are those within its node.
     LocalHeightsOfNodeAlone: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
     /// Ratios omit what is left of residuals where images times W differ from them.

@@ -144,7 +144,7 @@ impl Patch {
             largest = larger_or_nan(largest, height.abs());
         }
         // Offsets and products in double precision err by less than 6e-16 of the longest offset, in single precision of this share of it.
-        largest + 1e-8 * self.longest()
+        right_or!(largest + 1e-8 * self.longest(), LocalHeightsExact, largest)
     }
 
     /// The images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of one before it
