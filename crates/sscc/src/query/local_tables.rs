@@ -104,7 +104,8 @@ fn bucket_ranges(hierarchy: &Hierarchy) -> Vec<std::ops::Range<u32>> {
     nodes.iter().map(range).collect()
 }
 
-/// For tests: the tables of certificates of a shape of one bucket, in units of its size and of the largest displacements, and its hierarchy.
+/// For tests: the tables of certificates of a shape of one bucket, in units of its size and of the largest displacements, and its
+/// hierarchy.
 #[cfg(test)]
 pub(super) fn tables_of<'a>(
     local: &'a LocalCertificates,
