@@ -236,7 +236,8 @@ mod tests {
             let rounding = rounding_bound(model.check_coordinates(&later).unwrap(), rank);
             let frame = F32Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
             let (mut motion, mut positions) = (CoarseMotion::default(), layout.coarse.new_positions());
-            if !layout.quantization.begin(&mut motion, ends, &frame, rounding) {
+            // Where most modes move nothing, vertices have lists of modes.
+            if layout.coarse.is_empty() || !layout.quantization.begin(&mut motion, ends, &frame, rounding) {
                 unused += 1;
                 continue;
             }

@@ -16,7 +16,7 @@ use crate::hierarchy::Hierarchy;
 pub(crate) struct Needs {
     /// BD-tree AABBs of all nodes down to buckets; else of the root alone.
     pub(crate) bd_tree: bool,
-    /// Quantized vertices; without them boxes are computed from exact positions.
+    /// Quantized vertices, unless few modes move each; without them boxes are computed from exact positions.
     pub(crate) coarse: bool,
     /// The boundaries of nodes, for the contour test of normal cones.
     pub(crate) boundaries: bool,
@@ -59,13 +59,16 @@ impl Layout {
         buckets.renumber(|v| vertices.index_of(v));
         let is_visited = |n| buckets.of_node(n).is_none_or(|bucket| buckets.node(bucket) == n);
         let quantization = Quantization::new(model, &vertices);
-        let bd_tree = BdTree::new(model, hierarchy, &quantization, |n| needs.bd_tree && is_visited(n));
+        let bd_tree =
+            BdTree::new(model, hierarchy, &quantization, &vertices, |n| needs.bd_tree && is_visited(n));
         let boundaries = if needs.boundaries {
             NodeBoundaries::new(model.mesh(), hierarchy, filter, &vertices, is_visited)
         } else {
             NodeBoundaries::default()
         };
-        let coarse = if needs.coarse {
+        // The error of coarse positions grows with the factors of all modes, and where few modes move a vertex, its exact position costs as
+        // little.
+        let coarse = if needs.coarse && !vertices.lists().has_lists() {
             CoarseVertices::new(&quantization, &buckets, &vertices)
         } else {
             CoarseVertices::default()

@@ -2,20 +2,25 @@
 
 use glam::DVec3;
 
+use super::mode_lists::ModeLists;
 use crate::ReducedModel;
 use crate::vectors::InstructionSet;
+
+/// Modes are listed for each vertex where at most one in so many displacements is not zero.
+const SHARE_OF_LISTS: usize = 2;
 
 /// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket lie
 /// far apart in memory. A vertex is named by its index in this store, which is not its number in the mesh.
 #[derive(Default)]
 pub(crate) struct VertexStore {
-    rank: usize,
     /// For each vertex of the mesh its index here; `u32::MAX` for an unused vertex.
     indices: Vec<u32>,
     /// For each index the vertex of the mesh.
     mesh_vertices: Vec<u32>,
     rest: Vec<DVec3>,
-    /// `[index * rank + mode]`
+    /// The modes that move each vertex.
+    lists: ModeLists,
+    /// Of each vertex the displacements by its modes.
     modes: Vec<DVec3>,
 }
 
@@ -23,20 +28,32 @@ impl VertexStore {
     /// Stores vertices in the order of this list of mesh vertices, which may name a vertex more than once.
     pub(crate) fn new(model: &ReducedModel, order: &[u32]) -> Self {
         let (all, rank) = (model.mesh().rest_positions(), model.rank());
+        let is_moving = |u: &DVec3| *u != DVec3::ZERO;
+        let moving = model.modes().displacements().iter().filter(|u| is_moving(u)).count();
+        let has_lists = moving <= model.modes().displacements().len() / SHARE_OF_LISTS;
         let mut indices = vec![u32::MAX; all.len()];
         let mut mesh_vertices = Vec::with_capacity(all.len());
         let mut rest = Vec::with_capacity(all.len());
-        let mut modes = Vec::with_capacity(all.len() * rank);
+        let (mut lists, mut modes) = (Vec::new(), Vec::new());
         for &v in order {
             let index = &mut indices[v as usize];
             if *index == u32::MAX {
                 *index = rest.len() as u32;
                 mesh_vertices.push(v);
                 rest.push(all[v as usize]);
-                modes.extend_from_slice(model.modes().of_vertex(v));
+                let of_vertex = model.modes().of_vertex(v);
+                if has_lists {
+                    let own = || (0..rank as u32).zip(of_vertex).filter(|(_, u)| is_moving(u));
+                    lists.push(own().map(|(k, _)| k).collect());
+                    modes.extend(own().map(|(_, u)| *u));
+                } else {
+                    modes.extend_from_slice(of_vertex);
+                }
             }
         }
-        Self { rank, indices, mesh_vertices, rest, modes }
+        let lists =
+            if has_lists { ModeLists::of_lists(rank, lists.into_iter()) } else { ModeLists::all(rank) };
+        Self { indices, mesh_vertices, rest, lists, modes }
     }
 
     /// The same for vertices whose positions will be given: neither rest positions nor modes are stored. `all`: the number of
@@ -51,7 +68,7 @@ impl VertexStore {
                 mesh_vertices.push(v);
             }
         }
-        Self { rank: 0, indices, mesh_vertices, rest: Vec::new(), modes: Vec::new() }
+        Self { indices, mesh_vertices, ..Self::default() }
     }
 
     /// The number of vertices.
@@ -80,9 +97,14 @@ impl VertexStore {
         self.rest[index as usize]
     }
 
-    /// The displacements of a vertex by each mode.
+    /// The modes that move each vertex.
+    pub(crate) fn lists(&self) -> &ModeLists {
+        &self.lists
+    }
+
+    /// The displacements of a vertex by the modes of its list.
     pub(crate) fn modes(&self, index: u32) -> &[DVec3] {
-        &self.modes[index as usize * self.rank..][..self.rank]
+        &self.modes[self.lists.range(index)]
     }
 
     /// Prefetches the rest position and the modes of a vertex.
@@ -92,11 +114,20 @@ impl VertexStore {
         instructions.prefetch(self.modes(index));
     }
 
-    /// The position of a vertex at each q, bit for bit that of [`deformed_position`](crate::deformed_position).
+    /// The position of a vertex at each q, that of [`deformed_position`](crate::deformed_position): bit for bit, but for the sign of
+    /// zeros.
     #[inline]
     pub(crate) fn position<const E: usize>(&self, index: u32, q: [&[f64]; E]) -> [DVec3; E] {
         let mut x = [self.rest(index); E];
         let modes = self.modes(index);
+        if let Some(list) = self.lists.list(index) {
+            for (k, u) in list.iter().zip(modes) {
+                for end in 0..E {
+                    x[end] += *u * q[end][*k as usize];
+                }
+            }
+            return x;
+        }
         let q = q.map(|q| &q[..modes.len()]);
         // One pass over the modes serves both configurations.
         for (k, u) in modes.iter().enumerate() {

@@ -43,10 +43,8 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             proofs.prove(tables, &context.hierarchy, &certificates.node_radii, norm);
         }
         if n != m {
-            let buckets = &broad.volumes.layout.buckets;
-            let is_last = [n, m].iter().all(|n| buckets.of_node(*n).is_some());
             if let Some((proofs, tables)) = &mut locals
-                && proofs.is_pair_proven(tables, (n, m), is_last)
+                && proofs.is_pair_proven(tables, (n, m))
             {
                 continue;
             }

@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::local_proofs::can_prove_most;
 use super::local_tables::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
@@ -27,6 +28,9 @@ pub(super) struct QueryContext<'a> {
     pub(super) locals: Option<Arc<LocalTables<'a>>>,
     /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
     pub(super) refit_norm: f64,
+    /// From this `|z|` on, all pairs of the tree are reached, too, and it gains nothing: the tree of a small mesh has nearly all
+    /// pairs, and no end.
+    useless_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
     /// no exceptions. 0 elsewhere.
     proven_radius: f64,
@@ -49,7 +53,9 @@ impl<'a> QueryContext<'a> {
         });
         let locals = used.and_then(|used| {
             let (scales, center) = (FactorScales::new(model, used.center())?, used.center());
-            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales).map(Arc::new)
+            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales)
+                .filter(can_prove_most)
+                .map(Arc::new)
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
@@ -58,7 +64,22 @@ impl<'a> QueryContext<'a> {
             let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
             refit_norm((0..buckets.count() as u32).map(radius).collect())
         });
-        Self { model, detect, certificates, scope, method, hulls, locals, refit_norm, proven_radius }
+        let useless_norm = used.map_or(0.0, |used| {
+            let radii = used.parts().pair_tree.entries().map(|(radius, _)| f64::from(radius));
+            radii.fold(refit_norm, f64::max)
+        });
+        Self {
+            model,
+            detect,
+            certificates,
+            scope,
+            method,
+            hulls,
+            locals,
+            refit_norm,
+            useless_norm,
+            proven_radius,
+        }
     }
 
     /// The normal cones of the method, if it uses any.
@@ -73,10 +94,11 @@ impl<'a> QueryContext<'a> {
         self.certificates.filter(|_| self.method == Method::Certified).map(Certificates::parts)
     }
 
-    /// The pair tree, if the method uses it and it is complete at this norm: then a pair that it does not contain is
+    /// The pair tree, if the method uses it, and it is complete at this norm and of use: then a pair that it does not contain is
     /// certified.
     pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&'a PairTree> {
         let tree = self.used_certificates().map(|parts| &parts.pair_tree);
+        let tree = tree.filter(|_| norm < self.useless_norm);
         right_or!(
             tree.filter(|tree| norm < tree.limit()),
             TreeLimitReached,

@@ -14,16 +14,18 @@ use crate::hierarchy::{Hierarchy, NodePair};
 /// buckets, and one for each proven bucket. Only the time of queries depends on that.
 const BUCKETS_OF_EVALUATION: usize = 16;
 
-/// Certificates that a search may evaluate in vain. It evaluates those of buckets for pairs of buckets until so many more
-/// proved nothing than proved their pair.
+/// Certificates that a search may evaluate in vain.
 const MOST_LOST: usize = 32;
 
-/// Certificates are tried for pairs of nodes if they prove at least one of so many buckets.
+/// Certificates are tried for pairs of nodes if they prove at least one of so many buckets for which they were evaluated.
 const LEAST_SHARE: usize = 5;
 
 /// Work of a search, in visits and packets of AABBs, after which it finds proven nodes. Finding them takes about twice as long, so short
 /// searches end before it would pay.
 const WORK_BEFORE: u64 = 192;
+
+/// Most buckets are proven if at least this share of all is.
+const MOST: f64 = 0.6;
 
 /// AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;
@@ -44,9 +46,6 @@ pub(super) struct LocalProofs<const E: usize> {
     /// How many certificates the search evaluated from the root down, and how many buckets they proved.
     evaluated: usize,
     proven_buckets: usize,
-    /// How many pairs of buckets were tried by certificates of their own: with a proof, and without.
-    won: usize,
-    lost: usize,
 }
 
 impl<const E: usize> LocalProofs<E> {
@@ -62,8 +61,6 @@ impl<const E: usize> LocalProofs<E> {
             is_complete: false,
             evaluated: 0,
             proven_buckets: 0,
-            won: 0,
-            lost: 0,
         }
     }
 
@@ -79,8 +76,8 @@ impl<const E: usize> LocalProofs<E> {
         self.is_usable && !self.is_complete && visits + box_tests / PACKET > WORK_BEFORE
     }
 
-    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few buckets are proven
-    /// in the end, the search uses certificates no more: pairs of the others are seldom proven, and trying each takes longer.
+    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few of their buckets
+    /// are proven, the search tries no pairs: those of the others are seldom proven, and trying each takes longer.
     pub(super) fn prove(
         &mut self,
         tables: &LocalTables<'_>,
@@ -92,6 +89,7 @@ impl<const E: usize> LocalProofs<E> {
         if !self.is_usable || self.is_complete {
             return;
         }
+        let mut open_buckets = 0;
         while let Some(n) = self.stack.pop() {
             if self.evaluated > MOST_LOST + self.proven.len() / BUCKETS_OF_EVALUATION + self.proven_buckets {
                 break;
@@ -107,12 +105,14 @@ impl<const E: usize> LocalProofs<E> {
                 }
             }
             let node = &hierarchy.nodes()[n as usize];
-            if !node.fits_in_bucket() {
+            if node.fits_in_bucket() {
+                open_buckets += 1;
+            } else {
                 self.stack.extend(node.children().filter(|child| is_open(*child)));
             }
         }
         self.is_complete = true;
-        self.is_usable = self.proven_buckets * LEAST_SHARE >= self.proven.len();
+        self.is_usable = self.proven_buckets * LEAST_SHARE >= self.proven_buckets + open_buckets;
     }
 
     /// The pairs of nodes that one certificate proves free during a motion, in a search of its own: its node with itself, and with
@@ -144,7 +144,7 @@ impl<const E: usize> LocalProofs<E> {
             self.allowed.fill((0, 0.0));
             self.search = 1;
         }
-        (self.evaluated, self.proven_buckets, self.won, self.lost) = (0, 0, 0, 0);
+        (self.evaluated, self.proven_buckets) = (0, 0);
         self.is_complete = false;
         self.stack.clear();
         self.stack.push(0);
@@ -154,7 +154,7 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Whether most buckets are proven by no certificate.
     pub(super) fn is_mostly_open(&self) -> bool {
-        self.proven_buckets * 10 < 6 * self.proven.len()
+        !are_most(self.proven_buckets, self.proven.len())
     }
 
     /// Whether no two triangles of a node collide.
@@ -172,15 +172,10 @@ impl<const E: usize> LocalProofs<E> {
         (search == self.search && right_or!(is_within, LocalProofOfOnePart, true)).then_some(by)
     }
 
-    /// Whether no triangle of one node collides with one of the other, by the certificate of one of them or of a proven node
-    /// around it.
+    /// Whether no triangle of one node collides with one of the other, by the certificate that proves one of them. One that does not
+    /// prove its node proves no pair either: the ratios of its list are at least that of its node.
     #[inline]
-    pub(super) fn is_pair_proven(
-        &mut self,
-        tables: &LocalTables<'_>,
-        (n, m): (u32, u32),
-        is_last: bool,
-    ) -> bool {
+    pub(super) fn is_pair_proven(&mut self, tables: &LocalTables<'_>, (n, m): (u32, u32)) -> bool {
         if !(self.is_usable && self.is_complete) {
             return false;
         }
@@ -197,25 +192,13 @@ impl<const E: usize> LocalProofs<E> {
             return true;
         }
         for (n, m) in [(n, m), (m, n)] {
-            let by = self.proven_node(tables, n).unwrap_or(n);
-            if let Some(index) = tables.certificate_of(by)
+            if let Some(by) = self.proven_node(tables, n)
+                && let Some(index) = tables.certificate_of(by)
                 && let Some(ratio) = tables.ratio_with(index, m)
                 && ratio < self.allowed(tables, index)
             {
                 return true;
             }
-        }
-        if is_last && self.lost < MOST_LOST + self.won {
-            for (n, m) in [(n, m), (m, n)] {
-                if let Some(index) = tables.certificate_of(n)
-                    && let Some(ratio) = tables.ratio_with(index, m)
-                    && ratio < self.allowed(tables, index)
-                {
-                    self.won += 1;
-                    return true;
-                }
-            }
-            self.lost += 1;
         }
         false
     }
@@ -231,6 +214,17 @@ impl<const E: usize> LocalProofs<E> {
         self.allowed[index] = (self.search, allowed);
         allowed
     }
+}
+
+/// Whether certificates may prove most buckets: else evaluating them takes longer than what they prove. Of a skin those of a few nodes
+/// may take all memory.
+pub(super) fn can_prove_most(tables: &LocalTables<'_>) -> bool {
+    let (all, covered) = tables.covered_buckets();
+    are_most(covered, all)
+}
+
+fn are_most(buckets: usize, all: usize) -> bool {
+    buckets as f64 >= MOST * all as f64
 }
 
 #[cfg(test)]

@@ -105,9 +105,8 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
             continue;
         }
-        let is_last = [n, m].iter().all(|n| buckets.of_node(*n).is_some());
         if let Some((proofs, tables)) = &mut locals
-            && proofs.is_pair_proven(tables, (n, m), is_last)
+            && proofs.is_pair_proven(tables, (n, m))
         {
             continue;
         }

@@ -12,6 +12,7 @@ mod common;
 mod contact_curves;
 mod continuous;
 mod detector;
+mod few_modes;
 mod folded;
 mod groups;
 mod impact;

@@ -64,6 +64,8 @@ pub(crate) fn compute_local_certificates(
         .map_init(scratch, |scratch, n| Some((*n, builder.certify(*n, scratch)?)))
         .flatten()
         .collect();
+    // Stable: of as many modes the largest nodes come first.
+    found.sort_by_key(|(_, certificate)| certificate.modes.len());
     let mut bytes = 0;
     found.retain(|(_, certificate)| {
         bytes += LocalCertificates::bytes_of(certificate.modes.len()) + 8 * certificate.list.len();

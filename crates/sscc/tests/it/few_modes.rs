@@ -1,0 +1,89 @@
+//! Models of which few modes move each vertex, as those of a skin: twelve modes for each bone.
+
+use glam::{DMat3, DVec3};
+use sscc::{
+    Certificates, CertifyOptions, Detector, KineticQuery, Method, Modes, Pair, Query, ReducedModel, TriMesh,
+};
+use sscc_testing::Numbers;
+
+const BONES: usize = 6;
+const LENGTH: usize = 60;
+const AROUND: usize = 12;
+
+/// A tube along x, and for each bone the modes of its affine maps: at most two bones move a vertex, one the ends.
+fn tube() -> ReducedModel {
+    let (mut positions, mut modes) = (Vec::new(), Vec::new());
+    for i in 0..=LENGTH {
+        let along = i as f64 * (BONES - 1) as f64 / LENGTH as f64;
+        for j in 0..AROUND {
+            let angle = j as f64 * std::f64::consts::TAU / AROUND as f64;
+            let p = DVec3::new(along, 0.3 * angle.cos(), 0.3 * angle.sin());
+            let mut of_vertex = [DVec3::ZERO; 12 * BONES];
+            for (bone, of_bone) in of_vertex.chunks_exact_mut(12).enumerate() {
+                let weight = (1.0 - (along - bone as f64).abs()).max(0.0);
+                let factors = [p.x - bone as f64, p.y, p.z, 1.0];
+                for (k, u) in of_bone.iter_mut().enumerate() {
+                    *u = DVec3::AXES[k % 3] * (weight * factors[k / 3]);
+                }
+            }
+            positions.push(p);
+            modes.extend(of_vertex);
+        }
+    }
+    let vertex = |i: usize, j: usize| (i * AROUND + j % AROUND) as u32;
+    let cells = (0..LENGTH * AROUND).map(|c| (c / AROUND, c % AROUND));
+    let faces = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [vertex(i, j), vertex(i, j + 1), vertex(i + 1, j), vertex(i + 1, j + 1)];
+        [[a, b, c], [b, d, c]]
+    });
+    let mesh = TriMesh::new(positions, faces.collect()).unwrap();
+    ReducedModel::new(mesh, Modes::new(12 * BONES, modes).unwrap()).unwrap()
+}
+
+/// The bones of a chain whose joints turn by up to an angle.
+fn pose(random: &mut Numbers, angle: f64) -> Vec<f64> {
+    let (mut turned, mut at) = (DMat3::IDENTITY, DVec3::ZERO);
+    let mut q = Vec::new();
+    for bone in 0..BONES {
+        let axis = DVec3::new(random.signed(), random.signed(), random.signed());
+        turned *= DMat3::from_axis_angle(axis.normalize_or(DVec3::Z), angle * random.signed());
+        let map = turned - DMat3::IDENTITY;
+        q.extend(map.to_cols_array());
+        q.extend((at - DVec3::new(bone as f64, 0.0, 0.0)).to_array());
+        at += turned * DVec3::X;
+    }
+    q
+}
+
+#[test]
+fn answers_are_those_of_brute_force_and_of_the_positions() {
+    let (model, random) = (tube(), &mut Numbers(5));
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let methods = [Method::Certified, Method::Traditional, Method::BdTree, Method::NormalCones];
+    let mut queries = methods.map(|method| Query::with_method(&model, &certificates, method).unwrap());
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+    let mut detector = Detector::new(model.mesh());
+    let (mut free, mut hits, mut last) = (0, 0, vec![0.0; model.rank()]);
+    kinetic.discrete(&last).unwrap();
+    for case in 0..40 {
+        let q = pose(random, [0.05, 0.5, 2.0, 3.0][case % 4]);
+        let expected: Vec<Pair> = oracle.discrete(&q).unwrap().to_vec();
+        let vertices = model.mesh().rest_positions().len() as u32;
+        let positions: Vec<DVec3> = (0..vertices).map(|v| model.position(v, &q)).collect();
+        assert_eq!(detector.discrete(&positions).unwrap(), expected);
+        for query in &mut queries {
+            assert_eq!(query.discrete(&q).unwrap(), expected, "case {case}");
+        }
+        assert_eq!(kinetic.discrete(&q).unwrap(), expected, "case {case}");
+        if case % 4 < 2 {
+            let impacts = oracle.continuous(&last, &q).unwrap().to_vec();
+            assert_eq!(queries[0].continuous(&last, &q).unwrap(), impacts, "case {case}");
+            assert_eq!(kinetic.continuous(&last, &q).unwrap(), impacts, "case {case}");
+        }
+        (free, hits) = (free + usize::from(expected.is_empty()), hits + expected.len());
+        last = q;
+        kinetic.discrete(&last).unwrap();
+    }
+    assert!(free > 10 && hits > 100, "{free} {hits}");
+}
