@@ -4,12 +4,12 @@ use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
 use super::aabb8::AabbF32;
-use super::mode_lists::ModeLists;
+use super::moving_modes::MovingModes;
 use super::quantization::{CoarseMotion, Quantization};
 use super::vertex_store::VertexStore;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
-use crate::hierarchy::{Hierarchy, Node};
+use crate::hierarchy::Hierarchy;
 use crate::model::rounding::larger_or_nan;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
@@ -23,17 +23,18 @@ const PADDING: usize = LANES - COMPONENTS;
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 #[derive(Clone, Default)]
 pub(crate) struct BdTree {
+    /// The number of modes of a box, where they are not listed.
     rank: usize,
     /// For each node its index in the lists below; `u32::MAX` for none.
     indices: Vec<u32>,
     /// The modes that move each box.
-    lists: ModeLists,
+    moving: MovingModes,
     /// `(c, h)`
     rest: Vec<(DVec3, DVec3)>,
     /// Of each box `(mean, growth)` for each of its modes.
     rates: Vec<(DVec3, DVec3)>,
     /// The same, quantized: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; and two more entries. Empty where
-    /// boxes have lists of modes.
+    /// the modes of boxes are listed.
     quantized: Vec<i16>,
     instructions: InstructionSet,
 }
@@ -47,42 +48,24 @@ impl BdTree {
         vertices: &VertexStore,
         is_wanted: impl Fn(u32) -> bool + Sync,
     ) -> Self {
-        let (mesh, modes) = (model.mesh(), model.modes());
-        let rank = modes.rank();
+        let (mesh, rank) = (model.mesh(), model.rank());
         let has = |n: usize| n == 0 || is_wanted(n as u32);
-        let nodes: Vec<&Node> =
-            hierarchy.nodes().iter().enumerate().filter(|(n, _)| has(*n)).map(|(_, node)| node).collect();
-        let in_store = |node: &&Node| -> Vec<u32> {
-            hierarchy.vertices(node, mesh.faces()).into_iter().map(|v| vertices.index_of(v)).collect()
+        let nodes: Vec<usize> = (0..hierarchy.nodes().len()).filter(|n| has(*n)).collect();
+        let of_nodes: Vec<Vec<u32>> =
+            nodes.par_iter().map(|n| hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces())).collect();
+        let in_store =
+            |of_node: &Vec<u32>| -> Vec<u32> { of_node.iter().map(|v| vertices.index_of(*v)).collect() };
+        let groups: Vec<Vec<u32>> = of_nodes.iter().map(in_store).collect();
+        let moving = vertices.moving_modes().of_groups(&groups);
+        let boxes = |(index, of_node): (usize, &Vec<u32>)| {
+            rest_and_rates(model, of_node, &moving.of_item(index as u32).collect::<Vec<_>>())
         };
-        let lists = vertices.lists().of_unions(nodes.iter().map(in_store));
-        let node_rates = |(index, node): (usize, &&Node)| {
-            let vertices = hierarchy.vertices(node, mesh.faces());
-            let Aabb { lower, upper } =
-                Aabb::of_points(vertices.iter().map(|&v| mesh.rest_positions()[v as usize]));
-            let center = lower * 0.5 + upper * 0.5;
-            let rest = (center, (upper - center).max(center - lower));
-            let own: Vec<u32> = lists.modes(index as u32).collect();
-            let mut rates = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); own.len()];
-            for &v in &vertices {
-                let of_vertex = modes.of_vertex(v);
-                for ((least, greatest), k) in rates.iter_mut().zip(&own) {
-                    *least = least.min(of_vertex[*k as usize]);
-                    *greatest = greatest.max(of_vertex[*k as usize]);
-                }
-            }
-            for rate in &mut rates {
-                let mean = rate.0 * 0.5 + rate.1 * 0.5;
-                *rate = (mean, (rate.1 - mean).max(mean - rate.0));
-            }
-            (rest, rates)
-        };
-        let all: Vec<_> = nodes.par_iter().enumerate().map(node_rates).collect();
+        let all: Vec<_> = of_nodes.par_iter().enumerate().map(boxes).collect();
         let mut next = 0..;
         let index = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let indices = (0..hierarchy.nodes().len()).map(index).collect();
         let mut quantized: Vec<i16> = Vec::with_capacity(all.len() * (rank + 1) * COMPONENTS + PADDING);
-        for ((center, half), rates) in all.iter().filter(|_| !lists.has_lists()) {
+        for ((center, half), rates) in all.iter().filter(|_| !moving.are_listed()) {
             let means = quantization.quantize(*center, rates.iter().map(|rate| rate.0));
             let growths = quantization.quantize_extents(*half, rates.iter().map(|rate| rate.1));
             means.zip(growths).for_each(|(m, g)| quantized.extend([m, g].as_flattened()));
@@ -90,7 +73,7 @@ impl BdTree {
         quantized.extend([0; PADDING]);
         let rest = all.iter().map(|(rest, _)| *rest).collect();
         let rates = all.into_iter().flat_map(|(_, rates)| rates).collect();
-        Self { rank, indices, lists, rest, rates, quantized, instructions: InstructionSet::default() }
+        Self { rank, indices, moving, rest, rates, quantized, instructions: InstructionSet::default() }
     }
 
     /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
@@ -101,11 +84,11 @@ impl BdTree {
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision, in the frame of the search; none where boxes have lists of modes, too.
+    /// The same in single precision, in the frame of the search; none where their modes are listed, too.
     #[inline]
     pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
         let index = self.indices[node as usize] as usize;
-        if index >= self.rest.len() || self.lists.has_lists() {
+        if index >= self.rest.len() || self.moving.are_listed() {
             return None;
         }
         let start = index * (self.rank + 1) * COMPONENTS;
@@ -132,8 +115,11 @@ impl BdTree {
     }
 
     /// An upper bound of the length of `sum_k U_k q_k` over all vertices of some nodes, up to rounding. Infinite where one of them
-    /// has no box.
+    /// has no box, NaN where q is not finite.
     pub(crate) fn displacement_bound(&self, nodes: impl Iterator<Item = u32>, q: &[f64]) -> f64 {
+        if !q.iter().all(|q| q.is_finite()) {
+            return f64::NAN;
+        }
         let mut most = 0.0_f64;
         for node in nodes {
             let index = self.indices[node as usize] as usize;
@@ -141,8 +127,8 @@ impl BdTree {
                 return f64::INFINITY;
             }
             let (mut mean, mut growth) = (DVec3::ZERO, DVec3::ZERO);
-            let rates = &self.rates[self.lists.range(index as u32)];
-            for ((mean_rate, growth_rate), k) in rates.iter().zip(self.lists.modes(index as u32)) {
+            let rates = &self.rates[self.moving.range(index as u32)];
+            for ((mean_rate, growth_rate), k) in rates.iter().zip(self.moving.of_item(index as u32)) {
                 let q = q[k as usize];
                 mean += *mean_rate * q;
                 growth += *growth_rate * q.abs();
@@ -155,8 +141,8 @@ impl BdTree {
 
     fn at_index<const E: usize>(&self, index: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
         let mut boxes = [self.rest[index]; E];
-        let rates = &self.rates[self.lists.range(index as u32)];
-        for (k, (mean, growth)) in self.lists.modes(index as u32).zip(rates) {
+        let rates = &self.rates[self.moving.range(index as u32)];
+        for (k, (mean, growth)) in self.moving.of_item(index as u32).zip(rates) {
             for ((center, half), q) in boxes.iter_mut().zip(q) {
                 *center += *mean * q[k as usize];
                 *half += *growth * q[k as usize].abs();
@@ -167,6 +153,31 @@ impl BdTree {
         let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtStart, a);
         ends.into_iter().reduce(join).unwrap_or_default()
     }
+}
+
+/// Centre and half extents of the AABB of some vertices at rest, and how they move and grow with some modes.
+fn rest_and_rates(
+    model: &ReducedModel,
+    vertices: &[u32],
+    moving: &[u32],
+) -> ((DVec3, DVec3), Vec<(DVec3, DVec3)>) {
+    let positions = vertices.iter().map(|v| model.mesh().rest_positions()[*v as usize]);
+    let Aabb { lower, upper } = Aabb::of_points(positions);
+    let center = lower * 0.5 + upper * 0.5;
+    let mut rates = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); moving.len()];
+    for v in vertices {
+        let of_vertex = model.modes().of_vertex(*v);
+        for ((least, greatest), k) in rates.iter_mut().zip(moving) {
+            let u = of_vertex[*k as usize];
+            *least = least.min(u);
+            *greatest = greatest.max(u);
+        }
+    }
+    for rate in &mut rates {
+        let mean = rate.0 * 0.5 + rate.1 * 0.5;
+        *rate = (mean, (rate.1 - mean).max(mean - rate.0));
+    }
+    ((center, (upper - center).max(center - lower)), rates)
 }
 
 /// The sums of the six quantized components of an AABB at each configuration of a motion.

@@ -16,7 +16,7 @@ use crate::hierarchy::Hierarchy;
 pub(crate) struct Needs {
     /// BD-tree AABBs of all nodes down to buckets; else of the root alone.
     pub(crate) bd_tree: bool,
-    /// Quantized vertices, unless few modes move each; without them boxes are computed from exact positions.
+    /// Quantized vertices, unless modes are listed for each; without them boxes are computed from exact positions.
     pub(crate) coarse: bool,
     /// The boundaries of nodes, for the contour test of normal cones.
     pub(crate) boundaries: bool,
@@ -66,9 +66,9 @@ impl Layout {
         } else {
             NodeBoundaries::default()
         };
-        // The error of coarse positions grows with the factors of all modes, and where few modes move a vertex, its exact position costs as
-        // little.
-        let coarse = if needs.coarse && !vertices.lists().has_lists() {
+        // The error of coarse positions grows with the factors of all modes, and where few modes move a vertex, its exact position takes no
+        // longer.
+        let coarse = if needs.coarse && !vertices.moving_modes().are_listed() {
             CoarseVertices::new(&quantization, &buckets, &vertices)
         } else {
             CoarseVertices::default()

@@ -28,7 +28,7 @@ pub(crate) mod f32_frame;
 mod frame_map;
 pub(crate) mod hulls;
 pub(crate) mod layout;
-mod mode_lists;
+mod moving_modes;
 pub(crate) mod narrow_phase;
 mod node_boundaries;
 pub(crate) mod node_volumes;

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::mode_lists::ModeLists;
+use super::moving_modes::MovingModes;
 use crate::ReducedModel;
 use crate::vectors::InstructionSet;
 
-/// Modes are listed for each vertex where at most one in so many displacements is not zero.
-const SHARE_OF_LISTS: usize = 2;
+/// Modes are listed for each vertex where at most one in so many displacements is not zero. With more of them, quantized displacements
+/// of all modes take less time.
+const LISTED_SHARE: usize = 4;
 
 /// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket lie
 /// far apart in memory. A vertex is named by its index in this store, which is not its number in the mesh.
@@ -18,9 +19,8 @@ pub(crate) struct VertexStore {
     /// For each index the vertex of the mesh.
     mesh_vertices: Vec<u32>,
     rest: Vec<DVec3>,
-    /// The modes that move each vertex.
-    lists: ModeLists,
-    /// Of each vertex the displacements by its modes.
+    moving: MovingModes,
+    /// Of each vertex the displacements by the modes that move it.
     modes: Vec<DVec3>,
 }
 
@@ -28,32 +28,33 @@ impl VertexStore {
     /// Stores vertices in the order of this list of mesh vertices, which may name a vertex more than once.
     pub(crate) fn new(model: &ReducedModel, order: &[u32]) -> Self {
         let (all, rank) = (model.mesh().rest_positions(), model.rank());
-        let is_moving = |u: &DVec3| *u != DVec3::ZERO;
-        let moving = model.modes().displacements().iter().filter(|u| is_moving(u)).count();
-        let has_lists = moving <= model.modes().displacements().len() / SHARE_OF_LISTS;
-        let mut indices = vec![u32::MAX; all.len()];
-        let mut mesh_vertices = Vec::with_capacity(all.len());
-        let mut rest = Vec::with_capacity(all.len());
-        let (mut lists, mut modes) = (Vec::new(), Vec::new());
-        for &v in order {
-            let index = &mut indices[v as usize];
-            if *index == u32::MAX {
-                *index = rest.len() as u32;
-                mesh_vertices.push(v);
-                rest.push(all[v as usize]);
-                let of_vertex = model.modes().of_vertex(v);
-                if has_lists {
-                    let own = || (0..rank as u32).zip(of_vertex).filter(|(_, u)| is_moving(u));
-                    lists.push(own().map(|(k, _)| k).collect());
-                    modes.extend(own().map(|(_, u)| *u));
-                } else {
-                    modes.extend_from_slice(of_vertex);
-                }
+        let Self { indices, mesh_vertices, .. } = Self::without_modes(all.len(), order);
+        let of_vertex = |v: &u32| model.modes().of_vertex(*v);
+        let is_zero = |u: &DVec3| *u == DVec3::ZERO;
+        let zeros: usize =
+            mesh_vertices.iter().map(|v| of_vertex(v).iter().filter(|u| is_zero(u)).count()).sum();
+        let count = mesh_vertices.len() * rank;
+        let moving = if (count - zeros) * LISTED_SHARE <= count {
+            let lists = mesh_vertices.iter().map(|v| {
+                // A sum of zeros that begins with -0 ends with 0: then all modes count.
+                let is_negative_zero = |x: f64| x == 0.0 && x.is_sign_negative();
+                let are_all = all[*v as usize].to_array().into_iter().any(is_negative_zero);
+                let modes = (0..rank as u32).zip(of_vertex(v));
+                modes.filter(|(_, u)| are_all || !is_zero(u)).map(|(k, _)| k).collect()
+            });
+            MovingModes::listed(rank, lists)
+        } else {
+            MovingModes::all(rank)
+        };
+        let mut modes = Vec::with_capacity(if moving.are_listed() { count - zeros } else { count });
+        for (index, v) in mesh_vertices.iter().enumerate() {
+            match moving.list(index as u32) {
+                Some(list) => modes.extend(list.iter().map(|k| of_vertex(v)[*k as usize])),
+                None => modes.extend_from_slice(of_vertex(v)),
             }
         }
-        let lists =
-            if has_lists { ModeLists::of_lists(rank, lists.into_iter()) } else { ModeLists::all(rank) };
-        Self { indices, mesh_vertices, rest, lists, modes }
+        let rest = mesh_vertices.iter().map(|v| all[*v as usize]).collect();
+        Self { indices, mesh_vertices, rest, moving, modes }
     }
 
     /// The same for vertices whose positions will be given: neither rest positions nor modes are stored. `all`: the number of
@@ -97,14 +98,14 @@ impl VertexStore {
         self.rest[index as usize]
     }
 
-    /// The modes that move each vertex.
-    pub(crate) fn lists(&self) -> &ModeLists {
-        &self.lists
+    /// The modes that move each vertex, by its index.
+    pub(crate) fn moving_modes(&self) -> &MovingModes {
+        &self.moving
     }
 
-    /// The displacements of a vertex by the modes of its list.
+    /// The displacements of a vertex by the modes that move it.
     pub(crate) fn modes(&self, index: u32) -> &[DVec3] {
-        &self.modes[self.lists.range(index)]
+        &self.modes[self.moving.range(index)]
     }
 
     /// Prefetches the rest position and the modes of a vertex.
@@ -114,16 +115,15 @@ impl VertexStore {
         instructions.prefetch(self.modes(index));
     }
 
-    /// The position of a vertex at each q, that of [`deformed_position`](crate::deformed_position): bit for bit, but for the sign of
-    /// zeros.
+    /// The position of a vertex at each q, bit for bit that of [`deformed_position`](crate::deformed_position).
     #[inline]
     pub(crate) fn position<const E: usize>(&self, index: u32, q: [&[f64]; E]) -> [DVec3; E] {
         let mut x = [self.rest(index); E];
         let modes = self.modes(index);
-        if let Some(list) = self.lists.list(index) {
+        if let Some(list) = self.moving.list(index) {
             for (k, u) in list.iter().zip(modes) {
                 for end in 0..E {
-                    x[end] += *u * q[end][*k as usize];
+                    x[end] += *u * q[end][right_or!(*k as usize, MovingModesAreFirst, 0)];
                 }
             }
             return x;
@@ -136,5 +136,54 @@ impl VertexStore {
             }
         }
         x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::Random;
+    use crate::{Modes, TriMesh, deformed_position};
+
+    /// Models in which none to most displacements are zero, vertices that nothing moves, and rest positions of both signs of
+    /// zero.
+    #[test]
+    fn positions_are_those_of_all_modes_bit_for_bit() {
+        let random = &mut Random(41);
+        let mut listed = [0; 2];
+        for case in 0..60 {
+            let (rank, every): (usize, usize) = ([1, 8, 30][case % 3], [1, 2, 3, 4, 5, 9][case / 3 % 6]);
+            let signed_zero = |x: f64| if x.abs() < 0.3 { 0.0 * x } else { x };
+            let rest: Vec<DVec3> =
+                (0..40).map(|_| DVec3::from_array(random.vector().to_array().map(signed_zero))).collect();
+            let modes: Vec<DVec3> = (0..40 * rank)
+                .map(|i| {
+                    let is_zero = i / rank % 7 == 3 || !(i / rank + i % rank).is_multiple_of(every);
+                    if is_zero { DVec3::ZERO * random.signed() } else { random.vector() }
+                })
+                .collect();
+            let faces = (0..38).map(|i| [i, i + 1, i + 2]).collect();
+            let mesh = TriMesh::new(rest, faces).unwrap();
+            let model = ReducedModel::new(mesh, Modes::new(rank, modes).unwrap()).unwrap();
+            let order: Vec<u32> = (0..40).rev().chain(0..40).collect();
+            let store = VertexStore::new(&model, &order);
+            listed[usize::from(store.moving_modes().are_listed())] += 1;
+            let [a, b]: [Vec<f64>; 2] = std::array::from_fn(|_| (0..rank).map(|_| random.signed()).collect());
+            for v in 0..40 {
+                let expected = [&a, &b].map(|q| {
+                    let x = deformed_position(
+                        model.mesh().rest_positions()[v],
+                        model.modes().of_vertex(v as u32),
+                        q,
+                    );
+                    x.to_array().map(f64::to_bits)
+                });
+                let index = store.index_of(v as u32);
+                let found = store.position(index, [&a, &b]).map(|x| x.to_array().map(f64::to_bits));
+                assert_eq!(found, expected, "case {case}");
+                assert_eq!(store.position(index, [&a])[0].to_array().map(f64::to_bits), expected[0]);
+            }
+        }
+        assert!(listed[0] > 20 && listed[1] > 15, "{listed:?}");
     }
 }

@@ -162,8 +162,10 @@ mutants! {
     KineticExceptionsForgotten: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
     /// The reach of a capsule is that of its start.
     RegionReachAtStart: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
+    /// Positions are computed with the first mode's coordinate in place of each listed one.
+    MovingModesAreFirst: CaughtBy("lib detect::vertex_store::tests::positions_are_those_of_all_modes_bit_for_bit");
     /// The modes of a node are those of its first vertex.
-    ListedModesOfOneVertex: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
+    MovingModesOfOneVertex: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Nodes larger than buckets do not move within the radius of a capsule.
     CapsuleInnerNodesStill: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// AABBs from coarse positions are those of the segment of a capsule.

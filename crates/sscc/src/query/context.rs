@@ -4,7 +4,6 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::local_proofs::can_prove_most;
 use super::local_tables::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
@@ -28,9 +27,8 @@ pub(super) struct QueryContext<'a> {
     pub(super) locals: Option<Arc<LocalTables<'a>>>,
     /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
     pub(super) refit_norm: f64,
-    /// From this `|z|` on, all pairs of the tree are reached, too, and it gains nothing: the tree of a small mesh has nearly all
-    /// pairs, and no end.
-    useless_norm: f64,
+    /// From this `|z|` on, all pairs of nodes are reached, and the pair tree leaves none of them out.
+    all_reached_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
     /// no exceptions. 0 elsewhere.
     proven_radius: f64,
@@ -53,9 +51,7 @@ impl<'a> QueryContext<'a> {
         });
         let locals = used.and_then(|used| {
             let (scales, center) = (FactorScales::new(model, used.center())?, used.center());
-            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales)
-                .filter(can_prove_most)
-                .map(Arc::new)
+            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales).map(Arc::new)
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
@@ -64,9 +60,8 @@ impl<'a> QueryContext<'a> {
             let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
             refit_norm((0..buckets.count() as u32).map(radius).collect())
         });
-        let useless_norm = used.map_or(0.0, |used| {
-            let radii = used.parts().pair_tree.entries().map(|(radius, _)| f64::from(radius));
-            radii.fold(refit_norm, f64::max)
+        let all_reached_norm = used.map_or(f64::INFINITY, |used| {
+            all_reached_norm(&used.parts().pair_tree, detect.layout.buckets.count()).max(refit_norm)
         });
         Self {
             model,
@@ -77,7 +72,7 @@ impl<'a> QueryContext<'a> {
             hulls,
             locals,
             refit_norm,
-            useless_norm,
+            all_reached_norm,
             proven_radius,
         }
     }
@@ -94,16 +89,21 @@ impl<'a> QueryContext<'a> {
         self.certificates.filter(|_| self.method == Method::Certified).map(Certificates::parts)
     }
 
-    /// The pair tree, if the method uses it, and it is complete at this norm and of use: then a pair that it does not contain is
-    /// certified.
+    /// The pair tree, if the method uses it, and it is complete at this norm and leaves pairs out: then a pair that it does not
+    /// contain is certified.
     pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&'a PairTree> {
         let tree = self.used_certificates().map(|parts| &parts.pair_tree);
-        let tree = tree.filter(|_| norm < self.useless_norm);
+        let tree = tree.filter(|_| norm < self.all_reached_norm);
         right_or!(
             tree.filter(|tree| norm < tree.limit()),
             TreeLimitReached,
             tree.filter(|tree| norm <= tree.limit())
         )
+    }
+
+    /// The norm at which [`Self::complete_pair_tree`] ends; infinite for a norm beyond it.
+    pub(super) fn pair_tree_end(&self, norm: f64) -> f64 {
+        self.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit().min(self.all_reached_norm))
     }
 
     /// Whether the root's certificate proves the shape free at this norm, and there are no exceptions to test.
@@ -136,14 +136,32 @@ fn refit_norm(mut radii: Vec<f64>) -> f64 {
     radii.get(rank).copied().unwrap_or(f64::INFINITY)
 }
 
+/// The largest radius of a pair tree with at least as many pairs as pairs of buckets: that of a small mesh has nearly all pairs of
+/// nodes. Infinite for others.
+fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
+    if tree.len() < buckets * buckets.saturating_sub(1) / 2 {
+        return f64::INFINITY;
+    }
+    tree.entries().map(|(radius, _)| f64::from(radius)).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::refit_norm;
+    use super::{all_reached_norm, refit_norm};
+    use crate::PairTree;
 
     #[test]
     fn the_share_of_buckets_is_reached_there() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
         assert_eq!((refit_norm(ten), refit_norm(vec![3.0]), refit_norm(vec![])), (7.0, 3.0, f64::INFINITY));
         assert_eq!(refit_norm(vec![f64::INFINITY, 1.0]), f64::INFINITY);
+    }
+
+    #[test]
+    fn trees_of_fewer_pairs_than_pairs_of_buckets_leave_pairs_out() {
+        let tree = PairTree::from_parts(9.0, vec![0], [(1.0, 0), (3.0, 1), (2.0, 2)]);
+        assert_eq!([1, 2, 3].map(|buckets| all_reached_norm(&tree, buckets)), [3.0; 3]);
+        assert_eq!(all_reached_norm(&tree, 4), f64::INFINITY);
+        assert_eq!(all_reached_norm(&PairTree::default(), 2), f64::INFINITY);
     }
 }

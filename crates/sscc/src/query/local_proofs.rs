@@ -24,8 +24,8 @@ const LEAST_SHARE: usize = 5;
 /// searches end before it would pay.
 const WORK_BEFORE: u64 = 192;
 
-/// Most buckets are proven if at least this share of all is.
-const MOST: f64 = 0.6;
+/// Where less than this share of all buckets is proven, AABBs are refitted.
+const LEAST_PROVEN_SHARE: f64 = 0.6;
 
 /// AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;
@@ -152,9 +152,9 @@ impl<const E: usize> LocalProofs<E> {
         self.is_usable
     }
 
-    /// Whether most buckets are proven by no certificate.
+    /// Whether so few buckets are proven that AABBs should be refitted.
     pub(super) fn is_mostly_open(&self) -> bool {
-        !are_most(self.proven_buckets, self.proven.len())
+        (self.proven_buckets as f64) < LEAST_PROVEN_SHARE * self.proven.len() as f64
     }
 
     /// Whether no two triangles of a node collide.
@@ -214,17 +214,6 @@ impl<const E: usize> LocalProofs<E> {
         self.allowed[index] = (self.search, allowed);
         allowed
     }
-}
-
-/// Whether certificates may prove most buckets: else evaluating them takes longer than what they prove. Of a skin those of a few nodes
-/// may take all memory.
-pub(super) fn can_prove_most(tables: &LocalTables<'_>) -> bool {
-    let (all, covered) = tables.covered_buckets();
-    are_most(covered, all)
-}
-
-fn are_most(buckets: usize, all: usize) -> bool {
-    buckets as f64 >= MOST * all as f64
 }
 
 #[cfg(test)]

@@ -63,16 +63,6 @@ impl<'a> LocalTables<'a> {
         self.rates = metric.dense_factor().is_none().then(rates);
     }
 
-    /// The number of buckets, and how many of them are in nodes that have certificates.
-    pub(super) fn covered_buckets(&self) -> (usize, usize) {
-        let mut is_covered = vec![false; self.buckets[0].end as usize];
-        for n in &self.certificates.nodes {
-            let range = &self.buckets[*n as usize];
-            is_covered[range.start as usize..range.end as usize].fill(true);
-        }
-        (is_covered.len(), is_covered.iter().filter(|is_covered| **is_covered).count())
-    }
-
     #[inline]
     pub(super) fn certificate_of(&self, node: u32) -> Option<usize> {
         let index = self.of_node[node as usize];

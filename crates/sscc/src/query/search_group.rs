@@ -47,6 +47,7 @@ impl<'a> SearchGroup<'a> {
         let configurations: Vec<Configuration<'_>> =
             batch.iter().map(|q| check.measure(context, q)).collect::<Result<_, _>>()?;
         let is_together = batch.len() > 1
+            && !context.detect.layout.coarse.is_empty()
             && configurations.iter().all(|configuration| is_far(context, configuration.norm, limit));
         let layout = &context.detect.layout;
         let mut ahead = is_together.then(|| ahead.get_or_insert_with(|| ExpectedBuckets::new(layout)));

@@ -81,6 +81,11 @@ fn answers_are_those_of_brute_force_and_of_the_positions() {
             assert_eq!(queries[0].continuous(&last, &q).unwrap(), impacts, "case {case}");
             assert_eq!(kinetic.continuous(&last, &q).unwrap(), impacts, "case {case}");
         }
+        if case % 8 == 7 {
+            let all = [q.clone(), last.clone(), q.clone()];
+            let answers = queries[0].batch(&all, Some(1), &()).unwrap();
+            assert!([0, 2].iter().all(|i| answers[*i].pairs == expected), "case {case}");
+        }
         (free, hits) = (free + usize::from(expected.is_empty()), hits + expected.len());
         last = q;
         kinetic.discrete(&last).unwrap();

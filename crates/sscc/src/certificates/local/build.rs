@@ -26,6 +26,10 @@ const LARGEST: f64 = 1e12;
 /// Ratios with other nodes are not told apart below this share of the ratio within the node.
 const OWN_SHARE: f32 = 1.0;
 
+/// Where certificates cover less than this share of all triangles, searches would refit all AABBs even if all of them proved
+/// their nodes, and evaluating them takes longer than what they prove.
+const LEAST_COVERED_SHARE: f64 = 0.6;
+
 /// Smaller bounds of heights are not told apart: a turn costs a multiple of them.
 const LEAST_FLATNESS: f32 = 1e-3;
 
@@ -39,7 +43,7 @@ struct LocalCertificate {
     list: Vec<(u32, f32)>,
 }
 
-/// The certificates of all nodes down to buckets about the centre, largest nodes first as far as `most_bytes` go, on the threads of the
+/// The certificates of all nodes down to buckets about the centre, those of fewest modes first as far as `most_bytes` go, on the threads of the
 /// current pool. `filter` leaves out exceptions. None where `most_bytes` is 0, the shape has no size, or the filter wants pairs that share
 /// an edge.
 pub(crate) fn compute_local_certificates(
@@ -64,19 +68,12 @@ pub(crate) fn compute_local_certificates(
         .map_init(scratch, |scratch, n| Some((*n, builder.certify(*n, scratch)?)))
         .flatten()
         .collect();
-    // Stable: of as many modes the largest nodes come first.
-    found.sort_by_key(|(_, certificate)| certificate.modes.len());
-    let mut bytes = 0;
-    found.retain(|(_, certificate)| {
-        bytes += LocalCertificates::bytes_of(certificate.modes.len()) + 8 * certificate.list.len();
-        bytes <= most_bytes
-    });
+    keep_within(&mut found, hierarchy, most_bytes);
+    let mut all =
+        LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
     if found.is_empty() {
         return LocalCertificates::default();
     }
-    found.sort_unstable_by_key(|(n, _)| *n);
-    let mut all =
-        LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
     for (n, certificate) in found {
         all.nodes.push(n);
         all.modes.extend(certificate.modes);
@@ -89,6 +86,27 @@ pub(crate) fn compute_local_certificates(
         all.list_starts.push(all.list_nodes.len() as u32);
     }
     all
+}
+
+/// Keeps the certificates of fewest modes, of those the ones of the largest nodes, as far as memory goes; none where their nodes have few of
+/// all triangles. `found`: largest nodes first; then by node.
+fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, most_bytes: usize) {
+    let mut bytes = 0;
+    found.sort_by_key(|(_, certificate)| certificate.modes.len());
+    found.retain(|(_, certificate)| {
+        bytes += LocalCertificates::bytes_of(certificate.modes.len()) + 8 * certificate.list.len();
+        bytes <= most_bytes
+    });
+    let mut is_covered = vec![false; hierarchy.order().len()];
+    for (n, _) in &*found {
+        let node = &hierarchy.nodes()[*n as usize];
+        is_covered[node.first_triangle as usize..][..node.triangle_count as usize].fill(true);
+    }
+    let covered = is_covered.iter().filter(|is_covered| **is_covered).count();
+    if (covered as f64) < LEAST_COVERED_SHARE * is_covered.len() as f64 {
+        found.clear();
+    }
+    found.sort_unstable_by_key(|(n, _)| *n);
 }
 
 /// The nodes that get a certificate: buckets, the nodes above them, of the others those of every second height, and the root.

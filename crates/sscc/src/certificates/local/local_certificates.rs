@@ -38,7 +38,7 @@
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
 //! sets.
 
-/// Local certificates of the nodes of a hierarchy, largest nodes first, as far as their memory goes.
+/// Local certificates of the nodes of a hierarchy, as far as their memory goes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LocalCertificates {
     /// The node of each certificate, ascending.

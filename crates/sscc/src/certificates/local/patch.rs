@@ -133,7 +133,7 @@ impl Patch {
     }
 
     /// The components of all vertices along a unit direction, as if they were images: the first number of the rows of each. Returns a
-    /// magnitude whose rounding to single precision is at least the error of each.
+    /// magnitude whose rounding to single precision is at least the error of the difference of two.
     pub(super) fn heights(&self, direction: DVec3, images: &mut Vec<f32>) -> f64 {
         images.clear();
         images.resize(self.residuals.len(), 0.0);
@@ -143,7 +143,8 @@ impl Patch {
             rows[0] = height as f32;
             largest = larger_or_nan(largest, height.abs());
         }
-        // Offsets and products in double precision err by less than 6e-16 of the longest offset, in single precision of this share of it.
+        // Offsets and products in double precision err by at most 4 units of 2^-53 of the longest offset, two heights by 9e-16 of it. Of the
+        // number that is added, 1.2e-7 counts as error: 1.2e-15 of the longest offset.
         right_or!(largest + 1e-8 * self.longest(), LocalHeightsExact, largest)
     }
 

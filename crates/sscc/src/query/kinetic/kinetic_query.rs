@@ -246,7 +246,7 @@ impl<'a> KineticQuery<'a> {
         let metric = &context.scope.metric;
         let norm = start.norm;
         // Where the pair tree is complete, it should be so in the whole region: beyond its limit a search takes longer.
-        let limit = context.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit());
+        let limit = context.pair_tree_end(norm);
         let least = 2.0 * MIN_STEPS;
         let steps = (self.control.capsules.share * norm / step).max(least);
         let steps = self.history.straight_steps(metric, steps);

@@ -283,3 +283,39 @@ fn certified_nodes_are_at_odd_heights_and_buckets() {
         assert_eq!(quads == 3000, heights.iter().flatten().any(|h| *h > 2), "{quads} quads");
     }
 }
+
+/// A sheet whose four parts have certificates of 20, 5, 5 and 5 modes, and the whole one of 30.
+#[test]
+fn certificates_of_few_modes_are_kept_if_they_cover_most() {
+    let (side, row) = (40_u32, 41);
+    let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
+    let cells = (0..side * side).map(|i| i / side * row + i % side);
+    let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
+    let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
+    let modes = Modes::from_matrix((row * row) as usize, 1, |_, _| 1e-3).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    let children: Vec<u32> = hierarchy.nodes()[0].children().collect();
+    assert_eq!(children.len(), 4);
+    let share = |n: u32| f64::from(hierarchy.nodes()[n as usize].triangle_count) / 3200.0;
+    assert!(share(children[1]) + share(children[2]) < LEAST_COVERED_SHARE, "{children:?}");
+    let certificate = |modes: usize| LocalCertificate {
+        modes: vec![0; modes],
+        gradients: Vec::new(),
+        ellipsoid: Vec::new(),
+        bounds: LocalBounds::default(),
+        list: Vec::new(),
+    };
+    let kept = |most_bytes: usize| -> Vec<u32> {
+        let nodes = std::iter::once(0).chain(children.iter().copied());
+        let mut found: Vec<_> =
+            nodes.zip([30, 20, 5, 5, 5]).map(|(n, modes)| (n, certificate(modes))).collect();
+        keep_within(&mut found, &hierarchy, most_bytes);
+        found.into_iter().map(|(n, _)| n).collect()
+    };
+    let [few, some, all] = [5, 20, 30].map(LocalCertificates::bytes_of);
+    assert_eq!(kept(3 * few + some + all), [&[0], &children[..]].concat());
+    assert_eq!(kept(3 * few + some + all - 1), children);
+    assert_eq!(kept(3 * few + some - 1), children[1..]);
+    assert!(kept(3 * few - 1).is_empty());
+}
