@@ -37,7 +37,8 @@ impl<const E: usize> CertifiedSearch<E> {
         motion: &M,
         narrow: &mut N,
     ) -> bool {
-        let mut locals = self.locals.as_mut().zip(context.locals.as_deref());
+        let locals = self.locals.as_mut().zip(context.locals.as_deref());
+        let mut locals = locals.filter(|_| norm >= context.local_norm);
         if let Some((proofs, tables)) = &mut locals
             && proofs.begin(tables, motion)
             && proofs.prove_root(tables)

@@ -27,6 +27,8 @@ pub(super) struct QueryContext<'a> {
     pub(super) locals: Option<Arc<LocalTables<'a>>>,
     /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
     pub(super) refit_norm: f64,
+    /// From this `|z|` on, local certificates are evaluated.
+    pub(super) local_norm: f64,
     /// From this `|z|` on, all pairs of nodes are reached, and the pair tree leaves none of them out.
     all_reached_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
@@ -55,11 +57,12 @@ impl<'a> QueryContext<'a> {
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
-        let refit_norm = used.map_or(f64::INFINITY, |used| {
+        let reached = ReachedBuckets::new(used.map_or(Vec::new(), |used| {
             let buckets = &detect.layout.buckets;
             let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
-            refit_norm((0..buckets.count() as u32).map(radius).collect())
-        });
+            (0..buckets.count() as u32).map(radius).collect()
+        }));
+        let [refit_norm, local_norm] = [REFIT_SHARE, LOCAL_SHARE].map(|share| reached.norm_at(share));
         let all_reached_norm = used.map_or(f64::INFINITY, |used| {
             all_reached_norm(&used.parts().pair_tree, detect.layout.buckets.count()).max(refit_norm)
         });
@@ -72,6 +75,7 @@ impl<'a> QueryContext<'a> {
             hulls,
             locals,
             refit_norm,
+            local_norm,
             all_reached_norm,
             proven_radius,
         }
@@ -129,11 +133,24 @@ impl<'a> QueryContext<'a> {
 /// (docs/notes/2026-11-25-refit-beyond-the-limit.md).
 const REFIT_SHARE: f64 = 0.7;
 
-/// The `|z|` at which [`REFIT_SHARE`] of these radii of buckets are reached.
-fn refit_norm(mut radii: Vec<f64>) -> f64 {
-    radii.sort_unstable_by(f64::total_cmp);
-    let rank = (REFIT_SHARE * radii.len() as f64) as usize;
-    radii.get(rank).copied().unwrap_or(f64::INFINITY)
+/// A search that opens a smaller share of all buckets ends before evaluating the root's local certificate would pay
+/// (docs/notes/2026-11-27-local-certificates-by-default.md).
+const LOCAL_SHARE: f64 = 1.0 / 32.0;
+
+/// The radii of buckets, ascending.
+struct ReachedBuckets(Vec<f64>);
+
+impl ReachedBuckets {
+    fn new(mut radii: Vec<f64>) -> Self {
+        radii.sort_unstable_by(f64::total_cmp);
+        Self(radii)
+    }
+
+    /// The `|z|` at which this share of the radii, and one more, is reached; infinite without radii.
+    fn norm_at(&self, share: f64) -> f64 {
+        let rank = (share * self.0.len() as f64) as usize;
+        self.0.get(rank).copied().unwrap_or(f64::INFINITY)
+    }
 }
 
 /// The largest radius of a pair tree with at least as many pairs as pairs of buckets: that of a small mesh has nearly all pairs of
@@ -147,14 +164,20 @@ fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{all_reached_norm, refit_norm};
+    use super::{LOCAL_SHARE, REFIT_SHARE, ReachedBuckets, all_reached_norm};
     use crate::PairTree;
 
     #[test]
     fn the_share_of_buckets_is_reached_there() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
-        assert_eq!((refit_norm(ten), refit_norm(vec![3.0]), refit_norm(vec![])), (7.0, 3.0, f64::INFINITY));
-        assert_eq!(refit_norm(vec![f64::INFINITY, 1.0]), f64::INFINITY);
+        let norms = |radii: Vec<f64>| {
+            [REFIT_SHARE, LOCAL_SHARE].map(|share| ReachedBuckets::new(radii.clone()).norm_at(share))
+        };
+        assert_eq!(norms(ten), [7.0, 0.0]);
+        assert_eq!(norms(vec![3.0]), [3.0, 3.0]);
+        assert_eq!(norms(vec![]), [f64::INFINITY; 2]);
+        assert_eq!(norms(vec![f64::INFINITY, 1.0]), [f64::INFINITY, 1.0]);
+        assert_eq!(norms((0..64).map(f64::from).collect()), [44.0, 2.0]);
     }
 
     #[test]
