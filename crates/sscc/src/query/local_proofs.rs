@@ -1,8 +1,8 @@
 //! Which local certificates hold in one search.
 //!
-//! A search evaluates the root's certificate first. If that fails, and the search has done some work, it evaluates those of other nodes from
-//! the root down, and stops at the nodes whose certificate holds: these are *proven*. From then on the traversal skips proven nodes,
-//! and pairs of nodes that a certificate proves.
+//! Where some buckets are reached, a search evaluates the root's certificate first. If that fails, and the search has done some
+//! work, it evaluates those of other nodes from the root down, and stops at the nodes whose certificate holds: these are
+//! *proven*. From then on the traversal skips proven nodes, and pairs of nodes that a certificate proves.
 
 use super::local_inequality::LocalInequality;
 use super::local_tables::LocalTables;
