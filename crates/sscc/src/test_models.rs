@@ -52,3 +52,12 @@ pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
     let metric = Metric::from_factor(MetricKind::Given, rank, factor).unwrap();
     (ReducedModel::with_metric(mesh, modes, metric).unwrap(), half)
 }
+
+/// A flat square of so many cells of length 1 along each side, two triangles each.
+pub(crate) fn square(side: u32) -> TriMesh {
+    let row = side + 1;
+    let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
+    let cells = (0..side * side).map(|i| i / side * row + i % side);
+    let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
+    TriMesh::new((0..row * row).map(at).collect(), faces).unwrap()
+}

@@ -142,10 +142,17 @@ impl BdTree {
     fn at_index<const E: usize>(&self, index: usize, q: [&[f64]; E], margin: DVec3) -> Aabb {
         let mut boxes = [self.rest[index]; E];
         let rates = &self.rates[self.moving.range(index as u32)];
-        for (k, (mean, growth)) in self.moving.of_item(index as u32).zip(rates) {
+        let mut add = |(mean, growth): &(DVec3, DVec3), q: [f64; E]| {
             for ((center, half), q) in boxes.iter_mut().zip(q) {
-                *center += *mean * q[k as usize];
-                *half += *growth * q[k as usize].abs();
+                *center += *mean * q;
+                *half += *growth * q.abs();
+            }
+        };
+        match self.moving.list(index as u32) {
+            Some(list) => rates.iter().zip(list).for_each(|(rate, k)| add(rate, q.map(|q| q[*k as usize]))),
+            None => {
+                let q = q.map(|q| &q[..rates.len()]);
+                rates.iter().enumerate().for_each(|(k, rate)| add(rate, q.map(|q| q[k])));
             }
         }
         let ends = boxes

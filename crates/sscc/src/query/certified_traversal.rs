@@ -73,23 +73,16 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::detect::narrow_phase::DiscreteHits;
     use crate::detect::vertex_motion::DeformedMotion;
-    use crate::test_models::Random;
-    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
+    use crate::test_models::{self, Random};
+    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel};
 
     /// A square of 1800 triangles, and two modes that cancel each other: AABBs of the BD-tree grow, the square does not move.
     fn square() -> ReducedModel {
-        let (side, random) = (30_u32, &mut Random(77));
-        let row = side + 1;
-        let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
-        let cells = (0..side * side).map(|i| i / side * row + i % side);
-        let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
-        let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
-        let modes = (0..row * row).flat_map(|_| {
+        let (mesh, random) = (test_models::square(30), &mut Random(77));
+        let modes = (0..mesh.rest_positions().len()).flat_map(|_| {
             let u = random.vector();
             [u, -u]
         });

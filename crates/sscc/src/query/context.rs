@@ -29,7 +29,7 @@ pub(super) struct QueryContext<'a> {
     pub(super) refit_norm: f64,
     /// From this `|z|` on, local certificates are evaluated.
     pub(super) local_norm: f64,
-    /// From this `|z|` on, all pairs of nodes are reached, and the pair tree leaves none of them out.
+    /// From this `|z|` on, all pairs of a tree that has nearly all pairs of nodes are reached; infinite for other trees.
     all_reached_norm: f64,
     /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
     /// no exceptions. 0 elsewhere.
@@ -57,15 +57,16 @@ impl<'a> QueryContext<'a> {
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
-        let reached = ReachedBuckets::new(used.map_or(Vec::new(), |used| {
+        let [mut refit_norm, mut local_norm, mut all_reached_norm] = [f64::INFINITY; 3];
+        if let Some(CertificateParts { node_radii, pair_tree, .. }) = used.map(Certificates::parts) {
             let buckets = &detect.layout.buckets;
-            let radius = |bucket| used.parts().node_radii[buckets.node(bucket) as usize];
-            (0..buckets.count() as u32).map(radius).collect()
-        }));
-        let [refit_norm, local_norm] = [REFIT_SHARE, LOCAL_SHARE].map(|share| reached.norm_at(share));
-        let all_reached_norm = used.map_or(f64::INFINITY, |used| {
-            all_reached_norm(&used.parts().pair_tree, detect.layout.buckets.count()).max(refit_norm)
-        });
+            let radius = |n: u32| node_radii[n as usize];
+            refit_norm = norm_at(REFIT_SHARE, buckets.nodes().map(radius).collect());
+            let visited = (0..node_radii.len() as u32)
+                .filter(|n| buckets.of_node(*n).is_none_or(|bucket| buckets.node(bucket) == *n));
+            local_norm = norm_at(LOCAL_SHARE, visited.map(radius).collect()).min(LOCAL_ROOTS * node_radii[0]);
+            all_reached_norm = self::all_reached_norm(pair_tree, buckets.count()).max(refit_norm);
+        }
         Self {
             model,
             detect,
@@ -133,24 +134,18 @@ impl<'a> QueryContext<'a> {
 /// (docs/notes/2026-11-25-refit-beyond-the-limit.md).
 const REFIT_SHARE: f64 = 0.7;
 
-/// A search that opens a smaller share of all buckets ends before evaluating the root's local certificate would pay
-/// (docs/notes/2026-11-27-local-certificates-by-default.md).
+/// A search that opens a smaller share of all nodes ends before evaluating the root's local certificate would pay, at so many times the
+/// root's radius (docs/notes/2026-11-27-local-certificates-by-default.md).
 const LOCAL_SHARE: f64 = 1.0 / 32.0;
 
-/// The radii of buckets, ascending.
-struct ReachedBuckets(Vec<f64>);
+/// See [`LOCAL_SHARE`].
+const LOCAL_ROOTS: f64 = 2.0;
 
-impl ReachedBuckets {
-    fn new(mut radii: Vec<f64>) -> Self {
-        radii.sort_unstable_by(f64::total_cmp);
-        Self(radii)
-    }
-
-    /// The `|z|` at which this share of the radii, and one more, is reached; infinite without radii.
-    fn norm_at(&self, share: f64) -> f64 {
-        let rank = (share * self.0.len() as f64) as usize;
-        self.0.get(rank).copied().unwrap_or(f64::INFINITY)
-    }
+/// The `|z|` at which this share of some radii, and one more, is reached; infinite without radii.
+fn norm_at(share: f64, mut radii: Vec<f64>) -> f64 {
+    radii.sort_unstable_by(f64::total_cmp);
+    let rank = (share * radii.len() as f64) as usize;
+    radii.get(rank).copied().unwrap_or(f64::INFINITY)
 }
 
 /// The largest radius of a pair tree with at least as many pairs as pairs of buckets: that of a small mesh has nearly all pairs of
@@ -164,15 +159,13 @@ fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{LOCAL_SHARE, REFIT_SHARE, ReachedBuckets, all_reached_norm};
+    use super::{LOCAL_SHARE, REFIT_SHARE, all_reached_norm, norm_at};
     use crate::PairTree;
 
     #[test]
-    fn the_share_of_buckets_is_reached_there() {
+    fn the_share_of_radii_is_reached_there() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
-        let norms = |radii: Vec<f64>| {
-            [REFIT_SHARE, LOCAL_SHARE].map(|share| ReachedBuckets::new(radii.clone()).norm_at(share))
-        };
+        let norms = |radii: Vec<f64>| [REFIT_SHARE, LOCAL_SHARE].map(|share| norm_at(share, radii.clone()));
         assert_eq!(norms(ten), [7.0, 0.0]);
         assert_eq!(norms(vec![3.0]), [3.0, 3.0]);
         assert_eq!(norms(vec![]), [f64::INFINITY; 2]);

@@ -6,7 +6,7 @@
 
 use super::local_inequality::LocalInequality;
 use super::local_tables::LocalTables;
-use crate::certificates::LocalCertificates;
+use crate::certificates::{LEAST_PROVEN_SHARE, LocalCertificates};
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::{Hierarchy, NodePair};
 
@@ -23,9 +23,6 @@ const LEAST_SHARE: usize = 5;
 /// Work of a search, in visits and packets of AABBs, after which it finds proven nodes. Finding them takes about twice as long, so short
 /// searches end before it would pay.
 const WORK_BEFORE: u64 = 192;
-
-/// Where less than this share of all buckets is proven, AABBs are refitted.
-const LEAST_PROVEN_SHARE: f64 = 0.6;
 
 /// AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;

@@ -151,19 +151,15 @@ mod tests {
     use super::*;
     use crate::detect::narrow_phase::DiscreteHits;
     use crate::detect::vertex_motion::DeformedMotion;
-    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, TriMesh};
+    use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, test_models};
 
     /// A square of 3200 triangles, and two modes that cancel each other: where both coordinates are the same, AABBs of the BD-tree
     /// grow, and the square does not move. The mean of a mode over each triangle is 0, so the hierarchy is that of the positions.
     fn square() -> ReducedModel {
-        let (side, row) = (40_u32, 41);
-        let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
-        let cells = (0..side * side).map(|i| i / side * row + i % side);
-        let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
-        let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
+        let mesh = test_models::square(40);
         let colours = [DVec3::new(4.0, 0.0, 0.0), DVec3::new(-2.0, 2.0, 1.0), DVec3::new(-2.0, -2.0, -1.0)];
-        let modes = (0..row * row).flat_map(|i| {
-            let u = colours[((i % row + 2 * (i / row)) % 3) as usize];
+        let modes = (0..41 * 41).flat_map(|i| {
+            let u = colours[(i % 41 + 2 * (i / 41)) % 3];
             [u, -u]
         });
         ReducedModel::new(mesh, Modes::new(2, modes.collect()).unwrap()).unwrap()

@@ -4,7 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::corner_gaps::{CornerGaps, TightPair};
-use super::local_certificates::{LocalBounds, LocalCertificates, MOST_MODES, gradient_len};
+use super::local_certificates::{
+    LEAST_PROVEN_SHARE, LocalBounds, LocalCertificates, MOST_MODES, gradient_len,
+};
 use super::patch::Patch;
 use super::patch_model::PatchModel;
 use super::residual_ellipsoid::FitEllipsoid;
@@ -25,10 +27,6 @@ const LARGEST: f64 = 1e12;
 
 /// Ratios with other nodes are not told apart below this share of the ratio within the node.
 const OWN_SHARE: f32 = 1.0;
-
-/// Where certificates cover less than this share of all triangles, searches would refit all AABBs even if all of them proved
-/// their nodes, and evaluating them takes longer than what they prove.
-const LEAST_COVERED_SHARE: f64 = 0.6;
 
 /// Smaller bounds of heights are not told apart: a turn costs a multiple of them.
 const LEAST_FLATNESS: f32 = 1e-3;
@@ -69,11 +67,11 @@ pub(crate) fn compute_local_certificates(
         .flatten()
         .collect();
     keep_within(&mut found, hierarchy, most_bytes);
-    let mut all =
-        LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
     if found.is_empty() {
         return LocalCertificates::default();
     }
+    let mut all =
+        LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
     for (n, certificate) in found {
         all.nodes.push(n);
         all.modes.extend(certificate.modes);
@@ -88,8 +86,8 @@ pub(crate) fn compute_local_certificates(
     all
 }
 
-/// Keeps the certificates of fewest modes, of those the ones of the largest nodes, as far as memory goes; none where their nodes have few of
-/// all triangles. `found`: largest nodes first; then by node.
+/// Keeps the certificates of fewest modes, and of as many modes those of the largest nodes, as far as memory goes; none where they
+/// cover less than [`LEAST_PROVEN_SHARE`] of all triangles. `found`: before, the largest nodes first; after, by node.
 fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, most_bytes: usize) {
     let mut bytes = 0;
     found.sort_by_key(|(_, certificate)| certificate.modes.len());
@@ -103,7 +101,7 @@ fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, 
         is_covered[node.first_triangle as usize..][..node.triangle_count as usize].fill(true);
     }
     let covered = is_covered.iter().filter(|is_covered| **is_covered).count();
-    if (covered as f64) < LEAST_COVERED_SHARE * is_covered.len() as f64 {
+    if (covered as f64) < LEAST_PROVEN_SHARE * is_covered.len() as f64 {
         found.clear();
     }
     found.sort_unstable_by_key(|(n, _)| *n);

@@ -100,6 +100,9 @@ impl Default for LocalBounds {
 /// A patch that more modes move has no certificate.
 pub(crate) const MOST_MODES: usize = 200;
 
+/// Where less than this share of a shape is proven, searches refit all AABBs. So certificates that cover less would only take time.
+pub(crate) const LEAST_PROVEN_SHARE: f64 = 0.6;
+
 /// The entries of the gradient of one mode.
 pub(crate) const GRADIENT: usize = 9;
 

@@ -79,6 +79,17 @@ impl<'a> Attack<'a> {
         has(n, pair.0) && has(m, pair.1) || has(n, pair.1) && has(m, pair.0)
     }
 
+    /// A certificate, and its node with itself or with a node of its list.
+    fn draw_claim(&self, random: &mut Numbers) -> (usize, NodePair) {
+        let local = &self.certificates.parts().local;
+        let index = random.below(local.nodes.len());
+        let n = local.nodes[index];
+        let list =
+            &local.list_nodes[local.list_starts[index] as usize..local.list_starts[index + 1] as usize];
+        let is_within = list.is_empty() || random.below(3) == 0;
+        (index, (n, if is_within { n } else { list[random.below(list.len())] }))
+    }
+
     /// The claims at q; none where q is out of range.
     fn claims(&mut self, index: usize, q: &[f64]) -> Vec<NodePair> {
         self.certified.local_claims(index, [q]).unwrap_or_default()
@@ -186,15 +197,7 @@ fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
         if local.nodes.is_empty() {
             break;
         }
-        let index = random.below(local.nodes.len());
-        let n = local.nodes[index];
-        let list =
-            &local.list_nodes[local.list_starts[index] as usize..local.list_starts[index + 1] as usize];
-        let claim = if list.is_empty() || random.below(3) == 0 {
-            (n, n)
-        } else {
-            (n, list[random.below(list.len())])
-        };
+        let (index, claim) = attack.draw_claim(random);
         let approach = (random.below(2) == 0).then(|| attack.approach(claim, random)).flatten();
         let ray = approach.unwrap_or_else(|| attack.ray(shape, random));
         let Some([edge, beyond]) = attack.edge(index, claim, &ray) else { continue };
@@ -213,7 +216,7 @@ fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
             let (claims, collisions) = (attack.claims(index, &q), attack.collisions(&q));
             for nodes in &claims {
                 let hit = collisions.iter().find(|pair| attack.is_of(*nodes, **pair));
-                assert_eq!(hit, None, "seed {seed}: claim {nodes:?} of {n} at scale {scale} of {ray:?}");
+                assert_eq!(hit, None, "seed {seed}: claim {nodes:?} of {index} at scale {scale} of {ray:?}");
                 seen.pairs_of_nodes += usize::from(nodes.0 != nodes.1);
             }
             seen.claims += claims.len();
@@ -293,15 +296,7 @@ fn attack_regions(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen
     let local = &certificates.parts().local;
     let length = |d: &[f64]| d.iter().zip(&scales).map(|(d, s)| (d * s).powi(2)).sum::<f64>().sqrt();
     for _ in 0..if local.nodes.is_empty() { 0 } else { rays } {
-        let index = random.below(local.nodes.len());
-        let n = local.nodes[index];
-        let list =
-            &local.list_nodes[local.list_starts[index] as usize..local.list_starts[index + 1] as usize];
-        let claim = if list.is_empty() || random.below(3) == 0 {
-            (n, n)
-        } else {
-            (n, list[random.below(list.len())])
-        };
+        let (index, claim) = attack.draw_claim(random);
         let approach = (random.below(3) > 0).then(|| attack.approach(claim, random)).flatten();
         let ray = approach.unwrap_or_else(|| attack.ray(shape, random));
         let Some([edge, _]) = attack.edge(index, claim, &ray) else { continue };

@@ -1,12 +1,11 @@
 //! Which nodes and pairs of nodes a search takes as proven.
 
-use glam::DVec3;
-
 use super::super::local_tables::tables_of;
 use super::*;
 use crate::certificates::{EllipsoidBlocks, FactorScales, gradient_len};
 use crate::detect::vertex_motion::DeformedMotion;
-use crate::{LocalBounds, Metric, Modes, ReducedModel, TriMesh};
+use crate::test_models::square;
+use crate::{LocalBounds, Metric, Modes, ReducedModel};
 
 /// The certificate of one node with ratio 1 that allows ratios below `1 / |q|`, for two modes.
 fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {
@@ -52,12 +51,8 @@ fn what_one_search_allowed_is_forgotten_in_the_next() {
 
 /// A sheet of several buckets.
 fn sheet() -> Hierarchy {
-    let (side, row) = (20_u32, 21);
-    let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
-    let cells = (0..side * side).map(|i| i / side * row + i % side);
-    let faces = cells.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]).collect();
-    let mesh = TriMesh::new((0..row * row).map(at).collect(), faces).unwrap();
-    let modes = Modes::from_matrix((row * row) as usize, 2, |_, _| 1e-3).unwrap();
+    let mesh = square(20);
+    let modes = Modes::from_matrix(mesh.rest_positions().len(), 2, |_, _| 1e-3).unwrap();
     let model = ReducedModel::new(mesh, modes).unwrap();
     Hierarchy::build(&model, model.metric())
 }
