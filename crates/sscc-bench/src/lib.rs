@@ -27,6 +27,6 @@ pub use random::Random;
 pub use record::{Means, Record};
 pub use scenarios::{
     BenchModel, Exponents, GROWTH_RANK, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, KineticRecord,
-    ListedScenario, ModelsScenario, SCENE_STEPS, Scenario, SceneMeasurement, measure_scene,
+    ListedScenario, ModelsScenario, SCENE_STEPS, Scenario, SceneMeasurement, measure_scene, plot_norms,
 };
 pub use setup::Setup;

@@ -666,19 +666,19 @@ pub struct Bench {
     /// Scenes and kinetic: steps to measure, in 10 blocks spread evenly [default: 100, kinetic 20,000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub steps: Option<u32>,
-    /// Amplitudes, mixed and growth: samples of each row [default: 64, mixed 200, growth 20]
+    /// Amplitudes, mixed, norms and growth: samples of each row [default: 64, mixed 200, norms 50, growth 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: Option<u32>,
-    /// Amplitudes, mixed and growth: measure this model only
+    /// Amplitudes, mixed, norms and growth: measure this model only
     #[arg(long, value_name = "MODEL")]
     pub only: Option<String>,
     /// Replace every model by a spring of 4,000 triangles, to test the bench in seconds
     #[arg(long)]
     pub quick: bool,
-    /// Growth: also plot the results
+    /// Growth and norms: also plot the results
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Scenes, amplitudes, mixed and growth: also write the results as a page in one file
+    /// Scenes, amplitudes, mixed, norms and growth: also write the results as a page in one file
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     /// The folder in which runs share models and certificates [default: sscc in the system's cache folder]

@@ -298,6 +298,6 @@ pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_posit
 pub use posed::{Pose, PosedShape, SweptShape};
 pub use progress::Progress;
 pub use query::{
-    Answer, FreeSamples, KineticQuery, Method, Proof, Query, ResolveOptions, Resolved, Statistics, Sweep,
-    SweepOutcome,
+    Answer, FreeSamples, KineticQuery, Method, Proof, ProvenShares, Query, ResolveOptions, Resolved,
+    Statistics, Sweep, SweepOutcome,
 };

@@ -6,4 +6,4 @@ mod svg;
 
 pub use cost_over_time::cost_over_time;
 pub use page::BenchPage;
-pub use svg::{Line, SvgPlot};
+pub use svg::{Line, SvgPlot, YAxis, stacked};

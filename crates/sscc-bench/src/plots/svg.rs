@@ -1,4 +1,4 @@
-//! SVG plots with a logarithmic y axis.
+//! SVG plots with a logarithmic or linear y axis.
 
 use std::fmt::Write;
 
@@ -9,51 +9,67 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 44.0;
+/// Height of the title of a plot that is stacked.
+const TITLE: f64 = 24.0;
 
 /// Lines over a common x axis.
 pub struct SvgPlot<'a> {
-    /// The title, for readers of the file.
-    pub title: &'a str,
+    /// The title, for readers of the file, and above plots that are stacked.
+    pub title: String,
     /// The label of the x axis.
     pub x_label: &'a str,
     /// The label of the y axis.
     pub y_label: &'a str,
+    /// How y is drawn.
+    pub y_axis: YAxis,
     /// The lines.
     pub lines: Vec<Line<'a>>,
 }
 
+/// How y is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum YAxis {
+    /// As a power of ten; numbers that are not positive are not drawn.
+    Logarithmic,
+    /// From 0 on.
+    Linear,
+}
+
 /// A line of a plot, with a dot at each point.
+#[derive(Clone)]
 pub struct Line<'a> {
     /// Its label.
     pub label: &'a str,
     /// Its colour, in SVG syntax.
     pub color: &'a str,
-    /// x and y, x ascending. Points whose y is not positive are not drawn.
+    /// x and y, x ascending.
     pub points: Vec<[f64; 2]>,
 }
 
 impl SvgPlot<'_> {
     /// Returns the SVG element.
     pub fn svg(&self) -> String {
-        let is_drawn = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite() && p[1] > 0.0;
+        let is_log = self.y_axis == YAxis::Logarithmic;
+        let is_drawn =
+            |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite() && p[1] >= 0.0 && (p[1] > 0.0 || !is_log);
         let all = || self.lines.iter().flat_map(|line| &line.points).filter(|p| is_drawn(p));
         let [x_low, x_high] = range(all().map(|p| p[0]));
         let [low, high] = range(all().map(|p| p[1]));
-        let [low, high] = [low.log10().floor(), high.log10().ceil()];
+        // Heights are linear in these.
+        let [low, high] = if is_log { [low.log10().floor(), high.log10().ceil()] } else { [0.0, high] };
         let high = high.max(low + 1.0);
         let span = if x_high > x_low { x_high - x_low } else { 1.0 };
         let x = |at: f64| LEFT + (at - x_low) / span * (WIDTH - LEFT - RIGHT);
-        let height =
-            |exponent: f64| HEIGHT - BOTTOM - (exponent - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
-        let y = |at: f64| height(at.log10());
+        let height = |at: f64| HEIGHT - BOTTOM - (at - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
+        let y = |at: f64| height(if is_log { at.log10() } else { at });
         // Writing to a String never fails.
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" \
              font-family=\"sans-serif\" font-size=\"12\">\n<title>{}</title>\n",
-            escaped(self.title)
+            escaped(&self.title)
         );
-        for exponent in ticks(low, high, 1.0) {
-            let (at, label) = (height(exponent), tick_label(10_f64.powf(exponent)));
+        for tick in ticks(low, high, if is_log { 1.0 } else { 0.0 }) {
+            let (at, label) = (height(tick), tick_label(if is_log { 10_f64.powf(tick) } else { tick }));
             let _ = writeln!(
                 svg,
                 "<path d=\"M{LEFT} {at:.1}H{:.1}\" stroke=\"#ddd\"/><text x=\"{:.1}\" y=\"{:.1}\" \
@@ -112,6 +128,27 @@ impl SvgPlot<'_> {
     }
 }
 
+/// Returns one SVG element with some plots below each other, each below its title.
+pub fn stacked(plots: &[SvgPlot<'_>]) -> String {
+    let each = HEIGHT + TITLE;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {}\" font-family=\"sans-serif\" \
+         font-size=\"14\">\n",
+        each * plots.len() as f64
+    );
+    for (i, plot) in plots.iter().enumerate() {
+        let top = each * i as f64;
+        let _ = writeln!(svg, "<text x=\"{LEFT}\" y=\"{:.1}\">{}</text>", top + 17.0, escaped(&plot.title));
+        let _ = write!(
+            svg,
+            "<svg y=\"{:.1}\" width=\"{WIDTH}\" height=\"{HEIGHT}\">\n{}</svg>\n",
+            top + TITLE,
+            plot.svg()
+        );
+    }
+    svg + "</svg>\n"
+}
+
 /// Escapes text for SVG.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
@@ -158,12 +195,17 @@ mod tests {
             [vec![], vec![[0.0, 0.0]], vec![[0.0, f64::NAN], [1.0, 1e-300]], vec![[0.0, -1.0], [1.0, 5.0]]]
         {
             let line = Line { label: "<a & b>", color: "#000", points };
-            let svg = SvgPlot { title: "\"", x_label: "x", y_label: "y", lines: vec![line] }.svg();
-            assert!(
-                !svg.contains("NaN") && !svg.contains("inf") && svg.contains("&lt;a &amp; b&gt;"),
-                "{svg}"
-            );
-            assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+            for y_axis in [YAxis::Logarithmic, YAxis::Linear] {
+                let lines = vec![line.clone()];
+                let plot = SvgPlot { title: "\"".into(), x_label: "x", y_label: "y", y_axis, lines };
+                for svg in [plot.svg(), stacked(&[plot])] {
+                    assert!(
+                        !svg.contains("NaN") && !svg.contains("inf") && svg.contains("&lt;a &amp; b&gt;"),
+                        "{svg}"
+                    );
+                    assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+                }
+            }
         }
     }
 }

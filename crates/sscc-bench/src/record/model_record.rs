@@ -26,6 +26,9 @@ pub struct Record {
     /// The largest `|z|` over the root's radius, where this is what scales the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times_root: Option<f64>,
+    /// Mean shares of the triangles that each kind of proof covers in free states, where they were measured.
+    #[serde(skip_serializing_if = "Means::is_empty")]
+    pub proven_shares: Means,
     /// Triangles of one body.
     pub triangles: usize,
     /// Modes of one body.
@@ -161,6 +164,7 @@ impl Record {
             note: notes(model.note.clone(), strata.missing()),
             share,
             times_root: None,
+            proven_shares: Means(Vec::new()),
             triangles: model.model.mesh().faces().len(),
             rank: model.model.rank(),
             objects,

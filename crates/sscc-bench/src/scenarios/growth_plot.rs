@@ -1,7 +1,7 @@
 //! Plot of the scenario `growth`.
 
 use super::growth::{GROWTH_RANK, GrowthRecord};
-use crate::plots::{Line, SvgPlot};
+use crate::plots::{Line, SvgPlot, YAxis};
 use crate::record::Record;
 
 /// A line of the plot.
@@ -32,9 +32,10 @@ impl GrowthRecord {
             Line { label, color, points: records.iter().filter_map(point).collect() }
         };
         let plot = SvgPlot {
-            title: "Growth with the number of triangles",
+            title: "Growth with the number of triangles".into(),
             x_label: "number of triangles, as a power of ten",
             y_label: "ms, s",
+            y_axis: YAxis::Logarithmic,
             lines: LINES.iter().map(line).collect(),
         };
         plot.svg()

@@ -34,7 +34,7 @@ pub struct ListedScenario {
 }
 
 /// Scenarios other than single scenes.
-const OTHERS: [(&str, Scenario, &str); 7] = [
+const OTHERS: [(&str, Scenario, &str); 8] = [
     (
         "amplitudes",
         Scenario::Models(ModelsScenario::Amplitudes),
@@ -46,6 +46,11 @@ const OTHERS: [(&str, Scenario, &str); 7] = [
         "mixed",
         Scenario::Models(ModelsScenario::Mixed),
         "springs, bunny and dragon that swing in all their modes at once",
+    ),
+    (
+        "norms",
+        Scenario::Models(ModelsScenario::Norms),
+        "bunny, dragon and spring at random q, |z| 0.5 to 32 times the root's radius",
     ),
     (
         "table1",

@@ -2,7 +2,7 @@
 
 use sscc_sim::{ModesSpec, Recipe, Shape};
 
-use super::{amplitudes, mixed};
+use super::{amplitudes, mixed, norms};
 use crate::error::Error;
 use crate::record::Record;
 use crate::setup::Setup;
@@ -14,6 +14,8 @@ pub enum ModelsScenario {
     Amplitudes,
     /// All modes swing at once.
     Mixed,
+    /// Random q of growing `|z|`.
+    Norms,
 }
 
 /// A model with linear modes.
@@ -34,7 +36,7 @@ impl ModelsScenario {
     /// Returns the models, in the order in which they are measured.
     pub fn models(self) -> &'static [BenchModel] {
         match self {
-            Self::Amplitudes => &[BUNNY, DRAGON, SPRING],
+            Self::Amplitudes | Self::Norms => &[BUNNY, DRAGON, SPRING],
             Self::Mixed => &[SPRING8, SPRING, BUNNY, DRAGON],
         }
     }
@@ -44,6 +46,7 @@ impl ModelsScenario {
         match self {
             Self::Amplitudes => 64,
             Self::Mixed => 200,
+            Self::Norms => 50,
         }
     }
 
@@ -62,6 +65,7 @@ impl ModelsScenario {
         match self {
             Self::Amplitudes => amplitudes::measure(model.name, &certified, setup, samples),
             Self::Mixed => mixed::measure(model.name, &certified, setup, samples),
+            Self::Norms => norms::measure(model.name, &certified, setup, samples),
         }
     }
 }

@@ -125,6 +125,17 @@ fn measurements() {
     let share = |report: &Value| report["share"].as_f64().unwrap();
     assert!((share(&motions[2]) / share(&motions[1]) - 2.0).abs() < 1e-9, "{motions:?}");
 
+    // One plot of times, one of kinds of proof.
+    let norms = ["norms", "--only", "spring", "--quick", "--samples", "2", "--json", "--plot", "norms.svg"];
+    let run = bench(folder.path(), &norms);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let norms = run.json();
+    assert!(norms.iter().all(|report| report["mismatches"] == json!(0)), "{norms:?}");
+    assert_eq!((norms.len(), &norms[0]["times_root"]), (13, &json!(0.5)));
+    assert_eq!(norms[0]["proven_shares"], json!({ "radius": 1.0, "local": 0.0, "search": 0.0 }));
+    let plot = fs::read_to_string(folder.path().join("norms.svg")).unwrap();
+    assert_eq!((plot.matches("<title>").count(), plot.matches(">% of the triangles<").count()), (2, 1));
+
     // Growth takes the same model from the cache.
     let made = files(&cache);
     assert_eq!(made.len(), 5, "a model, two sets of certificates with their times: {made:?}");
@@ -257,11 +268,11 @@ fn refusals() {
         (&["spring", "--models", "nowhere"], "nowhere: no folder of models"),
         (&["amplitudes", "--only", "bunny", "--models", "."], "bunny_14964_closed.obj: not found"),
         (&["spring", "--steps", "0"], "--steps"),
-        (&["spring", "--only", "spring"], "--only is for amplitudes, mixed and growth"),
-        (&["kinetic", "--only", "spring"], "--only is for amplitudes, mixed and growth"),
-        (&["spring", "--samples", "2"], "--samples is for amplitudes, mixed and growth"),
+        (&["spring", "--only", "spring"], "--only is for amplitudes, mixed, norms and growth"),
+        (&["kinetic", "--only", "spring"], "--only is for amplitudes, mixed, norms and growth"),
+        (&["spring", "--samples", "2"], "--samples is for amplitudes, mixed, norms and growth"),
         (&["growth", "--steps", "2"], "--steps is for scenes and kinetic"),
-        (&["amplitudes", "--plot", "a.svg"], "--plot is for growth"),
+        (&["amplitudes", "--plot", "a.svg"], "--plot is for growth and norms"),
         (&["growth", "--quick"], "--quick is not for growth"),
         (&[], "SCENARIO"),
     ] {

@@ -330,6 +330,8 @@ mutants! {
     LocalMapExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// The map at each end of a motion is turned back by its own rotation.
     LocalTurnAtEachEnd: CaughtBy("lib query::local_claims::tests::half_a_turn_is_no_proof");
+    /// Safe scales take local certificates that hold at the end of the way for the whole way.
+    LocalScaleOfEnd: CaughtBy("it local_certificates::safe_scales_end_where_the_way_collides");
     /// Of two ends of a motion the one that is no number is ignored.
     LocalSweptNanIgnored: CaughtBy("lib query::local_inequality::tests::nan_at_either_end_is_no_proof");
     /// The closed form of an eigenvalue is a lower bound.

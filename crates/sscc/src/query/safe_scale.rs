@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
+use super::local_scales::LocalScales;
 use super::query::Query;
 use crate::bounds::{ConfigurationLine, MovingAabb};
 use crate::certificates::StoredPair;
@@ -42,6 +43,7 @@ impl Query<'_> {
             best = best.min(self.advance(&line, (x, y), 0.0, best));
         }
         let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
+        let mut locals = LocalScales::new(&self.context, &mut self.check, q, self.norm, best);
         let mut waiting = BinaryHeap::new();
         waiting.push(MinHeapEntry { key: self.certified_scale(0), order: (0, 0), item: NONE });
         // Best first: a pair is advanced only a little farther than the scale up to which all others are free.
@@ -55,6 +57,9 @@ impl Query<'_> {
             self.statistics.opened += 1;
             let mut consider = |(n, m): NodePair, index: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
+                let lower = locals.as_mut().filter(|_| lower < best).map_or(lower, |locals| {
+                    lower.max(locals.of_pair((n, m)) * right_or!(DOWN, SafeScaleToNearest, 1.0))
+                });
                 if lower < best {
                     waiting.push(MinHeapEntry { key: lower, order: (n, m), item: index });
                 }

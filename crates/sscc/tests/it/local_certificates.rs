@@ -258,6 +258,101 @@ fn shapes_that_turn_within_q_are_proven() {
     assert!(turned > 60, "{turned}");
 }
 
+/// The safe scale with local certificates is free, no smaller than without, and takes fewer steps.
+#[test]
+fn local_certificates_shorten_no_safe_scale() {
+    let (mut compared, mut opened, mut tests) = (0, [0, 0], [0, 0]);
+    for seed in 0..cases(42_u64) {
+        let random = &mut Numbers(seed + 4_600_000);
+        let kind = Shape::ALL[seed as usize % Shape::ALL.len()];
+        let shape = FlexibleShape::new(seed + 700, kind, [2, 5, 12][seed as usize / 7 % 3]);
+        let model = model_of(&shape);
+        let certificates = Certificates::compute(
+            &model,
+            &CertifyOptions { reach: 4.0, ..options_of(&model, seed, random) },
+            &(),
+        )
+        .unwrap();
+        // Without radii of nodes the search rests on local certificates alone, up to the cap that both keep.
+        let alone = without_radii(&certificates);
+        let none = without_local(&alone);
+        let mut queries = [&none, &alone].map(|used| Query::new(&model, used).unwrap());
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        for _ in 0..4 {
+            let ray = random_ray(&model, Some(&shape), random);
+            let center = certificates.center();
+            let at =
+                |scale: f64| -> Vec<f64> { center.iter().zip(&ray).map(|(c, d)| c + scale * d).collect() };
+            let [Ok(before), Ok(after)] = queries.each_mut().map(|query| query.safe_scale(&at(1.0))) else {
+                continue;
+            };
+            assert!(after >= before * (1.0 - 2e-4), "{kind:?} {seed}: {after} after {before}");
+            let last = if after.is_finite() { after } else { 1.0 };
+            for share in [1.0, 0.999, random.signed().abs(), random.signed().abs()] {
+                let Ok(found) = oracle.discrete(&at(last * share)) else { continue };
+                assert!(last == 0.0 || found.is_empty(), "{kind:?} {seed}: {found:?} at {share} of {after}");
+            }
+            compared += 1;
+            opened.iter_mut().zip(&queries).for_each(|(n, query)| *n += query.statistics().opened);
+            tests.iter_mut().zip(&queries).for_each(|(n, query)| *n += query.statistics().triangle_tests);
+        }
+    }
+    assert!(compared > threshold(120), "{compared}");
+    assert!(10 * tests[1] < 9 * tests[0] && opened[1] < opened[0], "{opened:?} {tests:?}");
+}
+
+/// Two sheets that pass through each other as an affine motion are free before and after. The way is not.
+#[test]
+fn safe_scales_end_where_the_way_collides() {
+    let (p, faces) = two_sheets(12);
+    let modes = p.iter().map(|p| DVec3::Z * (1.0 - 2.0 * p.z)).collect();
+    let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), Modes::new(1, modes).unwrap()).unwrap();
+    let options = CertifyOptions { reach: 16.0, local_budget: 1 << 20, ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let alone = without_radii(&certificates);
+    for certificates in [&certificates, &alone] {
+        let mut query = Query::new(&model, certificates).unwrap();
+        assert!(!query.discrete(&[0.5]).unwrap().is_empty() && query.discrete(&[1.0]).unwrap().is_empty());
+        assert_eq!(query.statistics().proof, Proof::Local);
+        for q in [0.6, 1.0, 1.5, 4.0, 100.0] {
+            let scale = query.safe_scale(&[q]).unwrap();
+            assert!(scale <= 0.5 / q && scale > 0.49 / q, "{q}: {scale}");
+        }
+    }
+}
+
+/// They add up to the whole, and what is proven as a whole has nothing left to search.
+#[test]
+fn shares_are_those_of_what_is_proven() {
+    let mut seen = [0; 3];
+    for seed in 0..cases(42_u64) {
+        let random = &mut Numbers(seed + 4_700_000);
+        let kind = Shape::ALL[seed as usize % Shape::ALL.len()];
+        let shape = FlexibleShape::new(seed + 800, kind, 5);
+        let model = model_of(&shape);
+        let certificates = Certificates::compute(&model, &options_of(&model, seed, random), &()).unwrap();
+        let mut query = Query::new(&model, &certificates).unwrap();
+        let mut plain = Query::with_method(&model, &certificates, Method::Traditional).unwrap();
+        for share in [1e-4, 1e-3, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0] {
+            let ray = random_ray(&model, Some(&shape), random);
+            let q: Vec<f64> = certificates.center().iter().zip(&ray).map(|(c, d)| c + share * d).collect();
+            let shares = query.proven_shares(&q).unwrap();
+            let all = [shares.radius, shares.local, shares.search];
+            assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{kind:?} {seed}: {shares:?}");
+            assert_eq!(plain.proven_shares(&q).unwrap().search, 1.0);
+            query.discrete(&q).unwrap();
+            match query.statistics().proof {
+                Proof::Radius => assert_eq!(all, [1.0, 0.0, 0.0], "{kind:?} {seed}"),
+                Proof::Local => assert_eq!(shares.search, 0.0, "{kind:?} {seed}"),
+                Proof::Search => {}
+            }
+            seen.iter_mut().zip(all).for_each(|(seen, share)| *seen += usize::from(share > 0.0));
+        }
+        assert!(query.proven_shares(&[f64::NAN]).is_err());
+    }
+    assert!(seen.iter().all(|seen| *seen > threshold(20)), "{seen:?}");
+}
+
 /// A patch that no mode moves.
 #[test]
 fn parts_that_stand_still_are_certified() {

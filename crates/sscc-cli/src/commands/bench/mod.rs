@@ -7,7 +7,7 @@ mod scenarios;
 mod table;
 
 use anyhow::{Context, ensure};
-use sscc_bench::{Scenario, Setup};
+use sscc_bench::{ModelsScenario, Scenario, Setup};
 use sscc_io::write_whole;
 use sscc_sim::{Cache, machine_description, models_folder};
 
@@ -62,20 +62,21 @@ fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
     let has_steps = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);
     ensure!(
         has_steps || args.steps.is_none(),
-        "--steps is for scenes and kinetic; amplitudes, mixed and growth have --samples"
+        "--steps is for scenes and kinetic; amplitudes, mixed, norms and growth have --samples"
     );
     ensure!(
         !has_steps || args.samples.is_none(),
-        "--samples is for amplitudes, mixed and growth; scenes and kinetic have --steps"
+        "--samples is for amplitudes, mixed, norms and growth; scenes and kinetic have --steps"
     );
     ensure!(
         !has_steps || args.only.is_none(),
-        "--only is for amplitudes, mixed and growth: a scene is one model"
+        "--only is for amplitudes, mixed, norms and growth: a scene is one model"
     );
     let is_growth = matches!(scenario, Scenario::Growth);
-    ensure!(is_growth || args.plot.is_none(), "--plot is for growth");
+    let is_norms = matches!(scenario, Scenario::Models(ModelsScenario::Norms));
+    ensure!(is_growth || is_norms || args.plot.is_none(), "--plot is for growth and norms");
     let has_page = !matches!(scenario, Scenario::Kinetic);
-    ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes, mixed and growth");
+    ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes, mixed, norms and growth");
     ensure!(
         !is_growth || !args.quick,
         "--quick is not for growth: leave it out, and choose one size by --only"

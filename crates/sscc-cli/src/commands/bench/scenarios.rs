@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use sscc_bench::{
     GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, ModelsScenario, PaperTable, SCENE_STEPS, Scenario,
-    Setup, measure_scene,
+    Setup, measure_scene, plot_norms,
 };
 use sscc_io::write_whole;
 
@@ -23,11 +23,17 @@ pub fn run(scenario: Scenario, args: &Bench, setup: &Setup<'_>, printer: &mut Pr
 
 fn models(scenario: ModelsScenario, args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
     let samples = args.samples.map_or(scenario.default_samples(), |samples| samples as usize);
+    let mut all = Vec::new();
     for model in selected(args, scenario.models(), |model| model.name)? {
-        printer.print(&scenario.measure(model, setup, samples)?)?;
-        if printer.is_over() {
+        let records = scenario.measure(model, setup, samples)?;
+        printer.print(&records)?;
+        all.extend(records);
+        if printer.is_over() && args.plot.is_none() {
             break;
         }
+    }
+    if let Some(path) = &args.plot {
+        write_whole(path, plot_norms(&all).as_bytes())?;
     }
     Ok(())
 }

@@ -1,0 +1,68 @@
+//! How far along a line from the centre local certificates prove nodes and pairs of nodes free.
+//!
+//! A certificate that holds during the straight motion from the centre to some point of the line proves its pairs free at all
+//! points before it. This is evaluated at a few scales only: what they leave open is bounded by radii and by conservative advancement.
+
+use super::configuration_check::ConfigurationCheck;
+use super::context::QueryContext;
+use super::local_proofs::LocalProofs;
+use super::local_tables::LocalTables;
+use crate::certificates::Certificates;
+use crate::detect::vertex_motion::DeformedMotion;
+use crate::hierarchy::NodePair;
+
+/// Scales at which certificates are evaluated, at most.
+const MOST_SCALES: usize = 6;
+
+/// The quotient of one scale and the next smaller one. Only the time depends on it.
+const STEP: f64 = 1.5;
+
+/// What local certificates prove up to some scales of one line.
+pub(super) struct LocalScales<'a> {
+    tables: &'a LocalTables<'a>,
+    /// The scales, the largest first.
+    proofs: Vec<(f64, LocalProofs<2>)>,
+}
+
+impl<'a> LocalScales<'a> {
+    /// At scales from `largest` down to that at which the root's radius is reached. `norm`: `|z|` at scale 1. None where the query uses
+    /// no local certificates.
+    pub(super) fn new(
+        context: &'a QueryContext<'_>,
+        check: &mut ConfigurationCheck,
+        q: &[f64],
+        norm: f64,
+        largest: f64,
+    ) -> Option<Self> {
+        let tables = context.locals.as_deref()?;
+        let node_radii = &context.used_certificates()?.node_radii;
+        let center = tables.center;
+        let root_scale = context.certificates.map_or(0.0, Certificates::root_radius) / norm;
+        let mut scale = largest;
+        let mut proofs = Vec::new();
+        while proofs.len() < MOST_SCALES && scale > root_scale && scale.is_finite() {
+            let end: Vec<f64> = center.iter().zip(q).map(|(c, q)| c + scale * (q - c)).collect();
+            if let Ok(configuration) = check.measure(context, &end) {
+                // It bounds rounding at both ends. Points between them, with their own rounding, have no larger one.
+                let reach = configuration.reach.max(context.model.reach(center));
+                let mut all = LocalProofs::new(tables);
+                let start = right_or!(center, LocalScaleOfEnd, &end[..]);
+                if all.begin(tables, &DeformedMotion::new([start, &end], reach)) {
+                    all.prove(tables, &context.detect.hierarchy, node_radii, configuration.norm);
+                    proofs.push((scale, all));
+                }
+            }
+            scale /= STEP;
+        }
+        Some(Self { tables, proofs })
+    }
+
+    /// A scale up to which no triangle of one node collides with one of the other, or no two of a node paired with itself.
+    pub(super) fn of_pair(&mut self, (n, m): NodePair) -> f64 {
+        let Self { tables, proofs } = self;
+        let is_proven = |proofs: &mut LocalProofs<2>| {
+            if n == m { proofs.is_node_proven(tables, n) } else { proofs.is_pair_proven(tables, (n, m)) }
+        };
+        proofs.iter_mut().find_map(|(scale, proofs)| is_proven(proofs).then_some(*scale)).unwrap_or(0.0)
+    }
+}
