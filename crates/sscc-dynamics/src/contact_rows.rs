@@ -8,8 +8,8 @@
 use glam::{DMat3, DVec3};
 use pulp::Simd;
 
-use crate::contact_solver::RigidVelocity;
 use crate::packed_rows::{ROW_LANES, add_rows_to, products};
+use crate::rigid_velocity::RigidVelocity;
 
 /// The rows of one side of a contact, and the numbers of its body.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +54,6 @@ pub(crate) struct RowPoint<'m> {
     pub arm: Option<DVec3>,
     /// Displacement of the point by each mode (r vectors, axes of the body).
     pub modes: &'m [DVec3],
-    /// Inverse mass of each mode (r numbers).
-    pub weights: &'m [f64],
 }
 
 /// The rows of some contacts, and the changes of all bodies.
@@ -65,18 +63,24 @@ pub(crate) struct ContactRows {
     contacts: Vec<RowContact>,
     rows: Vec<f64>,
     state: Vec<f64>,
+    /// For each body the square roots of the inverse masses of its modes, where its state is.
+    roots: Vec<f64>,
 }
 
 impl ContactRows {
-    /// Removes all contacts, and sets the changes of these bodies to 0; each is given with its number of modes.
-    pub fn begin<'b>(&mut self, bodies: impl Iterator<Item = (&'b RigidVelocity, usize)>) {
+    /// Removes all contacts, and sets the changes of these bodies to 0; each is given with the inverse masses of its modes.
+    pub fn begin<'b>(&mut self, bodies: impl Iterator<Item = (&'b RigidVelocity, &'b [f64])>) {
         self.bodies.clear();
         self.contacts.clear();
         self.rows.clear();
+        self.roots.clear();
         let mut state = 0;
-        self.bodies.extend(bodies.map(|(mass, modes)| {
-            let stride = (modes + 6).next_multiple_of(ROW_LANES);
+        let roots = &mut self.roots;
+        self.bodies.extend(bodies.map(|(mass, weights)| {
+            let stride = (weights.len() + 6).next_multiple_of(ROW_LANES);
             state += stride;
+            roots.extend(weights.iter().map(|weight| weight.sqrt()));
+            roots.resize(state, 0.0);
             RowBody {
                 rotation: mass.rotation,
                 mass_root: mass.inverse_mass.sqrt(),
@@ -91,6 +95,15 @@ impl ContactRows {
 
     /// Adds a contact, which gets the next number.
     pub fn push<'m>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
+        self.push_rows::<3>(normal, points);
+    }
+
+    /// Adds a contact with the row along its normal alone, for [`Self::along_normal`] and [`Self::push_along_normal`].
+    pub fn push_normal<'m>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
+        self.push_rows::<1>(normal, points);
+    }
+
+    fn push_rows<'m, const N: usize>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
         let (first, second) = normal.any_orthonormal_pair();
         let none = RowSide { rows: 0, state: 0, stride: 0 };
         let mut contact = RowContact { axes: [normal, first, second], sides: [none; 2], count: 0 };
@@ -99,12 +112,12 @@ impl ContactRows {
             contact.sides[contact.count] =
                 RowSide { rows: self.rows.len(), state: body.state, stride: body.stride };
             contact.count += 1;
-            for axis in contact.axes {
-                let axis = axis * point.sign;
+            for axis in &contact.axes[..N] {
+                let axis = *axis * point.sign;
                 let end = self.rows.len() + body.stride;
                 let local = if point.arm.is_some() { body.rotation.transpose() * axis } else { axis };
-                let modal = point.modes.iter().zip(point.weights);
-                self.rows.extend(modal.map(|(u, weight)| u.dot(local) * weight.sqrt()));
+                let modal = point.modes.iter().zip(&self.roots[body.state..]);
+                self.rows.extend(modal.map(|(u, root)| u.dot(local) * root));
                 if let Some(arm) = point.arm {
                     self.rows.extend((axis * body.mass_root).to_array());
                     self.rows.extend((body.inertia_root.transpose() * arm.cross(axis)).to_array());

@@ -9,13 +9,16 @@
 //! every stiffness and step. Budgets of bodies that take no part in a contact are not used.
 
 use glam::{DMat3, DVec3};
+use pulp::{Simd, WithSimd};
 
-use crate::RigidMotion;
 use crate::body::Body;
-use crate::contact::{Contact, ModalInverseMass};
+use crate::contact::Contact;
 use crate::contact_constraint::{ContactConstraint, Side};
+use crate::contact_rows::{ContactRows, RowPoint};
 use crate::displacement::displacement;
 use crate::friction_cone::stop_sliding;
+use crate::packed_rows::dispatch;
+use crate::rigid_velocity::RigidVelocity;
 
 /// Constants of a constraint in the solver.
 #[derive(Clone, Copy, Debug)]
@@ -29,16 +32,6 @@ pub(crate) struct Coefficients {
     pub compliance: f64,
     /// Velocity along the normal at which the spring separates the points.
     target_velocity: f64,
-}
-
-/// Velocities and inverse masses of a body, updated with each impulse.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RigidVelocity {
-    velocity: DVec3,
-    angular_velocity: DVec3,
-    pub inverse_mass: f64,
-    pub inverse_inertia: DMat3,
-    pub rotation: DMat3,
 }
 
 /// Constants of all contacts in a step.
@@ -69,6 +62,13 @@ pub(crate) struct ContactSolver {
     velocities: Vec<RigidVelocity>,
     /// Number of constraints of each body.
     counts: Vec<usize>,
+    /// Energy budget of each body.
+    budgets: Vec<f64>,
+    /// For each constraint the relative velocity of its points before any impulse.
+    velocities_before: Vec<DVec3>,
+    rows: ContactRows,
+    /// Inverse mass of each mode: 1.
+    mode_weights: Vec<f64>,
 }
 
 impl ContactSolver {
@@ -107,68 +107,45 @@ impl ContactSolver {
             }
             self.coefficients.push(coefficients);
         }
-        let mut first_change = 0.0;
-        for iteration in 0..spring.max_iterations {
-            let mut max_change = 0.0_f64;
-            for n in 0..self.constraints.len() {
-                // Symmetric Gauss-Seidel: the order alternates.
-                let n = if iteration % 2 == 0 { n } else { self.constraints.len() - 1 - n };
-                max_change = max_change.max(self.update_impulse(n, bodies, contacts));
-            }
-            if iteration == 0 {
-                first_change = max_change;
-            }
-            if max_change <= RELATIVE_TOLERANCE * first_change {
-                break;
-            }
+        self.budgets.clear();
+        self.budgets.extend(bodies.iter().map(|body| body.energy_budget));
+        self.velocities_before.clear();
+        for constraint in &self.constraints {
+            self.velocities_before.push(self.relative_velocity(constraint, bodies, contacts));
+        }
+        self.add_rows(bodies, contacts);
+        dispatch(SpringGaussSeidel { solver: self, max_iterations: spring.max_iterations });
+        for (body, budget) in bodies.iter_mut().zip(&self.budgets) {
+            body.energy_budget = *budget;
+        }
+        for n in 0..self.constraints.len() {
+            let constraint = self.constraints[n];
+            self.apply_impulse(&constraint, constraint.impulse(), bodies, contacts);
         }
     }
 
-    /// Updates the impulse of one constraint. Returns the change of velocity along its normal.
-    fn update_impulse(&mut self, n: usize, bodies: &mut [Body<'_>], contacts: &[Contact]) -> f64 {
-        let (coefficients, constraint) = (self.coefficients[n], self.constraints[n]);
-        let Coefficients { inverse_mass, normal_inverse_mass, compliance, target_velocity } = coefficients;
-        let budget: f64 = constraint.sides().map(|side| bodies[side.body].energy_budget).sum();
-        let v = self.relative_velocity(&constraint, bodies, contacts);
-        let normal = constraint.normal;
-        let approach = v.dot(normal);
-        if normal_inverse_mass <= 0.0 {
-            return 0.0;
-        }
-        let mut change = (target_velocity - approach - compliance * constraint.normal_impulse)
-            / (normal_inverse_mass + compliance);
-        change = change.max(-constraint.normal_impulse);
-        // Work of the normal impulse: change (approach + normal_inverse_mass change / 2).
-        if change * (approach + normal_inverse_mass * change / 2.0) > budget {
-            let limit = ((approach * approach + 2.0 * normal_inverse_mass * budget).sqrt() - approach)
-                / normal_inverse_mass;
-            change = if change > 0.0 { change.min(limit) } else { 0.0 };
-        }
-        let mut impulse = normal * change;
-        let after = v + inverse_mass * impulse;
-        let mut work = impulse.dot(v + after) / 2.0;
-        let normal_impulse = constraint.normal_impulse + change;
-        // The friction impulse that would stop the sliding, clamped to Coulomb's cone.
-        let sliding = after - normal * normal.dot(after);
-        let mut friction_impulse = constraint.friction_impulse;
-        if constraint.friction > 0.0 {
-            friction_impulse += stop_sliding(sliding, &inverse_mass);
-            friction_impulse = friction_impulse.clamp_length_max(constraint.friction * normal_impulse);
-            let friction_change = friction_impulse - constraint.friction_impulse;
-            let after_friction = after + inverse_mass * friction_change;
-            let friction_work = friction_change.dot(after + after_friction) / 2.0;
-            if friction_work <= 0.0 || work + friction_work <= budget {
-                impulse += friction_change;
-                work += friction_work;
+    /// Makes the rows of all constraints. An impulse changes modal velocities by the displacements of the modes, which have mass 1.
+    fn add_rows(&mut self, bodies: &[Body<'_>], contacts: &[Contact]) {
+        let Self { rows, velocities, constraints, mode_weights, .. } = self;
+        let most_modes = bodies.iter().map(|body| body.v.len()).max().unwrap_or(0);
+        mode_weights.clear();
+        mode_weights.resize(most_modes, 1.0);
+        rows.begin(
+            velocities.iter().zip(bodies).map(|(velocity, body)| (velocity, &mode_weights[..body.v.len()])),
+        );
+        for constraint in &*constraints {
+            let points = constraint.sides().map(|Side { n, body, sign }| RowPoint {
+                body,
+                sign,
+                arm: (!constraint.is_within()).then_some(constraint.arms[n]),
+                modes: constraint.modes(n, &bodies[body], contacts),
+            });
+            if constraint.friction > 0.0 {
+                rows.push(constraint.normal, points);
             } else {
-                friction_impulse = constraint.friction_impulse;
+                rows.push_normal(constraint.normal, points);
             }
         }
-        account(&constraint, work, budget, bodies);
-        self.constraints[n].normal_impulse = normal_impulse;
-        self.constraints[n].friction_impulse = friction_impulse;
-        self.apply_impulse(&constraint, impulse, bodies, contacts);
-        change.abs() * normal_inverse_mass
     }
 
     /// Returns the velocity of the first body at the contact, less that of the second.
@@ -216,12 +193,101 @@ impl ContactSolver {
     }
 }
 
+/// Iterations over all constraints of a solver, in packed rows.
+struct SpringGaussSeidel<'s> {
+    solver: &'s mut ContactSolver,
+    max_iterations: usize,
+}
+
+impl WithSimd for SpringGaussSeidel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { solver, max_iterations } = self;
+        let mut first_change = 0.0;
+        for iteration in 0..max_iterations {
+            let mut max_change = 0.0_f64;
+            for n in 0..solver.constraints.len() {
+                // Symmetric Gauss-Seidel: the order alternates.
+                let n = if iteration % 2 == 0 { n } else { solver.constraints.len() - 1 - n };
+                max_change = max_change.max(solver.update_impulse(simd, n));
+            }
+            if iteration == 0 {
+                first_change = max_change;
+            }
+            if max_change <= RELATIVE_TOLERANCE * first_change {
+                break;
+            }
+        }
+    }
+}
+
+impl ContactSolver {
+    /// Updates the impulse of one constraint. Returns the change of velocity along its normal.
+    #[inline(always)]
+    fn update_impulse<S: Simd>(&mut self, simd: S, n: usize) -> f64 {
+        let Self { constraints, coefficients, rows, budgets, velocities_before, .. } = self;
+        let constraint = &mut constraints[n];
+        let Coefficients { inverse_mass, normal_inverse_mass, compliance, target_velocity } = coefficients[n];
+        if normal_inverse_mass <= 0.0 {
+            return 0.0;
+        }
+        let budget: f64 = constraint.sides().map(|side| budgets[side.body]).sum();
+        let normal = constraint.normal;
+        let along = rows.along_normal(simd, n);
+        let approach = velocities_before[n].dot(normal) + along;
+        let mut change = (target_velocity - approach - compliance * constraint.normal_impulse)
+            / (normal_inverse_mass + compliance);
+        change = change.max(-constraint.normal_impulse);
+        // Work of the normal impulse: change (approach + normal_inverse_mass change / 2).
+        let work_of = |change: f64| change * (approach + normal_inverse_mass * change / 2.0);
+        if work_of(change) > budget {
+            let limit = ((approach * approach + 2.0 * normal_inverse_mass * budget).sqrt() - approach)
+                / normal_inverse_mass;
+            change = if change > 0.0 { change.min(limit) } else { 0.0 };
+        }
+        let mut work = work_of(change);
+        let normal_impulse = constraint.normal_impulse + change;
+        let has_friction =
+            constraint.friction > 0.0 && (normal_impulse > 0.0 || constraint.friction_impulse != DVec3::ZERO);
+        constraint.normal_impulse = normal_impulse;
+        if !has_friction {
+            if change != 0.0 {
+                account(constraint, work, budget, budgets);
+                rows.push_along_normal(simd, n, change);
+            }
+            return change.abs() * normal_inverse_mass;
+        }
+        let mut impulse = normal * change;
+        let axes = rows.axes(n);
+        let [second, third] = rows.across(simd, n);
+        let v = velocities_before[n] + axes[0] * along + axes[1] * second + axes[2] * third;
+        let after = v + inverse_mass * impulse;
+        // The friction impulse that would stop the sliding, clamped to Coulomb's cone.
+        let sliding = after - normal * normal.dot(after);
+        let mut friction_impulse = constraint.friction_impulse + stop_sliding(sliding, &inverse_mass);
+        friction_impulse = friction_impulse.clamp_length_max(constraint.friction * normal_impulse);
+        let friction_change = friction_impulse - constraint.friction_impulse;
+        let after_friction = after + inverse_mass * friction_change;
+        let friction_work = friction_change.dot(after + after_friction) / 2.0;
+        if friction_work <= 0.0 || work + friction_work <= budget {
+            impulse += friction_change;
+            work += friction_work;
+            constraint.friction_impulse = friction_impulse;
+        }
+        account(constraint, work, budget, budgets);
+        rows.push_along_axes(simd, n, axes.map(|axis| axis.dot(impulse)));
+        change.abs() * normal_inverse_mass
+    }
+}
+
 /// Charges the work of an impulse to the energy budgets of the bodies, whose sum is `budget`.
-fn account(constraint: &ContactConstraint, work: f64, budget: f64, bodies: &mut [Body<'_>]) {
+fn account(constraint: &ContactConstraint, work: f64, budget: f64, budgets: &mut [f64]) {
     // Added energy is paid by the bodies in proportion to their budgets; dissipated energy is shared equally.
     let count = constraint.sides().count() as f64;
     for Side { body, .. } in constraint.sides() {
-        let own = &mut bodies[body].energy_budget;
+        let own = &mut budgets[body];
         let share = if work > 0.0 && budget > 0.0 { *own / budget } else { 1.0 / count };
         *own = (*own - work * share).max(0.0);
     }
@@ -257,79 +323,4 @@ impl Coefficients {
             target_velocity: constraint.compression * rate / divisor,
         }
     }
-}
-
-impl RigidVelocity {
-    pub fn of(body: &Body<'_>) -> Self {
-        Self::at(body, &body.rigid)
-    }
-
-    /// Returns the velocities and inverse masses of a body with this motion.
-    pub fn at(body: &Body<'_>, rigid: &RigidMotion) -> Self {
-        let rotation = DMat3::from_quat(rigid.orientation);
-        if !body.is_free() {
-            return Self {
-                velocity: DVec3::ZERO,
-                angular_velocity: DVec3::ZERO,
-                inverse_mass: 0.0,
-                inverse_inertia: DMat3::ZERO,
-                rotation,
-            };
-        }
-        let inverse_mass = 1.0 / body.shape().mass().mass;
-        Self {
-            velocity: rigid.momentum * inverse_mass,
-            angular_velocity: rigid.angular_velocity(),
-            inverse_mass,
-            inverse_inertia: rotation * rigid.inverse_inertia() * rotation.transpose(),
-            rotation,
-        }
-    }
-
-    /// Returns the velocity of a point that moves with `modal` in axes of the body.
-    pub fn of_point(&self, arm: DVec3, modal: DVec3) -> DVec3 {
-        self.velocity + self.angular_velocity.cross(arm) + self.rotation * modal
-    }
-
-    /// Adds the change by an impulse.
-    pub fn push(&mut self, impulse: DVec3, arm: DVec3) {
-        self.velocity += impulse * self.inverse_mass;
-        self.angular_velocity += self.inverse_inertia * arm.cross(impulse);
-    }
-
-    /// Returns the matrices from impulse to velocity at a point: with all modes, and with slow modes only.
-    pub fn inverse_masses(&self, arm: DVec3, modal: &ModalInverseMass, within: bool) -> [DMat3; 2] {
-        if within {
-            return [modal.all_modes, modal.slow_modes];
-        }
-        let rigid = self.rigid_inverse_mass(arm);
-        let total = |x: DMat3| rigid + self.rotation * x * self.rotation.transpose();
-        [total(modal.all_modes), total(modal.slow_modes)]
-    }
-
-    /// Returns the matrix from impulse to velocity at a point that does not deform.
-    fn rigid_inverse_mass(&self, arm: DVec3) -> DMat3 {
-        let cross = DMat3::from_cols(
-            DVec3::new(0.0, arm.z, -arm.y),
-            DVec3::new(-arm.z, 0.0, arm.x),
-            DVec3::new(arm.y, -arm.x, 0.0),
-        );
-        DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross
-    }
-
-    /// Returns the matrix from impulse to velocity at a point with these modes, of which each has a weight.
-    pub fn inverse_mass_at(&self, arm: DVec3, modes: &[DVec3], weights: &[f64]) -> DMat3 {
-        let modal = modal_inverse_mass(modes, weights);
-        self.rigid_inverse_mass(arm) + self.rotation * modal * self.rotation.transpose()
-    }
-}
-
-/// Returns the matrix from impulse to velocity due to modes, of which each has a weight (axes of the body).
-pub(crate) fn modal_inverse_mass(modes: &[DVec3], weights: &[f64]) -> DMat3 {
-    let mut sum = DMat3::ZERO;
-    for (u, weight) in modes.iter().zip(weights) {
-        let x = *u * *weight;
-        sum += DMat3::from_cols(*u * x.x, *u * x.y, *u * x.z);
-    }
-    sum
 }

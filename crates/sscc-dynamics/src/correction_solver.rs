@@ -15,7 +15,6 @@ use crate::change::Change;
 use crate::contact::Contact;
 use crate::contact_constraint::{GROUND, Side, Source, sides};
 use crate::contact_rows::{ContactRows, RowPoint};
-use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::correction::Correction;
 use crate::displacement::displacement;
 use crate::gauss_seidel::{Active, GaussSeidel};
@@ -24,6 +23,7 @@ use crate::ground_point::{GroundPoint, rest_position};
 use crate::islands::Islands;
 use crate::packed_rows::dispatch;
 use crate::rigid_contacts::RigidContacts;
+use crate::rigid_velocity::{RigidVelocity, modal_inverse_mass};
 
 /// Corrections of a step, and the buffers to find them.
 #[derive(Clone, Debug, Default)]
@@ -257,14 +257,13 @@ impl CorrectionSolver {
             Active { island, number }
         }));
         active.sort_unstable_by_key(|one| (one.island, one.number));
-        rows.begin(masses.iter().zip(bodies).map(|(mass, body)| (mass, body.q.len())));
+        rows.begin(masses.iter().zip(bodies).map(|(mass, body)| (mass, &body.step_weights[..])));
         for one in active.iter().map(|active| &list[active.number as usize]) {
             let points = sides(one.bodies).map(|Side { n, body, sign }| RowPoint {
                 body,
                 sign,
                 arm: (!one.is_within()).then_some(one.arms[n]),
                 modes: one.source.modes(n, &bodies[body], contacts),
-                weights: &bodies[body].step_weights,
             });
             rows.push(one.normal, points);
         }

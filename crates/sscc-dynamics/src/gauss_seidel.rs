@@ -104,9 +104,9 @@ mod tests {
     use super::*;
     use crate::contact_constraint::{GROUND, Side, Source, sides};
     use crate::contact_rows::RowPoint;
-    use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
     use crate::displacement::displacement;
     use crate::packed_rows::dispatch;
+    use crate::rigid_velocity::{RigidVelocity, modal_inverse_mass};
     use crate::{Shape, Start, World, WorldOptions};
 
     /// Fixed pseudo-random numbers in [-1, 1).
@@ -202,14 +202,14 @@ mod tests {
 
         fn rows(&self) -> ContactRows {
             let mut rows = ContactRows::default();
-            rows.begin(self.masses.iter().zip(&self.world.bodies).map(|(mass, body)| (mass, body.q.len())));
+            let bodies = self.masses.iter().zip(&self.world.bodies);
+            rows.begin(bodies.map(|(mass, body)| (mass, &body.step_weights[..])));
             for (one, modes) in self.list.iter().zip(&self.modes) {
                 let points = sides(one.bodies).map(|Side { n, body, sign }| RowPoint {
                     body,
                     sign,
                     arm: (!one.is_within()).then_some(one.arms[n]),
                     modes: &modes[n],
-                    weights: &self.world.bodies[body].step_weights,
                 });
                 rows.push(one.normal, points);
             }

@@ -106,6 +106,7 @@ mod rest;
 mod resting_velocities;
 mod rigid_contacts;
 mod rigid_motion;
+mod rigid_velocity;
 mod rolling;
 mod root_constraint;
 mod shape;

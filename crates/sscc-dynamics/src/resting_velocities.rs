@@ -18,12 +18,12 @@ use pulp::{Simd, WithSimd};
 use crate::World;
 use crate::contact_constraint::{Side, Source, sides};
 use crate::contact_rows::{ContactRows, RowPoint};
-use crate::contact_solver::{RigidVelocity, modal_inverse_mass};
 use crate::correction::Correction;
 use crate::displacement::displacement;
 use crate::friction_cone::{limit_friction, stop_sliding};
 use crate::ground_point::rest_position;
 use crate::packed_rows::dispatch;
+use crate::rigid_velocity::{RigidVelocity, modal_inverse_mass};
 
 /// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 50;
@@ -68,7 +68,7 @@ impl World<'_> {
         }
         let velocities: Vec<RigidVelocity> = self.bodies.iter().map(RigidVelocity::of).collect();
         let mut rows = std::mem::take(&mut self.corrections.rows);
-        rows.begin(velocities.iter().zip(&self.bodies).map(|(rigid, body)| (rigid, body.q.len())));
+        rows.begin(velocities.iter().zip(&self.bodies).map(|(rigid, body)| (rigid, &body.step_weights[..])));
         let corrections = self.corrections.list.iter().enumerate().filter(is_loaded);
         let mut loads: Vec<Load> =
             corrections.map(|(n, one)| self.load(n, one, &velocities, &mut rows)).collect();
@@ -171,7 +171,6 @@ impl World<'_> {
             sign,
             arm: (!is_within).then_some(load.arms[n]),
             modes: source.modes(n, &self.bodies[body], contacts),
-            weights: &self.bodies[body].step_weights,
         });
         rows.push(normal, points);
         load

@@ -36,8 +36,9 @@ mod tests;
 use std::path::Path;
 use std::process::ExitCode;
 
+pub use items::{attributes, is_for_tests};
 use order::Order;
-use read::Workspace;
+pub use read::Workspace;
 
 /// Checks the layers of this workspace, or prints them.
 pub fn run(arguments: &[String]) -> ExitCode {

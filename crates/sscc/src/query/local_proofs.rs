@@ -20,9 +20,11 @@ const MOST_LOST: usize = 32;
 /// Certificates are tried for pairs of nodes if they prove at least one of so many buckets for which they were evaluated.
 const LEAST_SHARE: usize = 5;
 
-/// Work of a search, in visits and packets of AABBs, after which it finds proven nodes. Finding them takes about twice as long, so short
-/// searches end before it would pay.
+/// Work of a search, in visits and packets of AABBs, after which it finds proven nodes: at least this, and one for so many buckets.
+/// Finding them takes about twice as long, and longer in large shapes, so short searches end before it would pay. It does not depend on
+/// earlier searches, so that one q always gives the same statistics.
 const WORK_BEFORE: u64 = 192;
+const BUCKETS_OF_WORK: u64 = 4;
 
 /// AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;
@@ -38,6 +40,8 @@ pub(super) struct LocalProofs<const E: usize> {
     proven: Vec<(u32, u32)>,
     stack: Vec<u32>,
     is_usable: bool,
+    /// See [`WORK_BEFORE`].
+    work_before: u64,
     /// Whether this search finds no more proven nodes.
     is_complete: bool,
     /// How many certificates the search evaluated from the root down, and how many buckets they proved.
@@ -55,6 +59,7 @@ impl<const E: usize> LocalProofs<E> {
             proven: vec![(0, 0); tables.buckets[0].end as usize],
             stack: Vec::new(),
             is_usable: false,
+            work_before: WORK_BEFORE.max(u64::from(tables.buckets[0].end) / BUCKETS_OF_WORK),
             is_complete: false,
             evaluated: 0,
             proven_buckets: 0,
@@ -70,7 +75,7 @@ impl<const E: usize> LocalProofs<E> {
     /// Whether a search of so many visits and tests of AABBs should find proven nodes now.
     #[inline]
     pub(super) fn is_due(&self, visits: u64, box_tests: u64) -> bool {
-        self.is_usable && !self.is_complete && visits + box_tests / PACKET > WORK_BEFORE
+        self.is_usable && !self.is_complete && visits + box_tests / PACKET > self.work_before
     }
 
     /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few of their buckets
