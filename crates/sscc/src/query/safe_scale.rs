@@ -45,7 +45,9 @@ impl Query<'_> {
         let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
         let mut locals = LocalScales::new(&self.context, &mut self.check, q, self.norm, best);
         let mut waiting = BinaryHeap::new();
-        waiting.push(MinHeapEntry { key: self.certified_scale(0), order: (0, 0), item: NONE });
+        let local = locals.as_mut().map_or(0.0, |locals| locals.of_pair((0, 0)));
+        let local = local * right_or!(DOWN, SafeScaleToNearest, 1.0);
+        waiting.push(MinHeapEntry { key: self.certified_scale(0).max(local), order: (0, 0), item: NONE });
         // Best first: a pair is advanced only a little farther than the scale up to which all others are free.
         while let Some(MinHeapEntry { key: lower, order: (n, m), item: index }) = waiting.pop() {
             if lower >= best {
