@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use sscc::{Certificates, CertifyOptions, Progress, Query, ReducedModel};
+use sscc::{CancelToken, Certificates, CertifyOptions, Query, ReducedModel};
 use sscc_examples::exit_code;
 use sscc_modes::{polynomial_modes, shapes};
 
@@ -37,8 +37,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     println!("{} triangles, {} modes, certified", model.mesh().faces().len(), model.rank());
 
     // The deadline also cancels queries, so the loop always ends in time.
-    let deadline = Deadline(Instant::now() + Duration::from_secs(300));
-    let mut query = Query::new(&model, &certificates)?.cancelled_by(&deadline);
+    let deadline = Instant::now() + Duration::from_secs(300);
+    let token = CancelToken::when(move || Instant::now() >= deadline);
+    let mut query = Query::new(&model, &certificates)?.cancelled_by(token);
     let mut oscillators = Oscillators::new(model.metric().scales());
     // Numbers of steps and times of their queries: those that the root's certificate answers, and the others.
     let (mut steps, mut spent) = ([0_u32; 2], [Duration::ZERO; 2]);
@@ -97,16 +98,5 @@ impl Oscillators {
             self.q[k] += STEP * self.velocities[k];
         }
         self.time += STEP;
-    }
-}
-
-/// The time at which queries are cancelled.
-struct Deadline(Instant);
-
-impl Progress for Deadline {
-    fn report(&self, _done: usize, _total: usize) {}
-
-    fn is_cancelled(&self) -> bool {
-        Instant::now() >= self.0
     }
 }

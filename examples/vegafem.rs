@@ -92,11 +92,7 @@ fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
 }
 
 /// Queries every frame, and prints the mean cost.
-fn check(
-    name: &str,
-    query: &mut Query<'_>,
-    frames: impl Iterator<Item = Vec<f64>>,
-) -> Result<(), sscc::Error> {
+fn check(name: &str, query: &mut Query, frames: impl Iterator<Item = Vec<f64>>) -> Result<(), sscc::Error> {
     let (mut colliding, mut by_root, mut opened, mut boxes, mut triangles) = (0, 0, 0, 0, 0);
     for q in frames {
         colliding += usize::from(!query.discrete(&q)?.is_empty());

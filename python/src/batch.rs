@@ -175,7 +175,7 @@ pub fn rows(entries: &[f64], rank: usize) -> PyResult<Vec<&[f64]>> {
 
 /// Returns a copy of the entries of Q (n, r). An error names the row that is not a configuration of the model.
 pub fn checked_entries(pool: &Pool, array: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
-    let model = &pool.borrow_owner().loaded.model;
+    let model = &pool.certified.loaded.model;
     let entries = entries(array, model.rank())?;
     for (row, q) in entries.chunks_exact(model.rank()).enumerate() {
         model.check_coordinates(q).map_err(|error| refused(&error, &format!("Q[{row}]")))?;
@@ -192,13 +192,13 @@ pub fn check_many(
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Batch> {
-    let model = &pool.borrow_owner().loaded.model;
+    let model = &pool.certified.loaded.model;
     let limit = count(limit, "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX);
     let threads = pool::threads(threads)?;
     let entries = entries(&floats(Q, "Q")?, model.rank())?;
     let rows = rows(&entries, model.rank())?;
     let answers = run_borrowing(py, progress, "checking", |progress| {
-        pool.with_first(|query| query.batch_at_most(&rows, limit, threads, progress))
+        pool.first().batch_at_most(&rows, limit, threads, progress)
     })?;
     let error = match answers {
         Ok(answers) => return Ok(Batch::of(answers)),

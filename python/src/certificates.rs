@@ -39,7 +39,7 @@ impl Certificates {
 
     #[inline]
     fn core(&self) -> &sscc::Certificates {
-        &self.pool.borrow_owner().certificates
+        &self.pool.certified.certificates
     }
 
     /// Whether the root's certificate alone answers the query. Releasing the GIL would then cost more than the query.

@@ -4,14 +4,13 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use sscc::{
-    Error, Pair, Penetration, Progress, Surface, contact_curves, contact_curves_between,
-    penetration_triangle_triangle,
+    Error, Pair, Penetration, Surface, contact_curves, contact_curves_between, penetration_triangle_triangle,
 };
 
 use crate::arrays::{frozen, pairs, table};
 use crate::colliding_triangles::CollidingTriangles;
 use crate::errors::{refused, value};
-use crate::interrupt::Signals;
+use crate::interrupt::signals;
 
 /// The pickled form: the triangles of the first mesh, and of the second if there are two.
 pub type PickledContacts<'py> = (Bound<'py, PyBytes>, Option<Bound<'py, PyBytes>>);
@@ -92,7 +91,7 @@ impl Contacts {
                 let penetration = corners.and_then(|(a, b)| penetration_triangle_triangle(a, b));
                 found.push(penetration.ok_or_else(damaged)?);
             }
-            if Signals.is_cancelled() {
+            if signals().is_cancelled() {
                 return Err(refused(&Error::Cancelled, ""));
             }
         }

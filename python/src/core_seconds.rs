@@ -21,23 +21,21 @@ pub fn _core_seconds(
     one_by_one: bool,
 ) -> PyResult<(f64, Vec<f64>)> {
     let pool = &certificates.pool;
-    let rank = pool.borrow_owner().loaded.model.rank();
+    let rank = pool.certified.loaded.model.rank();
     let entries = entries(&floats(Q, "Q")?, rank)?;
     let rows = rows(&entries, rank)?;
     let measured = py.detach(|| {
-        pool.with_first(|query| {
+        let start = Instant::now();
+        pool.first().batch(&rows, threads, &())?;
+        let batch = start.elapsed().as_secs_f64();
+        let mut query = pool.first().clone();
+        let mut single = Vec::with_capacity(rows.len());
+        for q in rows.iter().filter(|_| one_by_one) {
             let start = Instant::now();
-            query.batch(&rows, threads, &())?;
-            let batch = start.elapsed().as_secs_f64();
-            let mut query = query.clone();
-            let mut single = Vec::with_capacity(rows.len());
-            for q in rows.iter().filter(|_| one_by_one) {
-                let start = Instant::now();
-                query.discrete(q)?;
-                single.push(start.elapsed().as_secs_f64());
-            }
-            Ok((batch, single))
-        })
+            query.discrete(q)?;
+            single.push(start.elapsed().as_secs_f64());
+        }
+        Ok((batch, single))
     });
     measured.map_err(|error: sscc::Error| refused(&error, "Q"))
 }

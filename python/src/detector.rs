@@ -17,7 +17,7 @@ use crate::detector_batch::DetectorBatch;
 use crate::detector_pool::{Built, DetectorMesh, DetectorPool, detector};
 use crate::errors::{kind, refused, value};
 use crate::groups::{ignored_pairs, with_groups};
-use crate::interrupt::{Signals, answer, run_borrowing};
+use crate::interrupt::{answer, run_borrowing, signals};
 use crate::model::{face_corners, points};
 use crate::pool;
 use crate::positions::{Frames, NamedPositions, Weld, contact_filter, fault};
@@ -56,7 +56,7 @@ impl Detector {
         &self,
         py: Python<'_>,
         given: &[&NamedPositions],
-        work: impl FnOnce(&mut sscc::Detector<'static>) -> Result<T, Error> + Send,
+        work: impl FnOnce(&mut sscc::Detector) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
         answer(py, || {
             let built = self.built(given[0])?;
@@ -72,7 +72,7 @@ impl Detector {
         given: &[&NamedPositions],
         other: &Self,
         others: &[&NamedPositions],
-        work: impl FnOnce(&mut sscc::Detector<'static>, &mut sscc::Detector<'static>) -> Result<T, Error> + Send,
+        work: impl FnOnce(&mut sscc::Detector, &mut sscc::Detector) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
         answer(py, || {
             let built = [self.built(given[0])?, other.built(others[0])?];
@@ -175,8 +175,7 @@ impl Detector {
         let Some(first) = slices.first() else { return Ok(DetectorBatch::of(Vec::new())) };
         let answers = run_borrowing(py, progress, "checking", |progress| {
             let built = self.pool.built(first, "frames[0]")?;
-            let answers =
-                built.with_first(|detector| detector.batch_at_most(&slices, limit, threads, progress));
+            let answers = built.first.batch_at_most(&slices, limit, threads, progress);
             let found = |(frame, x): (FrameAnswer, &&[DVec3])| self.found(frame, x);
             let answers = answers.map(|answers| answers.into_iter().zip(&slices).map(found).collect());
             answers.map_err(|error| {
@@ -342,7 +341,7 @@ pub fn self_intersections<'py>(
     let found = answer(py, || -> PyResult<_> {
         let mesh = TriMesh::new(positions, faces).map_err(|error| refused(&error, "vertices"))?;
         let options = DetectorMesh { faces: Vec::new(), weld, filter };
-        let mut detector = detector(&mesh, &options, "vertices")?.cancelled_by(&Signals);
+        let mut detector = detector(&mesh, &options, "vertices")?.cancelled_by(signals().clone());
         let found = detector.discrete(mesh.rest_positions()).map(<[_]>::to_vec);
         found.map_err(|error| refused(&error, "vertices"))
     })?;

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use sscc::{ContactFilter, Detector, Error, TriMesh};
 
 use crate::errors::{refused, value};
-use crate::interrupt::Signals;
+use crate::interrupt::signals;
 use crate::pool::lock;
 use crate::positions::Weld;
 
@@ -23,14 +23,7 @@ pub struct Built {
     /// The positions from which it was built.
     pub rest: Vec<DVec3>,
     /// The detector from which the others are cloned.
-    first: Detector<'static>,
-}
-
-impl Built {
-    /// Runs a function on the detector from which the others are cloned.
-    pub fn with_first<T>(&self, with: impl FnOnce(&Detector<'static>) -> T) -> T {
-        with(&self.first)
-    }
+    pub first: Detector,
 }
 
 pub struct DetectorPool {
@@ -38,7 +31,7 @@ pub struct DetectorPool {
     /// None until the first positions are known.
     built: Mutex<Option<Arc<Built>>>,
     /// Detectors that are not in use.
-    idle: Mutex<Vec<Detector<'static>>>,
+    idle: Mutex<Vec<Detector>>,
 }
 
 impl DetectorPool {
@@ -61,11 +54,11 @@ impl DetectorPool {
         let rest = positions.to_vec();
         let mesh = TriMesh::new(rest.clone(), self.mesh.faces.clone());
         let first = detector(&mesh.map_err(|error| refused(&error, name))?, &self.mesh, name)?;
-        Ok(Arc::clone(built.insert(Arc::new(Built { rest, first: first.cancelled_by(&Signals) }))))
+        Ok(Arc::clone(built.insert(Arc::new(Built { rest, first: first.cancelled_by(signals().clone()) }))))
     }
 
     /// Runs a function on a detector that no other thread uses.
-    pub fn with_detector<T>(&self, built: &Built, with: impl FnOnce(&mut Detector<'static>) -> T) -> T {
+    pub fn with_detector<T>(&self, built: &Built, with: impl FnOnce(&mut Detector) -> T) -> T {
         let idle = lock(&self.idle).pop();
         let mut detector = idle.unwrap_or_else(|| built.first.clone());
         let answer = with(&mut detector);
@@ -75,7 +68,7 @@ impl DetectorPool {
 }
 
 /// Returns a detector of the core. `name` is the argument of the positions.
-pub fn detector<'a>(mesh: &TriMesh, options: &DetectorMesh, name: &str) -> PyResult<Detector<'a>> {
+pub fn detector(mesh: &TriMesh, options: &DetectorMesh, name: &str) -> PyResult<Detector> {
     let vertices = mesh.rest_positions().len();
     match &options.weld {
         Weld::Off | Weld::ByPosition => {

@@ -20,7 +20,7 @@ impl Hierarchy {
     }
 
     fn core(&self) -> &sscc::hierarchy::Hierarchy {
-        self.pool.borrow_owner().certificates.hierarchy()
+        self.pool.certified.certificates.hierarchy()
     }
 
     fn of_nodes<'py, T: numpy::Element>(
@@ -70,7 +70,7 @@ impl Hierarchy {
 
     #[getter]
     fn radius<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        line(py, self.pool.borrow_owner().certificates.parts().node_radii.clone())
+        line(py, self.pool.certified.certificates.parts().node_radii.clone())
     }
 
     fn __len__(&self) -> usize {

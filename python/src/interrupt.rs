@@ -4,15 +4,15 @@
 
 use std::cell::RefCell;
 use std::panic::resume_unwind;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, LazyLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 
 /// Interval between two checks of signals.
 const PERIOD: Duration = Duration::from_millis(50);
@@ -32,25 +32,25 @@ struct SignalChecks {
 }
 
 /// Cancels a query on the thread that Python called, as soon as a signal handler raises an exception.
-pub struct Signals;
+pub fn signals() -> &'static CancelToken {
+    static TOKEN: LazyLock<CancelToken> = LazyLock::new(|| CancelToken::when(has_raised));
+    &TOKEN
+}
 
-impl Progress for Signals {
-    fn report(&self, _done: usize, _total: usize) {}
-
-    fn is_cancelled(&self) -> bool {
-        let now = Instant::now();
-        let known = CHECKS.with_borrow_mut(|checks| {
-            let is_early = now - *checks.last.get_or_insert(now) < PERIOD;
-            (checks.raised.is_some() || is_early).then_some(checks.raised.is_some())
-        });
-        known.unwrap_or_else(|| {
-            // No borrow is active here: a signal handler may run a query of its own.
-            let raised = Python::attach(|py| py.check_signals()).err();
-            let is_raised = raised.is_some();
-            CHECKS.set(SignalChecks { last: Some(now), raised });
-            is_raised
-        })
-    }
+/// Whether a signal handler has raised an exception in the query that this thread answers.
+fn has_raised() -> bool {
+    let now = Instant::now();
+    let known = CHECKS.with_borrow_mut(|checks| {
+        let is_early = now - *checks.last.get_or_insert(now) < PERIOD;
+        (checks.raised.is_some() || is_early).then_some(checks.raised.is_some())
+    });
+    known.unwrap_or_else(|| {
+        // No borrow is active here: a signal handler may run a query of its own.
+        let raised = Python::attach(|py| py.check_signals()).err();
+        let is_raised = raised.is_some();
+        CHECKS.set(SignalChecks { last: Some(now), raised });
+        is_raised
+    })
 }
 
 /// Runs one query on this thread without the GIL. The error is the exception of a signal handler.
@@ -63,12 +63,12 @@ pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyRes
     }
 }
 
-/// The progress of work on other threads, and the flag that cancels it.
+/// The progress of work on other threads, and the token that cancels it.
 #[derive(Default)]
 struct Monitor {
     done: AtomicUsize,
     total: AtomicUsize,
-    cancelled: AtomicBool,
+    token: CancelToken,
 }
 
 impl Monitor {
@@ -84,8 +84,8 @@ impl Progress for Monitor {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.token)
     }
 }
 
@@ -130,7 +130,9 @@ impl Reporter {
                     });
                     reported = share.unwrap_or(reported);
                     raised = outcome.err();
-                    monitor.cancelled.store(raised.is_some(), Ordering::Relaxed);
+                    if raised.is_some() {
+                        monitor.token.cancel();
+                    }
                 }
             }
         }

@@ -43,7 +43,7 @@ impl KineticQuery {
     }
 
     fn __repr__(&self) -> String {
-        let model = &self.kinetic.borrow_owner().borrow_owner().loaded.model;
+        let model = &self.kinetic.pool.certified.loaded.model;
         let (triangles, rank) = (model.mesh().faces().len() as u64, model.rank() as u64);
         format!("<sscc.KineticQuery: {}, {}>", counted(triangles, "triangle"), counted(rank, "mode"))
     }

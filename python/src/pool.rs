@@ -4,104 +4,80 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 
 use pyo3::prelude::*;
-use self_cell::self_cell;
 use sscc::{Certificates, Error, KineticQuery, Query};
 
-use crate::interrupt::Signals;
+use crate::interrupt::signals;
 use crate::model::LoadedModel;
 
-/// A model and its certificates, which queries borrow.
+/// A model and its certificates.
 pub struct CertifiedModel {
     pub loaded: Arc<LoadedModel>,
     pub certificates: Certificates,
 }
 
-pub struct Queries<'a> {
+/// A model with its certificates, and their queries.
+pub struct Pool {
+    pub certified: CertifiedModel,
     /// The query from which the others are cloned.
-    first: Query<'a>,
+    first: Query,
     /// Queries that are not in use.
-    idle: Mutex<Vec<Query<'a>>>,
+    idle: Mutex<Vec<Query>>,
 }
-
-self_cell!(
-    /// Certificates, and queries that borrow them.
-    pub struct Pool {
-        owner: CertifiedModel,
-
-        #[not_covariant]
-        dependent: Queries,
-    }
-);
 
 impl Pool {
     /// Refuses certificates of another model.
     pub fn of(certified: CertifiedModel) -> Result<Self, Error> {
-        Self::try_new(certified, |certified| {
-            let first = Query::new(&certified.loaded.model, &certified.certificates)?.cancelled_by(&Signals);
-            Ok(Queries { first, idle: Mutex::default() })
-        })
+        let CertifiedModel { loaded, certificates } = &certified;
+        let first = Query::new(&loaded.model, certificates)?.cancelled_by(signals().clone());
+        Ok(Self { certified, first, idle: Mutex::default() })
     }
 
     /// Runs a function on a query that no other thread uses.
     #[inline]
-    pub fn with_query<T>(&self, with: impl FnOnce(&mut Query<'_>) -> T) -> T {
-        self.with_dependent(|_, queries| {
-            let idle = lock(&queries.idle).pop();
-            let mut query = idle.unwrap_or_else(|| queries.first.clone());
-            let answer = with(&mut query);
-            lock(&queries.idle).push(query);
-            answer
-        })
+    pub fn with_query<T>(&self, with: impl FnOnce(&mut Query) -> T) -> T {
+        let idle = lock(&self.idle).pop();
+        let mut query = idle.unwrap_or_else(|| self.first.clone());
+        let answer = with(&mut query);
+        lock(&self.idle).push(query);
+        answer
     }
 
-    /// Runs a function on the query from which the others are cloned.
-    pub fn with_first<T>(&self, with: impl FnOnce(&Query<'_>) -> T) -> T {
-        self.with_dependent(|_, queries| with(&queries.first))
+    /// The query from which the others are cloned.
+    pub fn first(&self) -> &Query {
+        &self.first
     }
 }
 
-self_cell!(
-    /// A kinetic query and its pool.
-    pub struct Kinetic {
-        owner: Arc<Pool>,
-
-        #[not_covariant]
-        dependent: KineticState,
-    }
-);
-
-pub struct KineticState<'a> {
-    query: Mutex<KineticQuery<'a>>,
+/// A kinetic query and its pool.
+pub struct Kinetic {
+    pub pool: Arc<Pool>,
+    query: Mutex<KineticQuery>,
     /// The thread that uses the query now.
     user: Mutex<Option<ThreadId>>,
 }
 
 impl Kinetic {
     pub fn of(pool: Arc<Pool>) -> Result<Self, Error> {
-        Self::try_new(pool, |pool| {
-            let CertifiedModel { loaded, certificates } = pool.borrow_owner();
-            let query = KineticQuery::new(&loaded.model, certificates)?.cancelled_by(&Signals);
-            Ok(KineticState { query: Mutex::new(query), user: Mutex::default() })
-        })
+        let CertifiedModel { loaded, certificates } = &pool.certified;
+        let query = KineticQuery::new(&loaded.model, certificates)?.cancelled_by(signals().clone());
+        Ok(Self { pool, query: Mutex::new(query), user: Mutex::default() })
     }
 
     /// Runs a function on the query; other threads wait meanwhile. Returns `None` if this thread already uses the
     /// query: a signal handler would wait for its own thread. Call it without the GIL, because the thread that uses the
     /// query may wait for the GIL.
-    pub fn with_query<T>(&self, with: impl FnOnce(&mut KineticQuery<'_>) -> T) -> Option<T> {
+    pub fn with_query<T>(&self, with: impl FnOnce(&mut KineticQuery) -> T) -> Option<T> {
         let here = Some(thread::current().id());
-        self.with_dependent(|_, state| {
-            let mut query = match state.query.try_lock() {
-                Err(TryLockError::WouldBlock) if *lock(&state.user) == here => return None,
-                Err(TryLockError::WouldBlock) => lock(&state.query),
-                Ok(query) => query,
-                Err(TryLockError::Poisoned(query)) => query.into_inner(),
-            };
-            *lock(&state.user) = here;
-            let answer = with(&mut query);
-            *lock(&state.user) = None;
-            Some(answer)
-        })
+        let mut query = match self.query.try_lock() {
+            Err(TryLockError::WouldBlock) if *lock(&self.user) == here => return None,
+            Err(TryLockError::WouldBlock) => lock(&self.query),
+            Ok(query) => query,
+            Err(TryLockError::Poisoned(query)) => query.into_inner(),
+        };
+        *lock(&self.user) = here;
+        let answer = with(&mut query);
+        *lock(&self.user) = None;
+        Some(answer)
     }
 }
 

@@ -18,7 +18,7 @@ fn options(
 ) -> PyResult<ResolveOptions> {
     let start = start.map(|start| vector(start, "start")).transpose()?;
     if let Some(start) = &start {
-        let model = &pool.borrow_owner().loaded.model;
+        let model = &pool.certified.loaded.model;
         model.check_coordinates(start).map_err(|error| refused(&error, "start"))?;
     }
     Ok(ResolveOptions { start, all: switch(all, "all")?.unwrap_or(false) })
@@ -58,7 +58,7 @@ pub fn free_samples<'py>(
     threads: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let model = &pool.borrow_owner().loaded.model;
+    let model = &pool.certified.loaded.model;
     let rank = model.rank();
     let array = floats(draws, "draws")?;
     if array.ndim() != 2 || array.shape()[1] != rank {
@@ -73,7 +73,7 @@ pub fn free_samples<'py>(
     let options = switch(resolve, "resolve")?.unwrap_or(true).then_some(options);
     let threads = pool::threads(threads)?;
     let found = run_borrowing(py, progress, "resolving", |progress| {
-        pool.with_first(|query| query.free_samples(&rows, options.as_ref(), threads, progress))
+        pool.first().free_samples(&rows, options.as_ref(), threads, progress)
     })?;
     let found = found.map_err(|error| refused_search(&error, "draws"))?;
     let class = py.import("sscc._resolve")?.getattr("FreeSamples")?;

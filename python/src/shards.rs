@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
-use sscc::{CertifyOptions, Error, Progress};
+use sscc::{CancelToken, CertifyOptions, Error, Progress};
 
 use crate::arguments::count;
 use crate::arrays::{floats, table};
@@ -13,7 +13,7 @@ use crate::batch::{Batch, checked_entries};
 use crate::certificates::Certificates;
 use crate::certify::CertifyArguments;
 use crate::errors::{kind, refused};
-use crate::interrupt::{Signals, answer};
+use crate::interrupt::{answer, signals};
 use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
@@ -111,13 +111,13 @@ impl ShardWorker {
     fn new(py: Python<'_>, model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         let options = options(model, keywords)?;
         let loaded = Arc::clone(&model.get().loaded);
-        let core = answer(py, || sscc::ShardWorker::new(&loaded.model, &options, &Signals))?;
+        let core = answer(py, || sscc::ShardWorker::new(&loaded.model, &options, signals()))?;
         Ok(Self { core: core.map_err(|error| refused(&error, ""))? })
     }
 
     /// Returns the result of a job, computed on this thread.
     fn run<'py>(&self, py: Python<'py>, job: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
-        let result = answer(py, || self.core.run(job, &Signals))?;
+        let result = answer(py, || self.core.run(job, signals()))?;
         Ok(PyBytes::new(py, &result.map_err(|error| refused(&error, ""))?))
     }
 }
@@ -132,8 +132,8 @@ impl Progress for Share {
         self.0.fetch_max(share.min(1.0).to_bits(), Ordering::Relaxed);
     }
 
-    fn is_cancelled(&self) -> bool {
-        Signals.is_cancelled()
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(signals())
     }
 }
 
@@ -187,7 +187,7 @@ pub fn _configurations<'py>(
     Q: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let entries = checked_entries(&certificates.pool, &floats(Q, "Q")?)?;
-    let rank = certificates.pool.borrow_owner().loaded.model.rank();
+    let rank = certificates.pool.certified.loaded.model.rank();
     table(Q.py(), rank, entries)
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 use sscc_sim::{Outputs, Request, SimError, Stage, Watch, simulate};
 use sscc_view::simulation_report;
 
@@ -70,8 +70,8 @@ impl Progress for Steps<'_> {
         }
     }
 
-    fn is_cancelled(&self) -> bool {
-        self.progress.is_cancelled()
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        self.progress.cancel_token()
     }
 }
 

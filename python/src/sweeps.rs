@@ -29,7 +29,7 @@ impl<'py> SweepArguments<'_, 'py> {
         pool: &Pool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyList>> {
-        let certified = pool.borrow_owner();
+        let certified = &pool.certified;
         let (loaded, center) = (&*certified.loaded, certified.certificates.center());
         let q = self.q.map_or_else(|| Ok(center.to_vec()), |q| vector(q, "q"))?;
         loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
@@ -37,7 +37,7 @@ impl<'py> SweepArguments<'_, 'py> {
         let modes = self.modes(loaded)?.into_iter().map(|mode| (mode, ranges[mode]));
         let (modes, threads) = (modes.collect::<Vec<_>>(), threads(self.threads)?);
         let swept = run_borrowing(py, progress, "sweeping", |progress| {
-            pool.with_first(|query| query.sweep_modes(&q, &modes, threads, progress))
+            pool.first().sweep_modes(&q, &modes, threads, progress)
         })?;
         let sweeps = swept.map_err(|error| refused(&error, "range"))?;
         let class = py.import("sscc._sweep")?.getattr("Sweep")?;

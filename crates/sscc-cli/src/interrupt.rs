@@ -9,6 +9,7 @@ use std::sync::{Arc, LazyLock};
 use anyhow::bail;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
+use sscc::CancelToken;
 
 use crate::outcome::EXIT_INTERRUPTED;
 
@@ -16,6 +17,8 @@ use crate::outcome::EXIT_INTERRUPTED;
 const MESSAGE: &str = "interrupted";
 
 static INTERRUPTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+static TOKEN: LazyLock<CancelToken> = LazyLock::new(|| CancelToken::when(is_interrupted));
 
 /// Installs the signal handlers.
 pub fn install_handlers() {
@@ -33,15 +36,9 @@ pub fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// Cancels queries on an interrupt.
-pub struct Interrupt;
-
-impl sscc::Progress for Interrupt {
-    fn report(&self, _done: usize, _total: usize) {}
-
-    fn is_cancelled(&self) -> bool {
-        is_interrupted()
-    }
+/// The token that an interrupt cancels.
+pub fn token() -> &'static CancelToken {
+    &TOKEN
 }
 
 /// Returns an error if the program has received an interrupt.

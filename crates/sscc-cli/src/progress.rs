@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 
 use crate::interrupt;
 
@@ -60,8 +60,8 @@ impl Progress for Bar {
         }
     }
 
-    fn is_cancelled(&self) -> bool {
-        interrupt::is_interrupted()
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(interrupt::token())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 use sscc_sim::{Stage, Watch};
 
 use crate::interrupt;
@@ -48,8 +48,8 @@ impl Progress for Stages {
         }
     }
 
-    fn is_cancelled(&self) -> bool {
-        interrupt::is_interrupted()
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(interrupt::token())
     }
 }
 

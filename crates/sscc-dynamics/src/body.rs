@@ -14,8 +14,8 @@ use crate::{DynamicsError, LinearOscillator, NonlinearOscillator, RigidMotion, S
 /// A body of a [`World`](crate::World). The world position of a vertex is `R (p + U q - c) + x`, where c is the centre
 /// of mass of the rest pose, and R and x are the rigid motion. The equations neglect centrifugal forces on q and the
 /// change of the inertia by deformation.
-pub struct Body<'a> {
-    shape: &'a Shape,
+pub struct Body {
+    pub(crate) shape: Shape,
     is_free: bool,
     pub(crate) rigid: RigidMotion,
     pub(crate) q: Vec<f64>,
@@ -28,18 +28,18 @@ pub struct Body<'a> {
     pub(crate) slow_weights: Vec<f64>,
     /// Displacement at the end of a step, divided by the step, by a unit impulse on each mode at its beginning.
     pub(crate) step_weights: Vec<f64>,
-    oscillator: Oscillator<'a>,
+    oscillator: Oscillator,
     detection: Detection,
-    detector: Detector<'a>,
+    detector: Detector,
     /// Continuous query of the body with itself; made when it is first needed.
-    continuous: Option<Box<Query<'a>>>,
+    continuous: Option<Box<Query>>,
     /// Impacts of the body with itself, found by the last continuous query.
     pub(crate) impacts: Vec<Impact>,
     /// Whether a continuous query has proven the last motion free of self-collisions, so that no discrete one is needed.
     pub(crate) is_proven_free: bool,
-    pub(crate) posed: PosedShape<'a>,
+    pub(crate) posed: PosedShape,
     /// The motion of the last step; made when it is first needed.
-    pub(crate) swept: Option<Box<SweptShape<'a>>>,
+    pub(crate) swept: Option<Box<SweptShape>>,
     /// Colliding triangle pairs within the body, found by the last detection.
     pub(crate) pairs: Vec<Pair>,
     /// Whether q was outside the certificate of the root in the last detection.
@@ -61,9 +61,9 @@ pub struct Body<'a> {
 
 /// Integrator of q.
 #[derive(Clone)]
-enum Oscillator<'a> {
+enum Oscillator {
     Linear(LinearOscillator),
-    Nonlinear(NonlinearOscillator<'a>),
+    Nonlinear(NonlinearOscillator),
 }
 
 /// Maximum rotation in a step (rad). [`RigidMotion::advance`] iterates for the middle of the rotation; the iteration
@@ -71,17 +71,17 @@ enum Oscillator<'a> {
 const MAX_STEP_ROTATION: f64 = 1.0;
 
 /// Query that detects self-collisions.
-enum Detector<'a> {
+enum Detector {
     Off,
-    Discrete(Box<Query<'a>>),
-    Kinetic(Box<KineticQuery<'a>>),
+    Discrete(Box<Query>),
+    Kinetic(Box<KineticQuery>),
 }
 
-impl<'a> Body<'a> {
+impl Body {
     /// Creates a body in its initial state. `same_shape` is an existing body of the same shape; its query and posed
     /// shape are cloned instead of computed.
     pub(crate) fn new(
-        shape: &'a Shape,
+        shape: &Shape,
         start: &Start,
         options: &WorldOptions,
         same_shape: Option<&Self>,
@@ -127,7 +127,7 @@ impl<'a> Body<'a> {
                 (Oscillator::Linear(oscillator), Vec::new())
             }
             Some(energy) => {
-                let oscillator = NonlinearOscillator::new(energy, stiffness, start.damping, step)?;
+                let oscillator = NonlinearOscillator::new(energy.clone(), stiffness, start.damping, step)?;
                 let a = oscillator.undamped_acceleration(&q, &load, &mut NewmarkBuffers::default());
                 (Oscillator::Nonlinear(oscillator), a)
             }
@@ -157,7 +157,7 @@ impl<'a> Body<'a> {
         let rest = Rest { is_asleep: false, time: 0.0, position, orientation, q: q.clone() };
         let now = Kinematics { rigid, q: q.clone(), v: v.clone() };
         Ok(Self {
-            shape,
+            shape: shape.clone(),
             is_free: start.is_free,
             rigid,
             q,
@@ -187,8 +187,8 @@ impl<'a> Body<'a> {
     }
 
     /// Returns the shape, shared by all bodies that use it.
-    pub fn shape(&self) -> &'a Shape {
-        self.shape
+    pub fn shape(&self) -> &Shape {
+        &self.shape
     }
 
     /// Returns whether the body has rigid motion (false: it is held).
@@ -213,7 +213,7 @@ impl<'a> Body<'a> {
 
     /// Returns the pose of the body. The world position of a vertex is [`Pose::apply`] of `p + U q`.
     pub fn pose(&self) -> Pose {
-        pose(&self.rigid, self.shape)
+        pose(&self.rigid, &self.shape)
     }
 
     /// Returns whether the body sleeps. Its motion is then zero until another body touches it.
@@ -284,7 +284,7 @@ impl<'a> Body<'a> {
             let model = self.shape.model();
             return model.mesh().faces()[triangle as usize].map(|v| model.position(v, &self.start.q));
         }
-        self.start.corners(self.shape, triangle)
+        self.start.corners(&self.shape, triangle)
     }
 
     /// Returns the rotation from axes of the rest pose to axes of the world.
@@ -439,7 +439,7 @@ impl<'a> Body<'a> {
 
     /// Places the swept shape on the motion from the beginning of the step to the current state. Returns an AABB of this motion.
     pub(crate) fn sweep(&mut self) -> Result<Aabb, DynamicsError> {
-        let (t0, t1) = (self.start.pose(self.shape), self.pose());
+        let (t0, t1) = (self.start.pose(&self.shape), self.pose());
         let swept = match &mut self.swept {
             Some(swept) => swept,
             none => none.insert(Box::new(SweptShape::new(&self.posed)?)),

@@ -50,7 +50,7 @@ pub(crate) struct BodyCollisions {
 impl BodyCollisions {
     /// Finds all pairs of triangles of different bodies that have a point in common: exactly those of the positions
     /// [`Body::pose`] of `p + U q`. Bodies that swept queries have proven free since the last state are not tested.
-    pub fn update(&mut self, bodies: &mut [Body<'_>]) -> Result<(), DynamicsError> {
+    pub fn update(&mut self, bodies: &mut [Body]) -> Result<(), DynamicsError> {
         let is_proven = self.proven == bodies.len();
         if is_proven && self.colliding_bodies.is_empty() {
             return Ok(());
@@ -83,20 +83,19 @@ impl BodyCollisions {
     /// Finds all impacts between bodies in the motion from the beginning of the step to their current states, where at least
     /// one of the two has moved (`has_moved`). Bodies that collide at the beginning are not tested: they may pass through
     /// each other until they are apart.
-    pub fn find_impacts(&mut self, bodies: &mut [Body<'_>], has_moved: &[bool]) -> Result<(), DynamicsError> {
+    pub fn find_impacts(&mut self, bodies: &mut [Body], has_moved: &[bool]) -> Result<(), DynamicsError> {
         self.impact_bodies.clear();
         self.impacts.clear();
         let boxes = &mut self.swept.boxes;
         boxes.resize(bodies.len(), Aabb::EMPTY);
         self.is_placed.resize(bodies.len(), false);
-        let place =
-            |((body, has_moved), (aabb, is_placed)): ((&mut Body<'_>, &bool), (&mut Aabb, &mut bool))| {
-                if *has_moved || !*is_placed {
-                    *aabb = body.sweep()?;
-                    *is_placed = true;
-                }
-                Ok(())
-            };
+        let place = |((body, has_moved), (aabb, is_placed)): ((&mut Body, &bool), (&mut Aabb, &mut bool))| {
+            if *has_moved || !*is_placed {
+                *aabb = body.sweep()?;
+                *is_placed = true;
+            }
+            Ok(())
+        };
         let placed = boxes.par_iter_mut().zip(&mut self.is_placed);
         first_error(bodies.par_iter_mut().zip(has_moved).zip(placed).map(place).collect())?;
         self.swept.find();
@@ -139,7 +138,7 @@ impl BodyCollisions {
     /// [`BodyCollisions::find_impacts`], and some that do not; at most [`MAX_NEAR`].
     pub fn find_near(
         &self,
-        bodies: &mut [Body<'_>],
+        bodies: &mut [Body],
         [a, b]: [usize; 2],
         margin: f64,
         found: &mut Vec<([usize; 2], Pair)>,
@@ -178,14 +177,14 @@ impl BodyCollisions {
 }
 
 /// The motions of two bodies, taken from them, and their impacts.
-struct MotionPair<'a> {
+struct MotionPair {
     bodies: [usize; 2],
-    motions: [Box<SweptShape<'a>>; 2],
+    motions: [Box<SweptShape>; 2],
     impacts: Vec<Impact>,
 }
 
 /// Takes pairs from a list in which no body occurs twice: they can be tested at the same time.
-fn disjoint_pairs<'a>(bodies: &mut [Body<'a>], open: &mut Vec<[usize; 2]>) -> Vec<MotionPair<'a>> {
+fn disjoint_pairs(bodies: &mut [Body], open: &mut Vec<[usize; 2]>) -> Vec<MotionPair> {
     let mut is_taken = vec![false; bodies.len()];
     let mut pairs = Vec::new();
     open.retain(|&[a, b]| {

@@ -99,7 +99,7 @@ impl ModalInverseMass {
 impl Contact {
     /// Updates the gap: the distance of the two points along the normal, less the offset. Returns their tangential
     /// distance.
-    pub fn update_gap(&mut self, bodies: [&Body<'_>; 2]) -> f64 {
+    pub fn update_gap(&mut self, bodies: [&Body; 2]) -> f64 {
         let (difference, normal) = if self.is_within() {
             (self.rest[0] - self.rest[1] + displacement(&self.modes[0], &bodies[0].q), self.normal)
         } else {
@@ -112,7 +112,7 @@ impl Contact {
     }
 
     /// Returns the world positions of the two points, for a contact of two bodies.
-    pub fn world_points(&self, bodies: [&Body<'_>; 2]) -> [DVec3; 2] {
+    pub fn world_points(&self, bodies: [&Body; 2]) -> [DVec3; 2] {
         std::array::from_fn(|n| {
             let point = self.rest[n] + displacement(&self.modes[n], &bodies[n].q);
             bodies[n].rigid.position + bodies[n].rigid.orientation * point
@@ -151,7 +151,7 @@ impl Contact {
         &mut self,
         indices: [u32; 2],
         (i, j): Pair,
-        bodies: [&Body<'_>; 2],
+        bodies: [&Body; 2],
         corners: [[DVec3; 3]; 2],
     ) -> bool {
         let triangles = [i, j];
@@ -185,7 +185,7 @@ impl Contact {
         &mut self,
         indices: [u32; 2],
         (i, j): Pair,
-        bodies: [&Body<'_>; 2],
+        bodies: [&Body; 2],
         corners: &[[DVec3; 3]; 2],
         nearest: &Nearest,
         is_duplicate: bool,
@@ -211,7 +211,7 @@ impl Contact {
     }
 
     /// Computes the normal, the gap and the arms of a rigid contact from its anchors at the beginning of the step.
-    pub fn locate(&mut self, bodies: [&Body<'_>; 2]) {
+    pub fn locate(&mut self, bodies: [&Body; 2]) {
         if self.is_within() {
             self.between = self.rest[0] - self.rest[1] + displacement(&self.modes[0], &bodies[0].start.q);
             self.gap = self.normal.dot(self.between);
@@ -228,7 +228,7 @@ impl Contact {
     /// Returns the velocity at which the points of a rigid contact approach each other along its normal at the beginning of
     /// the step, by the rigid motion of the bodies. Modes are left out, because they bounce by themselves: with
     /// restitution, the points of prestressed bodies would hammer at each other in every other step.
-    pub fn approach(&self, bodies: [&Body<'_>; 2]) -> f64 {
+    pub fn approach(&self, bodies: [&Body; 2]) -> f64 {
         let [x, y] = [0, 1].map(|n| bodies[n].start.rigid.velocity_at(self.arms[n]));
         self.world_normal.dot(y - x)
     }
@@ -239,7 +239,7 @@ impl Contact {
     }
 
     /// Computes the fields that follow from bodies and anchors.
-    pub fn attach(&mut self, bodies: [&Body<'_>; 2]) {
+    pub fn attach(&mut self, bodies: [&Body; 2]) {
         for n in 0..2 {
             let (shape, Anchor { triangle, weights }) = (bodies[n].shape(), &self.anchors[n]);
             self.rest[n] = interpolate(&corners_at_rest(shape, *triangle), *weights) - shape.mass().center;

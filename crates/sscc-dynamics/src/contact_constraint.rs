@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::body::Body;
+use crate::Shape;
 use crate::contact::{Contact, ModalInverseMass};
 
 /// Number of the ground where a constraint lists its bodies.
@@ -67,8 +67,8 @@ impl ContactConstraint {
     }
 
     /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
-    pub fn modes<'s>(&self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
-        self.source.modes(n, body, contacts)
+    pub fn modes<'s>(&self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
+        self.source.modes(n, shape, contacts)
     }
 }
 
@@ -80,9 +80,9 @@ pub(crate) fn sides(bodies: [u32; 2]) -> impl Iterator<Item = Side> {
 
 impl Source {
     /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
-    pub fn modes<'s>(self, n: usize, body: &Body<'s>, contacts: &'s [Contact]) -> &'s [DVec3] {
+    pub fn modes<'s>(self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
         match self {
-            Self::Vertex(v) => body.shape().model().modes().of_vertex(v),
+            Self::Vertex(v) => shape.model().modes().of_vertex(v),
             Self::Contact(contact) => &contacts[contact as usize].modes[n],
         }
     }

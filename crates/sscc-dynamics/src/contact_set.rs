@@ -36,7 +36,7 @@ impl ContactSet {
     /// make contacts. The geometry of a pair that collides in `max_age` steps is computed again.
     pub fn update(
         &mut self,
-        bodies: &[Body<'_>],
+        bodies: &[Body],
         within: bool,
         collisions: &BodyCollisions,
         skin: f64,
@@ -113,7 +113,7 @@ impl ContactSet {
 
     /// Appends the rigid contacts of two triangles at the beginning of the step, if they are near. Contacts of `old` with
     /// the same features pass on their impulses.
-    pub fn begin_near(&mut self, indices: [u32; 2], pair: Pair, bodies: [&Body<'_>; 2], skin: f64) {
+    pub fn begin_near(&mut self, indices: [u32; 2], pair: Pair, bodies: [&Body; 2], skin: f64) {
         let is_within = indices[0] == indices[1];
         let corners =
             [bodies[0].start_corners(pair.0, is_within), bodies[1].start_corners(pair.1, is_within)];
@@ -164,7 +164,7 @@ impl ContactSet {
         &mut self,
         indices: [u32; 2],
         pair: Pair,
-        bodies: [&Body<'_>; 2],
+        bodies: [&Body; 2],
         corners: &[[DVec3; 3]; 2],
         sorted: usize,
     ) -> Option<(&mut Contact, f64)> {
@@ -196,7 +196,7 @@ impl ContactSet {
     /// to `constraints`.
     pub fn add_constraints(
         &mut self,
-        bodies: &[Body<'_>],
+        bodies: &[Body],
         skin: f64,
         preload_rate: f64,
         friction: f64,

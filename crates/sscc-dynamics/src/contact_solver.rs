@@ -73,7 +73,7 @@ pub(crate) struct ContactSolver {
 
 impl ContactSolver {
     /// Computes the impulses of all constraints, and applies them to the bodies.
-    pub fn solve(&mut self, bodies: &mut [Body<'_>], contacts: &[Contact], spring: &Spring) {
+    pub fn solve(&mut self, bodies: &mut [Body], contacts: &[Contact], spring: &Spring) {
         self.coefficients.clear();
         if self.constraints.is_empty() {
             return;
@@ -125,7 +125,7 @@ impl ContactSolver {
     }
 
     /// Makes the rows of all constraints. An impulse changes modal velocities by the displacements of the modes, which have mass 1.
-    fn add_rows(&mut self, bodies: &[Body<'_>], contacts: &[Contact]) {
+    fn add_rows(&mut self, bodies: &[Body], contacts: &[Contact]) {
         let Self { rows, velocities, constraints, mode_weights, .. } = self;
         let most_modes = bodies.iter().map(|body| body.v.len()).max().unwrap_or(0);
         mode_weights.clear();
@@ -138,7 +138,7 @@ impl ContactSolver {
                 body,
                 sign,
                 arm: (!constraint.is_within()).then_some(constraint.arms[n]),
-                modes: constraint.modes(n, &bodies[body], contacts),
+                modes: constraint.modes(n, bodies[body].shape(), contacts),
             });
             if constraint.friction > 0.0 {
                 rows.push(constraint.normal, points);
@@ -152,14 +152,14 @@ impl ContactSolver {
     fn relative_velocity(
         &self,
         constraint: &ContactConstraint,
-        bodies: &[Body<'_>],
+        bodies: &[Body],
         contacts: &[Contact],
     ) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for Side { n, body, sign } in constraint.sides() {
             let rigid = &self.velocities[body];
             let body = &bodies[body];
-            let modal = displacement(constraint.modes(n, body, contacts), &body.v);
+            let modal = displacement(constraint.modes(n, &body.shape, contacts), &body.v);
             sum +=
                 if constraint.is_within() { modal } else { rigid.of_point(constraint.arms[n], modal) * sign };
         }
@@ -171,7 +171,7 @@ impl ContactSolver {
         &mut self,
         constraint: &ContactConstraint,
         impulse: DVec3,
-        bodies: &mut [Body<'_>],
+        bodies: &mut [Body],
         contacts: &[Contact],
     ) {
         for Side { n, body, sign } in constraint.sides() {
@@ -187,7 +187,7 @@ impl ContactSolver {
                 }
                 local = rigid.rotation.transpose() * impulse;
             }
-            let modes = constraint.modes(n, body, contacts);
+            let modes = constraint.modes(n, &body.shape, contacts);
             body.v.iter_mut().zip(modes).for_each(|(v, u)| *v += u.dot(local));
         }
     }

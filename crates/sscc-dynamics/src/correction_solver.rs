@@ -48,7 +48,7 @@ const TOLERANCE: f64 = 1e-3;
 
 impl CorrectionSolver {
     /// Begins a step.
-    pub fn begin(&mut self, bodies: &[Body<'_>]) {
+    pub fn begin(&mut self, bodies: &[Body]) {
         self.list.clear();
         self.masses.clear();
         self.masses.extend(bodies.iter().map(|body| RigidVelocity::at(body, &body.start.rigid)));
@@ -69,7 +69,7 @@ impl CorrectionSolver {
     /// Makes the list of constraints of the ground and of contacts, in the bodies' current state.
     pub fn gather(
         &mut self,
-        bodies: &[Body<'_>],
+        bodies: &[Body],
         ground: (&[GroundContacts], Option<Ground>),
         contacts: &[Contact],
         rigid: &RigidContacts,
@@ -100,7 +100,7 @@ impl CorrectionSolver {
         &mut self,
         number: usize,
         point: &GroundPoint,
-        body: &Body<'_>,
+        body: &Body,
         ground: &Ground,
         rigid: &RigidContacts,
     ) {
@@ -135,7 +135,7 @@ impl CorrectionSolver {
         &mut self,
         number: usize,
         contact: &Contact,
-        both: [&Body<'_>; 2],
+        both: [&Body; 2],
         rigid: &RigidContacts,
         friction: f64,
     ) {
@@ -177,7 +177,7 @@ impl CorrectionSolver {
         &mut self,
         number: usize,
         contact: &Contact,
-        body: &Body<'_>,
+        body: &Body,
         rigid: &RigidContacts,
         friction: f64,
     ) {
@@ -208,7 +208,7 @@ impl CorrectionSolver {
     /// Solves the constraints that act on a body of `among`, which must contain whole islands, and moves these bodies.
     pub fn solve(
         &mut self,
-        bodies: &mut [Body<'_>],
+        bodies: &mut [Body],
         contacts: &[Contact],
         rigid: &RigidContacts,
         among: &[bool],
@@ -241,7 +241,7 @@ impl CorrectionSolver {
     }
 
     /// Gathers the constraints that act on a body of `among`, island by island, with their rows.
-    fn gather_islands(&mut self, bodies: &[Body<'_>], contacts: &[Contact], among: &[bool]) {
+    fn gather_islands(&mut self, bodies: &[Body], contacts: &[Contact], among: &[bool]) {
         let Self { list, active, islands, rows, masses, .. } = self;
         let is_active = |one: &Correction| {
             one.normal_inverse_mass > 0.0 && sides(one.bodies).any(|side| among[side.body])
@@ -263,7 +263,7 @@ impl CorrectionSolver {
                 body,
                 sign,
                 arm: (!one.is_within()).then_some(one.arms[n]),
-                modes: one.source.modes(n, &bodies[body], contacts),
+                modes: one.source.modes(n, bodies[body].shape(), contacts),
             });
             rows.push(one.normal, points);
         }
@@ -279,7 +279,7 @@ impl CorrectionSolver {
     }
 
     /// Adds an impulse to the changes of the bodies.
-    fn apply(&mut self, one: &Correction, impulse: DVec3, bodies: &[Body<'_>], contacts: &[Contact]) {
+    fn apply(&mut self, one: &Correction, impulse: DVec3, bodies: &[Body], contacts: &[Contact]) {
         for Side { n, body, sign } in sides(one.bodies) {
             let (mass, change, impulse) = (&self.masses[body], &mut self.changes[body], impulse * sign);
             if bodies[body].is_free() && !one.is_within() {
@@ -290,7 +290,7 @@ impl CorrectionSolver {
                 change.angular_velocity += mass.inverse_inertia * angular_impulse;
             }
             let local = if one.is_within() { impulse } else { mass.rotation.transpose() * impulse };
-            let modes = one.source.modes(n, &bodies[body], contacts);
+            let modes = one.source.modes(n, bodies[body].shape(), contacts);
             let own = &mut self.modes[self.first_mode[body]..][..modes.len()];
             for ((w, u), weight) in own.iter_mut().zip(modes).zip(&bodies[body].step_weights) {
                 *w += weight * u.dot(local);

@@ -134,16 +134,16 @@ mod tests {
     }
 
     /// Contacts of a few bodies, without their geometry: points and modes are any.
-    struct Contacts<'a> {
-        world: World<'a>,
+    struct Contacts {
+        world: World,
         masses: Vec<RigidVelocity>,
         list: Vec<Correction>,
         modes: Vec<[Vec<DVec3>; 2]>,
     }
 
-    impl<'a> Contacts<'a> {
+    impl Contacts {
         /// `shapes`: one for each body, the last of which is held.
-        fn new(shapes: &'a [Shape], count: usize, state: &mut u64) -> Self {
+        fn new(shapes: &[Shape], count: usize, state: &mut u64) -> Self {
             let mut world = World::new(WorldOptions::default()).unwrap();
             for (n, shape) in shapes.iter().enumerate() {
                 let orientation = DQuat::from_scaled_axis(vector(state) * 3.0);
@@ -219,13 +219,13 @@ mod tests {
 
     /// The same computation without rows: the oracle.
     struct Plain<'c> {
-        contacts: &'c Contacts<'c>,
+        contacts: &'c Contacts,
         masses: Vec<RigidVelocity>,
         modal: Vec<Vec<f64>>,
     }
 
     impl<'c> Plain<'c> {
-        fn new(contacts: &'c Contacts<'c>) -> Self {
+        fn new(contacts: &'c Contacts) -> Self {
             let modal = contacts.world.bodies.iter().map(|body| vec![0.0; body.q.len()]).collect();
             Self { contacts, masses: contacts.masses.clone(), modal }
         }

@@ -117,11 +117,7 @@ pub(crate) struct GroundOptions {
 
 impl GroundContacts {
     /// Lists the vertices within the skin in the body's current state, and their gaps.
-    pub(crate) fn update(
-        &mut self,
-        body: &mut Body<'_>,
-        options: &GroundOptions,
-    ) -> Result<(), DynamicsError> {
+    pub(crate) fn update(&mut self, body: &mut Body, options: &GroundOptions) -> Result<(), DynamicsError> {
         let GroundOptions { ground, skin } = *options;
         let rotation = body.rotation();
         let local = rotation.transpose() * ground.normal;
@@ -129,7 +125,7 @@ impl GroundContacts {
         if is_same && self.search_limit.is_some() {
             return Ok(());
         }
-        let shape = body.shape();
+        let shape = &body.shape().clone();
         let displacement_travel = ground.normal.dot(body.rigid.position - self.position).abs();
         let near_travel =
             displacement_travel + self.near_reach.travel([self.normal, local], [&self.q, &body.q]);
@@ -183,7 +179,7 @@ impl GroundContacts {
     /// Lists all vertices below `ground.height + skin + near`, or none if the body's AABB is above.
     fn search(
         &mut self,
-        body: &mut Body<'_>,
+        body: &mut Body,
         ground: &Ground,
         skin: f64,
         near: f64,

@@ -28,7 +28,7 @@ pub(crate) fn rest_position(shape: &Shape, vertex: u32) -> DVec3 {
 
 impl GroundPoint {
     /// Returns the point of a vertex at the beginning of the step.
-    pub fn at(vertex: u32, body: &Body<'_>, ground: &Ground, rigid: &RigidContacts) -> Self {
+    pub fn at(vertex: u32, body: &Body, ground: &Ground, rigid: &RigidContacts) -> Self {
         let modes = body.shape().model().modes().of_vertex(vertex);
         let point = rest_position(body.shape(), vertex) + displacement(modes, &body.start.q);
         let start = &body.start.rigid;

@@ -17,7 +17,7 @@ const MIN_DISTANCE: f64 = 0.05;
 
 impl GroundContacts {
     /// Begins a step: keeps the points that bore the body in the last one.
-    pub(crate) fn begin(&mut self, body: &Body<'_>, ground: &Ground, rigid: &RigidContacts) {
+    pub(crate) fn begin(&mut self, body: &Body, ground: &Ground, rigid: &RigidContacts) {
         self.count = self.touching.len();
         self.touching_at_start.clone_from(&self.touching);
         self.points.retain(|point| point.normal_impulse > 0.0);
@@ -25,7 +25,7 @@ impl GroundContacts {
     }
 
     /// Computes the geometry of all points at the beginning of the step.
-    pub(crate) fn locate(&mut self, body: &Body<'_>, ground: &Ground, rigid: &RigidContacts) {
+    pub(crate) fn locate(&mut self, body: &Body, ground: &Ground, rigid: &RigidContacts) {
         for point in &mut self.points {
             let GroundPoint { normal_impulse, friction_impulse, .. } = *point;
             *point = GroundPoint {
@@ -38,7 +38,7 @@ impl GroundContacts {
 
     /// Makes points of the lowest vertices that sink in the motion to the current state, which was the last one to be
     /// updated. Returns whether there are any.
-    pub(crate) fn add_sinking(&mut self, body: &Body<'_>, ground: &Ground, rigid: &RigidContacts) -> bool {
+    pub(crate) fn add_sinking(&mut self, body: &Body, ground: &Ground, rigid: &RigidContacts) -> bool {
         let mut sinking: Vec<(u32, f64)> = Vec::new();
         for &(vertex, gap) in &self.touching {
             if gap < rigid.min_gap() && gap < self.start_gap(vertex) && self.find(vertex).is_err() {

@@ -1,5 +1,7 @@
 //! One implicit step of reduced nonlinear forces, solved by Broyden's and Newton's methods.
 
+use std::sync::Arc;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::lu::partial_pivoting::inverse::{inverse, inverse_scratch};
@@ -64,8 +66,8 @@ pub struct NewmarkBuffers {
 /// changes little within a few steps. Where it converges slowly, an iteration of Newton's method with a line search
 /// follows.
 #[derive(Clone, Debug)]
-pub(crate) struct ImplicitStep<'a> {
-    energy: &'a ElasticEnergy,
+pub(crate) struct ImplicitStep {
+    energy: Arc<ElasticEnergy>,
     /// Damping matrix C, r x r, row after row.
     damping: Vec<f64>,
     /// The q, the step and the rule for which the derivative of the residual was computed last.
@@ -75,9 +77,9 @@ pub(crate) struct ImplicitStep<'a> {
     inverse: Vec<f64>,
 }
 
-impl<'a> ImplicitStep<'a> {
+impl ImplicitStep {
     /// Creates the solver; `damping` is the matrix C (r x r), and `step` the usual step (s).
-    pub fn new(energy: &'a ElasticEnergy, damping: Vec<f64>, step: f64) -> Self {
+    pub fn new(energy: Arc<ElasticEnergy>, damping: Vec<f64>, step: f64) -> Self {
         let rest = vec![0.0; energy.rank()];
         let linearised_for = (Rule::Newmark, step);
         let mut solver =

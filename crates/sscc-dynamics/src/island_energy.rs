@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 use crate::World;
 use crate::body::Body;
 
-impl World<'_> {
+impl World {
     /// Charges the change of energy by the corrections of this step to energy budgets. Velocities are scaled down where
     /// the budgets are too small. `before` holds the energies of each corrected body at the beginning of the step and at its
     /// end without the correction. The forces of these bodies are known.
@@ -54,7 +54,7 @@ impl World<'_> {
 /// Removes an amount of kinetic energy from bodies, as far as they have it. `keeps_momenta` demands that momentum and
 /// angular momentum of all of them together stay, as long as this is possible. Returns the energy removed.
 fn remove_kinetic_energy(
-    bodies: &mut [Body<'_>],
+    bodies: &mut [Body],
     island: &[(usize, usize)],
     amount: f64,
     keeps_momenta: bool,
@@ -78,7 +78,7 @@ struct CommonMotion {
 }
 
 /// Returns the rigid motion with the momenta of all bodies together.
-fn common_motion(bodies: &[Body<'_>], island: &[(usize, usize)]) -> CommonMotion {
+fn common_motion(bodies: &[Body], island: &[(usize, usize)]) -> CommonMotion {
     let all = || island.iter().map(|(_, n)| (&bodies[*n].rigid, bodies[*n].shape().mass().mass));
     let mass: f64 = all().map(|(_, mass)| mass).sum();
     let center = all().map(|(rigid, mass)| rigid.position * mass).sum::<DVec3>() / mass;
@@ -96,11 +96,10 @@ fn common_motion(bodies: &[Body<'_>], island: &[(usize, usize)]) -> CommonMotion
 
 /// Scales the velocities relative to a common motion, so that they lose this amount of kinetic energy, or all of it.
 /// Returns the energy removed.
-fn scale(bodies: &mut [Body<'_>], island: &[(usize, usize)], amount: f64, common: CommonMotion) -> f64 {
-    let kinetic =
-        |bodies: &[Body<'_>]| -> f64 { island.iter().map(|(_, n)| bodies[*n].kinetic_energy()).sum() };
+fn scale(bodies: &mut [Body], island: &[(usize, usize)], amount: f64, common: CommonMotion) -> f64 {
+    let kinetic = |bodies: &[Body]| -> f64 { island.iter().map(|(_, n)| bodies[*n].kinetic_energy()).sum() };
     let before = kinetic(bodies);
-    let of = |body: &Body<'_>| {
+    let of = |body: &Body| {
         let (rigid, mass) = (&body.rigid, body.shape().mass().mass);
         let velocity = common.velocity + common.angular_velocity.cross(rigid.position - common.center);
         (velocity * mass, rigid.inertia() * common.angular_velocity)
@@ -145,10 +144,9 @@ mod tests {
         Shape::new(model, certificates, elasticity, mass).unwrap()
     }
 
-    fn momenta(bodies: &[Body<'_>]) -> [DVec3; 2] {
+    fn momenta(bodies: &[Body]) -> [DVec3; 2] {
         let linear = bodies.iter().map(|body| body.rigid.momentum).sum();
-        let own =
-            |body: &Body<'_>| body.rigid.angular_momentum + body.rigid.position.cross(body.rigid.momentum);
+        let own = |body: &Body| body.rigid.angular_momentum + body.rigid.position.cross(body.rigid.momentum);
         [linear, bodies.iter().map(own).sum()]
     }
 
@@ -168,7 +166,7 @@ mod tests {
             world.add(&shape, &start).unwrap();
         }
         let island = [(0, 0), (0, 1), (0, 2)];
-        let kinetic = |bodies: &[Body<'_>]| -> f64 { bodies.iter().map(Body::kinetic_energy).sum() };
+        let kinetic = |bodies: &[Body]| -> f64 { bodies.iter().map(Body::kinetic_energy).sum() };
         let (before, first) = (momenta(&world.bodies), kinetic(&world.bodies));
         let removed = remove_kinetic_energy(&mut world.bodies, &island, 0.5, true);
         assert!((removed - 0.5).abs() < 1e-12 && (first - kinetic(&world.bodies) - 0.5).abs() < 1e-12);

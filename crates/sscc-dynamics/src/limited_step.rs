@@ -33,7 +33,7 @@ const MIN_SHARE: f64 = 1e-3;
 /// Maximum number of times for which bodies are moved a share of their way; then they keep their place.
 const MAX_SHORTENINGS: usize = 4;
 
-impl<'a> World<'a> {
+impl World {
     /// Corrects the end of this step until no two bodies intersect on the way to it, and none sinks into the ground.
     pub(crate) fn limit_step(
         &mut self,
@@ -128,7 +128,7 @@ impl<'a> World<'a> {
         if is_uncertain {
             observer.enter(Phase::SelfCollision);
         }
-        let find = |(body, moves): (&mut Body<'_>, &bool)| {
+        let find = |(body, moves): (&mut Body, &bool)| {
             if *moves { body.find_own_impacts() } else { Ok(()) }
         };
         match &mut self.bodies[..] {
@@ -155,17 +155,15 @@ impl<'a> World<'a> {
         sinks.fill(false);
         let Some(options) = self.ground_options() else { return Ok(()) };
         let rigid = self.rigid_contacts;
-        let find = |((moves, sinks), (body, contacts)): (
-            (&bool, &mut bool),
-            (&mut Body<'a>, &mut GroundContacts),
-        )| {
-            if *moves {
-                contacts.update(body, &options)?;
-                let is_near = makes_points && contacts.add_sinking(body, &options.ground, &rigid);
-                *sinks = is_near || contacts.sinks_after().is_some();
-            }
-            Ok(())
-        };
+        let find =
+            |((moves, sinks), (body, contacts)): ((&bool, &mut bool), (&mut Body, &mut GroundContacts))| {
+                if *moves {
+                    contacts.update(body, &options)?;
+                    let is_near = makes_points && contacts.add_sinking(body, &options.ground, &rigid);
+                    *sinks = is_near || contacts.sinks_after().is_some();
+                }
+                Ok(())
+            };
         match (&mut self.bodies[..], &mut self.ground_contacts[..]) {
             ([body], [contacts]) => find(((&moves[0], &mut sinks[0]), (body, contacts))),
             (bodies, contacts) => {

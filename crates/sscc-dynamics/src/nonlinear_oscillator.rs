@@ -1,6 +1,8 @@
 //! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5), with a rule that conserves
 //! energy, and shorter steps, where Newmark's method fails.
 
+use std::sync::Arc;
+
 use sscc_solid::Stiffness;
 
 use crate::elastic_energy::{ElasticEnergy, Evaluation};
@@ -26,20 +28,20 @@ const MAX_HALVINGS: u32 = 10;
 /// solve, are solved with the mean force of the step (`implicit_step.rs`), which adds none. A step without a solution is
 /// halved, again and again.
 #[derive(Clone, Debug)]
-pub struct NonlinearOscillator<'a> {
-    energy: &'a ElasticEnergy,
+pub struct NonlinearOscillator {
+    energy: Arc<ElasticEnergy>,
     step: f64,
-    solver: ImplicitStep<'a>,
+    solver: ImplicitStep,
 }
 
-impl<'a> NonlinearOscillator<'a> {
+impl NonlinearOscillator {
     /// Creates the integrator with steps of `step` seconds. `stiffness` is that at rest.
     ///
     /// # Errors
     /// When the step is not positive, the damping is negative or not finite, or stiffness and energy have different
     /// ranks.
     pub fn new(
-        energy: &'a ElasticEnergy,
+        energy: Arc<ElasticEnergy>,
         stiffness: &Stiffness,
         damping: Damping,
         step: f64,
@@ -54,7 +56,7 @@ impl<'a> NonlinearOscillator<'a> {
         }
         let mut damping: Vec<f64> = stiffness.entries().iter().map(|k| given.stiffness * k).collect();
         (0..r).for_each(|k| damping[k * (r + 1)] += given.mass);
-        Ok(Self { energy, step, solver: ImplicitStep::new(energy, damping, step) })
+        Ok(Self { step, solver: ImplicitStep::new(Arc::clone(&energy), damping, step), energy })
     }
 
     /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration
@@ -208,8 +210,9 @@ mod tests {
         let period = std::f64::consts::TAU / lambda.sqrt();
         let step = period / 200.0;
         let forces = forces(lambda, 90.0, 0.0);
-        let energy = ElasticEnergy::new(&forces).unwrap();
-        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, step).unwrap();
+        let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+        let mut oscillator =
+            NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), NONE, step).unwrap();
         let (mut q, mut v) = (vec![1e-3, 0.0], vec![0.0, 0.0]);
         let buffers = &mut NewmarkBuffers::default();
         let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -229,8 +232,9 @@ mod tests {
     fn energy_stays_bounded_without_damping_and_falls_with_it() {
         let forces = forces(40.0, 90.0, 3e4);
         for (damping, grows) in [(NONE, false), (Damping { mass: 0.1, stiffness: 1e-3 }, true)] {
-            let energy = ElasticEnergy::new(&forces).unwrap();
-            let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 2e-3).unwrap();
+            let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+            let mut oscillator =
+                NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), damping, 2e-3).unwrap();
             let (mut q, mut v) = (vec![0.2, -0.1], vec![0.0, 1.0]);
             let buffers = &mut NewmarkBuffers::default();
             let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -252,8 +256,9 @@ mod tests {
         let goal = [0.05, -0.02];
         let force = forces.at(&goal);
         let damping = Damping { mass: 10.0, stiffness: 0.0 };
-        let energy = ElasticEnergy::new(&forces).unwrap();
-        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), damping, 1e-2).unwrap();
+        let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+        let mut oscillator =
+            NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), damping, 1e-2).unwrap();
         let buffers = &mut NewmarkBuffers::default();
         let (mut q, mut v) = (vec![0.0; 2], vec![0.0; 2]);
         let mut a = oscillator.undamped_acceleration(&q, &force, buffers);
@@ -266,8 +271,9 @@ mod tests {
     #[test]
     fn modes_much_faster_than_the_step_are_solved() {
         let forces = forces(4e7, 9e5, 1e8);
-        let energy = ElasticEnergy::new(&forces).unwrap();
-        let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
+        let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+        let mut oscillator =
+            NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), NONE, 1e-3).unwrap();
         let buffers = &mut NewmarkBuffers::default();
         for speed in [5.0, 50.0] {
             let (mut q, mut v) = (vec![0.2, -0.1], vec![-speed, speed / 2.0]);
@@ -286,9 +292,10 @@ mod tests {
     #[test]
     fn steps_too_long_for_their_forces_add_no_energy() {
         let forces = forces(4e3, 9e3, 1e8);
-        let energy = ElasticEnergy::new(&forces).unwrap();
+        let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
         for speed in [5.0, 50.0, 500.0, 5000.0] {
-            let mut oscillator = NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
+            let mut oscillator =
+                NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), NONE, 1e-3).unwrap();
             let (mut q, mut v) = (vec![0.2, -0.1], vec![-speed, speed / 2.0]);
             let buffers = &mut NewmarkBuffers::default();
             let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -309,8 +316,8 @@ mod tests {
     fn a_new_oscillator_continues_with_the_same_bits() {
         for (soft, speed) in [(4e5, 5.0), (4e3, 50.0), (4e3, 500.0)] {
             let forces = forces(soft, 9e5, 1e8);
-            let energy = ElasticEnergy::new(&forces).unwrap();
-            let new = || NonlinearOscillator::new(&energy, forces.linear(), NONE, 1e-3).unwrap();
+            let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+            let new = || NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), NONE, 1e-3).unwrap();
             let (mut oscillator, buffers) = (new(), &mut NewmarkBuffers::default());
             let (mut q, mut v) = (vec![0.2, -0.1], vec![-speed, speed / 2.0]);
             let mut a = oscillator.undamped_acceleration(&q, &[0.0; 2], buffers);
@@ -329,8 +336,9 @@ mod tests {
     #[test]
     fn invalid_arguments_and_steps_are_refused() {
         let forces = forces(1.0, 1.0, 1.0);
-        let energy = ElasticEnergy::new(&forces).unwrap();
-        let new = |damping, step| NonlinearOscillator::new(&energy, forces.linear(), damping, step);
+        let energy = Arc::new(ElasticEnergy::new(&forces).unwrap());
+        let new =
+            |damping, step| NonlinearOscillator::new(Arc::clone(&energy), forces.linear(), damping, step);
         assert!(matches!(new(NONE, 0.0), Err(DynamicsError::Step { .. })));
         let wrong = Damping { mass: f64::NAN, stiffness: 0.0 };
         assert!(matches!(new(wrong, 1.0), Err(DynamicsError::Damping { .. })));

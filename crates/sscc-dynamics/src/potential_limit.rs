@@ -17,7 +17,7 @@ const MAX_HALVINGS: u32 = 4;
 /// Bound of the rounding errors of sums of energies, as a share of these.
 const ENERGY_ROUNDING: f64 = 1e-9;
 
-impl World<'_> {
+impl World {
     /// Moves corrected islands a share of their way until their potential energy is at most their energy without contacts,
     /// plus their energy budgets.
     pub(crate) fn limit_potential(
@@ -49,7 +49,7 @@ impl World<'_> {
         if energies.iter().all(Option::is_none) {
             return;
         }
-        let update = |newmark: &mut NewmarkBuffers, (body, before): (&mut Body<'_>, &Option<_>)| {
+        let update = |newmark: &mut NewmarkBuffers, (body, before): (&mut Body, &Option<_>)| {
             if before.is_some() {
                 body.update_forces(newmark);
             }

@@ -3,7 +3,7 @@
 use crate::World;
 use crate::step_buffers::StepBuffers;
 
-impl World<'_> {
+impl World {
     /// Sets the minimum gap at the end of this step of all rigid contacts and points on the ground.
     pub(crate) fn recover_gaps(&mut self, buffers: &mut StepBuffers) {
         let rigid = self.rigid_contacts;

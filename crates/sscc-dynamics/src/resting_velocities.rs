@@ -59,7 +59,7 @@ struct Load {
     friction_impulse: DVec3,
 }
 
-impl World<'_> {
+impl World {
     /// Stops the relative motion of all points that the corrections of this step hold apart.
     pub(crate) fn stop_contacts(&mut self) {
         let is_loaded = |(_, one): &(usize, &Correction)| one.normal_impulse > 0.0;
@@ -105,7 +105,7 @@ impl World<'_> {
                 }
                 local = rigid.rotation.transpose() * impulse;
             }
-            let modes = load.source.modes(n, body, &self.contacts.list);
+            let modes = load.source.modes(n, &body.shape, &self.contacts.list);
             for ((v, u), weight) in body.v.iter_mut().zip(modes).zip(&body.step_weights) {
                 *v += weight * u.dot(local);
             }
@@ -147,7 +147,7 @@ impl World<'_> {
                     Source::Vertex(vertex) => rest_position(body.shape(), vertex),
                     Source::Contact(contact) => contacts[contact as usize].rest[n],
                 };
-                body.point(rest, source.modes(n, body, contacts))
+                body.point(rest, source.modes(n, &body.shape, contacts))
             });
             let (count, sum) = points.fold((0.0, DVec3::ZERO), |(count, sum), x| (count + 1.0, sum + x));
             for Side { n, body, .. } in sides(bodies) {
@@ -156,7 +156,7 @@ impl World<'_> {
         }
         for Side { n, body, sign } in sides(bodies) {
             let (rigid, body) = (&velocities[body], &self.bodies[body]);
-            let modes = source.modes(n, body, contacts);
+            let modes = source.modes(n, &body.shape, contacts);
             let modal = displacement(modes, &body.v);
             if is_within {
                 load.inverse_mass += modal_inverse_mass(modes, &body.step_weights);
@@ -170,7 +170,7 @@ impl World<'_> {
             body,
             sign,
             arm: (!is_within).then_some(load.arms[n]),
-            modes: source.modes(n, &self.bodies[body], contacts),
+            modes: source.modes(n, self.bodies[body].shape(), contacts),
         });
         rows.push(normal, points);
         load

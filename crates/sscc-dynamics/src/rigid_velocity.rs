@@ -17,12 +17,12 @@ pub(crate) struct RigidVelocity {
 }
 
 impl RigidVelocity {
-    pub fn of(body: &Body<'_>) -> Self {
+    pub fn of(body: &Body) -> Self {
         Self::at(body, &body.rigid)
     }
 
     /// Returns the velocities and inverse masses of a body with this motion.
-    pub fn at(body: &Body<'_>, rigid: &RigidMotion) -> Self {
+    pub fn at(body: &Body, rigid: &RigidMotion) -> Self {
         let rotation = DMat3::from_quat(rigid.orientation);
         if !body.is_free() {
             return Self {

@@ -8,7 +8,7 @@ use crate::contact_constraint::Source;
 /// a minute (docs/notes/2026-11-23-contacts-at-rest.md).
 const ROLLING_FRICTION: f64 = 0.05;
 
-impl World<'_> {
+impl World {
     /// Lowers the angular momentum of each free body by at most the arm times its normal impulses from the ground.
     pub(crate) fn resist_rolling(&mut self) {
         for constraint in &self.corrections.list {

@@ -11,8 +11,8 @@ use crate::body::Body;
 ///
 /// # Errors
 /// When q has a wrong length or a number that is not finite.
-pub(crate) fn constrain_to_root(body: &mut Body<'_>) -> Result<(), DynamicsError> {
-    let certificates = body.shape().certificates();
+pub(crate) fn constrain_to_root(body: &mut Body) -> Result<(), DynamicsError> {
+    let certificates = body.shape.certificates();
     if certificates.norm(&body.q) < certificates.root_radius() {
         return Ok(());
     }

@@ -1,5 +1,7 @@
 //! Shape: the data that all bodies of one kind share.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
 use sscc_solid::{Elasticity, MassProperties};
@@ -8,14 +10,17 @@ use crate::{DepthField, DynamicsError, ElasticEnergy};
 
 /// A model with its certificates and the data of its motion, shared by any number of bodies. The modes must be
 /// mass-orthonormal; those of free bodies must also be orthogonal to rigid motions. The crate `sscc-modes` computes
-/// such modes.
+/// such modes. Clones share one memory.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct Shape(Arc<Contents>);
+
+#[derive(Clone, Debug)]
+struct Contents {
     model: ReducedModel,
     certificates: Certificates,
     elasticity: Elasticity,
     /// The energy of nonlinear forces.
-    elastic_energy: Option<ElasticEnergy>,
+    elastic_energy: Option<Arc<ElasticEnergy>>,
     mass: MassProperties,
     moments: Vec<DVec3>,
     depth: DepthField,
@@ -48,7 +53,7 @@ impl Shape {
         }
         let elastic_energy = match &elasticity {
             Elasticity::Linear(_) => None,
-            Elasticity::Nonlinear(forces) => Some(ElasticEnergy::new(forces)?),
+            Elasticity::Nonlinear(forces) => Some(Arc::new(ElasticEnergy::new(forces)?)),
         };
         let depth = DepthField::new(model.mesh());
         let rest = model.mesh().rest_positions();
@@ -57,17 +62,18 @@ impl Shape {
         for (i, u) in model.modes().displacements().iter().enumerate() {
             reach[i % r] = reach[i % r].max(u.length());
         }
-        Ok(Self {
+        let moments = vec![DVec3::ZERO; r];
+        Ok(Self(Arc::new(Contents {
             model,
             certificates,
             elasticity,
             elastic_energy,
             mass,
-            moments: vec![DVec3::ZERO; r],
+            moments,
             depth,
             radius,
             reach,
-        })
+        })))
     }
 
     /// Returns the shape with a moment for each mode (r vectors): a uniform acceleration g exerts the generalised force
@@ -76,55 +82,60 @@ impl Shape {
     /// # Errors
     /// When the number of moments is not r.
     pub fn with_moments(mut self, moments: Vec<DVec3>) -> Result<Self, DynamicsError> {
-        if moments.len() != self.model.rank() {
-            return Err(DynamicsError::Rank { found: moments.len(), rank: self.model.rank() });
+        if moments.len() != self.0.model.rank() {
+            return Err(DynamicsError::Rank { found: moments.len(), rank: self.0.model.rank() });
         }
-        self.moments = moments;
+        Arc::make_mut(&mut self.0).moments = moments;
         Ok(self)
+    }
+
+    /// Whether two shapes are clones of each other.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
     }
 
     /// Returns mesh and modes.
     pub fn model(&self) -> &ReducedModel {
-        &self.model
+        &self.0.model
     }
 
     /// Returns the certificates of the model.
     pub fn certificates(&self) -> &Certificates {
-        &self.certificates
+        &self.0.certificates
     }
 
     /// Returns the elastic forces.
     pub fn elasticity(&self) -> &Elasticity {
-        &self.elasticity
+        &self.0.elasticity
     }
 
     /// Returns the energy of nonlinear forces; None for linear forces.
-    pub fn elastic_energy(&self) -> Option<&ElasticEnergy> {
-        self.elastic_energy.as_ref()
+    pub fn elastic_energy(&self) -> Option<&Arc<ElasticEnergy>> {
+        self.0.elastic_energy.as_ref()
     }
 
     /// Returns the mass properties at rest.
     pub fn mass(&self) -> &MassProperties {
-        &self.mass
+        &self.0.mass
     }
 
     /// Returns the integral of each mode over the mass (r vectors).
     pub fn moments(&self) -> &[DVec3] {
-        &self.moments
+        &self.0.moments
     }
 
     /// Returns the material depth of the rest pose.
     pub fn depth(&self) -> &DepthField {
-        &self.depth
+        &self.0.depth
     }
 
     /// Returns the maximum distance of a vertex from the centre of mass, at rest (model unit).
     pub fn radius(&self) -> f64 {
-        self.radius
+        self.0.radius
     }
 
     /// Returns the maximum displacement of a vertex by a unit of each mode (r numbers, model unit).
     pub fn reach(&self) -> &[f64] {
-        &self.reach
+        &self.0.reach
     }
 }

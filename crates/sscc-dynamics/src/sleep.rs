@@ -6,7 +6,7 @@ use crate::{DynamicsError, World};
 /// Distance, as a share of a body's radius, within which all of its points stay while it is at rest.
 const SLEEP_DISTANCE: f64 = 2e-2;
 
-impl World<'_> {
+impl World {
     /// Joins bodies in contact to islands.
     pub(crate) fn join_islands(&mut self) {
         self.islands.reset(self.bodies.len());
@@ -60,7 +60,7 @@ impl World<'_> {
             let body = &mut self.bodies[n];
             let distance = sleep.distance.unwrap_or_else(|| SLEEP_DISTANCE * body.shape().radius());
             if !body.is_asleep() {
-                let (shape, step) = (body.shape(), self.options.step);
+                let (shape, step) = (&body.shape, self.options.step);
                 let bend_bound = |change: &[f64]| body.posed.displacement_bound(change);
                 body.rest.update(shape, &body.rigid, &body.q, (step, distance), bend_bound);
             }

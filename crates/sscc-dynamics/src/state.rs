@@ -27,7 +27,7 @@ const RIGID: usize = 13 + 11 + 1;
 /// a vertex for the first triangle.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 10;
 
-impl World<'_> {
+impl World {
     /// Returns the current state.
     pub fn state(&self) -> State {
         let mut numbers = Vec::new();
@@ -191,6 +191,6 @@ fn index(x: f64, count: usize) -> Option<u32> {
 }
 
 /// Returns the count of numbers of a body.
-fn numbers_of(body: &Body<'_>) -> usize {
+fn numbers_of(body: &Body) -> usize {
     2 * body.q.len() + body.v.len() + body.a.len() + RIGID
 }

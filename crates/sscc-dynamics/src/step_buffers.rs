@@ -33,7 +33,7 @@ pub(crate) struct StepBuffers {
 
 impl StepBuffers {
     /// Begins a step, in which all bodies that are awake move.
-    pub fn begin(&mut self, bodies: &[Body<'_>]) {
+    pub fn begin(&mut self, bodies: &[Body]) {
         self.moves.clear();
         self.moves.extend(bodies.iter().map(|body| !body.is_asleep()));
         self.sinks.clear();

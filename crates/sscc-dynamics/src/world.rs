@@ -23,9 +23,9 @@ use crate::{
 
 /// Bodies with their ground, contacts and options. The same steps give the same bits in every run and for any number of
 /// threads.
-pub struct World<'a> {
+pub struct World {
     pub(crate) options: WorldOptions,
-    pub(crate) bodies: Vec<Body<'a>>,
+    pub(crate) bodies: Vec<Body>,
     /// Contacts of each body with the ground.
     pub(crate) ground_contacts: Vec<GroundContacts>,
     pub(crate) body_collisions: BodyCollisions,
@@ -64,7 +64,7 @@ const ENERGY_ROUNDING: f64 = 1e-9;
 /// seconds, and impacts hardly change.
 const PRELOAD_ADAPTATION: f64 = 1.0 / 300.0;
 
-impl<'a> World<'a> {
+impl World {
     /// Creates a world without bodies.
     ///
     /// # Errors
@@ -95,8 +95,8 @@ impl<'a> World<'a> {
     ///
     /// # Errors
     /// When the initial state is invalid: see [`Start`].
-    pub fn add(&mut self, shape: &'a Shape, start: &Start) -> Result<usize, DynamicsError> {
-        let same_shape = self.bodies.iter().find(|body| std::ptr::eq(body.shape(), shape));
+    pub fn add(&mut self, shape: &Shape, start: &Start) -> Result<usize, DynamicsError> {
+        let same_shape = self.bodies.iter().find(|body| body.shape().is_same(shape));
         let body = Body::new(shape, start, &self.options, same_shape)?;
         self.start.energy += body.energy();
         self.start.potential += body.potential(self.options.gravity);
@@ -112,7 +112,7 @@ impl<'a> World<'a> {
     }
 
     /// Returns all bodies, in the order of their numbers.
-    pub fn bodies(&self) -> &[Body<'a>] {
+    pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
 
@@ -254,7 +254,7 @@ impl<'a> World<'a> {
         if self.options.response == Response::Constrain {
             return Ok(());
         }
-        let detect = |body: &mut Body<'_>| if body.is_asleep() { Ok(()) } else { body.detect() };
+        let detect = |body: &mut Body| if body.is_asleep() { Ok(()) } else { body.detect() };
         match &mut self.bodies[..] {
             [body] => detect(body),
             bodies => first_error(bodies.par_iter_mut().map(detect).collect()),
@@ -265,7 +265,7 @@ impl<'a> World<'a> {
     fn find_ground_contacts(&mut self) -> Result<(), DynamicsError> {
         let Some(options) = self.ground_options() else { return Ok(()) };
         let rigid = self.rigid_contacts;
-        let update = |(body, contacts): (&mut Body<'_>, &mut GroundContacts)| {
+        let update = |(body, contacts): (&mut Body, &mut GroundContacts)| {
             if !body.is_asleep() {
                 contacts.update(body, &options)?;
                 contacts.begin(body, &options.ground, &rigid);
@@ -329,7 +329,7 @@ impl<'a> World<'a> {
     /// Advances all bodies that are awake by one step, after their contacts are solved.
     fn advance_bodies(&mut self) -> Result<(), DynamicsError> {
         let WorldOptions { gravity, step, response, .. } = self.options;
-        let advance = |buffers: &mut NewmarkBuffers, body: &mut Body<'a>| {
+        let advance = |buffers: &mut NewmarkBuffers, body: &mut Body| {
             if body.is_asleep() {
                 return Ok(());
             }

@@ -18,7 +18,7 @@ fn rigid_block(counts: [i32; 3], size: f64, mass: f64) -> Shape {
 }
 
 /// The number of intersecting pairs of triangles of different bodies, by brute force.
-fn intersections(world: &World<'_>) -> usize {
+fn intersections(world: &World) -> usize {
     let placed: Vec<Vec<[DVec3; 3]>> = world
         .bodies()
         .iter()
@@ -74,7 +74,7 @@ fn a_fast_body_does_not_pass_through_a_thin_plate_in_one_step() {
 }
 
 /// A stack of three elastic blocks and a rigid one on top.
-fn stack<'a>(blocks: &'a [Shape; 2]) -> World<'a> {
+fn stack(blocks: &[Shape; 2]) -> World {
     let mut world = World::new(WorldOptions::default()).unwrap();
     for n in 0..4 {
         let start = Start {
@@ -145,7 +145,7 @@ fn a_stack_falls_asleep_and_wakes_when_hit() {
 }
 
 /// The lowest height of all vertices of a world.
-fn lowest(world: &World<'_>) -> f64 {
+fn lowest(world: &World) -> f64 {
     let heights = world.bodies().iter().flat_map(|body| {
         let positions = body.shape().model().positions(body.q()).unwrap();
         positions.into_iter().map(|x| body.pose().apply(x).y).collect::<Vec<_>>()

@@ -19,7 +19,7 @@ fn space(step: f64) -> WorldOptions {
     WorldOptions { step, gravity: DVec3::ZERO, ground: None, ..WorldOptions::default() }
 }
 
-fn momenta(world: &World<'_>) -> (DVec3, DVec3) {
+fn momenta(world: &World) -> (DVec3, DVec3) {
     world.bodies().iter().fold((DVec3::ZERO, DVec3::ZERO), |(linear, angular), body| {
         let rigid = body.rigid();
         (linear + rigid.momentum, angular + rigid.angular_momentum + rigid.position.cross(rigid.momentum))
@@ -120,7 +120,7 @@ fn colliding_bodies_conserve_momenta() {
 }
 
 /// A world with a fork whose two arms swing towards each other.
-fn clapping<'a>(shape: &'a Shape, options: WorldOptions, damping: Damping) -> World<'a> {
+fn clapping(shape: &Shape, options: WorldOptions, damping: Damping) -> World {
     // Selects the mode that changes the distance of the tips most.
     let (p, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
     let tips = |x: f64| (0..p.len()).filter(move |v| p[*v].y > 0.59 && (p[*v].x - x).abs() < 1e-9);

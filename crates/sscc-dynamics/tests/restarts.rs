@@ -14,7 +14,7 @@ fn material(youngs_modulus: f64) -> Material {
 }
 
 /// Restores each state of a world in another one, and compares the next step. Returns the number of impulses.
-fn compare_each_step<'a>(make: impl Fn() -> World<'a>, steps: usize) -> usize {
+fn compare_each_step(make: impl Fn() -> World, steps: usize) -> usize {
     let (mut world, mut other, mut impulses) = (make(), make(), 0);
     for step in 0..steps {
         other.restore(&world.state()).unwrap_or_else(|error| panic!("step {step}: {error}"));

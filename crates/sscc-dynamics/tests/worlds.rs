@@ -21,12 +21,12 @@ fn shapes() -> [Shape; 2] {
 }
 
 /// A world of five bodies that fall onto each other.
-fn heap<'a>(shapes: &'a [Shape; 2], detection: Detection) -> World<'a> {
+fn heap(shapes: &[Shape; 2], detection: Detection) -> World {
     pile(shapes, detection, 0.35)
 }
 
 /// A world of five bodies, each higher than the last by `rise`.
-fn pile<'a>(shapes: &'a [Shape; 2], detection: Detection, rise: f64) -> World<'a> {
+fn pile(shapes: &[Shape; 2], detection: Detection, rise: f64) -> World {
     let mut world = World::new(WorldOptions { step: 2e-3, ..WorldOptions::default() }).unwrap();
     for n in 0..5 {
         let start = Start {

@@ -37,8 +37,8 @@ fn main() {
         world.add(&model.shape, &start).unwrap();
     }
     world.check_start().unwrap();
-    let mut queries: Vec<Query<'_>> = Vec::new();
-    let mut posed: Vec<PosedShape<'_>> = Vec::new();
+    let mut queries: Vec<Query> = Vec::new();
+    let mut posed: Vec<PosedShape> = Vec::new();
     for body in world.bodies() {
         let shape = body.shape();
         queries.push(Query::new(shape.model(), shape.certificates()).unwrap());
@@ -74,8 +74,7 @@ fn main() {
                     }
                 }
             }
-            let of =
-                |(query, body): (&mut Query<'_>, &sscc_dynamics::Body<'_>)| query.count(body.q()).unwrap();
+            let of = |(query, body): (&mut Query, &sscc_dynamics::Body)| query.count(body.q()).unwrap();
             let within: usize = queries.iter_mut().zip(world.bodies()).map(of).sum();
             let found = [pairs.len(), within];
             for n in 0..2 {

@@ -36,7 +36,7 @@ impl ZeroRadius {
         if certificates.root_radius() > 0.0 {
             return Ok(None);
         }
-        let mut query = Query::new(model, certificates)?.cancelled_by(progress);
+        let mut query = Query::new(model, certificates)?.cancelled_by(progress.cancel_token().cloned());
         let center = certificates.center();
         let mut others = query.discrete(center)?.to_vec();
         others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());

@@ -50,7 +50,7 @@ struct Row {
 }
 
 fn rows(
-    query: &mut Query<'_>,
+    query: &mut Query,
     requests: &RowQueries<'_>,
     mut last: impl FnMut(usize) -> bool,
 ) -> Result<Vec<Row>, SimError> {

@@ -7,10 +7,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Barrier, LazyLock, Mutex};
+use std::sync::{Arc, Barrier, LazyLock, Mutex};
 use std::thread;
 
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 use sscc_sim::{FinishedRun, Outputs, Request, SimError, Stage, Watch, simulate};
 use tempfile::TempDir;
 
@@ -76,17 +76,19 @@ fn request(out: &Path) -> Request {
 
 /// Cancels after a number of steps, and records stages and notes.
 struct Watched {
-    cancel_at: usize,
-    done: AtomicUsize,
+    token: CancelToken,
+    done: Arc<AtomicUsize>,
     stages: Mutex<Vec<Stage>>,
     notes: Mutex<Vec<String>>,
 }
 
 impl Watched {
     fn cancelling_at(steps: usize) -> Self {
+        let done = Arc::new(AtomicUsize::new(0));
+        let steps_done = Arc::clone(&done);
         Self {
-            cancel_at: steps,
-            done: AtomicUsize::new(0),
+            token: CancelToken::when(move || steps_done.load(Ordering::Relaxed) >= steps),
+            done,
             stages: Mutex::default(),
             notes: Mutex::default(),
         }
@@ -101,8 +103,8 @@ impl Progress for Watched {
         }
     }
 
-    fn is_cancelled(&self) -> bool {
-        self.done.load(Ordering::Relaxed) >= self.cancel_at
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.token)
     }
 }
 

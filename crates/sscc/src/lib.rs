@@ -34,7 +34,27 @@
 //! ```
 //!
 //! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`hierarchy::Hierarchy`] and
-//! [`Certificates`]; a [`Query`] reads both. This crate reads no files, knows no clock and prints nothing.
+//! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and nothing has a lifetime: keep
+//! queries where they are used. This crate reads no files, knows no clock and prints nothing. Positions are vectors of
+//! [`glam`], which it re-exports.
+//!
+//! # Any mesh
+//!
+//! A [`Detector`] needs no modes: it answers for any positions of a mesh.
+//!
+//! ```
+//! use sscc::glam::DVec3;
+//! use sscc::{Detector, TriMesh};
+//!
+//! # fn main() -> Result<(), sscc::Error> {
+//! let rest = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+//! let mut detector = Detector::new(&TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]])?);
+//! assert!(detector.discrete(&rest)?.is_empty());
+//! let flat: Vec<DVec3> = rest.iter().map(|x| x.with_z(0.0)).collect();
+//! assert_eq!(detector.discrete(&flat)?, [(0, 1)]);
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Guarantees
 //!
@@ -46,6 +66,8 @@
 //!
 //! | question | method |
 //! | --- | --- |
+//! | Which triangles of any mesh collide at given positions, or between two sets of them? | [`Detector::discrete`], [`Detector::continuous`] |
+//! | Which triangles of two meshes collide? | [`Detector::against`], [`Detector::continuous_against`] |
 //! | Which triangles collide at q? | [`Query::discrete`] |
 //! | Does any pair of triangles collide at q? | [`Query::first`], which stops at the first pair |
 //! | Which pairs collide at q, at most n? | [`Query::discrete_at_most`] |
@@ -197,24 +219,13 @@
 //! # Batches, threads, cancelling
 //!
 //! A query owns its memory and serves one thread; clone it for another, or use [`Query::batch`]. Certificates and batches
-//! take a number of threads (none: all cores), and are the same for any number. Long work reports to a [`Progress`], which
-//! may cancel it; [`Query::cancelled_by`] makes a single query cancellable. The `Progress` `()` does neither.
+//! take a number of threads (none: all cores), and are the same for any number. Long work reports to a [`Progress`]. A
+//! [`CancelToken`] cancels it, or with [`Query::cancelled_by`] a single query. The `Progress` `()` does neither.
 //!
 //! ```
 //! # use glam::DVec3;
 //! # use sscc::{Certificates, CertifyOptions, Modes, Query, ReducedModel, TriMesh};
-//! use std::sync::atomic::{AtomicBool, Ordering};
-//!
-//! /// Set by another thread.
-//! struct Stop(AtomicBool);
-//!
-//! impl sscc::Progress for Stop {
-//!     fn report(&self, _done: usize, _total: usize) {}
-//!
-//!     fn is_cancelled(&self) -> bool {
-//!         self.0.load(Ordering::Relaxed)
-//!     }
-//! }
+//! use sscc::CancelToken;
 //!
 //! # fn main() -> Result<(), sscc::Error> {
 //! # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
@@ -223,7 +234,7 @@
 //! # let model = ReducedModel::new(mesh, modes)?;
 //! # let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
 //! let mut query = Query::new(&model, &certificates)?;
-//! let stop = Stop(AtomicBool::new(false));
+//! let stop = CancelToken::new();
 //! let answers = query.batch(&[[0.0], [0.5], [1.0], [2.0]], None, &stop)?;
 //! let colliding: Vec<bool> = answers.iter().map(|answer| !answer.pairs.is_empty()).collect();
 //! assert_eq!(colliding, [false, false, true, false]); // at 2 the second triangle has passed
@@ -231,7 +242,7 @@
 //! let scale = query.safe_scale(&[1.5])?; // they touch two thirds of the way
 //! assert!(scale > 0.5 && scale <= 2.0 / 3.0);
 //!
-//! stop.0.store(true, Ordering::Relaxed);
+//! stop.cancel(); // any thread may do so
 //! assert_eq!(query.batch(&[[0.5]], None, &stop), Err(sscc::Error::Cancelled));
 //! # Ok(())
 //! # }
@@ -260,6 +271,7 @@ mod mutants;
 
 mod audit;
 mod bounds;
+mod cancel_token;
 mod certificates;
 mod detect;
 mod error;
@@ -278,6 +290,7 @@ mod thread_pool;
 mod vectors;
 
 pub use audit::{AuditOptions, AuditReport, audit};
+pub use cancel_token::CancelToken;
 pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, LocalBounds, LocalCertificates, PairTree,
     RunJobs, Scope, ShardWorker,
@@ -294,6 +307,7 @@ pub use geometry::{
     impact_triangle_triangle, impact_vertex_face, intersect_shared_edge_pair, intersect_shared_vertex_pair,
     intersect_triangle_triangle, intersection_triangle_triangle, orient2d, penetration_triangle_triangle,
 };
+pub use glam;
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
 pub use posed::{Pose, PosedShape, SweptShape};
 pub use progress::Progress;

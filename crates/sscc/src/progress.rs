@@ -1,14 +1,32 @@
-//! Progress and cancellation of long computations.
+//! Progress of long computations.
 
-/// Receives the progress of a long computation and can cancel it. Several threads call it.
+use crate::CancelToken;
+
+/// Receives the progress of a long computation, and may name the token that cancels it. Several threads call it.
 pub trait Progress: Sync {
     /// Receives that `done` of `total` steps are finished. Threads may report out of order.
     fn report(&self, done: usize, total: usize);
 
-    /// Whether the computation should end soon, with [`Error::Cancelled`](crate::Error::Cancelled). Once true, it must
-    /// stay true.
-    fn is_cancelled(&self) -> bool {
-        false
+    /// The token that cancels the computation, which then ends soon with [`Error::Cancelled`](crate::Error::Cancelled). None by
+    /// default.
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        None
+    }
+}
+
+impl dyn Progress + '_ {
+    /// Whether the computation should end.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel_token().is_some_and(CancelToken::is_cancelled)
+    }
+}
+
+/// Ignores progress.
+impl Progress for CancelToken {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(self)
     }
 }
 

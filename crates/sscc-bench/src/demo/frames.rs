@@ -59,7 +59,7 @@ impl Frames {
 }
 
 impl Answers {
-    fn of(mut query: Query<'_>, frames: &Rows, progress: &dyn Progress) -> Result<Self, Error> {
+    fn of(mut query: Query, frames: &Rows, progress: &dyn Progress) -> Result<Self, Error> {
         let mut answers = Self { pairs: Vec::new(), root_certified: Vec::new(), microseconds: Vec::new() };
         for (index, q) in frames.iter().enumerate() {
             if progress.is_cancelled() {

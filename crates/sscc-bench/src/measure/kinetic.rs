@@ -36,7 +36,7 @@ pub fn time_kinetic(
     let bodies = steps.first().map_or(0, |step| step.q_t0.len());
     let certificates = &model.full.certificates;
     let mut plain = Query::new(&model.model, certificates)?;
-    let queries = || -> Result<Vec<KineticQuery<'_>>, Error> {
+    let queries = || -> Result<Vec<KineticQuery>, Error> {
         (0..bodies).map(|_| Ok(KineticQuery::new(&model.model, certificates)?)).collect()
     };
     // One set of queries is timed; the other one, for the same q, is compared with discrete queries.
@@ -74,7 +74,7 @@ pub fn time_kinetic(
 
 /// Queries the q of each body.
 fn update<'q>(
-    queries: &mut [KineticQuery<'_>],
+    queries: &mut [KineticQuery],
     bodies: impl IntoIterator<Item = &'q Vec<f64>>,
 ) -> Result<(), Error> {
     for (query, q) in queries.iter_mut().zip(bodies) {

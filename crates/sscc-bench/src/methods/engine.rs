@@ -17,7 +17,7 @@ pub trait Engine {
     fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error>;
 }
 
-impl Engine for Query<'_> {
+impl Engine for Query {
     fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
         self.discrete(q)
     }

@@ -12,7 +12,7 @@ use sscc_sim::ZeroRadius;
 use sscc_view::Picture;
 
 use crate::args::Certify;
-use crate::interrupt::{self, Interrupt};
+use crate::interrupt;
 use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
@@ -76,7 +76,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
-    let zero_radius = ZeroRadius::find(model, &certificates, &options, &Interrupt)?;
+    let zero_radius = ZeroRadius::find(model, &certificates, &options, interrupt::token())?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;

@@ -231,14 +231,14 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let digest = Digest(digest.try_into().unwrap_or_default());
     Ok(Certificates::from_parts(CertificateParts {
         digest,
-        scope,
-        hierarchy,
+        scope: scope.into(),
+        hierarchy: hierarchy.into(),
         epsilon: epsilon.values[0],
         global_radius: limit,
         node_radii,
         root_pair_radii,
         pair_tree,
-        local,
+        local: local.into(),
         rest_collisions: file.u64("rest_collisions")?.shaped(&[1])?.values[0],
     })?)
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use faer::{Mat, Side};
-use sscc::{Error, Progress};
+use sscc::{CancelToken, Error};
 
 use super::lanczos::{RitzPairs, ShiftInvert, largest};
 use super::lattice::{Lattice, dense};
@@ -150,22 +150,14 @@ fn mechanisms_are_counted() {
     }
 }
 
-/// Cancels after a number of checks.
-struct CancelAfter(AtomicUsize);
-
-impl Progress for CancelAfter {
-    fn report(&self, _: usize, _: usize) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1)).is_err()
-    }
-}
-
 #[test]
 fn the_iteration_can_be_cancelled() {
     let body = Lattice::free(7, 7, 7);
     for after in [0, 1, 2, 4] {
-        let cancel = CancelAfter(AtomicUsize::new(after));
+        let left = AtomicUsize::new(after);
+        let is_over =
+            move || left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_sub(1)).is_err();
+        let cancel = CancelToken::when(is_over);
         let found =
             lowest_modes(&body.stiffness, &body.mass, &body.positions, body.rigid.as_ref(), 60, &cancel);
         assert_eq!(found.err(), Some(ModesError::Core(Error::Cancelled)));

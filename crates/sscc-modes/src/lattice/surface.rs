@@ -110,7 +110,7 @@ pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress
     let filter = ContactFilter::new(Neighbours::Exclude, is_split);
     let scope = Scope { filter, ..Scope::of(&model) };
     let mut query = Query::without_certificates(&model, scope, Method::Traditional)?;
-    query = query.cancelled_by(progress);
+    query = query.cancelled_by(progress.cancel_token().cloned());
     match query.first(&[0.0])? {
         Some((a, b)) => Err(ModesError::CollidesAtRest { a, b }),
         None => Ok(()),

@@ -21,7 +21,7 @@ pub(super) struct MovingMesh<'w> {
     pub file: PathBuf,
     pub node: Option<usize>,
     pub mesh: TriMesh,
-    pub detector: Detector<'w>,
+    pub detector: Detector,
     /// The pairs that its answers leave out.
     pub left_out: LeftOut,
     motion: Motion,
@@ -253,17 +253,17 @@ fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> Co
 
 /// Makes a detector under a filter, which ignores pairs that collide at rest if the request says so. Returns also what the
 /// filter leaves out.
-fn detector<'w>(
+fn detector(
     mesh: &TriMesh,
     filter: ContactFilter,
     request: &Detection,
-    watch: &'w dyn Watch,
-    make: impl Fn(&ContactFilter) -> Result<Detector<'w>, sscc::Error>,
-) -> Result<(Detector<'w>, LeftOut), sscc::Error> {
-    let (mut detector, mut filter) = (make(&filter)?.cancelled_by(watch), filter);
+    watch: &dyn Watch,
+    make: impl Fn(&ContactFilter) -> Result<Detector, sscc::Error>,
+) -> Result<(Detector, LeftOut), sscc::Error> {
+    let (mut detector, mut filter) = (make(&filter)?.cancelled_by(watch.cancel_token().cloned()), filter);
     if request.ignore_rest {
         filter = filter.ignoring(detector.discrete(mesh.rest_positions())?.to_vec());
-        detector = make(&filter)?.cancelled_by(watch);
+        detector = make(&filter)?.cancelled_by(watch.cancel_token().cloned());
     }
     Ok((detector, LeftOut::of(&filter)))
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use sscc::{Answer, Impact, Pair, Progress, Query, ReducedModel, Statistics, Surface};
+use sscc::{Answer, CancelToken, Impact, Pair, Progress, Query, ReducedModel, Statistics, Surface};
 use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
@@ -45,7 +45,7 @@ const MAX_BLOCK_PAIRS: usize = 1 << 24;
 /// # Errors
 /// When a row is no q of the model, `progress` cancels, or `take` fails.
 pub fn check_rows<E: From<SimError>>(
-    query: &mut Query<'_>,
+    query: &mut Query,
     requests: &RowQueries<'_>,
     progress: &dyn Progress,
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
@@ -128,8 +128,8 @@ struct CancelledBy<'a>(&'a dyn Progress);
 impl Progress for CancelledBy<'_> {
     fn report(&self, _done: usize, _total: usize) {}
 
-    fn is_cancelled(&self) -> bool {
-        self.0.is_cancelled()
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        self.0.cancel_token()
     }
 }
 
@@ -154,7 +154,7 @@ struct Found<'a> {
 
 impl Answers {
     /// Returns one answer of the block. Of a motion, it has the earliest impacts up to `limit`.
-    fn get<'a>(&'a self, number: usize, query: &'a Query<'_>, limit: Option<usize>) -> Found<'a> {
+    fn get<'a>(&'a self, number: usize, query: &'a Query, limit: Option<usize>) -> Found<'a> {
         let of_query = |pairs: Cow<'a, [Pair]>, times| Found {
             pairs,
             times,

@@ -23,7 +23,7 @@ pub(super) struct Worker<'m, 'w> {
 /// A mesh of a worker, and its positions at the start and the end of a motion.
 struct Side<'m, 'w> {
     mesh: &'m MovingMesh<'w>,
-    detector: Detector<'w>,
+    detector: Detector,
     x_t0: Vec<DVec3>,
     x_t1: Vec<DVec3>,
 }

@@ -9,8 +9,8 @@ use super::history::{BodyRecord, StateLayout, StepRecord};
 const ENERGY_STEPS: usize = 8;
 
 /// A world that advances, with the states that are not yet in the log.
-pub struct Stepper<'a, C> {
-    pub world: World<'a>,
+pub struct Stepper<C> {
+    pub world: World,
     sounds: Vec<Option<SoundBank>>,
     layout: StateLayout,
     clock: StepClock<C>,
@@ -20,8 +20,8 @@ pub struct Stepper<'a, C> {
     block_start: usize,
 }
 
-impl<'a, C: Clocks> Stepper<'a, C> {
-    pub fn new(world: World<'a>, sounds: Vec<Option<SoundBank>>, layout: StateLayout, clocks: C) -> Self {
+impl<C: Clocks> Stepper<C> {
+    pub fn new(world: World, sounds: Vec<Option<SoundBank>>, layout: StateLayout, clocks: C) -> Self {
         Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), block_start: 0 }
     }
 

@@ -108,7 +108,7 @@ pub fn run(
 }
 
 /// Returns the error of a diverging motion with its step, body and energy.
-fn diverged(error: DynamicsError, world: &World<'_>) -> SimError {
+fn diverged(error: DynamicsError, world: &World) -> SimError {
     let (body, energy, cause) = match error {
         DynamicsError::Diverged { body, energy, .. } => (body, energy, String::new()),
         other => {

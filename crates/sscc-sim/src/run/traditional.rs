@@ -33,7 +33,7 @@ pub fn traditional_costs(
     history: &History,
     watch: &dyn Watch,
 ) -> Result<Vec<TraditionalCost>> {
-    let mut queries: Vec<Query<'_>> = Vec::new();
+    let mut queries: Vec<Query> = Vec::new();
     for model in &prepared.models {
         let certificates = &model.certified.full.certificates;
         queries.push(Query::with_method(&model.certified.model, certificates, Method::Traditional)?);

@@ -8,7 +8,7 @@ use crate::error::{At, Result, SimError};
 use crate::scenes::{BodySpec, Scene};
 
 /// Returns the world of a scene at its beginning.
-pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>> {
+pub fn world(scene: &Scene, prepared: &PreparedScene) -> Result<World> {
     let mut world = World::new(scene.options())?;
     for (number, body) in scene.bodies.iter().enumerate() {
         let at = || format!("body {number} (counted from 0)");
@@ -40,7 +40,7 @@ pub fn world<'a>(scene: &Scene, prepared: &'a PreparedScene) -> Result<World<'a>
 
 /// Restores a world and its sounds from the memory of a checkpoint.
 pub fn restore(
-    world: &mut World<'_>,
+    world: &mut World,
     sounds: &mut [Option<SoundBank>],
     step: usize,
     memory: &[f64],

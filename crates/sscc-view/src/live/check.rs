@@ -65,7 +65,7 @@ pub struct CheckAnswer {
 
 /// Answers a discrete query.
 pub(super) fn check(
-    query: &mut Query<'_>,
+    query: &mut Query,
     certificates: &Certificates,
     request: &CheckRequest,
 ) -> Result<CheckAnswer, ViewError> {

@@ -1,7 +1,7 @@
 //! The first self-collision along a direction.
 
 use serde::{Deserialize, Serialize};
-use sscc::{Certificates, Error, Pair, Progress, Query, ReducedModel};
+use sscc::{Certificates, Error, Pair, Query, ReducedModel};
 
 use super::cancellation::Cancellation;
 use super::check::{MAX_LISTED_PAIRS, MAX_PAIRS};
@@ -49,11 +49,11 @@ const SIMULTANEITY: f64 = 1e-9;
 
 /// Searches the first collision along a direction from the centre.
 pub(super) fn along(
-    mut query: Query<'_>,
+    mut query: Query,
     model: &ReducedModel,
     certificates: &Certificates,
     DirectionRequest { direction }: &DirectionRequest,
-    cancellation: &Cancellation<'_>,
+    cancellation: &Cancellation,
 ) -> Result<DirectionAnswer, ViewError> {
     let center = certificates.center();
     model.check_coordinates(direction)?;
@@ -65,7 +65,7 @@ pub(super) fn along(
         answer.searched = certified.min(end);
         while answer.first.is_none() && answer.searched < end {
             let to = (answer.searched + end / MAX_SEGMENTS).min(end);
-            let found = match cancellation.is_cancelled() {
+            let found = match cancellation.token.is_cancelled() {
                 true => Err(Error::Cancelled),
                 false => meet(&mut query, &at, [answer.searched, to], end),
             };
@@ -75,7 +75,7 @@ pub(super) fn along(
                     answer.first = first;
                 }
                 // The result until then is valid.
-                Err(Error::Cancelled) if (cancellation.is_wanted)() && (cancellation.is_over)() => {
+                Err(Error::Cancelled) if cancellation.is_wanted() && cancellation.is_over() => {
                     answer.complete = false;
                     break;
                 }
@@ -88,7 +88,7 @@ pub(super) fn along(
 
 /// Returns the first collision between two scales.
 fn meet(
-    query: &mut Query<'_>,
+    query: &mut Query,
     at: &impl Fn(f64) -> Vec<f64>,
     [from, to]: [f64; 2],
     end: f64,
@@ -124,6 +124,7 @@ fn end(model: &ReducedModel, direction: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use glam::DVec3;
@@ -147,14 +148,15 @@ mod tests {
         // Radii that reach farther would leave nothing to search.
         let options = CertifyOptions { reach: 1.0, ..CertifyOptions::default() };
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
-        let checks = AtomicU32::new(0);
-        let is_over = || checks.load(Ordering::Relaxed) > over;
-        let is_wanted = || checks.fetch_add(1, Ordering::Relaxed) < unwanted;
-        let cancellation = Cancellation { server: &(), is_over: &is_over, is_wanted: &is_wanted };
-        let query = Query::new(&model, &certificates).unwrap().cancelled_by(&cancellation);
+        let checks = Arc::new(AtomicU32::new(0));
+        let [before, until] = [(); 2].map(|()| Arc::clone(&checks));
+        let is_over = move || before.load(Ordering::Relaxed) > over;
+        let is_wanted = move || until.fetch_add(1, Ordering::Relaxed) < unwanted;
+        let cancellation = Cancellation::new(None, is_over, is_wanted);
+        let query = Query::new(&model, &certificates).unwrap().cancelled_by(cancellation.token.clone());
         let request = DirectionRequest { direction: vec![1.0, 1.0] };
         let answer = along(query, &model, &certificates, &request, &cancellation);
-        (answer, checks.into_inner())
+        (answer, checks.load(Ordering::Relaxed))
     }
 
     #[test]

@@ -8,11 +8,11 @@ mod nodes;
 mod sweep;
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use sscc::{Certificates, Method, Progress, Query, ReducedModel};
+use sscc::{CancelToken, Certificates, Method, Query, ReducedModel};
 
 use crate::{Arrays, Scene, ViewError};
 use cancellation::{Cancellation, MAX_SECONDS};
@@ -26,28 +26,28 @@ pub use sweep::{SweepAnswer, SweepRequest};
 
 /// A live page of one model, for any number of threads. Short requests wait only for short ones, long requests only for
 /// long ones.
-pub struct Live<'a> {
-    model: &'a ReducedModel,
-    certificates: &'a Certificates,
+pub struct Live {
+    model: ReducedModel,
+    certificates: Certificates,
     scene: Scene,
     arrays: Arrays,
-    checks: Mutex<Query<'a>>,
-    long: Mutex<Long<'a>>,
-    progress: &'a dyn Progress,
-    sweeps: Mutex<Query<'a>>,
+    checks: Mutex<Query>,
+    long: Mutex<Long>,
+    cancel: Option<CancelToken>,
+    sweeps: Mutex<Query>,
     searches: Newest,
     newest_sweep: Newest,
 }
 
 /// The number of the newest request of a kind; older ones are cancelled.
 #[derive(Default)]
-struct Newest(AtomicU64);
+struct Newest(Arc<AtomicU64>);
 
 /// Queries for requests that may take seconds.
-struct Long<'a> {
-    certified: Query<'a>,
+struct Long {
+    certified: Query,
     /// Created by the first request.
-    traditional: Option<Query<'a>>,
+    traditional: Option<Query>,
 }
 
 /// A request with one q (r numbers).
@@ -63,31 +63,31 @@ pub struct TraditionalAnswer {
     count: usize,
 }
 
-impl<'a> Live<'a> {
-    /// Returns the live page of a model. `scene` and `arrays` describe the model. Queries stop if `progress` cancels.
+impl Live {
+    /// Returns the live page of a model. `scene` and `arrays` describe the model. The token cancels queries.
     ///
     /// # Errors
     /// If the certificates belong to another model.
     pub fn new(
-        model: &'a ReducedModel,
-        certificates: &'a Certificates,
+        model: &ReducedModel,
+        certificates: &Certificates,
         scene: Scene,
         mut arrays: Arrays,
-        progress: &'a dyn Progress,
+        cancel: Option<CancelToken>,
     ) -> Result<Self, ViewError> {
         arrays.add_u32(ORDER, certificates.hierarchy().order().iter().copied());
-        let query = Query::new(model, certificates)?.cancelled_by(progress);
+        let query = Query::new(model, certificates)?.cancelled_by(cancel.clone());
         let long = Mutex::new(Long { certified: query.clone(), traditional: None });
         let [checks, sweeps] = [query.clone(), query].map(Mutex::new);
         let [searches, newest_sweep] = [Newest::default(), Newest::default()];
         Ok(Self {
-            model,
-            certificates,
+            model: model.clone(),
+            certificates: certificates.clone(),
             scene,
             arrays,
             checks,
             long,
-            progress,
+            cancel,
             sweeps,
             searches,
             newest_sweep,
@@ -109,7 +109,7 @@ impl<'a> Live<'a> {
     /// # Errors
     /// If q is not a configuration of the model.
     pub fn check(&self, request: &CheckRequest) -> Result<CheckAnswer, ViewError> {
-        check::check(&mut lock(&self.checks), self.certificates, request)
+        check::check(&mut lock(&self.checks), &self.certificates, request)
     }
 
     /// Returns the time and the number of pairs of the same query by the traditional method.
@@ -121,8 +121,8 @@ impl<'a> Live<'a> {
         let query = match &mut long.traditional {
             Some(query) => query,
             none => none.insert(
-                Query::with_method(self.model, self.certificates, Method::Traditional)?
-                    .cancelled_by(self.progress),
+                Query::with_method(&self.model, &self.certificates, Method::Traditional)?
+                    .cancelled_by(self.cancel.clone()),
             ),
         };
         let (count, microseconds) =
@@ -131,19 +131,18 @@ impl<'a> Live<'a> {
     }
 
     /// Returns the safe scale of a direction from the centre, and the first collision along it. The search ends early
-    /// at the time limit, after a newer search was requested, and if `is_gone` returns true because the client has
-    /// left.
+    /// at the time limit, after a newer search was requested, and when the token is cancelled because the client has left.
     ///
     /// # Errors
     /// If the direction has not one finite number for each mode, or the search ended before its first result.
     pub fn safe_scale(
         &self,
         request: &DirectionRequest,
-        is_gone: &(dyn Fn() -> bool + Sync),
+        client: &CancelToken,
     ) -> Result<DirectionAnswer, ViewError> {
-        self.newest(&self.searches, &self.long, is_gone, |long, cancellation| {
-            let query = long.certified.clone().cancelled_by(cancellation);
-            collision::along(query, self.model, self.certificates, request, cancellation)
+        self.newest(&self.searches, &self.long, client, |long, cancellation| {
+            let query = long.certified.clone().cancelled_by(cancellation.token.clone());
+            collision::along(query, &self.model, &self.certificates, request, cancellation)
         })
     }
 
@@ -153,12 +152,8 @@ impl<'a> Live<'a> {
     /// # Errors
     /// If q is not a configuration of the model, the mode does not exist, or the range is empty; if the sweep ended
     /// before its result.
-    pub fn sweep(
-        &self,
-        request: &SweepRequest,
-        is_gone: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Vec<SweepAnswer>, ViewError> {
-        self.newest(&self.newest_sweep, &self.sweeps, is_gone, |query, cancellation| {
+    pub fn sweep(&self, request: &SweepRequest, client: &CancelToken) -> Result<Vec<SweepAnswer>, ViewError> {
+        self.newest(&self.newest_sweep, &self.sweeps, client, |query, cancellation| {
             sweep::sweep(query, request, cancellation)
         })
     }
@@ -168,21 +163,20 @@ impl<'a> Live<'a> {
         &self,
         Newest(newest): &Newest,
         queries: &Mutex<Q>,
-        is_gone: &(dyn Fn() -> bool + Sync),
-        work: impl FnOnce(&Q, &Cancellation<'_>) -> Result<T, ViewError>,
+        client: &CancelToken,
+        work: impl FnOnce(&Q, &Cancellation) -> Result<T, ViewError>,
     ) -> Result<T, ViewError> {
         let number = newest.fetch_add(1, Ordering::Relaxed) + 1;
         let queries = lock(queries);
-        let is_wanted = || newest.load(Ordering::Relaxed) == number && !is_gone();
+        let (newest, client) = (Arc::clone(newest), client.clone());
+        let is_wanted = move || newest.load(Ordering::Relaxed) == number && !client.is_cancelled();
         let end = Instant::now() + Duration::from_secs(MAX_SECONDS);
-        let cancellation =
-            Cancellation { server: self.progress, is_over: &|| Instant::now() >= end, is_wanted: &is_wanted };
-        work(&queries, &cancellation)
+        work(&queries, &Cancellation::new(self.cancel.clone(), move || Instant::now() >= end, is_wanted))
     }
 
     /// Returns the hierarchy.
     pub fn nodes(&self) -> NodesAnswer {
-        nodes::all(self.certificates)
+        nodes::all(&self.certificates)
     }
 
     /// Returns the AABBs of one level of the hierarchy at q.
@@ -190,7 +184,7 @@ impl<'a> Live<'a> {
     /// # Errors
     /// The errors of [`Live::check`], and if the level does not exist.
     pub fn boxes(&self, request: &BoxesRequest) -> Result<BoxesAnswer, ViewError> {
-        nodes::boxes(self.model, self.certificates, request)
+        nodes::boxes(&self.model, &self.certificates, request)
     }
 
     /// Returns a motion as a binary glTF file.
@@ -201,7 +195,7 @@ impl<'a> Live<'a> {
         // One at a time, since each may need hundreds of megabytes.
         let _turn = lock(&self.long);
         let name = self.scene.models.first().map_or("model", |model| model.name());
-        animation::glb(name, self.model, request)
+        animation::glb(name, &self.model, request)
     }
 }
 

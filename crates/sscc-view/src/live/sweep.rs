@@ -54,9 +54,9 @@ impl From<Sweep> for SweepAnswer {
 
 /// Sweeps a mode upwards, then downwards.
 pub(super) fn sweep(
-    query: &Query<'_>,
+    query: &Query,
     SweepRequest { q, mode, range }: &SweepRequest,
-    cancellation: &Cancellation<'_>,
+    cancellation: &Cancellation,
 ) -> Result<Vec<SweepAnswer>, ViewError> {
     let sweeps = query.sweep_modes(q, &[(*mode, *range)], None, cancellation);
     let sweeps = sweeps.map_err(|error| cancellation.explain(error))?;
@@ -65,6 +65,7 @@ pub(super) fn sweep(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use glam::DVec3;
@@ -82,13 +83,14 @@ mod tests {
         let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         let query = Query::new(&model, &certificates).unwrap();
-        let checks = AtomicU32::new(0);
-        let is_over = || checks.load(Ordering::Relaxed) > over;
-        let is_wanted = || checks.fetch_add(1, Ordering::Relaxed) < unwanted;
-        let cancellation = Cancellation { server: &(), is_over: &is_over, is_wanted: &is_wanted };
+        let checks = Arc::new(AtomicU32::new(0));
+        let [before, until] = [(); 2].map(|()| Arc::clone(&checks));
+        let is_over = move || before.load(Ordering::Relaxed) > over;
+        let is_wanted = move || until.fetch_add(1, Ordering::Relaxed) < unwanted;
+        let cancellation = Cancellation::new(None, is_over, is_wanted);
         let request = SweepRequest { q: vec![0.0], mode: 0, range: [-3.0, 3.0] };
         let answer = sweep(&query, &request, &cancellation);
-        (answer, checks.into_inner())
+        (answer, checks.load(Ordering::Relaxed))
     }
 
     #[test]

@@ -5,6 +5,8 @@ use std::net::{Shutdown, TcpStream};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use sscc::CancelToken;
+
 use super::access::Access;
 use super::deadline::DeadlineStream;
 use super::request::{BadHead, Buffer, Head};
@@ -32,7 +34,7 @@ const DRAIN_TIMEOUT: Duration = Duration::from_secs(2);
 pub(super) fn serve(
     stream: TcpStream,
     access: &Access,
-    content: &Content<'_, '_>,
+    content: &Content<'_>,
     is_stopped: &(dyn Fn() -> bool + Sync),
 ) -> io::Result<()> {
     stream.set_nodelay(true)?;
@@ -55,7 +57,7 @@ pub(super) fn serve(
                     None => {
                         let body = buffer.body(head.length, &mut within(BODY_TIMEOUT))?;
                         let presence = Presence::of(&stream)?;
-                        content.answer(&head, &body, &|| presence.is_gone())
+                        content.answer(&head, &body, &presence.token)
                     }
                 }
             }
@@ -77,8 +79,8 @@ pub(super) fn serve(
 /// Checks periodically, during the computation of an answer, whether the client still waits for it.
 struct Presence<'a> {
     stream: &'a TcpStream,
-    /// The time of the next check; `None` after the client has left.
-    next_check: Mutex<Option<Instant>>,
+    /// Cancelled when the client has left. A client that closes one direction counts as gone, since browsers close both.
+    token: CancelToken,
 }
 
 impl<'a> Presence<'a> {
@@ -87,21 +89,22 @@ impl<'a> Presence<'a> {
 
     fn of(stream: &'a TcpStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
-        Ok(Self { stream, next_check: Mutex::new(Some(Instant::now())) })
-    }
-
-    /// Whether the client has left. A client that closes one direction counts as gone, since browsers close both.
-    fn is_gone(&self) -> bool {
-        let mut next_check = self.next_check.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = Instant::now();
-        if next_check.is_some_and(|next| next <= now) {
-            let has_left = match self.stream.peek(&mut [0]) {
-                Ok(bytes) => bytes == 0,
-                Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
-            };
-            *next_check = (!has_left).then_some(now + Self::CHECK_INTERVAL);
-        }
-        next_check.is_none()
+        let same = stream.try_clone()?;
+        // The time of the next check; `None` after the client has left.
+        let next_check = Mutex::new(Some(Instant::now()));
+        let is_gone = move || {
+            let mut next_check = next_check.lock().unwrap_or_else(PoisonError::into_inner);
+            let now = Instant::now();
+            if next_check.is_some_and(|next| next <= now) {
+                let has_left = match same.peek(&mut [0]) {
+                    Ok(bytes) => bytes == 0,
+                    Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
+                };
+                *next_check = (!has_left).then_some(now + Self::CHECK_INTERVAL);
+            }
+            next_check.is_none()
+        };
+        Ok(Self { stream, token: CancelToken::when(is_gone) })
     }
 }
 
@@ -112,7 +115,7 @@ impl Drop for Presence<'_> {
 }
 
 /// The response to a request that is refused before its body is read; `None` if it is accepted.
-fn refusal(head: &Head, access: &Access, content: &Content<'_, '_>) -> Option<Response<'static>> {
+fn refusal(head: &Head, access: &Access, content: &Content<'_>) -> Option<Response<'static>> {
     if let Err(refusal) = access.check(head, content.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
     }
@@ -136,7 +139,7 @@ mod tests {
         let gone_within = |times: usize| {
             (0..times).any(|_| {
                 thread::sleep(Presence::CHECK_INTERVAL);
-                presence.is_gone()
+                presence.token.is_cancelled()
             })
         };
         assert!(!gone_within(3));
@@ -151,9 +154,9 @@ mod tests {
         drop(there);
         assert!((0..1200).any(|_| {
             thread::sleep(Presence::CHECK_INTERVAL);
-            presence.is_gone()
+            presence.token.is_cancelled()
         }));
         // The result stays the same, also between two checks.
-        assert!(presence.is_gone());
+        assert!(presence.token.is_cancelled());
     }
 }

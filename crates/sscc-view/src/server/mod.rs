@@ -74,7 +74,7 @@ impl Server {
     ///
     /// # Errors
     /// If the operating system refuses a thread.
-    pub fn serve(&self, live: &Live<'_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+    pub fn serve(&self, live: &Live, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         self.run(&Content::Live(live), is_stopped)
     }
 
@@ -86,7 +86,7 @@ impl Server {
         self.run(&Content::Report(html), is_stopped)
     }
 
-    fn run(&self, content: &Content<'_, '_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
+    fn run(&self, content: &Content<'_>, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         let connections = AtomicUsize::new(0);
         let (connections, access) = (&connections, &self.access);
         thread::scope(|scope| {

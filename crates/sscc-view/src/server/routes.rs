@@ -1,6 +1,7 @@
 //! The paths of the server, and their answers.
 
 use serde::de::DeserializeOwned;
+use sscc::CancelToken;
 
 use super::request::Head;
 use super::response::Response;
@@ -15,9 +16,9 @@ const MAX_MOTION_BYTES: usize = 64 << 20;
 const NOT_FOUND: &str = "the server has no such path";
 
 /// The content of a server.
-pub(super) enum Content<'a, 'm> {
+pub(super) enum Content<'a> {
     /// A live page.
-    Live(&'a Live<'m>),
+    Live(&'a Live),
     /// A report as one HTML file.
     Report(&'a str),
 }
@@ -29,13 +30,10 @@ struct Route<'a> {
     answer: Answer<'a>,
 }
 
-/// Whether the client has left.
-pub(super) type IsGone<'g> = &'g (dyn Fn() -> bool + Sync);
+/// Computes the response from the body. The token is cancelled when the client has left.
+type Answer<'a> = Box<dyn Fn(&[u8], &CancelToken) -> Response<'a> + 'a>;
 
-/// Computes the response from the body.
-type Answer<'a> = Box<dyn Fn(&[u8], IsGone<'_>) -> Response<'a> + 'a>;
-
-impl<'a> Content<'a, '_> {
+impl<'a> Content<'a> {
     /// Whether the path needs no token. This is the live page itself, which contains no data, so a browser can reload
     /// it after the page has removed the token from the address. A report contains data.
     pub(super) fn is_open(&self, path: &str) -> bool {
@@ -56,9 +54,9 @@ impl<'a> Content<'a, '_> {
     }
 
     /// Returns the response to a request that [`Content::check`] has accepted.
-    pub(super) fn answer(&self, head: &Head, body: &[u8], is_gone: IsGone<'_>) -> Response<'a> {
+    pub(super) fn answer(&self, head: &Head, body: &[u8], client: &CancelToken) -> Response<'a> {
         match self.route(&head.path) {
-            Some(route) => (route.answer)(body, is_gone),
+            Some(route) => (route.answer)(body, client),
             None => Response::error(404, NOT_FOUND),
         }
     }
@@ -84,11 +82,11 @@ impl<'a> Content<'a, '_> {
             "/api/traditional" => {
                 post(MAX_BODY_BYTES, |request, _| Ok(Response::json(&live.traditional(&request)?)))
             }
-            "/api/safe_scale" => post(MAX_BODY_BYTES, |request, is_gone| {
-                Ok(Response::json(&live.safe_scale(&request, is_gone)?))
+            "/api/safe_scale" => post(MAX_BODY_BYTES, |request, client| {
+                Ok(Response::json(&live.safe_scale(&request, client)?))
             }),
             "/api/sweep" => {
-                post(MAX_BODY_BYTES, |request, is_gone| Ok(Response::json(&live.sweep(&request, is_gone)?)))
+                post(MAX_BODY_BYTES, |request, client| Ok(Response::json(&live.sweep(&request, client)?)))
             }
             "/api/boxes" => post(MAX_BODY_BYTES, |request, _| Ok(Response::json(&live.boxes(&request)?))),
             "/api/glb" => {
@@ -106,12 +104,12 @@ fn get<'a>(answer: impl Fn() -> Response<'a> + 'a) -> Route<'a> {
 /// A route whose request is JSON.
 fn post<'a, T: DeserializeOwned>(
     max_body: usize,
-    answer: impl Fn(T, IsGone<'_>) -> Result<Response<'a>, ViewError> + 'a,
+    answer: impl Fn(T, &CancelToken) -> Result<Response<'a>, ViewError> + 'a,
 ) -> Route<'a> {
-    let answer = move |body: &[u8], is_gone: IsGone<'_>| {
+    let answer = move |body: &[u8], client: &CancelToken| {
         let refused = |error: &dyn ToString| Response::error(400, &error.to_string());
         match serde_json::from_slice(body) {
-            Ok(request) => answer(request, is_gone).unwrap_or_else(|error| refused(&error)),
+            Ok(request) => answer(request, client).unwrap_or_else(|error| refused(&error)),
             Err(error) => refused(&error),
         }
     };

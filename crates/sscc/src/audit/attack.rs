@@ -42,13 +42,13 @@ pub(super) struct Attacks {
 }
 
 /// The queries that decide.
-struct Queries<'q> {
+struct Queries {
     /// The traditional method, for attacks on the root.
-    root: Query<'q>,
+    root: Query,
     /// BD-tree AABBs without certificates, for parts of the model.
-    part: Query<'q>,
+    part: Query,
     /// With local certificates, which it tells where they hold; none where there are none.
-    local: Option<Query<'q>>,
+    local: Option<Query>,
 }
 
 impl Attack<'_> {
@@ -70,7 +70,7 @@ impl Attack<'_> {
                     let local = local.is_possible().then(|| query(Method::Certified)).transpose()?;
                     Ok(Queries { root, part: query(Method::BdTree)?, local })
                 },
-                |queries: &mut Result<Queries<'_>, Error>, block| {
+                |queries: &mut Result<Queries, Error>, block| {
                     let queries = queries.as_mut().map_err(|error| error.clone())?;
                     let mut attacks = Attacks::default();
                     for sample in block * 64..self.options.samples.min(block * 64 + 64) {
@@ -106,12 +106,7 @@ impl Attack<'_> {
     }
 
     /// Makes one attack. None if no configuration can be drawn or tested, else the violation found, if any.
-    fn attack(
-        &self,
-        sample: usize,
-        random: &mut Random,
-        queries: &mut Queries<'_>,
-    ) -> Option<Option<String>> {
+    fn attack(&self, sample: usize, random: &mut Random, queries: &mut Queries) -> Option<Option<String>> {
         let claim = self.draw_claim(sample, random);
         let q = self.draw_configuration(claim, sample, random)?;
         let query = if claim.nodes == (0, 0) { &mut queries.root } else { &mut queries.part };

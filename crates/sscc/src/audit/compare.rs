@@ -77,7 +77,7 @@ impl Comparison<'_> {
             if sample.is_multiple_of(CONTINUOUS) {
                 let motion = self.draw_motion(&mut random, sample);
                 let expected = traditional.continuous(&motion.q_t0, &motion.q_t1)?.to_vec();
-                let mut compare = |query: &mut Query<'_>, methods: &str| -> Result<(), Error> {
+                let mut compare = |query: &mut Query, methods: &str| -> Result<(), Error> {
                     let found = query.continuous(&motion.q_t0, &motion.q_t1)?;
                     violations.extend(self.missed(&expected, found, &motion).map(|missed| {
                         format!(

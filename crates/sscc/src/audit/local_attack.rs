@@ -29,11 +29,11 @@ pub(super) struct LocalAttack<'a> {
 }
 
 /// The queries of an attack.
-pub(super) struct LocalQueries<'a, 'q> {
+pub(super) struct LocalQueries<'a> {
     /// With local certificates.
-    pub(super) certified: &'a mut Query<'q>,
+    pub(super) certified: &'a mut Query,
     /// Without certificates.
-    pub(super) exact: &'a mut Query<'q>,
+    pub(super) exact: &'a mut Query,
 }
 
 impl LocalAttack<'_> {
@@ -47,7 +47,7 @@ impl LocalAttack<'_> {
         &self,
         sample: usize,
         random: &mut Random,
-        queries: LocalQueries<'_, '_>,
+        queries: LocalQueries<'_>,
     ) -> Option<Option<String>> {
         let LocalQueries { certified, exact } = queries;
         let (index, claim) = self.draw_claim(sample, random)?;
@@ -67,7 +67,7 @@ impl LocalAttack<'_> {
     }
 
     /// The violation by a collision of a pair of these nodes at q.
-    fn test(&self, claim: NodePair, q: &[f64], exact: &mut Query<'_>) -> Result<Option<String>, Error> {
+    fn test(&self, claim: NodePair, q: &[f64], exact: &mut Query) -> Result<Option<String>, Error> {
         let pairs = exact.discrete_between(claim, q)?;
         Ok(pairs.first().map(|(a, b)| {
             let (n, m) = claim;
@@ -101,7 +101,7 @@ impl LocalAttack<'_> {
         index: usize,
         claim: NodePair,
         random: &mut Random,
-        certified: &mut Query<'_>,
+        certified: &mut Query,
     ) -> Option<Vec<f64>> {
         let parts = self.certificates.parts();
         let center = &parts.scope.center;

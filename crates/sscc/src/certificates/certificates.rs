@@ -3,6 +3,8 @@
 //! `build/` and `remote/` compute them. `validation.rs` checks that parts fit together. `compatibility.rs` checks that
 //! they belong to a model.
 
+use std::sync::Arc;
+
 use super::{Digest, LocalCertificates, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Metric, Pair};
@@ -12,10 +14,10 @@ use crate::{ContactFilter, Metric, Pair};
 ///
 /// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A set of triangle pairs with radius
 /// R is certified: at any q with `|z| < R` no pair that counts has a point in common, except for the exceptions.
+///
+/// Clones share one memory.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Certificates {
-    parts: CertificateParts,
-}
+pub struct Certificates(Arc<CertificateParts>);
 
 /// The contents of [`Certificates`], for reading and writing files.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +25,9 @@ pub struct CertificateParts {
     /// Hash of the model and the scope for which the certificates hold.
     pub digest: Digest,
     /// The hierarchy over the triangles.
-    pub hierarchy: Hierarchy,
+    pub hierarchy: Arc<Hierarchy>,
     /// Metric, centre, contact filter and exceptions for which the certificates hold.
-    pub scope: Scope,
+    pub scope: Arc<Scope>,
     /// Relative error allowed of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
     pub epsilon: f64,
     /// The radius at which radii are capped: the paper's `R_global` (section 5.2), or the radius up to which the pair tree
@@ -40,7 +42,7 @@ pub struct CertificateParts {
     /// Radii of node pairs, all below the tree's limit.
     pub pair_tree: PairTree,
     /// Certificates of the strain of nodes, which hold far from the centre, too.
-    pub local: LocalCertificates,
+    pub local: Arc<LocalCertificates>,
     /// Number of colliding pairs at rest (q = 0), ignored ones included.
     pub rest_collisions: u64,
 }
@@ -48,59 +50,59 @@ pub struct CertificateParts {
 impl Certificates {
     /// Certificates from parts that fit together.
     pub(super) fn new(parts: CertificateParts) -> Self {
-        Self { parts }
+        Self(Arc::new(parts))
     }
 
     /// The contents, for writing.
     pub fn parts(&self) -> &CertificateParts {
-        &self.parts
+        &self.0
     }
 
     /// The hierarchy over the triangles.
     pub fn hierarchy(&self) -> &Hierarchy {
-        &self.parts.hierarchy
+        &self.0.hierarchy
     }
 
     /// The metric in which radii are measured.
     pub fn metric(&self) -> &Metric {
-        &self.parts.scope.metric
+        &self.0.scope.metric
     }
 
     /// The configuration from which radii are measured (r entries).
     pub fn center(&self) -> &[f64] {
-        &self.parts.scope.center
+        &self.0.scope.center
     }
 
     /// Which pairs of triangles count.
     pub fn filter(&self) -> &ContactFilter {
-        &self.parts.scope.filter
+        &self.0.scope.filter
     }
 
     /// Pairs that no radius covers and every query tests, sorted.
     pub fn exceptions(&self) -> &[Pair] {
-        &self.parts.scope.exceptions
+        &self.0.scope.exceptions
     }
 
     /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
     /// exceptions.
     pub fn root_radius(&self) -> f64 {
-        self.parts.node_radii[0]
+        self.0.node_radii[0]
     }
 
     /// The radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built where
     /// that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
     pub fn global_radius(&self) -> f64 {
-        self.parts.global_radius
+        self.0.global_radius
     }
 
     /// `R_n` of a node.
     pub fn node_radius(&self, node: u32) -> f64 {
-        self.parts.node_radii[node as usize]
+        self.0.node_radii[node as usize]
     }
 
     /// Number of colliding pairs at rest.
     pub fn rest_collisions(&self) -> u64 {
-        self.parts.rest_collisions
+        self.0.rest_collisions
     }
 
     /// `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
@@ -108,6 +110,6 @@ impl Certificates {
     /// # Panics
     /// When the length of q is not the number of modes.
     pub fn norm(&self, q: &[f64]) -> f64 {
-        self.parts.scope.norm(q)
+        self.0.scope.norm(q)
     }
 }

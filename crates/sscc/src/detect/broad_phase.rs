@@ -81,7 +81,7 @@ impl<const E: usize> BroadPhase<E> {
     }
 
     /// Starts a search: all boxes are those of this motion from now on.
-    pub(crate) fn begin_volumes(&mut self, context: &Context<'_>, motion: &impl VertexMotion<E>) {
+    pub(crate) fn begin_volumes(&mut self, context: &Context, motion: &impl VertexMotion<E>) {
         self.volumes.begin(&context.hierarchy, motion);
         if let Some(cones) = &mut self.cones {
             cones.update(&context.hierarchy, &self.volumes);
@@ -93,7 +93,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn defer_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         (a, b): (u32, u32),
         motion: &M,
         narrow: &mut N,
@@ -108,7 +108,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn test_deferred_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         motion: &M,
         narrow: &mut N,
     ) {
@@ -118,8 +118,8 @@ impl<const E: usize> BroadPhase<E> {
     }
 
     /// Checks whether the search was cancelled: then it ends like one whose limit is reached.
-    pub(crate) fn check_cancelled<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) {
-        if context.progress.is_cancelled() {
+    pub(crate) fn check_cancelled<N: NarrowPhase<E>>(&mut self, context: &Context, narrow: &mut N) {
+        if context.is_cancelled() {
             self.is_cancelled = true;
             narrow.hits().stop();
         }
@@ -127,7 +127,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// Counts a visit of a node, and checks for cancellation now and then. Returns false if the search is to end.
     #[inline]
-    pub(crate) fn count_visit<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) -> bool {
+    pub(crate) fn count_visit<N: NarrowPhase<E>>(&mut self, context: &Context, narrow: &mut N) -> bool {
         self.visits = self.visits.wrapping_add(1);
         if self.visits.is_multiple_of(VISITS_PER_CHECK) {
             self.check_cancelled(context, narrow);
@@ -137,7 +137,7 @@ impl<const E: usize> BroadPhase<E> {
 
     /// Counts a test of two triangles, and checks now and then.
     #[inline]
-    pub(super) fn count_triangle_test<N: NarrowPhase<E>>(&mut self, context: &Context<'_>, narrow: &mut N) {
+    pub(super) fn count_triangle_test<N: NarrowPhase<E>>(&mut self, context: &Context, narrow: &mut N) {
         self.counters.triangle_tests += 1;
         if self.counters.triangle_tests.is_multiple_of(TESTS_PER_CHECK) {
             self.check_cancelled(context, narrow);
@@ -160,7 +160,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn test_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         a: TriangleVertices,
         b: TriangleVertices,
         motion: &M,
@@ -176,7 +176,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(super) fn test_related_triangles<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         relation: Relation,
         a: TriangleVertices,
         b: TriangleVertices,
@@ -204,11 +204,11 @@ impl<const E: usize> BroadPhase<E> {
     /// Tests the exceptions, one by one.
     pub(crate) fn test_exceptions<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         motion: &M,
         narrow: &mut N,
     ) {
-        for &pair in right_or!(context.exceptions, ExceptionsForgotten, &[]) {
+        for &pair in right_or!(&*context.exceptions, ExceptionsForgotten, &[]) {
             if narrow.hits().note_if_full() {
                 return;
             }
@@ -232,7 +232,7 @@ impl<const E: usize> BroadPhase<E> {
     }
 
     /// A triangle of the mesh with the indices of its vertices in the layout.
-    pub(crate) fn triangle(&self, context: &Context<'_>, triangle: u32) -> TriangleVertices {
+    pub(crate) fn triangle(&self, context: &Context, triangle: u32) -> TriangleVertices {
         let face = context.filter.faces()[triangle as usize];
         TriangleVertices { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }
     }

@@ -12,7 +12,7 @@ impl<const E: usize> BroadPhase<E> {
     /// certificates; only boxes of single triangles, compared exactly.
     pub(crate) fn brute_force<N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         positions: impl Fn(u32) -> [DVec3; E],
         narrow: &mut N,
     ) {

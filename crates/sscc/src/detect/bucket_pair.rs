@@ -21,7 +21,7 @@ struct BucketLane {
 impl<const E: usize> BroadPhase<E> {
     /// Whether the triangles in two slots never count.
     #[inline]
-    fn are_adjacent(&self, context: &Context<'_>, slots: [usize; 2]) -> bool {
+    fn are_adjacent(&self, context: &Context, slots: [usize; 2]) -> bool {
         let buckets = &self.volumes.layout.buckets;
         if context.filter.is_adjacency_alone() {
             return buckets.has_shared_vertex(slots);
@@ -33,7 +33,7 @@ impl<const E: usize> BroadPhase<E> {
     /// Tests a bucket against itself.
     pub(crate) fn test_bucket<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         bucket: u32,
         motion: &M,
         narrow: &mut N,
@@ -54,7 +54,7 @@ impl<const E: usize> BroadPhase<E> {
     /// Tests two buckets.
     pub(crate) fn test_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         (n, m): (u32, u32),
         motion: &M,
         narrow: &mut N,
@@ -90,7 +90,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         x: BucketLane,
         y: BucketLane,
         share_no_vertex: bool,

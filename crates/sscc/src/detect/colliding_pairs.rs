@@ -1,7 +1,7 @@
 //! All colliding pairs at one configuration, by the traditional method: to find exceptions, and for
 //! [`ContactFilter::ignoring_rest`].
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::broad_phase::BroadPhase;
 use super::context::Context;
@@ -20,15 +20,15 @@ const MAX_PAIRS: usize = 1 << 24;
 /// When q is no configuration of the model, there are more than 2^24 pairs, or `progress` cancels.
 pub(crate) fn colliding_pairs(
     model: &ReducedModel,
-    hierarchy: &Hierarchy,
+    hierarchy: &Arc<Hierarchy>,
     filter: &ContactFilter,
     q: &[f64],
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let reach = model.check_coordinates(q)?;
     filter.check_model(model.mesh().faces().len())?;
-    let context = Context::new(model, Cow::Borrowed(hierarchy), filter, &[], Some(Needs::REFIT));
-    let context = Context { progress, ..context };
+    let context = Context::new(model, Arc::clone(hierarchy), filter, &[], Some(Needs::REFIT));
+    let context = Context { cancel: progress.cancel_token().cloned(), ..context };
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
     let mut narrow = DiscreteHits::default();
     let motion = DeformedMotion::new([q], reach);
@@ -50,7 +50,7 @@ impl ContactFilter {
     /// # Errors
     /// When they are more than 2^24, or when the filter's groups are of another mesh.
     pub fn ignoring_rest(self, model: &ReducedModel) -> Result<Self, Error> {
-        let hierarchy = Hierarchy::build(model, model.metric());
+        let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
         Ok(self.ignoring(pairs))
     }

@@ -1,37 +1,48 @@
 //! State shared by all searches of the detector on one mesh.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::layout::{Layout, Needs};
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
-use crate::{ContactFilter, Pair, Progress, ReducedModel};
+use crate::{CancelToken, ContactFilter, Pair, ReducedModel};
 
-/// The hierarchy and layout of a mesh, the contact filter, the exceptions, and the progress that may cancel a search.
+/// The hierarchy and layout of a mesh, the contact filter, the exceptions, and the token that may cancel a search. Clones share
+/// all of them.
 #[derive(Clone)]
-pub(crate) struct Context<'a> {
-    pub(crate) hierarchy: Cow<'a, Hierarchy>,
+pub(crate) struct Context {
+    pub(crate) hierarchy: Arc<Hierarchy>,
     pub(crate) filter: Arc<PairFilter>,
     /// Exceptions, sorted: pairs that are tested one by one, so that traversals leave them out.
-    pub(crate) exceptions: &'a [Pair],
+    pub(crate) exceptions: Arc<[Pair]>,
     pub(crate) layout: Arc<Layout>,
-    pub(crate) progress: &'a dyn Progress,
+    pub(crate) cancel: Option<CancelToken>,
 }
 
-impl<'a> Context<'a> {
+impl Context {
     /// `needs`: none for brute force, which uses no layout.
     pub(crate) fn new(
-        model: &'a ReducedModel,
-        hierarchy: Cow<'a, Hierarchy>,
+        model: &ReducedModel,
+        hierarchy: Arc<Hierarchy>,
         filter: &ContactFilter,
-        exceptions: &'a [Pair],
+        exceptions: &[Pair],
         needs: Option<Needs>,
     ) -> Self {
         let filter = PairFilter::new(model, filter);
         let layout =
             needs.map_or_else(Layout::default, |needs| Layout::new(model, &hierarchy, &filter, needs));
-        Self { hierarchy, filter: Arc::new(filter), exceptions, layout: Arc::new(layout), progress: &() }
+        Self {
+            hierarchy,
+            filter: Arc::new(filter),
+            exceptions: exceptions.into(),
+            layout: Arc::new(layout),
+            cancel: None,
+        }
+    }
+
+    /// Whether a search should end.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(CancelToken::is_cancelled)
     }
 
     /// Whether a pair is an exception.

@@ -16,7 +16,7 @@ impl<const E: usize> BroadPhase<E> {
     /// Finds all hits between two nodes, or within one, but exceptions; for nodes within a bucket, those of the bucket.
     pub(crate) fn traverse<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         start: NodePair,
         motion: &M,
         narrow: &mut N,
@@ -46,7 +46,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn next_visit<N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         narrow: &mut N,
     ) -> Option<NodePair> {
         let next = self.stack.pop()?;
@@ -63,7 +63,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn visit_node<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         n: u32,
         motion: &M,
         narrow: &mut N,
@@ -93,7 +93,7 @@ impl<const E: usize> BroadPhase<E> {
     #[inline]
     pub(crate) fn visit_node_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &Context<'_>,
+        context: &Context,
         (n, m): NodePair,
         motion: &M,
         narrow: &mut N,

@@ -14,13 +14,13 @@ use crate::hierarchy::NodePair;
 const VISITS_PER_CHECK: u64 = 256;
 
 /// One of two meshes: its context, its volumes, which have begun a search in the same frame as the other's, and its motion.
-pub(crate) struct Side<'s, 'a, const E: usize, M> {
-    pub(crate) context: &'s Context<'a>,
+pub(crate) struct Side<'s, const E: usize, M> {
+    pub(crate) context: &'s Context,
     pub(crate) volumes: &'s mut NodeVolumes<E>,
     pub(crate) motion: &'s M,
 }
 
-impl<const E: usize, M: VertexMotion<E>> Side<'_, '_, E, M> {
+impl<const E: usize, M: VertexMotion<E>> Side<'_, E, M> {
     fn bucket(&self, node: u32) -> Option<u32> {
         self.volumes.layout.buckets.of_node(node)
     }
@@ -38,15 +38,15 @@ impl<const E: usize, M: VertexMotion<E>> Side<'_, '_, E, M> {
 /// every one of y: neither contact filter applies.
 ///
 /// # Errors
-/// When the progress of the first context cancels.
+/// When the token of the first context cancels.
 pub(crate) fn traverse_two_meshes<
     const E: usize,
     X: VertexMotion<E>,
     Y: VertexMotion<E>,
     N: NarrowPhase<E>,
 >(
-    x: &mut Side<'_, '_, E, X>,
-    y: &mut Side<'_, '_, E, Y>,
+    x: &mut Side<'_, E, X>,
+    y: &mut Side<'_, E, Y>,
     stack: &mut Vec<NodePair>,
     counters: &mut Counters,
     narrow: &mut N,
@@ -65,7 +65,7 @@ pub(crate) fn traverse_two_meshes<
         let visits = counters.opened + counters.triangle_tests;
         if visits >= next_check {
             next_check = visits + VISITS_PER_CHECK;
-            if x.context.progress.is_cancelled() {
+            if x.context.is_cancelled() {
                 return Err(Error::Cancelled);
             }
         }
@@ -110,9 +110,9 @@ pub(crate) fn traverse_two_meshes<
 
 /// Tests two buckets whose boxes overlap.
 fn test_buckets<const E: usize, X: VertexMotion<E>, Y: VertexMotion<E>, N: NarrowPhase<E>>(
-    x: &mut Side<'_, '_, E, X>,
+    x: &mut Side<'_, E, X>,
     a: u32,
-    y: &mut Side<'_, '_, E, Y>,
+    y: &mut Side<'_, E, Y>,
     b: u32,
     counters: &mut Counters,
     narrow: &mut N,

@@ -1,13 +1,19 @@
 //! A reduced deformable model `x = p + U q`: mesh, modes and a default metric.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::model::check_scaled_modes;
 use crate::{Error, Metric, Modes, TriMesh, deformed_position, limits};
 
-/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric of certificates that name no other.
+/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric of certificates that name no other. Clones share
+/// one memory.
 #[derive(Clone, Debug)]
-pub struct ReducedModel {
+pub struct ReducedModel(Arc<Contents>);
+
+#[derive(Clone, Debug)]
+struct Contents {
     mesh: TriMesh,
     modes: Modes,
     metric: Metric,
@@ -43,39 +49,40 @@ impl ReducedModel {
             let reach = &mut mode_reach[index % modes.rank()];
             *reach = reach.max(u.abs().max_element());
         }
-        Ok(Self { mesh, modes, metric, rest_reach, mode_reach })
+        Ok(Self(Arc::new(Contents { mesh, modes, metric, rest_reach, mode_reach })))
     }
 
     /// The mesh at rest.
     pub fn mesh(&self) -> &TriMesh {
-        &self.mesh
+        &self.0.mesh
     }
 
     /// The same model, whose vertices are split along seams ([`TriMesh::with_split_vertices`]).
     #[must_use]
     pub fn with_split_vertices(mut self) -> Self {
-        self.mesh = self.mesh.with_split_vertices();
+        let contents = Arc::make_mut(&mut self.0);
+        contents.mesh = contents.mesh.clone().with_split_vertices();
         self
     }
 
     /// The deformation modes.
     pub fn modes(&self) -> &Modes {
-        &self.modes
+        &self.0.modes
     }
 
     /// The default metric.
     pub fn metric(&self) -> &Metric {
-        &self.metric
+        &self.0.metric
     }
 
     /// Number of modes r.
     pub fn rank(&self) -> usize {
-        self.modes.rank()
+        self.0.modes.rank()
     }
 
     /// The position of a vertex at `q` (model unit): see [`deformed_position`].
     pub fn position(&self, vertex: u32, q: &[f64]) -> DVec3 {
-        deformed_position(self.mesh.rest_positions()[vertex as usize], self.modes.of_vertex(vertex), q)
+        deformed_position(self.0.mesh.rest_positions()[vertex as usize], self.0.modes.of_vertex(vertex), q)
     }
 
     /// All deformed positions at `q` (V, model unit).
@@ -84,12 +91,12 @@ impl ReducedModel {
     /// When q has the wrong length, an entry is not finite, or a vertex would leave the range of [`limits`].
     pub fn positions(&self, q: &[f64]) -> Result<Vec<DVec3>, Error> {
         self.check_coordinates(q)?;
-        Ok((0..self.mesh.rest_positions().len() as u32).map(|i| self.position(i, q)).collect())
+        Ok((0..self.0.mesh.rest_positions().len() as u32).map(|i| self.position(i, q)).collect())
     }
 
     /// An upper bound (rounded to nearest) of every coordinate of `|p| + sum_k |U_k q_k|`.
     pub(crate) fn reach(&self, q: &[f64]) -> f64 {
-        self.rest_reach + self.displacement_bound(q)
+        self.0.rest_reach + self.displacement_bound(q)
     }
 
     /// An upper bound (rounded to nearest) of every coordinate of `sum_k |U_k q_k|`. Not finite where an entry of q is
@@ -98,7 +105,7 @@ impl ReducedModel {
     pub(crate) fn displacement_bound(&self, q: &[f64]) -> f64 {
         // Four partial sums.
         let mut lanes = [0.0; 4];
-        let (reaches, rest) = self.mode_reach.as_chunks::<4>();
+        let (reaches, rest) = self.0.mode_reach.as_chunks::<4>();
         let (coordinates, last) = q.as_chunks::<4>();
         for (u, x) in reaches.iter().zip(coordinates) {
             for i in 0..4 {
@@ -111,7 +118,7 @@ impl ReducedModel {
 
     /// An upper bound (rounded to nearest) of every coordinate of `|U_k q_k|`, for one mode k.
     pub(crate) fn mode_displacement_bound(&self, k: usize, q_k: f64) -> f64 {
-        self.mode_reach[k] * q_k.abs()
+        self.0.mode_reach[k] * q_k.abs()
     }
 
     /// Refuses a q that is not a configuration of this model. Returns an upper bound (rounded to nearest) of every

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec4};
 use super::posed_shape::PosedShape;
 use crate::detect::aabb8::AabbF32;
 
-impl PosedShape<'_> {
+impl PosedShape {
     /// Adds the used vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();

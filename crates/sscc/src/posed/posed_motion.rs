@@ -126,7 +126,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
 
 #[cfg(test)]
 mod tests {
-    use std::borrow::Cow;
+    use std::sync::Arc;
 
     use glam::{DMat3, DQuat};
 
@@ -153,9 +153,9 @@ mod tests {
             let modes = (0..202 * rank).map(|_| random.vector() * 0.2).collect();
             let mesh = TriMesh::new(positions, faces).unwrap();
             let model = ReducedModel::new(mesh, Modes::new(rank, modes).unwrap()).unwrap();
-            let hierarchy = Hierarchy::build(&model, model.metric());
+            let hierarchy = Arc::new(Hierarchy::build(&model, model.metric()));
             let filter = ContactFilter::default();
-            let context = Context::new(&model, Cow::Borrowed(&hierarchy), &filter, &[], Some(Needs::LAZY));
+            let context = Context::new(&model, Arc::clone(&hierarchy), &filter, &[], Some(Needs::LAZY));
             let layout = &context.layout;
             let mut volumes = NodeVolumes::<2>::new(layout, true);
             let mut motion = PosedMotion::<2>::new(&model).unwrap();

@@ -1,6 +1,6 @@
 //! A shape in the world, tested against others: BD-trees in their own axes, rotated and moved.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -20,9 +20,9 @@ use crate::{Certificates, Error, Pair, ReducedModel};
 /// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
 /// repeated calls allocate nothing; clones share what does not change.
 #[derive(Clone)]
-pub struct PosedShape<'a> {
-    pub(super) model: &'a ReducedModel,
-    pub(super) context: Context<'a>,
+pub struct PosedShape {
+    pub(super) model: ReducedModel,
+    pub(super) context: Context,
     pub(super) volumes: NodeVolumes<1>,
     pub(super) motion: PosedMotion<1>,
     /// An AABB of the shape.
@@ -33,20 +33,20 @@ pub struct PosedShape<'a> {
     hits: DiscreteHits,
 }
 
-impl<'a> PosedShape<'a> {
+impl PosedShape {
     /// A shape at q = 0 in its own axes. Of the certificates only the hierarchy is used.
     ///
     /// # Errors
     /// When the certificates were computed for another model.
-    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+    pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         certificates.check_model(model)?;
-        let hierarchy = Cow::Borrowed(certificates.hierarchy());
+        let hierarchy = Arc::clone(&certificates.parts().hierarchy);
         let context = Context::new(model, hierarchy, certificates.filter(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
         let mut motion = PosedMotion::new(model)?;
         let whole = motion.place(model, &context.layout, [(&vec![0.0; model.rank()], &Pose::default())])?;
         Ok(Self {
-            model,
+            model: model.clone(),
             context,
             volumes,
             motion,
@@ -66,7 +66,7 @@ impl<'a> PosedShape<'a> {
             return Ok(self.whole);
         }
         self.is_current = false;
-        self.whole = self.motion.place(self.model, &self.volumes.layout, [(q, pose)])?;
+        self.whole = self.motion.place(&self.model, &self.volumes.layout, [(q, pose)])?;
         Ok(self.whole)
     }
 
@@ -82,7 +82,7 @@ impl<'a> PosedShape<'a> {
         self.hits.0.begin(usize::MAX);
         let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
-        // Nobody cancels: the contexts have no progress.
+        // The contexts have no token that cancels.
         let _ =
             traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
         found.extend_from_slice(&self.hits.0.list);
@@ -155,7 +155,7 @@ mod tests {
             Certificates::compute(model, &CertifyOptions { budget: 0, ..CertifyOptions::default() }, &())
                 .unwrap()
         });
-        let mut shapes: Vec<PosedShape<'_>> =
+        let mut shapes: Vec<PosedShape> =
             models.iter().zip(&certificates).map(|(m, c)| PosedShape::new(m, c).unwrap()).collect();
         let (mut found, mut empty) = (0, 0);
         for case in 0..60 {
@@ -222,7 +222,7 @@ mod tests {
         let mut found = 0;
         for case in 0..300 {
             let size = 10.0_f64.powi(-(case % 18));
-            let mut place = |shape: &mut PosedShape<'_>, translation: DVec3| {
+            let mut place = |shape: &mut PosedShape, translation: DVec3| {
                 let rotation = DMat3::from_quat(glam::DQuat::from_scaled_axis(vector(state) * 3.0)) * size;
                 let q = [random(state), random(state)];
                 let Aabb { lower, upper } = shape.place(&q, &Pose { rotation, translation }).unwrap();

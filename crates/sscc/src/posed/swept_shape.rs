@@ -18,9 +18,9 @@ use crate::{Error, Impact, Pair, ReducedModel};
 /// are the positions of a [`PosedShape`] at each place, bit for bit. It owns its memory, so that repeated calls allocate
 /// nothing; it shares what does not change with the posed shape.
 #[derive(Clone)]
-pub struct SweptShape<'a> {
-    model: &'a ReducedModel,
-    context: Context<'a>,
+pub struct SweptShape {
+    model: ReducedModel,
+    context: Context,
     volumes: NodeVolumes<2>,
     motion: PosedMotion<2>,
     /// An AABB of the whole motion.
@@ -32,17 +32,17 @@ pub struct SweptShape<'a> {
     near: NearHits,
 }
 
-impl<'a> SweptShape<'a> {
+impl SweptShape {
     /// A shape that rests at q = 0 in its own axes.
     ///
     /// # Errors
     /// When the model is beyond the range of numbers.
-    pub fn new(shape: &PosedShape<'a>) -> Result<Self, Error> {
+    pub fn new(shape: &PosedShape) -> Result<Self, Error> {
         Ok(Self {
-            model: shape.model,
+            model: shape.model.clone(),
             context: shape.context.clone(),
             volumes: NodeVolumes::new(&shape.context.layout, true),
-            motion: PosedMotion::new(shape.model)?,
+            motion: PosedMotion::new(&shape.model)?,
             whole: Aabb::EMPTY,
             is_current: false,
             stack: Vec::new(),
@@ -58,7 +58,7 @@ impl<'a> SweptShape<'a> {
     /// When a q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, t0: (&[f64], &Pose), t1: (&[f64], &Pose)) -> Result<Aabb, Error> {
         self.is_current = false;
-        self.whole = self.motion.place(self.model, &self.volumes.layout, [t0, t1])?;
+        self.whole = self.motion.place(&self.model, &self.volumes.layout, [t0, t1])?;
         Ok(self.whole)
     }
 
@@ -75,7 +75,7 @@ impl<'a> SweptShape<'a> {
         self.hits.0.begin(usize::MAX);
         let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
-        // Nobody cancels: the contexts have no progress.
+        // The contexts have no token that cancels.
         let _ =
             traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
         found.extend_from_slice(&self.hits.0.list);
@@ -94,7 +94,7 @@ impl<'a> SweptShape<'a> {
         self.near.0.begin(limit);
         let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
         let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
-        // Nobody cancels: the contexts have no progress.
+        // The contexts have no token that cancels.
         let _ =
             traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.near);
         found.extend_from_slice(&self.near.0.list);
@@ -156,7 +156,7 @@ mod tests {
         let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
         let certificates =
             models.each_ref().map(|model| Certificates::compute(model, &options, &()).unwrap());
-        let mut shapes: Vec<SweptShape<'_>> = models
+        let mut shapes: Vec<SweptShape> = models
             .iter()
             .zip(&certificates)
             .map(|(m, c)| SweptShape::new(&PosedShape::new(m, c).unwrap()).unwrap())
@@ -207,7 +207,7 @@ mod tests {
                 let [a, b] = [x.corners(*i), y.corners(*j)];
                 (0..2).any(|end| a[end].iter().any(|p| b[end].iter().any(|q| p.distance(*q) < margin)))
             };
-            let triangles = |shape: &SweptShape<'_>| shape.model.mesh().faces().len() as u32;
+            let triangles = |shape: &SweptShape| shape.model.mesh().faces().len() as u32;
             let all = (0..triangles(x)).flat_map(|i| (0..triangles(y)).map(move |j| (i, j)));
             let within: Vec<(u32, u32)> = all.filter(is_within).collect();
             assert!(within.iter().all(|pair| near.binary_search(pair).is_ok()), "case {case}");

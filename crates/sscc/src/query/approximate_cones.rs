@@ -5,7 +5,7 @@ use super::method::Method;
 use super::query::Query;
 use crate::{Certificates, Error, ReducedModel};
 
-impl<'a> Query<'a> {
+impl Query {
     /// A query by [`Method::NormalCones`] without its contour test. A patch whose normals are all on the positive side of one
     /// direction can still meet itself (a ramp that winds over itself), so discrete queries may list too few pairs.
     /// Continuous queries are traditional, hence exact.
@@ -13,10 +13,7 @@ impl<'a> Query<'a> {
     /// # Errors
     /// As [`Query::with_method`].
     #[doc(hidden)]
-    pub fn with_approximate_cones(
-        model: &'a ReducedModel,
-        certificates: &'a Certificates,
-    ) -> Result<Self, Error> {
+    pub fn with_approximate_cones(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         let mut query = Self::with_method(model, certificates, Method::NormalCones)?;
         let cones = &mut query.discrete.certified.broad.cones;
         *cones = cones.take().map(|cones| cones.without_contour_test());

@@ -17,7 +17,7 @@ use crate::{Error, Progress};
 /// Progress is reported once for this many q, which costs the cheapest queries nothing.
 const REPORT_INTERVAL: usize = 64;
 
-impl Query<'_> {
+impl Query {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
     /// of threads (none: all cores). `progress` may cancel it; that of [`Query::cancelled_by`] is not used.
     ///
@@ -80,7 +80,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
     ///
     /// # Errors
     /// That of the first q that has one; when it was cancelled.
-    fn answer_by_root(&self, query: &Query<'_>) -> Result<(Vec<Answer>, OpenRows), Error> {
+    fn answer_by_root(&self, query: &Query) -> Result<(Vec<Answer>, OpenRows), Error> {
         let open = Mutex::new((Vec::new(), Vec::new()));
         let answer = |check: &mut ConfigurationCheck, (index, q): (usize, &Q)| {
             if self.progress.is_cancelled() {
@@ -114,7 +114,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
     ///
     /// # Errors
     /// When it was cancelled.
-    fn answer_open(&self, query: &Query<'_>, open: &OpenRows) -> Result<Vec<(usize, Answer)>, Error> {
+    fn answer_open(&self, query: &Query, open: &OpenRows) -> Result<Vec<(usize, Answer)>, Error> {
         self.done.fetch_max(self.rows.len() - open.near.len() - open.far.len(), Ordering::Relaxed);
         let idle = Mutex::new(Vec::new());
         let answer = |group: &[usize]| {
@@ -122,7 +122,8 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
                 return Err(Error::Cancelled);
             }
             let first = lock(&idle).pop();
-            let mut searches = first.unwrap_or_else(|| SearchGroup::new(query, self.progress));
+            let mut searches =
+                first.unwrap_or_else(|| SearchGroup::new(query, self.progress.cancel_token().cloned()));
             let rows: Vec<&[f64]> = group.iter().map(|index| self.rows[*index].as_ref()).collect();
             let answers = searches.answer(&rows, self.limit)?;
             lock(&idle).push(searches);

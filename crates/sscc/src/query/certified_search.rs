@@ -20,7 +20,7 @@ pub(super) struct CertifiedSearch<const E: usize> {
 }
 
 impl<const E: usize> CertifiedSearch<E> {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+    pub(super) fn new(context: &QueryContext) -> Self {
         let layout = &context.detect.layout;
         let broad = BroadPhase::new(layout, context.method.is_lazy(), context.cones());
         let hulls = context.hulls.as_ref().map(|hulls| MovedHulls::new(&hulls.nodes));
@@ -32,7 +32,7 @@ impl<const E: usize> CertifiedSearch<E> {
     /// holds at start and end, since its region is convex. Returns whether the root's local certificate proved the shape free.
     pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         norm: f64,
         motion: &M,
         narrow: &mut N,

@@ -4,7 +4,7 @@
 //! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, all AABBs are refitted, as the
 //! traditional method does, and the traversal goes on with those.
 
-use super::local_proofs::LocalProofs;
+use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use crate::CertificateParts;
 use crate::detect::broad_phase::BroadPhase;
@@ -20,8 +20,8 @@ pub(super) const LOOSE_PAIRS: usize = 2;
 /// Finds all hits but exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
-    mut locals: Option<(&mut LocalProofs<E>, &LocalTables<'_>)>,
-    context: &Context<'_>,
+    mut locals: Option<(&mut LocalProofs<E>, &LocalTables)>,
+    context: &Context,
     certificates: &CertificateParts,
     norm: f64,
     motion: &M,
@@ -30,6 +30,9 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
     // A search that ends at its first hits may open few nodes.
     let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
     let mut visits = 0;
+    // Copied, because many searches end before any node is proven.
+    let mut work_before = locals.as_ref().map_or(u64::MAX, |(proofs, _)| proofs.work_before());
+    let mut has_proofs = locals.as_ref().is_some_and(|(proofs, _)| proofs.is_complete());
     broad.begin_traversal((0, 0), motion);
     while let Some((n, m)) = broad.next_visit(context, narrow) {
         if can_refit && broad.loose_pairs > LOOSE_PAIRS * broad.volumes.closed_buckets() {
@@ -37,13 +40,15 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             can_refit = false;
         }
         visits += 1;
-        if let Some((proofs, tables)) = &mut locals
-            && proofs.is_due(visits, broad.counters.box_tests)
+        if work(visits, broad.counters.box_tests) > work_before
+            && let Some((proofs, tables)) = &mut locals
         {
             proofs.prove(tables, &context.hierarchy, &certificates.node_radii, norm);
+            (work_before, has_proofs) = (u64::MAX, true);
         }
         if n != m {
-            if let Some((proofs, tables)) = &mut locals
+            if has_proofs
+                && let Some((proofs, tables)) = &mut locals
                 && proofs.is_pair_proven(tables, (n, m))
             {
                 continue;
@@ -53,7 +58,8 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
         }
         let radius = certificates.node_radii[n as usize];
         let is_certified = right_or!(norm < radius, NodeRadiusReached, norm <= radius);
-        if is_certified || locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n)) {
+        let is_proven = || locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n));
+        if is_certified || has_proofs && is_proven() {
             continue;
         }
         if !broad.visit_node(context, n, motion, narrow) {

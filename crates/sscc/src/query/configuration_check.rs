@@ -14,7 +14,7 @@ pub(super) struct ConfigurationCheck {
 }
 
 impl ConfigurationCheck {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+    pub(super) fn new(context: &QueryContext) -> Self {
         let is_centered = context.scope.center.iter().all(|x| *x == 0.0);
         let offset = vec![0.0; if is_centered { 0 } else { context.model.rank() }];
         Self { valid_ball: ValidBall::new(context), offset }
@@ -27,7 +27,7 @@ impl ConfigurationCheck {
     #[inline(always)]
     pub(super) fn measure<'q>(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         q: &'q [f64],
     ) -> Result<Configuration<'q>, Error> {
         let scope = &context.scope;

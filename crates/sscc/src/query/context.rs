@@ -1,7 +1,6 @@
 //! State shared by all queries on one model: detector context, certificates, scope. It decides which certificates hold
 //! at a norm.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::local_tables::LocalTables;
@@ -15,16 +14,16 @@ use crate::{CertificateParts, Certificates, PairTree, ReducedModel, Scope};
 
 /// The detector's context, and which certificates hold at a norm.
 #[derive(Clone)]
-pub(super) struct QueryContext<'a> {
-    pub(super) model: &'a ReducedModel,
-    pub(super) detect: Context<'a>,
-    pub(super) certificates: Option<&'a Certificates>,
-    pub(super) scope: Cow<'a, Scope>,
+pub(super) struct QueryContext {
+    pub(super) model: ReducedModel,
+    pub(super) detect: Context,
+    pub(super) certificates: Option<Certificates>,
+    pub(super) scope: Arc<Scope>,
     pub(super) method: Method,
     /// Hulls for the pair tree, if the method uses it.
     pub(super) hulls: Option<Arc<PairHulls>>,
     /// Local certificates, if the method uses them.
-    pub(super) locals: Option<Arc<LocalTables<'a>>>,
+    pub(super) locals: Option<Arc<LocalTables>>,
     /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
     pub(super) refit_norm: f64,
     /// From this `|z|` on, local certificates are evaluated.
@@ -36,12 +35,12 @@ pub(super) struct QueryContext<'a> {
     proven_radius: f64,
 }
 
-impl<'a> QueryContext<'a> {
+impl QueryContext {
     pub(super) fn new(
-        model: &'a ReducedModel,
-        certificates: Option<&'a Certificates>,
-        scope: Cow<'a, Scope>,
-        hierarchy: Cow<'a, Hierarchy>,
+        model: &ReducedModel,
+        certificates: Option<&Certificates>,
+        scope: Arc<Scope>,
+        hierarchy: Arc<Hierarchy>,
         method: Method,
     ) -> Self {
         let used = certificates.filter(|_| method == Method::Certified);
@@ -68,9 +67,9 @@ impl<'a> QueryContext<'a> {
             all_reached_norm = self::all_reached_norm(pair_tree, buckets.count()).max(refit_norm);
         }
         Self {
-            model,
+            model: model.clone(),
             detect,
-            certificates,
+            certificates: certificates.cloned(),
             scope,
             method,
             hulls,
@@ -90,13 +89,13 @@ impl<'a> QueryContext<'a> {
 
     /// The certificates, if the method uses them.
     #[inline]
-    pub(super) fn used_certificates(&self) -> Option<&'a CertificateParts> {
-        self.certificates.filter(|_| self.method == Method::Certified).map(Certificates::parts)
+    pub(super) fn used_certificates(&self) -> Option<&CertificateParts> {
+        self.certificates.as_ref().filter(|_| self.method == Method::Certified).map(Certificates::parts)
     }
 
     /// The pair tree, if the method uses it, and it is complete at this norm and leaves pairs out: then a pair that it does not
     /// contain is certified.
-    pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&'a PairTree> {
+    pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&PairTree> {
         let tree = self.used_certificates().map(|parts| &parts.pair_tree);
         let tree = tree.filter(|_| norm < self.all_reached_norm);
         right_or!(

@@ -5,7 +5,7 @@ use super::statistics::Statistics;
 use super::swept_search::SweptSearch;
 use crate::{Error, Impact};
 
-impl Query<'_> {
+impl Query {
     /// All pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1`
     /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time of
     /// impact.

@@ -6,7 +6,7 @@ use crate::detect::vertex_motion::DeformedMotion;
 use crate::hierarchy::{BUCKET_TRIANGLES, Node, NodePair};
 use crate::{Certificates, Error, Pair};
 
-impl Query<'_> {
+impl Query {
     /// The colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
     /// but exceptions, found without certificates.
     ///
@@ -23,7 +23,7 @@ impl Query<'_> {
         broad.begin_volumes(detect, &motion);
         broad.traverse(detect, (n, m), &motion, narrow);
         broad.end(narrow)?;
-        let exceptions = context.certificates.map_or(&[][..], Certificates::exceptions);
+        let exceptions = context.certificates.as_ref().map_or(&[][..], Certificates::exceptions);
         let hierarchy = &detect.hierarchy;
         let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
         let contains = |node: &Node, t| {

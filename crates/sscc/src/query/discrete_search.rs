@@ -16,7 +16,7 @@ pub(super) struct DiscreteSearch {
 }
 
 impl DiscreteSearch {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+    pub(super) fn new(context: &QueryContext) -> Self {
         Self { certified: CertifiedSearch::new(context), narrow: DiscreteHits::default() }
     }
 
@@ -33,7 +33,7 @@ impl DiscreteSearch {
     /// When it was cancelled.
     pub(super) fn find(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         configuration: Configuration<'_>,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
@@ -53,7 +53,7 @@ impl DiscreteSearch {
     /// Returns whether the root's local certificate was the proof.
     fn search(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         configuration: Configuration<'_>,
         is_root_certified: bool,
     ) -> Result<bool, Error> {

@@ -8,7 +8,7 @@ use crate::detect::vertex_motion::DeformedMotion;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::NodePair;
 
-impl Query<'_> {
+impl Query {
     /// The pairs of nodes that the local certificate of this number proves free at q, or on straight lines from the first to the second q:
     /// its node with itself, and with other nodes. None where the query uses no local certificates.
     ///

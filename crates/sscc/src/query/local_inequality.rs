@@ -41,7 +41,7 @@ impl<const E: usize> LocalInequality<E> {
     }
 
     /// Sets the factors of a motion. False where its positions are not those of the modes alone, or certificates prove nothing about it.
-    pub(super) fn set_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+    pub(super) fn set_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
         let (Some(coordinates), Some(radius)) = (motion.coarse_coordinates(), motion.region_radius()) else {
             return false;
         };
@@ -54,7 +54,7 @@ impl<const E: usize> LocalInequality<E> {
             let all = &mut self.factors[end];
             all.clear();
             let mut sum = 0.0;
-            all.extend(q.iter().zip(tables.center).zip(sizes).map(|((q, c), size)| {
+            all.extend(q.iter().zip(&tables.center).zip(sizes).map(|((q, c), size)| {
                 let factor = (q - c) * size;
                 sum += factor.abs();
                 factor as f32
@@ -69,8 +69,8 @@ impl<const E: usize> LocalInequality<E> {
     }
 
     /// The ratios that a certificate allows: those below this.
-    pub(super) fn allowed(&self, tables: &LocalTables<'_>, index: usize) -> f32 {
-        let all = tables.certificates;
+    pub(super) fn allowed(&self, tables: &LocalTables, index: usize) -> f32 {
+        let all = &*tables.certificates;
         let bounds = &all.bounds[index];
         let [start, end] = [index, index + 1].map(|i| all.mode_starts[i] as usize);
         let modes = &all.modes[start..end];

@@ -29,6 +29,12 @@ const BUCKETS_OF_WORK: u64 = 4;
 /// AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;
 
+/// The work of a search of so many visits and tests of AABBs.
+#[inline]
+pub(super) fn work(visits: u64, box_tests: u64) -> u64 {
+    visits + box_tests / PACKET
+}
+
 /// The local certificates that hold in one search.
 #[derive(Clone)]
 pub(super) struct LocalProofs<const E: usize> {
@@ -50,7 +56,7 @@ pub(super) struct LocalProofs<const E: usize> {
 }
 
 impl<const E: usize> LocalProofs<E> {
-    pub(super) fn new(tables: &LocalTables<'_>) -> Self {
+    pub(super) fn new(tables: &LocalTables) -> Self {
         Self {
             inequality: LocalInequality::new(),
             // None of the marks below is of this search.
@@ -67,22 +73,26 @@ impl<const E: usize> LocalProofs<E> {
     }
 
     /// Whether the certificate of the root proves it.
-    pub(super) fn prove_root(&mut self, tables: &LocalTables<'_>) -> bool {
+    pub(super) fn prove_root(&mut self, tables: &LocalTables) -> bool {
         let Some(index) = tables.certificate_of(0) else { return false };
         tables.certificates.bounds[index].ratio < f64::from(self.allowed(tables, index))
     }
 
-    /// Whether a search of so many visits and tests of AABBs should find proven nodes now.
-    #[inline]
-    pub(super) fn is_due(&self, visits: u64, box_tests: u64) -> bool {
-        self.is_usable && !self.is_complete && visits + box_tests / PACKET > self.work_before
+    /// The work, as [`work`] counts it, after which a search finds proven nodes; never where it has done so, or cannot.
+    pub(super) fn work_before(&self) -> u64 {
+        if self.is_usable && !self.is_complete { self.work_before } else { u64::MAX }
+    }
+
+    /// Whether nodes and pairs of nodes may be proven: [`Self::prove`] has found proven nodes.
+    pub(super) fn is_complete(&self) -> bool {
+        self.is_complete
     }
 
     /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few of their buckets
     /// are proven, the search tries no pairs: those of the others are seldom proven, and trying each takes longer.
     pub(super) fn prove(
         &mut self,
-        tables: &LocalTables<'_>,
+        tables: &LocalTables,
         hierarchy: &Hierarchy,
         node_radii: &[f64],
         norm: f64,
@@ -121,7 +131,7 @@ impl<const E: usize> LocalProofs<E> {
     /// nodes of its list.
     pub(super) fn claims<M: VertexMotion<E>>(
         &mut self,
-        tables: &LocalTables<'_>,
+        tables: &LocalTables,
         motion: &M,
         index: usize,
     ) -> Vec<NodePair> {
@@ -130,7 +140,7 @@ impl<const E: usize> LocalProofs<E> {
         }
         let allowed = self.allowed(tables, index);
         let LocalCertificates { nodes, bounds, list_starts, list_nodes, list_ratios, .. } =
-            tables.certificates;
+            &*tables.certificates;
         let range = list_starts[index] as usize..list_starts[index + 1] as usize;
         let own = (bounds[index].ratio < f64::from(allowed)).then_some(nodes[index]);
         let of_list = list_nodes[range.clone()].iter().zip(&list_ratios[range]);
@@ -139,7 +149,7 @@ impl<const E: usize> LocalProofs<E> {
     }
 
     /// Begins a new search: forgets what the last one proved. False where certificates prove nothing about the motion.
-    pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables<'_>, motion: &M) -> bool {
+    pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
         self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
         if self.search == 0 {
             self.proven.fill((0, 0));
@@ -161,13 +171,13 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Whether no two triangles of a node collide.
     #[inline]
-    pub(super) fn is_node_proven(&self, tables: &LocalTables<'_>, n: u32) -> bool {
+    pub(super) fn is_node_proven(&self, tables: &LocalTables, n: u32) -> bool {
         self.proven_node(tables, n).is_some()
     }
 
     /// The node whose certificate proves a node.
     #[inline]
-    fn proven_node(&self, tables: &LocalTables<'_>, n: u32) -> Option<u32> {
+    fn proven_node(&self, tables: &LocalTables, n: u32) -> Option<u32> {
         let range = &tables.buckets[n as usize];
         let (search, by) = self.proven[range.start as usize];
         let is_within = tables.buckets[by as usize].end >= range.end;
@@ -177,7 +187,7 @@ impl<const E: usize> LocalProofs<E> {
     /// Whether no triangle of one node collides with one of the other, by the certificate that proves one of them. One that does not
     /// prove its node proves no pair either: the ratios of its list are at least that of its node.
     #[inline]
-    pub(super) fn is_pair_proven(&mut self, tables: &LocalTables<'_>, (n, m): (u32, u32)) -> bool {
+    pub(super) fn is_pair_proven(&mut self, tables: &LocalTables, (n, m): (u32, u32)) -> bool {
         if !(self.is_usable && self.is_complete) {
             return false;
         }
@@ -207,7 +217,7 @@ impl<const E: usize> LocalProofs<E> {
 
     /// The ratios that a certificate allows: those below this.
     #[inline]
-    fn allowed(&mut self, tables: &LocalTables<'_>, index: usize) -> f32 {
+    fn allowed(&mut self, tables: &LocalTables, index: usize) -> f32 {
         let (search, allowed) = self.allowed[index];
         if search == self.search {
             return allowed;

@@ -19,7 +19,7 @@ const STEP: f64 = 1.5;
 
 /// What local certificates prove up to some scales of one line.
 pub(super) struct LocalScales<'a> {
-    tables: &'a LocalTables<'a>,
+    tables: &'a LocalTables,
     /// The scales, the largest first.
     proofs: Vec<(f64, LocalProofs<2>)>,
 }
@@ -28,7 +28,7 @@ impl<'a> LocalScales<'a> {
     /// At scales from `largest` down to that at which the root's radius is reached. `norm`: `|z|` at scale 1. None where the query uses
     /// no local certificates.
     pub(super) fn new(
-        context: &'a QueryContext<'_>,
+        context: &'a QueryContext,
         check: &mut ConfigurationCheck,
         q: &[f64],
         norm: f64,
@@ -36,8 +36,8 @@ impl<'a> LocalScales<'a> {
     ) -> Option<Self> {
         let tables = context.locals.as_deref()?;
         let node_radii = &context.used_certificates()?.node_radii;
-        let center = tables.center;
-        let root_scale = context.certificates.map_or(0.0, Certificates::root_radius) / norm;
+        let center = &tables.center;
+        let root_scale = context.certificates.as_ref().map_or(0.0, Certificates::root_radius) / norm;
         let mut scale = largest;
         let mut proofs = Vec::new();
         while proofs.len() < MOST_SCALES && scale > root_scale && scale.is_finite() {

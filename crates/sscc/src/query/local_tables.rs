@@ -1,5 +1,7 @@
 //! Where the numbers of local certificates are: by node, by list, and by bucket.
 
+use std::sync::Arc;
+
 use super::region_rates::RegionRates;
 use crate::Metric;
 use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, gradient_len};
@@ -11,9 +13,9 @@ const NONE: u32 = u32::MAX;
 
 /// Local certificates, and where those of a node are.
 #[derive(Clone)]
-pub(super) struct LocalTables<'a> {
-    pub(super) certificates: &'a LocalCertificates,
-    pub(super) center: &'a [f64],
+pub(super) struct LocalTables {
+    pub(super) certificates: Arc<LocalCertificates>,
+    pub(super) center: Vec<f64>,
     pub(super) scales: FactorScales,
     /// For each node its certificate; [`NONE`] for none.
     of_node: Vec<u32>,
@@ -27,12 +29,12 @@ pub(super) struct LocalTables<'a> {
     pub(super) buckets: Vec<std::ops::Range<u32>>,
 }
 
-impl<'a> LocalTables<'a> {
+impl LocalTables {
     /// None where there are no certificates.
     pub(super) fn new(
-        certificates: &'a LocalCertificates,
+        certificates: &Arc<LocalCertificates>,
         hierarchy: &Hierarchy,
-        center: &'a [f64],
+        center: &[f64],
         scales: FactorScales,
     ) -> Option<Self> {
         if certificates.nodes.is_empty() {
@@ -53,13 +55,14 @@ impl<'a> LocalTables<'a> {
             list.iter().fold(0, |bits, node| bits | list_bit(*node))
         };
         let list_bits = certificates.list_starts.windows(2).map(bits).collect();
+        let (certificates, center) = (Arc::clone(certificates), center.to_vec());
         let buckets = bucket_ranges(hierarchy);
         Some(Self { certificates, center, scales, of_node, starts, rates: None, list_bits, buckets })
     }
 
     /// Adds the rates that proofs in regions need. A dense metric has none: its factor may be nearly singular.
     pub(super) fn add_region_rates(&mut self, metric: &Metric) {
-        let rates = || RegionRates::new(self.certificates, &self.scales, &metric.scales());
+        let rates = || RegionRates::new(&self.certificates, &self.scales, &metric.scales());
         self.rates = metric.dense_factor().is_none().then(rates);
     }
 
@@ -75,7 +78,7 @@ impl<'a> LocalTables<'a> {
         if self.list_bits[certificate] & list_bit(node) == 0 {
             return None;
         }
-        let LocalCertificates { list_starts, list_nodes, list_ratios, .. } = self.certificates;
+        let LocalCertificates { list_starts, list_nodes, list_ratios, .. } = &*self.certificates;
         let [start, end] = [certificate, certificate + 1].map(|i| list_starts[i] as usize);
         let at = list_nodes[start..end].binary_search(&node).ok()?;
         Some(list_ratios[start + at])
@@ -107,15 +110,15 @@ fn bucket_ranges(hierarchy: &Hierarchy) -> Vec<std::ops::Range<u32>> {
 /// For tests: the tables of certificates of a shape of one bucket, in units of its size and of the largest displacements, and its
 /// hierarchy.
 #[cfg(test)]
-pub(super) fn tables_of<'a>(
-    local: &'a LocalCertificates,
-    center: &'a [f64],
+pub(super) fn tables_of(
+    local: &LocalCertificates,
+    center: &[f64],
     metric: &Metric,
-) -> (LocalTables<'a>, Hierarchy) {
+) -> (LocalTables, Hierarchy) {
     let (model, _) = crate::test_models::strips(&mut crate::test_models::Random(1), 0);
     let hierarchy = Hierarchy::build(&model, model.metric());
     let scales = FactorScales { sizes: vec![1.0; center.len()], scale: 1.0, reach: 1.0 };
-    let mut tables = LocalTables::new(local, &hierarchy, center, scales).unwrap();
+    let mut tables = LocalTables::new(&Arc::new(local.clone()), &hierarchy, center, scales).unwrap();
     tables.add_region_rates(metric);
     (tables, hierarchy)
 }

@@ -76,12 +76,14 @@ fn node_pairs(hierarchy: &Hierarchy, tree: &PairTree) -> Vec<NodePair> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::DVec3;
 
     use crate::test_models::Random;
     use crate::{
         Certificates, CertifyOptions, KineticQuery, Method, Metric, MetricKind, Modes, Query, ReducedModel,
-        Scope, TriMesh,
+        TriMesh,
     };
 
     /// A coil of a flat band, whose turns swing against each other, and bend and widen.
@@ -125,7 +127,7 @@ mod tests {
             });
             let options = CertifyOptions { center, metric, ..CertifyOptions::default() };
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
-            let scope = Scope { ..certificates.parts().scope.clone() };
+            let scope = Arc::clone(&certificates.parts().scope);
             let mut query = Query::new(&model, &certificates).unwrap();
             let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
             let mut plain = Query::without_certificates(&model, scope, Method::BdTree).unwrap();

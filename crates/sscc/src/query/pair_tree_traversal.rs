@@ -4,7 +4,7 @@
 //! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
 
 use super::certified_traversal::LOOSE_PAIRS;
-use super::local_proofs::LocalProofs;
+use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use super::pair_hulls::PairHulls;
 use crate::PairTree;
@@ -47,9 +47,9 @@ macro_rules! is_entry_reached {
 pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     broad: &mut BroadPhase<E>,
     mut hulls: Option<(&mut MovedHulls<E>, &PairHulls)>,
-    mut locals: Option<(&mut LocalProofs<E>, &LocalTables<'_>)>,
+    mut locals: Option<(&mut LocalProofs<E>, &LocalTables)>,
     PairTreeStack(stack): &mut PairTreeStack,
-    context: &Context<'_>,
+    context: &Context,
     tree: &PairTree,
     node_radii: &[f64],
     norm: f64,
@@ -59,6 +59,9 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     // A search that ends at its first hits may open few nodes.
     let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
     let mut visits = 0;
+    // Copied, because most searches end before any node is proven.
+    let mut work_before = locals.as_ref().map_or(u64::MAX, |(proofs, _)| proofs.work_before());
+    let mut has_proofs = locals.as_ref().is_some_and(|(proofs, _)| proofs.is_complete());
     stack.clear();
     stack.push(Visit { nodes: (0, 0), entry: NODE });
     while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
@@ -73,14 +76,16 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             broad.volumes.refit(&context.hierarchy, motion);
             can_refit = false;
         }
-        if let Some((proofs, tables)) = &mut locals
-            && proofs.is_due(visits as u64, broad.counters.box_tests)
+        if work(visits as u64, broad.counters.box_tests) > work_before
+            && let Some((proofs, tables)) = &mut locals
         {
             proofs.prove(tables, &context.hierarchy, node_radii, norm);
+            (work_before, has_proofs) = (u64::MAX, true);
         }
         let buckets = &broad.volumes.layout.buckets;
         if entry == NODE {
-            if locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n)) {
+            if has_proofs && locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n))
+            {
                 continue;
             }
             broad.counters.opened += 1;
@@ -105,7 +110,8 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
             continue;
         }
-        if let Some((proofs, tables)) = &mut locals
+        if has_proofs
+            && let Some((proofs, tables)) = &mut locals
             && proofs.is_pair_proven(tables, (n, m))
         {
             continue;

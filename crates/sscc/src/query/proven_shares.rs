@@ -18,7 +18,7 @@ pub struct ProvenShares {
     pub search: f64,
 }
 
-impl Query<'_> {
+impl Query {
     /// The share of the triangles that each kind of proof covers at q, each patch with itself. Pairs of patches have proofs of their own,
     /// which are not counted. It takes no longer than a query, and allocates.
     ///

@@ -1,6 +1,6 @@
 //! The query: collisions of one reduced model with itself at q.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
@@ -12,18 +12,18 @@ use super::swept_search::SweptSearch;
 use crate::detect::narrow_phase::{AabbHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
-use crate::{Certificates, Error, Pair, Progress, ReducedModel, Scope};
+use crate::{CancelToken, CertificateParts, Certificates, Error, Pair, ReducedModel, Scope};
 
 /// Answers self-collision queries for one model. It owns its memory, so that repeated queries allocate nothing (brute force
-/// and the rare exact signs of extreme numbers aside). One query serves one thread; clone it for another, or use
-/// [`Query::batch`].
+/// and the rare exact signs of extreme numbers aside), and shares model and certificates. One query serves one thread; clone it
+/// for another, or use [`Query::batch`].
 ///
 /// Two triangles are listed exactly when they count under the contact filter ([`ContactFilter`](crate::ContactFilter); by default
 /// when they share no vertex) and have a point in common at the positions given by
 /// [`deformed_position`](crate::deformed_position); see `docs/guarantees.md`.
 #[derive(Clone)]
-pub struct Query<'a> {
-    pub(super) context: QueryContext<'a>,
+pub struct Query {
+    pub(super) context: QueryContext,
     /// Has the last answer, of continuous queries the pairs.
     pub(super) discrete: DiscreteSearch,
     /// Made by the first continuous query.
@@ -35,13 +35,13 @@ pub struct Query<'a> {
     pub(super) check: ConfigurationCheck,
 }
 
-impl<'a> Query<'a> {
+impl Query {
     /// A query that uses certificates. First it fits the moving hulls of nodes, in less than a fifth of the time that the
     /// certificates took. Clones share them.
     ///
     /// # Errors
     /// When the certificates were computed for another model.
-    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+    pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         Self::with_method(model, certificates, Method::Certified)
     }
 
@@ -50,14 +50,13 @@ impl<'a> Query<'a> {
     /// # Errors
     /// When the certificates were computed for another model.
     pub fn with_method(
-        model: &'a ReducedModel,
-        certificates: &'a Certificates,
+        model: &ReducedModel,
+        certificates: &Certificates,
         method: Method,
     ) -> Result<Self, Error> {
         certificates.check_model(model)?;
-        let hierarchy = Cow::Borrowed(certificates.hierarchy());
-        let scope = Cow::Borrowed(&certificates.parts().scope);
-        Ok(Self::build(model, Some(certificates), scope, hierarchy, method))
+        let CertificateParts { hierarchy, scope, .. } = certificates.parts();
+        Ok(Self::build(model, Some(certificates), Arc::clone(scope), Arc::clone(hierarchy), method))
     }
 
     /// A query without certificates, for the pairs that count in that scope ([`Scope::of`] is the default).
@@ -66,23 +65,24 @@ impl<'a> Query<'a> {
     /// # Errors
     /// When the scope's metric or centre is of another rank than the model, or its groups are of another mesh.
     pub fn without_certificates(
-        model: &'a ReducedModel,
-        scope: Scope,
+        model: &ReducedModel,
+        scope: impl Into<Arc<Scope>>,
         method: Method,
     ) -> Result<Self, Error> {
+        let scope = scope.into();
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         model.check_coordinates(&scope.center)?;
         scope.filter.check_model(model.mesh().faces().len())?;
-        let hierarchy = Cow::Owned(Hierarchy::build(model, &scope.metric));
+        let hierarchy = Arc::new(Hierarchy::build(model, &scope.metric));
         let method = if method == Method::Certified { Method::BdTree } else { method };
-        Ok(Self::build(model, None, Cow::Owned(scope), hierarchy, method))
+        Ok(Self::build(model, None, scope, hierarchy, method))
     }
 
     fn build(
-        model: &'a ReducedModel,
-        certificates: Option<&'a Certificates>,
-        scope: Cow<'a, Scope>,
-        hierarchy: Cow<'a, Hierarchy>,
+        model: &ReducedModel,
+        certificates: Option<&Certificates>,
+        scope: Arc<Scope>,
+        hierarchy: Arc<Hierarchy>,
         method: Method,
     ) -> Self {
         let context = QueryContext::new(model, certificates, scope, hierarchy, method);
@@ -92,10 +92,10 @@ impl<'a> Query<'a> {
         Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, check }
     }
 
-    /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
+    /// The same query, which checks now and then whether the token cancels it; without one, no longer.
     #[must_use]
-    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
-        self.context.detect.progress = progress;
+    pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
+        self.context.detect.cancel = token.into();
         self
     }
 

@@ -14,7 +14,7 @@ use crate::hierarchy::{Hierarchy, NodePair};
 use crate::min_heap::MinHeapEntry;
 use crate::{Certificates, Error, Pair, PairTree};
 
-impl Query<'_> {
+impl Query {
     /// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for certificates
     /// about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, and close to the
     /// largest possible one. Nodes and node pairs are bounded by their certified radii, and triangle pairs beyond these by
@@ -29,20 +29,25 @@ impl Query<'_> {
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
         self.begin(usize::MAX);
         self.norm = self.measure(q)?.norm;
-        let line = ConfigurationLine::new(self.context.model, &self.context.scope.center, q);
-        let global = self.context.certificates.map_or(f64::INFINITY, Certificates::global_radius);
+        let line = ConfigurationLine::new(&self.context.model, &self.context.scope.center, q);
+        let global = self.context.certificates.as_ref().map_or(f64::INFINITY, Certificates::global_radius);
         let mut best = (global / self.norm).min(line.farthest) * right_or!(DOWN, SafeScaleToNearest, 1.0);
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
         let aabbs = LineAabbs::new(&line, &self.context.detect.hierarchy, self.context.model.mesh().faces());
-        for &(x, y) in self.context.certificates.map_or(&[][..], Certificates::exceptions) {
-            if self.context.detect.progress.is_cancelled() {
+        for &(x, y) in self.context.certificates.as_ref().map_or(&[][..], Certificates::exceptions) {
+            if self.context.detect.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             best = best.min(self.advance(&line, (x, y), 0.0, best));
         }
-        let tree = self.context.certificates.map(|c| &c.parts().pair_tree).filter(|tree| tree.limit() > 0.0);
+        let tree = self
+            .context
+            .certificates
+            .as_ref()
+            .map(|c| &c.parts().pair_tree)
+            .filter(|tree| tree.limit() > 0.0);
         let mut locals = LocalScales::new(&self.context, &mut self.check, q, self.norm, best);
         let mut waiting = BinaryHeap::new();
         let local = locals.as_mut().map_or(0.0, |locals| locals.of_pair((0, 0)));
@@ -53,7 +58,7 @@ impl Query<'_> {
             if lower >= best {
                 break;
             }
-            if self.context.detect.progress.is_cancelled() {
+            if self.context.detect.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             self.statistics.opened += 1;
@@ -110,8 +115,12 @@ impl Query<'_> {
                     self.certified_pairs(tree, stored.into_iter().flatten())
                 };
                 for (which, (pair, (index, bound))) in node_n.child_pairs().zip(certified).enumerate() {
-                    let radii =
-                        self.context.certificates.filter(|_| n == 0).map(|c| &c.parts().root_pair_radii);
+                    let radii = self
+                        .context
+                        .certificates
+                        .as_ref()
+                        .filter(|_| n == 0)
+                        .map(|c| &c.parts().root_pair_radii);
                     let bound = radii.map_or(bound, |radii| bound.max(self.scale(radii[which])));
                     consider(pair, index, bound.max(aabbs.separated_until(&line, pair)), best);
                 }
@@ -123,7 +132,10 @@ impl Query<'_> {
 
     /// The scale up to which a node's own radius certifies it.
     fn certified_scale(&self, node: u32) -> f64 {
-        self.context.certificates.map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
+        self.context
+            .certificates
+            .as_ref()
+            .map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
     }
 
     /// For each of some sibling node pairs its entry in the pair tree and the scale up to which it is certified; for those

@@ -7,7 +7,7 @@ use super::discrete_search::DiscreteSearch;
 use super::query::Query;
 use super::statistics::Statistics;
 use crate::detect::expected_buckets::ExpectedBuckets;
-use crate::{Error, Pair, Progress};
+use crate::{CancelToken, Error, Pair};
 
 /// The answer for one q of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,19 +21,19 @@ pub struct Answer {
 }
 
 /// The searches of one thread.
-pub(super) struct SearchGroup<'a> {
-    context: QueryContext<'a>,
+pub(super) struct SearchGroup {
+    context: QueryContext,
     check: ConfigurationCheck,
     search: DiscreteSearch,
     /// Made when several q are first answered together.
     ahead: Option<ExpectedBuckets<1>>,
 }
 
-impl<'a> SearchGroup<'a> {
-    /// The searches of a query; `progress` may cancel them.
-    pub(super) fn new(query: &Query<'a>, progress: &'a dyn Progress) -> Self {
+impl SearchGroup {
+    /// The searches of a query; the token may cancel them.
+    pub(super) fn new(query: &Query, cancel: Option<CancelToken>) -> Self {
         let mut context = query.context.clone();
-        context.detect.progress = progress;
+        context.detect.cancel = cancel;
         let search = DiscreteSearch::new(&context);
         Self { context, check: query.check.clone(), search, ahead: None }
     }
@@ -81,7 +81,7 @@ impl<'a> SearchGroup<'a> {
 
 /// Whether buckets are moved for a q of this norm and others at once: beyond the pair tree searches open many, and no
 /// limit ends them early.
-pub(super) fn is_far(context: &QueryContext<'_>, norm: f64, limit: usize) -> bool {
+pub(super) fn is_far(context: &QueryContext, norm: f64, limit: usize) -> bool {
     limit == usize::MAX
         && context.used_certificates().is_some()
         && !context.is_root_certified(norm)

@@ -18,7 +18,7 @@ pub(super) struct SweptSearch<N> {
 }
 
 impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+    pub(super) fn new(context: &QueryContext) -> Self {
         Self { certified: CertifiedSearch::new(context), narrow: N::default() }
     }
 
@@ -34,7 +34,7 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
     /// When it was cancelled.
     pub(super) fn find(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         [t0, t1]: [Configuration<'_>; 2],
         norm: f64,
         limit: usize,
@@ -70,7 +70,7 @@ impl<N: NarrowPhase<2> + Default> SweptSearch<N> {
     /// When it was cancelled.
     pub(super) fn collides(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         [t0, t1]: [Configuration<'_>; 2],
         pairs: &[Pair],
     ) -> Result<bool, Error> {

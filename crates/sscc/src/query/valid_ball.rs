@@ -17,8 +17,8 @@ pub(super) struct ValidBall {
 const UP: f64 = 1.0 + 1e-9;
 
 impl ValidBall {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
-        let (model, scope) = (context.model, &context.scope);
+    pub(super) fn new(context: &QueryContext) -> Self {
+        let (model, scope) = (&context.model, &context.scope);
         let none = Self { radius: 0.0, reach: 0.0 };
         let Some(parts) = context.used_certificates().filter(|_| scope.metric.dense_factor().is_none())
         else {

@@ -1,21 +1,14 @@
 //! Audits find what is wrong, and nothing else, whatever certificates speak of.
 
+use std::sync::Arc;
+
 use sscc::{
     AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, PairTree, audit,
 };
 use sscc_testing::{cases, threshold};
 
 use crate::common::pair_trees::{START, edited};
-use crate::common::{random_model, random_options};
-
-struct Budget(std::sync::atomic::AtomicUsize);
-
-impl sscc::Progress for Budget {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
-    }
-}
+use crate::common::{after, random_model, random_options};
 
 /// Honest certificates of every scope pass; the same with radii 1.5 times as large are found out wherever the honest
 /// ones are close to the truth.
@@ -25,7 +18,7 @@ fn lies_of_every_scope_are_found() {
     for seed in 0..cases(220) {
         let model = random_model(50_000 + seed);
         let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
         let report = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
@@ -53,27 +46,28 @@ fn forged_exceptions_are_refused_or_found() {
     let mut found = 0;
     for seed in 0..80 {
         let model = random_model(seed);
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         if certificates.exceptions().is_empty() || certificates.root_radius() <= 0.0 {
             continue;
         }
         let good = certificates.parts();
         let digest = |parts: &sscc::CertificateParts| sscc::Digest::of(&model, &parts.scope);
         let mut both = good.clone();
-        both.scope.filter = ContactFilter::default().ignoring(good.scope.exceptions.clone());
+        Arc::make_mut(&mut both.scope).filter =
+            ContactFilter::default().ignoring(good.scope.exceptions.clone());
         assert!(matches!(Certificates::from_parts(both), Err(Error::Certificates(_))));
         let mut outside = good.clone();
-        outside.scope.exceptions = vec![(0, u32::MAX)];
+        Arc::make_mut(&mut outside.scope).exceptions = vec![(0, u32::MAX)];
         outside.digest = digest(&outside);
         assert!(Certificates::from_parts(outside).unwrap().check_model(&model).is_err());
         let mut dropped = good.clone();
-        dropped.scope.exceptions.clear();
+        Arc::make_mut(&mut dropped.scope).exceptions.clear();
         dropped.digest = digest(&dropped);
         let dropped = Certificates::from_parts(dropped).unwrap();
         let asked = AuditOptions { samples: 400, ..AuditOptions::default() };
         found += usize::from(!audit(&model, &dropped, &asked, &()).unwrap().violations.is_empty());
         let mut nowhere = good.clone();
-        nowhere.scope.center[0] = f64::NAN;
+        Arc::make_mut(&mut nowhere.scope).center[0] = f64::NAN;
         assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
     }
     assert!(found > 1, "{found}");
@@ -87,7 +81,7 @@ fn lies_of_the_pair_tree_are_found() {
     for seed in 0..cases(150) {
         let model = random_model(60_000 + seed);
         let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
         let tree = &certificates.parts().pair_tree;
         let of_leaves = tree.entries().enumerate().filter(|(_, (_, link))| link & START == 0);
@@ -123,7 +117,7 @@ fn an_empty_tree_that_claims_too_much_is_found() {
     for seed in 0..cases(40) {
         let model = random_model(61_000 + seed);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let parts = certificates.parts();
         if parts.pair_tree.is_empty() {
             continue;

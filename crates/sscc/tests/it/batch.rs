@@ -38,7 +38,7 @@ fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
 }
 
 /// The answers of single queries; `None` for a q that is refused.
-fn one_by_one(query: &mut Query<'_>, batch: &[Vec<f64>], limit: usize) -> Vec<Option<Answer>> {
+fn one_by_one(query: &mut Query, batch: &[Vec<f64>], limit: usize) -> Vec<Option<Answer>> {
     let answer = |q: &Vec<f64>| {
         let pairs = query.discrete_at_most(q, limit).ok()?.to_vec();
         Some(Answer { pairs, norm: query.norm(), statistics: query.statistics() })

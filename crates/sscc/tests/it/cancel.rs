@@ -1,40 +1,45 @@
 //! Single queries stop soon when they are cancelled, wherever they are, and are whole afterwards.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, KineticQuery, Method, Modes, Progress, Query, ReducedModel, TriMesh,
+    CancelToken, Certificates, CertifyOptions, Error, KineticQuery, Method, Modes, Query, ReducedModel,
+    TriMesh,
 };
 
 use crate::common::Random;
 
-/// Cancelled when it has been asked so many times.
-struct After {
+/// Counts how often its token is asked, which is cancelled when it has been asked so many times.
+#[derive(Clone)]
+struct After(Arc<Looks>);
+
+struct Looks {
     looks: AtomicUsize,
     most: AtomicUsize,
 }
 
 impl After {
-    const fn new() -> Self {
-        Self { looks: AtomicUsize::new(0), most: AtomicUsize::new(usize::MAX) }
+    fn new() -> Self {
+        Self(Arc::new(Looks { looks: AtomicUsize::new(0), most: AtomicUsize::new(usize::MAX) }))
+    }
+
+    fn token(&self) -> CancelToken {
+        let Self(counted) = self.clone();
+        CancelToken::when(move || {
+            counted.looks.fetch_add(1, Ordering::Relaxed) >= counted.most.load(Ordering::Relaxed)
+        })
     }
 
     /// From now on so many looks are answered by "go on".
     fn allow(&self, most: usize) {
-        self.looks.store(0, Ordering::Relaxed);
-        self.most.store(most, Ordering::Relaxed);
+        self.0.looks.store(0, Ordering::Relaxed);
+        self.0.most.store(most, Ordering::Relaxed);
     }
 
     fn looks(&self) -> usize {
-        self.looks.load(Ordering::Relaxed)
-    }
-}
-
-impl Progress for After {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.looks.fetch_add(1, Ordering::Relaxed) >= self.most.load(Ordering::Relaxed)
+        self.0.looks.load(Ordering::Relaxed)
     }
 }
 
@@ -56,7 +61,7 @@ fn queries_look_between_few_triangles() {
     for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
         let after = After::new();
         let query = Query::with_method(&model, &certificates, method).unwrap();
-        let (mut oracle, mut query) = (query.clone(), query.cancelled_by(&after));
+        let (mut oracle, mut query) = (query.clone(), query.cancelled_by(after.token()));
         for q in [[1.0, 0.0], [0.0, 1.0]] {
             let expected = oracle.discrete(&q).unwrap().to_vec();
             after.allow(usize::MAX);
@@ -86,7 +91,7 @@ fn batches_are_cancelled_within_a_query() {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let (query, after) = (Query::new(&model, &certificates).unwrap(), After::new());
     after.allow(3);
-    assert_eq!(query.batch(&[[1.0, 0.0]], Some(1), &after), Err(Error::Cancelled));
+    assert_eq!(query.batch(&[[1.0, 0.0]], Some(1), &after.token()), Err(Error::Cancelled));
 }
 
 /// Wherever a kinetic query is cancelled, in a search or in a step, its next answers are right.
@@ -101,7 +106,7 @@ fn cancelled_kinetic_queries_are_whole() {
         let path: Vec<[f64; 2]> = (0..60).map(|i| [0.0, base + 1e-4 * f64::from(i)]).collect();
         let expected: Vec<Vec<_>> = path.iter().map(|q| oracle.discrete(q).unwrap().to_vec()).collect();
         for stride in 2..12 {
-            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(&after);
+            let mut kinetic = KineticQuery::new(&model, &certificates).unwrap().cancelled_by(after.token());
             for (i, (q, expected)) in path.iter().zip(&expected).enumerate() {
                 after.allow(if i % stride == 1 { i / stride % 8 } else { usize::MAX });
                 let found = kinetic.discrete(q).map(<[_]>::to_vec);

@@ -1,7 +1,6 @@
 //! Properties of certificates and queries, through the public interface.
 
-use std::sync::LazyLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use glam::DVec3;
 use sscc::hierarchy::{Hierarchy, Node};
@@ -11,7 +10,7 @@ use sscc::{
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, at, critical_z, random_model, random_options};
+use crate::common::{Random, after, at, critical_z, random_model, random_options};
 
 /// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
 #[test]
@@ -32,22 +31,12 @@ fn scaled_modes_that_vanish_promise_nothing() {
     assert!(matches!(Certificates::compute(&model, &options, &()), Err(Error::MetricRange { .. })));
 }
 
-/// Stops a computation that is asked too often: a few models need hundreds of subdivisions for each pair.
-struct Budget(AtomicUsize);
-
-impl sscc::Progress for Budget {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, Ordering::Relaxed) > 400
-    }
-}
-
 /// Certificates with the default epsilon, or with a loose one where that takes too long.
 fn certify(model: &ReducedModel, options: &CertifyOptions) -> Option<Certificates> {
     let options = |epsilon| CertifyOptions { epsilon, threads: Some(1), ..options.clone() };
-    Certificates::compute(model, &options(0.1), &Budget(0.into()))
-        .or_else(|_| Certificates::compute(model, &options(0.9), &Budget(0.into())))
-        .or_else(|_| Certificates::compute(model, &options(0.999), &Budget(0.into())))
+    Certificates::compute(model, &options(0.1), &after(401))
+        .or_else(|_| Certificates::compute(model, &options(0.9), &after(401)))
+        .or_else(|_| Certificates::compute(model, &options(0.999), &after(401)))
         .ok()
 }
 
@@ -110,7 +99,7 @@ fn length(z: &[f64]) -> f64 {
     z.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-fn pairs(query: &mut Query<'_>, q: &[f64]) -> Option<Vec<(u32, u32)>> {
+fn pairs(query: &mut Query, q: &[f64]) -> Option<Vec<(u32, u32)>> {
     query.discrete(q).ok().map(<[_]>::to_vec)
 }
 
@@ -285,7 +274,7 @@ fn hierarchy_of_another_size_is_refused() {
     let (model, certificates) = &*MIDDLING;
     let mut parts = certificates.parts().clone();
     let leaf = Node { first_triangle: 0, triangle_count: 1, first_child: 0, child_count: 0 };
-    parts.hierarchy = Hierarchy::from_parts(vec![leaf], vec![0], 1).unwrap();
+    parts.hierarchy = Hierarchy::from_parts(vec![leaf], vec![0], 1).unwrap().into();
     parts.node_radii = vec![0.0];
     parts.root_pair_radii = vec![];
     if let Ok(certificates) = Certificates::from_parts(parts) {
@@ -470,11 +459,11 @@ fn one_leaf_is_a_tree() {
     assert!(triangles <= 64);
     let hierarchy = Hierarchy::from_parts(vec![leaf(triangles)], (0..triangles as u32).collect(), triangles);
     let flat = Certificates::from_parts(CertificateParts {
-        hierarchy: hierarchy.unwrap(),
+        hierarchy: hierarchy.unwrap().into(),
         node_radii: vec![certificates.root_radius()],
         root_pair_radii: vec![],
         pair_tree: PairTree::default(),
-        local: sscc::LocalCertificates::default(),
+        local: Arc::default(),
         ..parts.clone()
     })
     .unwrap();

@@ -2,26 +2,16 @@
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Pair, Progress, Query,
-    ReducedModel, Scope, TriMesh, impact_triangle_triangle,
+    Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Pair, Query, ReducedModel,
+    Scope, TriMesh, impact_triangle_triangle,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, at, random_model, random_options};
-
-/// Stops what takes too long.
-struct Budget(std::sync::atomic::AtomicUsize);
-
-impl Progress for Budget {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 600
-    }
-}
+use crate::common::{Random, after, at, random_model, random_options};
 
 fn certify(model: &ReducedModel, options: CertifyOptions) -> Option<Certificates> {
     let options = CertifyOptions { epsilon: 0.5, ..options };
-    Certificates::compute(model, &options, &Budget(0.into())).ok()
+    Certificates::compute(model, &options, &after(601)).ok()
 }
 
 fn pairs(impacts: &[Impact]) -> Vec<Pair> {
@@ -163,15 +153,6 @@ fn times_of_simple_motions() {
     }
     let mut plain = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
     assert_eq!(plain.continuous(&[0.0], &[4.0]).unwrap().len(), 1);
-    let mut stopped = plain.cancelled_by(&Stopped);
+    let mut stopped = plain.cancelled_by(after(0));
     assert!(stopped.continuous(&[0.0], &[4.0]).is_ok()); // done before the first look
-}
-
-struct Stopped;
-
-impl Progress for Stopped {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        true
-    }
 }

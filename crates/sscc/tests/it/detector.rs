@@ -7,7 +7,7 @@ use sscc::{
 };
 use sscc_testing::cases;
 
-use crate::common::{Random, random_model};
+use crate::common::{Random, after, random_model};
 
 /// A soup of triangles, some degenerate, some with common vertices, of a size and at a place.
 fn soup(random: &mut Random, triangles: u32, size: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -218,15 +218,9 @@ fn batches_answer_as_single_frames_do() {
             assert!(some.statistics.complete || all.len() >= 2);
         }
     }
-    struct Stop;
-    impl sscc::Progress for Stop {
-        fn report(&self, _: usize, _: usize) {}
-        fn is_cancelled(&self) -> bool {
-            true
-        }
-    }
-    assert_eq!(detector.batch(&frames, None, &Stop), Err(Error::Cancelled));
-    assert_eq!(detector.clone().cancelled_by(&Stop).discrete(&frames[0]), Err(Error::Cancelled));
+    let stopped = after(0);
+    assert_eq!(detector.batch(&frames, None, &stopped), Err(Error::Cancelled));
+    assert_eq!(detector.clone().cancelled_by(stopped).discrete(&frames[0]), Err(Error::Cancelled));
 }
 
 #[test]

@@ -326,7 +326,7 @@ fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
     }
     refused(folded().ignoring_rest(&model).unwrap_err());
     let mut forged = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap().parts().clone();
-    forged.scope = scope();
+    forged.scope = scope().into();
     forged.digest = sscc::Digest::of(&model, &forged.scope);
     let forged = Certificates::from_parts(forged).unwrap();
     refused(Query::new(&model, &forged).err().unwrap());

@@ -57,7 +57,7 @@ fn all_methods_list_the_pairs_that_count() {
             |(a, b): Pair| groups.is_pair_counted(a, b) && ignored.binary_search(&(a, b)).is_err();
         // The oracle knows neither groups nor ignored pairs.
         let plain =
-            Scope { filter: options.filter.clone().unwrap(), exceptions: Vec::new(), ..scope.clone() };
+            Scope { filter: options.filter.clone().unwrap(), exceptions: Vec::new(), ..Scope::clone(&scope) };
         let mut oracle = Query::without_certificates(&model, plain, Method::BruteForce).unwrap();
         let methods =
             [Method::Certified, Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce];
@@ -239,7 +239,7 @@ fn other_groups_are_refused() {
     let moved = filter(TriangleGroups::new(&moved).unwrap().between_only());
     for forged in [ContactFilter::default(), other, moved] {
         let mut parts = certificates.parts().clone();
-        parts.scope.filter = forged;
+        Arc::make_mut(&mut parts.scope).filter = forged;
         let forged = Certificates::from_parts(parts).unwrap();
         assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
     }
@@ -259,11 +259,11 @@ fn other_groups_are_refused() {
     ];
     refused.into_iter().for_each(|error| assert_eq!(error.unwrap().to_string(), expected));
     let mut parts = certificates.parts().clone();
-    parts.scope.filter = short;
+    Arc::make_mut(&mut parts.scope).filter = short;
     let damaged = Certificates::from_parts(parts).unwrap_err().to_string();
     assert!(damaged.contains("the number of group numbers is not the number of triangles"), "{damaged}");
     let mut parts = certificates.parts().clone();
-    parts.scope.exceptions = vec![(0, 5)];
+    Arc::make_mut(&mut parts.scope).exceptions = vec![(0, 5)];
     let damaged = Certificates::from_parts(parts).unwrap_err().to_string();
     assert!(damaged.contains("a pair is an exception, but its groups do not count"), "{damaged}");
     let shared: Arc<TriangleGroups> = Arc::new(groups.between_only());

@@ -1,10 +1,12 @@
 //! Queries with local certificates against brute force, far from the centre and where certificates only just hold.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use sscc::{
-    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, KineticQuery,
-    LocalCertificates, Method, Metric, MetricKind, Modes, Neighbours, PairTree, Proof, Query, ReducedModel,
-    TriMesh, TriangleGroups, audit,
+    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, KineticQuery, Method,
+    Metric, MetricKind, Modes, Neighbours, PairTree, Proof, Query, ReducedModel, TriMesh, TriangleGroups,
+    audit,
 };
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
@@ -64,7 +66,7 @@ fn without_radii(certificates: &Certificates) -> Certificates {
 
 fn without_local(certificates: &Certificates) -> Certificates {
     let parts = certificates.parts().clone();
-    Certificates::from_parts(CertificateParts { local: LocalCertificates::default(), ..parts }).unwrap()
+    Certificates::from_parts(CertificateParts { local: Arc::default(), ..parts }).unwrap()
 }
 
 /// How often local certificates decided.
@@ -388,8 +390,8 @@ fn audits_find_local_certificates_that_claim_too_much() {
         local_samples += report.local_samples;
         assert!(report.local_samples < report.samples.max(1));
         let mut parts = certificates.parts().clone();
-        parts.local.bounds.iter_mut().for_each(|bounds| bounds.ratio *= 0.1);
-        parts.local.list_ratios.iter_mut().for_each(|ratio| *ratio *= 0.1);
+        Arc::make_mut(&mut parts.local).bounds.iter_mut().for_each(|bounds| bounds.ratio *= 0.1);
+        Arc::make_mut(&mut parts.local).list_ratios.iter_mut().for_each(|ratio| *ratio *= 0.1);
         let forged = Certificates::from_parts(parts).unwrap();
         lies += 1;
         let report = audit(&model, &forged, &asked, &()).unwrap();

@@ -25,6 +25,7 @@ mod local_certificates;
 mod near_layers;
 mod neighbours;
 mod normal_cones;
+mod owned;
 mod pair_tree;
 mod pair_tree_traversal;
 mod penetration;

@@ -1,5 +1,7 @@
 //! Triangles that share a vertex, and vertices that are split.
 
+use std::sync::Arc;
+
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -104,7 +106,7 @@ fn shared_vertex_pairs_are_found_on_request() {
     including.check_filter(&asked).unwrap();
     // A forged rule changes the digest.
     let mut parts = excluding.parts().clone();
-    parts.scope.filter = asked;
+    Arc::make_mut(&mut parts.scope).filter = asked;
     let forged = Certificates::from_parts(parts).unwrap();
     assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
 }

@@ -104,7 +104,7 @@ fn bent(random: &mut Random, (p, faces): Soup) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-fn of(model: &ReducedModel, filter: ContactFilter, method: Method) -> Query<'_> {
+fn of(model: &ReducedModel, filter: ContactFilter, method: Method) -> Query {
     let scope = Scope { filter, ..Scope::of(model) };
     Query::without_certificates(model, scope, method).unwrap()
 }

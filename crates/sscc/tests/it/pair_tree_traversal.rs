@@ -3,11 +3,11 @@
 use glam::DVec3;
 use sscc::{
     CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours,
-    PairTree, Progress, Query, ReducedModel, TriMesh,
+    PairTree, Query, ReducedModel, TriMesh,
 };
 use sscc_testing::cases;
 
-use crate::common::{Random, winding_strip};
+use crate::common::{Random, after, winding_strip};
 
 fn scaled(z: &[f64], size: f64) -> Vec<f64> {
     z.iter().map(|x| x * size).collect()
@@ -142,20 +142,11 @@ fn norms_equal_to_a_radius_are_not_certified() {
     assert_eq!(found(&with_radii(&computed, next, norm.next_up(), false)), 0);
 }
 
-struct Stopped;
-
-impl Progress for Stopped {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        true
-    }
-}
-
 #[test]
 fn a_cancelled_walk_stops_or_is_right() {
     let (model, mut random) = (sheets(), Random::new(3));
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-    let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(&Stopped);
+    let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(after(0));
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     for _ in 0..20 {
         let q = [random.uniform() * 2.0];

@@ -2,22 +2,12 @@
 
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Method, Metric, Modes, Pair, Progress, Query, ReducedModel,
-    ResolveOptions, Resolved, TriMesh,
+    Certificates, CertifyOptions, Error, Method, Metric, Modes, Pair, Query, ReducedModel, ResolveOptions,
+    Resolved, TriMesh,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, at, random_model, random_options};
-
-/// Stops work that takes too long.
-struct Budget(std::sync::atomic::AtomicUsize, usize);
-
-impl Progress for Budget {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > self.1
-    }
-}
+use crate::common::{Random, after, at, random_model, random_options};
 
 #[test]
 fn answers_are_free_and_no_farther_than_stepping_back() {
@@ -26,7 +16,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 5_000_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into(), 150)) else {
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else {
             continue;
         };
         let scope = &certificates.parts().scope;
@@ -93,7 +83,7 @@ fn a_walk_slides_along_an_obstacle() {
     let model = spike();
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
-    let resolve = |query: &mut Query<'_>, q: [f64; 2], start: Option<Vec<f64>>| {
+    let resolve = |query: &mut Query, q: [f64; 2], start: Option<Vec<f64>>| {
         query.resolve(&q, &ResolveOptions { start, all: false }).unwrap()
     };
     // The ray ends at (1, 0.4); the tip stays above the plate, and reaches the shift.
@@ -185,8 +175,8 @@ fn batches_and_samples() {
     assert_eq!((samples.drawn, samples.free, samples.q.len()), (60, free, free));
     assert!(samples.q.iter().zip(&samples.draws).all(|(q, draw)| *q == draws[*draw]));
 
-    assert_eq!(query.resolve_batch(&draws, &options, None, &Budget(0.into(), 5)), Err(Error::Cancelled));
-    assert_eq!(query.free_samples(&draws, None, None, &Budget(0.into(), 5)), Err(Error::Cancelled));
+    assert_eq!(query.resolve_batch(&draws, &options, None, &after(6)), Err(Error::Cancelled));
+    assert_eq!(query.free_samples(&draws, None, None, &after(6)), Err(Error::Cancelled));
     let nothing: [Vec<f64>; 0] = [];
     assert!(query.free_samples(&nothing, None, None, &()).unwrap().acceptance().is_nan());
     let invalid = [vec![0.0, 0.0], vec![f64::NAN, 0.0]];

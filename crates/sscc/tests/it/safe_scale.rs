@@ -2,22 +2,12 @@
 
 use glam::DVec3;
 use sscc::{
-    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Progress, Query,
-    ReducedModel, Scope, TriMesh,
+    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Query, ReducedModel,
+    Scope, TriMesh,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, at, random_model, random_options, winding_strip};
-
-/// Stops what takes too long.
-struct Budget(std::sync::atomic::AtomicUsize);
-
-impl Progress for Budget {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 150
-    }
-}
+use crate::common::{Random, after, at, random_model, random_options, winding_strip};
 
 #[test]
 fn the_way_to_a_safe_scale_is_free() {
@@ -26,7 +16,7 @@ fn the_way_to_a_safe_scale_is_free() {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 7_000_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let scope = &certificates.parts().scope;
         let mut query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
@@ -139,7 +129,7 @@ fn clamping_ends_inside_the_root_ellipsoid() {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 8_000_000);
         let options = CertifyOptions { epsilon: 0.9, ..random_options(seed, &model) };
-        let Ok(certificates) = Certificates::compute(&model, &options, &Budget(0.into())) else { continue };
+        let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let scope = &certificates.parts().scope;
         let mut query = Query::new(&model, &certificates).unwrap();
         for size in [1e-200, 1e-3, 1.0, 1e9, 1e300] {

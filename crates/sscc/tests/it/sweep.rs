@@ -1,25 +1,13 @@
 //! Sweeps of single weights, against brute force at many weights.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Progress, Query,
-    ReducedModel, Scope, Sweep, SweepOutcome, TriMesh,
+    Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Query, ReducedModel, Scope,
+    Sweep, SweepOutcome, TriMesh,
 };
 use sscc_testing::{cases, distance, threshold};
 
-use crate::common::{Random, random_model, random_options};
-
-/// Cancels after some calls.
-struct After(AtomicUsize, usize);
-
-impl Progress for After {
-    fn report(&self, _done: usize, _total: usize) {}
-    fn is_cancelled(&self) -> bool {
-        self.0.fetch_add(1, Ordering::Relaxed) > self.1
-    }
-}
+use crate::common::{Random, after, random_model, random_options};
 
 /// Triangles in the planes z = 0 and z = height.
 fn two_triangles(height: f64, place: DVec3, mode: impl Fn(usize) -> DVec3) -> ReducedModel {
@@ -33,7 +21,7 @@ fn certify(model: &ReducedModel) -> Certificates {
 }
 
 /// The bracket is what its outcome says, and nothing that brute force finds is below `first_free`.
-pub(crate) fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query<'_>, weights: usize) {
+pub(crate) fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query, weights: usize) {
     let at = |w: f64| {
         let mut q = q.to_vec();
         q[sweep.mode] = w;
@@ -92,7 +80,7 @@ fn brute_force_finds_nothing_below_first_free() {
         let model = random_model(seed + 40_000);
         let random = &mut Random::new(seed + 9_100_000);
         let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
-        let limit = After(AtomicUsize::new(0), 150);
+        let limit = after(151);
         let Ok(certificates) = Certificates::compute(&model, &options, &limit) else { continue };
         let scope: &Scope = &certificates.parts().scope;
         let mut q = scope.center.clone();
@@ -256,7 +244,7 @@ fn modes_are_swept_both_ways_from_their_weights() {
     let mut single = query.clone();
     assert!(matches!(single.sweep(&q, 0, f64::NAN), Err(Error::CoordinatesValue { index: 0, .. })));
     assert_eq!(single.sweep(&q, rank, 1.0), Err(Error::ModeIndex { mode: rank, rank }));
-    let stop = After(AtomicUsize::new(0), 0);
+    let stop = after(1);
     assert_eq!(query.sweep_modes(&q, &ranges, None, &stop), Err(Error::Cancelled));
 }
 

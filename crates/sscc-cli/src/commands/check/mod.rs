@@ -55,7 +55,7 @@ fn check_model(args: &Check) -> Result<bool> {
     let noun = if args.continuous { "step" } else { "configuration" };
     let root_radius = certificates.as_ref().map(Certificates::root_radius);
     let mut printer = Printer::new(noun, args.json.json, root_radius);
-    let mut query = query.cancelled_by(&interrupt::Interrupt);
+    let mut query = query.cancelled_by(interrupt::token().clone());
     let bar = Bar::new("checking").beside_output();
     printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some();

@@ -12,7 +12,7 @@ use sscc_view::{
 };
 
 use crate::args::{Model, Options, View};
-use crate::interrupt::{self, Interrupt};
+use crate::interrupt;
 use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, file_name, note};
@@ -48,7 +48,8 @@ pub fn run(args: &View) -> Result<Outcome> {
         .models
         .push(ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?);
     scene.plots.extend(comparison);
-    let live = Live::new(model, &certificates, scene, arrays, &Interrupt).with_context(in_model)?;
+    let live = Live::new(model, &certificates, scene, arrays, Some(interrupt::token().clone()))
+        .with_context(in_model)?;
     announce(args, &server)?;
     server.serve(&live, &interrupt::is_interrupted)?;
     Ok(Outcome::Done)

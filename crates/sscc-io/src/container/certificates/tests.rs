@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use std::sync::LazyLock;
 
 use super::super::MODEL;
@@ -49,8 +51,8 @@ fn every_scope_round_trips() {
     };
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let mut parts = certificates.parts().clone();
-    parts.scope.filter = parts.scope.filter.clone().ignoring([(3, 1), (7, 9)]);
-    parts.scope.exceptions = vec![(0, 5), (2, 3)];
+    Arc::make_mut(&mut parts.scope).filter = parts.scope.filter.clone().ignoring([(3, 1), (7, 9)]);
+    Arc::make_mut(&mut parts.scope).exceptions = vec![(0, 5), (2, 3)];
     let changed = Certificates::from_parts(parts).unwrap();
     for certificates in [certificates, changed] {
         let bytes = certificates_to_bytes(&certificates).unwrap();
@@ -178,7 +180,7 @@ fn with(name: &str, change: impl Fn(&mut ContainerWriter)) -> String {
 #[test]
 fn round_trip_is_exact() {
     let (model, certificates) = (model(), certificates());
-    let LocalCertificates { nodes, list_nodes, .. } = &certificates.parts().local;
+    let LocalCertificates { nodes, list_nodes, .. } = &*certificates.parts().local;
     assert!(nodes.len() > 1 && !list_nodes.is_empty());
     let read = certificates_from_bytes(&sample()).unwrap();
     assert_eq!(read, certificates);

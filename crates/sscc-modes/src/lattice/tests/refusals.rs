@@ -1,7 +1,7 @@
 //! Errors for invalid surfaces and resolutions.
 
 use glam::DVec3;
-use sscc::{Progress, TriMesh};
+use sscc::{CancelToken, TriMesh};
 
 use super::super::Lattice;
 use super::bodies::{cuboid, inverted, joined, mesh, moved, sphere};
@@ -75,13 +75,6 @@ fn resolutions() {
 
 #[test]
 fn cancelled() {
-    struct Stopped;
-    impl Progress for Stopped {
-        fn report(&self, _: usize, _: usize) {}
-        fn is_cancelled(&self) -> bool {
-            true
-        }
-    }
-    let error = Lattice::around(&sphere(2), None, &Stopped).err();
+    let error = Lattice::around(&sphere(2), None, &CancelToken::when(|| true)).err();
     assert_eq!(error, Some(ModesError::Core(sscc::Error::Cancelled)));
 }

@@ -57,7 +57,7 @@ impl Drop for StopOnDrop<'_> {
 pub fn with_server(test: impl FnOnce(&Client)) {
     let (model, certificates) = strips();
     let (scene, arrays) = scene(&model, &certificates);
-    let live = Live::new(&model, &certificates, scene, arrays, &()).unwrap();
+    let live = Live::new(&model, &certificates, scene, arrays, None).unwrap();
     let server = Server::bind(0).unwrap();
     let stopped = AtomicBool::new(false);
     thread::scope(|scope| {

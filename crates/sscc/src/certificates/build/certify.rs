@@ -1,5 +1,7 @@
 //! Computes all certificates: the pair tree, then the radii of nodes (paper, section 5.2).
 
+use std::sync::Arc;
+
 use super::executor::{Executor, ThreadExecutor};
 use super::node_radii::NodeRadii;
 use super::pair_tree_builder::PairTreeBuilder;
@@ -69,7 +71,7 @@ impl CertifiedRadii {
         let Preparation { digest, scope, hierarchy, rest_collisions, epsilon, .. } = preparation;
         Certificates::new(CertificateParts {
             digest,
-            scope,
+            scope: Arc::new(scope),
             rest_collisions,
             hierarchy,
             epsilon,
@@ -77,7 +79,7 @@ impl CertifiedRadii {
             node_radii: self.radii.nodes,
             root_pair_radii: self.radii.root_pairs,
             pair_tree: self.pair_tree,
-            local,
+            local: Arc::new(local),
         })
     }
 }

@@ -1,6 +1,8 @@
 //! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
 //! the options alone, so every process computes its own, and all are equal.
 
+use std::sync::Arc;
+
 use super::global_radius::{farthest_radius, global_radius};
 use super::node_groups::NodeGroups;
 use super::radius_search::RadiusSearch;
@@ -18,7 +20,7 @@ use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 pub(crate) struct Preparation {
     pub(crate) digest: Digest,
     pub(crate) scope: Scope,
-    pub(crate) hierarchy: Hierarchy,
+    pub(crate) hierarchy: Arc<Hierarchy>,
     /// The paper's `R_global`.
     pub(crate) global_radius: f64,
     /// The largest radius that the pair tree may reach: [`CertifyOptions::reach`] times the global one.
@@ -59,7 +61,7 @@ impl Preparation {
         let mut filter = options.filter.clone().unwrap_or_else(|| ContactFilter::of(model.mesh()));
         filter.check_model(model.mesh().faces().len())?;
         let collide_at_rest = || {
-            let hierarchy = Hierarchy::build(model, &metric);
+            let hierarchy = Arc::new(Hierarchy::build(model, &metric));
             let at_rest = colliding_pairs(model, &hierarchy, &filter, &rest, progress);
             (hierarchy, at_rest)
         };

@@ -8,7 +8,9 @@ use super::seal::HASH;
 use super::*;
 use crate::certificates::build::Task;
 use crate::certificates::test_models::ring;
-use crate::{Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, Progress, ReducedModel};
+use crate::{
+    CancelToken, Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, ReducedModel,
+};
 
 fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Result<Certificates, Error> {
     let worker = ShardWorker::new(model, options, &()).unwrap();
@@ -158,16 +160,9 @@ fn damaged_bytes_are_answered_with_an_error() {
 /// A cancelled job ends with the error.
 #[test]
 fn shards_can_be_cancelled() {
-    struct Stopped;
-    impl Progress for Stopped {
-        fn report(&self, _done: usize, _total: usize) {}
-        fn is_cancelled(&self) -> bool {
-            true
-        }
-    }
     let model = ring(200, 3, 0.9);
     let options = CertifyOptions::default();
     let worker = ShardWorker::new(&model, &options, &()).unwrap();
     let (job, _) = &jobs(&model, &options, 2)[0];
-    assert_eq!(worker.run(job, &Stopped), Err(Error::Cancelled));
+    assert_eq!(worker.run(job, &CancelToken::when(|| true)), Err(Error::Cancelled));
 }

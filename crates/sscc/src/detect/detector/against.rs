@@ -12,7 +12,7 @@ use crate::detect::two_meshes::{Side, traverse_two_meshes};
 use crate::hierarchy::NodePair;
 use crate::{Error, Impact, Pair};
 
-impl Detector<'_> {
+impl Detector {
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
     /// common, sorted. Every pair counts: contact filters do not apply between meshes.
     ///
@@ -21,7 +21,7 @@ impl Detector<'_> {
     pub fn against(
         &mut self,
         positions: &[DVec3],
-        other: &mut Detector<'_>,
+        other: &mut Detector,
         other_positions: &[DVec3],
     ) -> Result<&[Pair], Error> {
         self.against_at_most(positions, other, other_positions, Self::MAX_PAIRS)?;
@@ -37,7 +37,7 @@ impl Detector<'_> {
     pub fn against_at_most(
         &mut self,
         positions: &[DVec3],
-        other: &mut Detector<'_>,
+        other: &mut Detector,
         other_positions: &[DVec3],
         limit: usize,
     ) -> Result<&[Pair], Error> {
@@ -63,7 +63,7 @@ impl Detector<'_> {
     pub fn continuous_against(
         &mut self,
         [x_t0, x_t1]: [&[DVec3]; 2],
-        other: &mut Detector<'_>,
+        other: &mut Detector,
         [y_t0, y_t1]: [&[DVec3]; 2],
     ) -> Result<&[Impact], Error> {
         let motions = in_common_frame([self.check([x_t0, x_t1])?, other.check([y_t0, y_t1])?]);
@@ -90,7 +90,7 @@ fn in_common_frame<'x, const E: usize>(motions: [GivenMotion<'x, E>; 2]) -> [Giv
 /// # Errors
 /// When the progress of the first context cancels; then there are no hits.
 fn find_between<const E: usize, N: NarrowPhase<E>>(
-    contexts: [&Context<'_>; 2],
+    contexts: [&Context; 2],
     [x, y]: [&mut Search<E, N>; 2],
     motions: &[GivenMotion<'_, E>; 2],
     stack: &mut Vec<NodePair>,

@@ -19,7 +19,7 @@ pub struct FrameAnswer {
     pub statistics: DetectorStatistics,
 }
 
-impl Detector<'_> {
+impl Detector {
     /// Answers every frame as [`Detector::discrete`] would, in the order given: the same pairs for any number of threads
     /// (none: all cores). `progress` may cancel it; that of [`Detector::cancelled_by`] is not used.
     ///
@@ -45,9 +45,8 @@ impl Detector<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<FrameAnswer>, Error> {
-        let at_most = |detector: &mut Detector<'_>, x: &[DVec3]| {
-            detector.discrete_at_most(x, limit).map(<[Pair]>::to_vec)
-        };
+        let at_most =
+            |detector: &mut Detector, x: &[DVec3]| detector.discrete_at_most(x, limit).map(<[Pair]>::to_vec);
         self.answer_all(frames, threads, progress, at_most)
     }
 
@@ -57,11 +56,11 @@ impl Detector<'_> {
         frames: &[X],
         threads: Option<usize>,
         progress: &dyn Progress,
-        find: impl Fn(&mut Detector<'_>, &[DVec3]) -> Result<Vec<Pair>, Error> + Sync,
+        find: impl Fn(&mut Detector, &[DVec3]) -> Result<Vec<Pair>, Error> + Sync,
     ) -> Result<Vec<FrameAnswer>, Error> {
         let done = AtomicUsize::new(0);
-        let detector = || self.clone().cancelled_by(progress);
-        let answer = |detector: &mut Detector<'_>, positions: &X| {
+        let detector = || self.clone().cancelled_by(progress.cancel_token().cloned());
+        let answer = |detector: &mut Detector, positions: &X| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }

@@ -1,6 +1,5 @@
 //! The detector for given positions: exact collisions of any deforming triangle mesh, with itself or with another one.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -14,7 +13,7 @@ use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
 use crate::filter::{PairFilter, weld_classes_of_positions};
 use crate::hierarchy::{Hierarchy, NodePair};
-use crate::{ContactFilter, Error, Impact, Pair, Progress, TriMesh, limits};
+use crate::{CancelToken, ContactFilter, Error, Impact, Pair, TriMesh, limits};
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
 /// for each answer; where the hierarchy has become bad, it builds it again. It owns its memory, so that repeated answers
@@ -44,8 +43,8 @@ use crate::{ContactFilter, Error, Impact, Pair, Progress, TriMesh, limits};
 /// # }
 /// ```
 #[derive(Clone)]
-pub struct Detector<'a> {
-    pub(super) context: Context<'a>,
+pub struct Detector {
+    pub(super) context: Context,
     vertex_count: usize,
     pub(super) discrete: Search<1, DiscreteHits>,
     pub(super) swept: Search<2, SweptHits>,
@@ -56,7 +55,7 @@ pub struct Detector<'a> {
     is_used: bool,
 }
 
-impl<'a> Detector<'a> {
+impl Detector {
     /// A detector for a mesh, under its default contact filter ([`ContactFilter::of`]): pairs count that share no vertex, where
     /// equal vertices of formats that split them are welded. Otherwise the rest positions choose the hierarchy and nothing else.
     /// About as much work as two answers.
@@ -100,11 +99,11 @@ impl<'a> Detector<'a> {
         let hierarchy = Hierarchy::build_by_median(mesh.faces(), positions);
         let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, &filter));
         let context = Context {
-            hierarchy: Cow::Owned(hierarchy),
+            hierarchy: Arc::new(hierarchy),
             filter: Arc::new(filter),
-            exceptions: &[],
+            exceptions: Arc::new([]),
             layout,
-            progress: &(),
+            cancel: None,
         };
         Self {
             context,
@@ -117,10 +116,10 @@ impl<'a> Detector<'a> {
         }
     }
 
-    /// The same detector, which checks now and then whether `progress` cancels it. It reports nothing.
+    /// The same detector, which checks now and then whether the token cancels it; without one, no longer.
     #[must_use]
-    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
-        self.context.progress = progress;
+    pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
+        self.context.cancel = token.into();
         self
     }
 
@@ -255,7 +254,7 @@ impl<'a> Detector<'a> {
         let hierarchy = Hierarchy::build_by_median(filter.faces(), positions);
         let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, filter));
         self.context.layout = layout;
-        self.context.hierarchy = Cow::Owned(hierarchy);
+        self.context.hierarchy = Arc::new(hierarchy);
         self.discrete = Search::default();
         self.swept = Search::default();
         self.is_used = false;

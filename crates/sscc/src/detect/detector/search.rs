@@ -29,7 +29,7 @@ impl<const E: usize, N: Default> Default for Search<E, N> {
 
 impl<const E: usize, N: NarrowPhase<E>> Search<E, N> {
     /// Starts a search for at most `limit` hits: refits all boxes. False if the hierarchy should be built again.
-    pub(super) fn begin(&mut self, context: &Context<'_>, motion: &GivenMotion<'_, E>, limit: usize) -> bool {
+    pub(super) fn begin(&mut self, context: &Context, motion: &GivenMotion<'_, E>, limit: usize) -> bool {
         let is_first = self.broad.is_none();
         let broad = self.broad.get_or_insert_with(|| Box::new(BroadPhase::new(&context.layout, false, None)));
         self.narrow.hits().begin(limit);
@@ -51,7 +51,7 @@ impl<const E: usize, N: NarrowPhase<E>> Search<E, N> {
     ///
     /// # Errors
     /// When it was cancelled; then there are no hits.
-    pub(super) fn find(&mut self, context: &Context<'_>, motion: &GivenMotion<'_, E>) -> Result<(), Error> {
+    pub(super) fn find(&mut self, context: &Context, motion: &GivenMotion<'_, E>) -> Result<(), Error> {
         let Some(broad) = &mut self.broad else { return Ok(()) };
         broad.traverse(context, (0, 0), motion, &mut self.narrow);
         self.counters = broad.counters;

@@ -17,7 +17,7 @@ use crate::query::configuration::Configuration;
 use crate::query::query::Query;
 use crate::query::statistics::Statistics;
 use crate::query::swept_search::SweptSearch;
-use crate::{Certificates, Error, Impact, Pair, Progress, ReducedModel};
+use crate::{CancelToken, Certificates, Error, Impact, Pair, ReducedModel};
 
 /// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
 const STEPS_WORTH_STORING: f64 = 8.0;
@@ -49,8 +49,8 @@ const FIND_COST: u64 = 150;
 /// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
 /// cost the same as in a [`Query`]. Takes three times its memory.
-pub struct KineticQuery<'a> {
-    pub(in crate::query) query: Query<'a>,
+pub struct KineticQuery {
+    pub(in crate::query) query: Query,
     search: RegionSearch,
     rates: CapsuleRates,
     distances: SafeDistances,
@@ -67,12 +67,12 @@ pub struct KineticQuery<'a> {
     pending: Vec<Pair>,
 }
 
-impl<'a> KineticQuery<'a> {
+impl KineticQuery {
     /// A query that knows nothing of any q yet.
     ///
     /// # Errors
     /// When the certificates were computed for another model, or their metric does not fit it.
-    pub fn new(model: &'a ReducedModel, certificates: &'a Certificates) -> Result<Self, Error> {
+    pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         let mut query = Query::new(model, certificates)?;
         let scope = &certificates.parts().scope;
         // Ordinary queries use the metric for radii alone; safe distances are computed anew.
@@ -97,10 +97,10 @@ impl<'a> KineticQuery<'a> {
         })
     }
 
-    /// The same query, which checks now and then whether `progress` cancels it. It reports nothing.
+    /// The same query, which checks now and then whether the token cancels it; without one, no longer.
     #[must_use]
-    pub fn cancelled_by(mut self, progress: &'a dyn Progress) -> Self {
-        self.query = self.query.cancelled_by(progress);
+    pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
+        self.query = self.query.cancelled_by(token);
         self
     }
 

@@ -13,7 +13,7 @@ pub(super) struct RegionSearch {
 }
 
 impl RegionSearch {
-    pub(super) fn new(context: &QueryContext<'_>) -> Self {
+    pub(super) fn new(context: &QueryContext) -> Self {
         Self { certified: CertifiedSearch::new(context), narrow: AabbHits::default() }
     }
 
@@ -24,7 +24,7 @@ impl RegionSearch {
     /// When it was cancelled.
     pub(super) fn find(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         motion: &CapsuleMotion<'_>,
         norm: f64,
         limit: usize,

@@ -74,8 +74,8 @@ struct Seen {
 
 /// A kinetic query whose regions are of all sizes, beside one by brute force.
 struct Pairing<'a> {
-    kinetic: KineticQuery<'a>,
-    oracle: Query<'a>,
+    kinetic: KineticQuery,
+    oracle: Query,
     certificates: &'a Certificates,
     colliding: bool,
     /// Whether there is to be no region.
@@ -164,7 +164,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
             let at = |t: f64| -> Vec<f64> { way.iter().map(|x| x / length * t).collect() };
             // Where the first contact is.
             let scope = &certificates.parts().scope;
-            let collides = |query: &mut Query<'_>, t: f64| {
+            let collides = |query: &mut Query, t: f64| {
                 let d = scope.metric.unscaled(&at(t));
                 let q: Vec<f64> = d.iter().zip(&scope.center).map(|(d, c)| c + d).collect();
                 !query.discrete(&q).unwrap().is_empty()

@@ -48,8 +48,8 @@ fn certify(model: &ReducedModel, seed: u64, random: &mut Numbers) -> Certificate
 struct Attack<'a> {
     model: &'a ReducedModel,
     certificates: &'a Certificates,
-    certified: Query<'a>,
-    oracle: Query<'a>,
+    certified: Query,
+    oracle: Query,
     index_in_order: Vec<u32>,
 }
 

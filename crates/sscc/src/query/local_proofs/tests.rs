@@ -1,5 +1,7 @@
 //! Which nodes and pairs of nodes a search takes as proven.
 
+use std::sync::Arc;
+
 use super::super::local_tables::tables_of;
 use super::*;
 use crate::certificates::{EllipsoidBlocks, FactorScales, gradient_len};
@@ -25,7 +27,7 @@ fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {
 }
 
 /// Begins a search at q, and finds its proven nodes.
-fn search(proofs: &mut LocalProofs<1>, tables: &LocalTables<'_>, hierarchy: &Hierarchy, q: &[f64; 2]) {
+fn search(proofs: &mut LocalProofs<1>, tables: &LocalTables, hierarchy: &Hierarchy, q: &[f64; 2]) {
     assert!(proofs.begin(tables, &DeformedMotion::new([&q[..]], 1.0)));
     proofs.prove(tables, hierarchy, &vec![0.0; hierarchy.nodes().len()], 1.0);
 }
@@ -65,7 +67,7 @@ fn certificates_prove_their_node_and_its_pairs_with_their_list_alone() {
     let [n, a, b, c] = children[..] else { panic!("{children:?}") };
     let local = certificate(n, &[(a, 0.5), (b, 2.0), (c, 0.5)]);
     let scales = FactorScales { sizes: vec![1.0; 2], scale: 1.0, reach: 1.0 };
-    let tables = LocalTables::new(&local, &hierarchy, &[0.0; 2], scales).unwrap();
+    let tables = LocalTables::new(&Arc::new(local), &hierarchy, &[0.0; 2], scales).unwrap();
     let first = nodes[n as usize].first_child;
     let range = &tables.buckets[n as usize];
     // Enough of all for the search to go on.

@@ -1,5 +1,7 @@
 //! Lists and buckets of nodes against plain searches.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::LocalBounds;
 use crate::test_models::{Random, strips};
@@ -21,7 +23,7 @@ fn every_node_of_a_list_is_found_and_no_other() {
             ..LocalCertificates::default()
         };
         let scales = FactorScales { sizes: Vec::new(), scale: 1.0, reach: 1.0 };
-        let tables = LocalTables::new(&local, &hierarchy, &[], scales).unwrap();
+        let tables = LocalTables::new(&Arc::new(local.clone()), &hierarchy, &[], scales).unwrap();
         assert_eq!(tables.list_bits[0] == u64::MAX, is_long);
         for node in (0..2000).chain([1 << 20, u32::MAX]) {
             assert_eq!(tables.ratio_with(0, node), list.contains(&node).then(|| ratio(node)), "{node}");

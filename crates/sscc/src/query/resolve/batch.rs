@@ -32,7 +32,7 @@ impl FreeSamples {
     }
 }
 
-impl Query<'_> {
+impl Query {
     /// Resolves every q of a batch as [`Query::resolve`] would, in the order given: the same answers for any number of
     /// threads (none: all cores). `progress` may cancel it; that of [`Query::cancelled_by`] is not used.
     ///
@@ -61,7 +61,7 @@ impl Query<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<FreeSamples, Error> {
-        let of_draw = |query: &mut Query<'_>, q: &[f64]| match resolve {
+        let of_draw = |query: &mut Query, q: &[f64]| match resolve {
             Some(options) => query.resolve(q, options),
             None => {
                 let is_free = Counted::new(query, true).is_free(query, q)?;
@@ -85,11 +85,11 @@ impl Query<'_> {
         batch: &[Q],
         threads: Option<usize>,
         progress: &dyn Progress,
-        answer: impl Fn(&mut Query<'_>, &[f64]) -> Result<Resolved, Error> + Sync,
+        answer: impl Fn(&mut Query, &[f64]) -> Result<Resolved, Error> + Sync,
     ) -> Result<Vec<Resolved>, Error> {
         let done = AtomicUsize::new(0);
-        let query = || self.clone().cancelled_by(progress);
-        let answer = |query: &mut Query<'_>, q: &Q| {
+        let query = || self.clone().cancelled_by(progress.cancel_token().cloned());
+        let answer = |query: &mut Query, q: &Q| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }

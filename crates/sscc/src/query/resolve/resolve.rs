@@ -26,7 +26,7 @@ const MAX_STEPS: usize = 32;
 /// The search ends when a step comes nearer to q by less than this share.
 const MIN_GAIN: f64 = 1e-3;
 
-impl Query<'_> {
+impl Query {
     /// A free configuration near q, in the metric of the scope: q itself where it is free. Else it is the end of a free
     /// polyline from the start, and no farther from q than the last free configuration on the straight line from there. The
     /// search is local: a nearer one may exist. `docs/guarantees.md` has the promise in full.
@@ -37,7 +37,7 @@ impl Query<'_> {
     /// # Errors
     /// As [`Query::discrete`], for q and the start; when a given start collides.
     pub fn resolve(&mut self, q: &[f64], options: &ResolveOptions) -> Result<Resolved, Error> {
-        let (model, center) = (self.context.model, self.context.scope.center.clone());
+        let (model, center) = (&self.context.model, self.context.scope.center.clone());
         model.check_coordinates(q)?;
         if let Some(start) = &options.start {
             model.check_coordinates(start)?;

@@ -54,7 +54,7 @@ impl Separations {
 
     /// Adds a pair with its directions at q. `margin`: the smallest gap to keep, where it is not smaller already. False if
     /// no direction separates it, as far as rounding tells, or there is no more room.
-    pub(super) fn add(&mut self, context: &QueryContext<'_>, q: &[f64], pair: Pair, margin: f64) -> bool {
+    pub(super) fn add(&mut self, context: &QueryContext, q: &[f64], pair: Pair, margin: f64) -> bool {
         let count = self.list.len();
         for simplices in context.detect.filter.simplex_pairs(pair.0, pair.1) {
             let vertices: [u32; CORNERS] =
@@ -71,7 +71,7 @@ impl Separations {
 
     fn add_simplices(
         &mut self,
-        context: &QueryContext<'_>,
+        context: &QueryContext,
         q: &[f64],
         pair: Pair,
         vertices: [u32; CORNERS],
@@ -81,7 +81,7 @@ impl Separations {
         if self.list.len() >= MAX_SEPARATIONS || (bytes >= MAX_BYTES && !self.list.is_empty()) {
             return false;
         }
-        let model = context.model;
+        let model = &context.model;
         let corners = vertices.map(|v| model.position(v, q));
         let differences: [DVec3; 9] = std::array::from_fn(|ij| corners[3 + ij % 3] - corners[ij / 3]);
         let dir = nearest_to_origin(&differences).point;

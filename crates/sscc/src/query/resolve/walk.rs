@@ -22,18 +22,18 @@ const MAX_SCANS: usize = 64;
 const PARTIAL: f64 = 0.9;
 
 /// The state of a walk: a free configuration, and the pairs that are near there.
-pub(super) struct Walk<'w, 'a> {
-    query: &'w mut Query<'a>,
+pub(super) struct Walk<'w> {
+    query: &'w mut Query,
     target: &'w [f64],
-    counted: Counted<'a>,
+    counted: Counted,
     /// The current configuration: free.
     q: Vec<f64>,
     separations: Separations,
     offset: Vec<f64>,
 }
 
-impl<'w, 'a> Walk<'w, 'a> {
-    pub(super) fn new(query: &'w mut Query<'a>, target: &'w [f64], start: Vec<f64>, all: bool) -> Self {
+impl<'w> Walk<'w> {
+    pub(super) fn new(query: &'w mut Query, target: &'w [f64], start: Vec<f64>, all: bool) -> Self {
         let rank = target.len();
         let counted = Counted::new(query, all);
         Self {
@@ -90,7 +90,7 @@ impl<'w, 'a> Walk<'w, 'a> {
     pub(super) fn step(&mut self, margin: f64) -> Result<(), Error> {
         self.update(margin);
         for projections in 1..=MAX_PROJECTIONS {
-            if self.query.context.detect.progress.is_cancelled() {
+            if self.query.context.detect.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             let there = self.nearest();

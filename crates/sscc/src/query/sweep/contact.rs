@@ -14,7 +14,7 @@ const EXACT_TESTS: i32 = 24;
 /// A sweep that can prove no more looks for a collision at twice as many weights.
 const PROBES: i32 = 32;
 
-impl WeightSweep<'_, '_> {
+impl WeightSweep<'_> {
     /// The first of some weights within the bracket beyond `at` at which the pair collides exactly.
     pub(super) fn exact_hit(&mut self, pair: Pair, at: f64) -> Option<f64> {
         let filter = &self.query.context.detect.filter;

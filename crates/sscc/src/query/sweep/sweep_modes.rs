@@ -9,7 +9,7 @@ use crate::query::query::Query;
 use crate::thread_pool::on_threads;
 use crate::{Error, Progress};
 
-impl Query<'_> {
+impl Query {
     /// Sweeps modes over ranges of their weights `(mode, [low, high])`, with all others as in q: for each mode upwards from
     /// its weight in q to `high`, then downwards to `low`. Where the weight in q is outside of the range, one sweep goes
     /// from the nearer end of the range to the other one. The results are the same for any number of threads (none: all
@@ -37,8 +37,8 @@ impl Query<'_> {
             ways.extend([high, low].into_iter().filter(|to| *to != from).map(|to| (mode, from, to)));
         }
         let done = AtomicUsize::new(0);
-        let start = || (self.clone().cancelled_by(progress), q.to_vec());
-        let sweep = |(query, at): &mut (Query<'_>, Vec<f64>), &(mode, from, to): &(usize, f64, f64)| {
+        let start = || (self.clone().cancelled_by(progress.cancel_token().cloned()), q.to_vec());
+        let sweep = |(query, at): &mut (Query, Vec<f64>), &(mode, from, to): &(usize, f64, f64)| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }

@@ -24,16 +24,16 @@ use glam::DVec3;
 use crate::{MovingTriangle, ReducedModel};
 
 /// The configurations of a model in which one weight varies, at two values of it.
-pub(super) struct WeightLine<'a> {
-    model: &'a ReducedModel,
+pub(super) struct WeightLine {
+    model: ReducedModel,
     mode: usize,
     ends: [Vec<f64>; 2],
 }
 
-impl<'a> WeightLine<'a> {
+impl WeightLine {
     /// `q`: the other weights; both ends are at q.
-    pub(super) fn new(model: &'a ReducedModel, q: &[f64], mode: usize) -> Self {
-        Self { model, mode, ends: [q.to_vec(), q.to_vec()] }
+    pub(super) fn new(model: &ReducedModel, q: &[f64], mode: usize) -> Self {
+        Self { model: model.clone(), mode, ends: [q.to_vec(), q.to_vec()] }
     }
 
     /// Sets the weights of both ends.

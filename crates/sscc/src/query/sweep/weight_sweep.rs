@@ -48,7 +48,7 @@ enum Step {
     TooMany,
 }
 
-impl Query<'_> {
+impl Query {
     /// Sweeps the weight of a mode (from 0) from its value in q to `to`, with all others as in q: proves how far the shape is
     /// free, and finds the first hit. Answers are about the computed shape at every f64 weight. If the shape collides at q, the
     /// pairs of that collision are the result; to leave them out, let them be ignored pairs
@@ -96,11 +96,11 @@ impl Query<'_> {
         to: f64,
         work: Work,
     ) -> Result<Sweep, Error> {
-        let model = self.context.model;
+        let model = self.context.model.clone();
         let pairs = self.discrete(q)?.to_vec();
         let rank = model.rank();
         let from = *q.get(mode).ok_or(Error::ModeIndex { mode, rank })?;
-        let mut line = WeightLine::new(model, q, mode);
+        let mut line = WeightLine::new(&model, q, mode);
         model.check_coordinates(line.at(to))?;
         let range = (to - from).abs();
         if !range.is_finite() {
@@ -122,9 +122,9 @@ impl Query<'_> {
 }
 
 /// A sweep that begins at a free weight.
-pub(super) struct WeightSweep<'s, 'a> {
-    pub(super) query: &'s mut Query<'a>,
-    pub(super) line: WeightLine<'a>,
+pub(super) struct WeightSweep<'s> {
+    pub(super) query: &'s mut Query,
+    pub(super) line: WeightLine,
     /// The result so far.
     pub(super) sweep: Sweep,
     pub(super) range: f64,
@@ -132,7 +132,7 @@ pub(super) struct WeightSweep<'s, 'a> {
     work: Work,
 }
 
-impl WeightSweep<'_, '_> {
+impl WeightSweep<'_> {
     fn run(&mut self) -> Result<(), Error> {
         let to = self.sweep.to;
         let (mut free, mut step, mut growth, mut blocked) = (self.sweep.from, self.range, GROWTH, 0);
@@ -197,7 +197,7 @@ impl WeightSweep<'_, '_> {
         let [start, mut end] = weights;
         let mut blocking = None;
         for (i, &pair) in search.narrow.0.list.iter().enumerate() {
-            if i.is_multiple_of(CANDIDATES_PER_CHECK) && query.context.detect.progress.is_cancelled() {
+            if i.is_multiple_of(CANDIDATES_PER_CHECK) && query.context.detect.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             for simplices in filter.simplex_pairs(pair.0, pair.1) {

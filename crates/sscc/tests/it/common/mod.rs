@@ -3,9 +3,12 @@
 pub mod exact;
 pub mod pair_trees;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{DMat3, DVec3};
 use sscc::{
-    CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope, TriMesh,
+    CancelToken, CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope,
+    TriMesh,
 };
 
 /// Small pseudo-random numbers (SplitMix64).
@@ -459,4 +462,10 @@ fn scaled_rows(scope: &Scope, b: &[DVec3]) -> Vec<DVec3> {
         a.push((b[k] - known) / s[k * rank + k]);
     }
     a
+}
+
+/// A token that is cancelled when it is asked for the first time after so many looks: for what takes too long.
+pub fn after(looks: usize) -> CancelToken {
+    let asked = AtomicUsize::new(0);
+    CancelToken::when(move || asked.fetch_add(1, Ordering::Relaxed) >= looks)
 }

@@ -1,5 +1,7 @@
 //! Local certificates in files.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::container::local_certificates::TENSORS;
 
@@ -18,7 +20,7 @@ fn large() -> (ReducedModel, Certificates) {
 fn every_field_round_trips_bit_for_bit() {
     let (model, certificates) = large();
     let mut parts = certificates.parts().clone();
-    let local = &mut parts.local;
+    let local = Arc::make_mut(&mut parts.local);
     assert!(local.nodes.len() > 20 && local.list_nodes.len() > 20);
     local.gradients[..3].copy_from_slice(&VALUES);
     local.list_ratios[..2].copy_from_slice(&[f32::INFINITY, VALUES[1]]);
@@ -70,8 +72,7 @@ fn the_rest_of_the_file_does_not_depend_on_them() {
     let options = CertifyOptions { budget: 8, local_budget: 0, ..CertifyOptions::default() };
     let plain = Certificates::compute(&model, &options, &()).unwrap();
     assert_eq!(plain.parts().digest, certificates.parts().digest);
-    let without =
-        sscc::CertificateParts { local: LocalCertificates::default(), ..certificates.parts().clone() };
+    let without = sscc::CertificateParts { local: Arc::default(), ..certificates.parts().clone() };
     let bytes = certificates_to_bytes(&plain).unwrap();
     assert_eq!(certificates_to_bytes(&Certificates::from_parts(without).unwrap()).unwrap(), bytes);
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
@@ -92,7 +93,7 @@ fn incomplete_tensors_are_rejected() {
     };
     assert_eq!(read(7, &[], &|_| ()).unwrap(), certificates());
     let without = read(7, &TENSORS, &|_| ()).unwrap();
-    assert_eq!(without.parts().local, LocalCertificates::default());
+    assert_eq!(*without.parts().local, LocalCertificates::default());
     without.check_model(&model()).unwrap();
     let refused = |version, absent: &[&str], change: &dyn Fn(&mut ContainerWriter)| {
         read(version, absent, change).unwrap_err().to_string()
@@ -199,7 +200,7 @@ fn files_of_the_first_version_are_read() {
     let mut writer = ContainerWriter::new(crate::container::Kind { version: 6, ..CERTIFICATES });
     copy(&file, &mut writer, &["local_bounds"]);
     let mut expected = certificates().parts().clone();
-    let bounds = &mut expected.local.bounds;
+    let bounds = &mut Arc::make_mut(&mut expected.local).bounds;
     let first = |b: &sscc::LocalBounds| [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest];
     let numbers: Vec<f64> = bounds.iter().flat_map(first).collect();
     writer.f64("local_bounds", &[bounds.len(), 5], &numbers);

@@ -1,5 +1,7 @@
 //! Each inconsistent part is refused, by its own message.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::*;
@@ -17,12 +19,12 @@ fn parts() -> CertificateParts {
 #[test]
 fn each_inconsistent_part_is_refused() {
     let parts = parts();
-    let LocalCertificates { nodes, mode_starts, list_starts, .. } = &parts.local;
+    let LocalCertificates { nodes, mode_starts, list_starts, .. } = &*parts.local;
     assert!(nodes.len() > 4 && mode_starts[1] as usize == RANK && list_starts[2] > list_starts[1] + 1);
     assert!(parts.local.list_ratios.iter().any(|ratio| ratio.is_finite()));
     let changed = |change: &dyn Fn(&mut LocalCertificates)| {
         let mut parts = parts.clone();
-        change(&mut parts.local);
+        change(Arc::make_mut(&mut parts.local));
         match Certificates::from_parts(parts) {
             Ok(certificates) => {
                 let model = ring(300, RANK, 0.4);
@@ -184,7 +186,7 @@ fn each_inconsistent_part_is_refused() {
 fn too_many_modes_are_refused() {
     let parts = parts();
     let many = |count: usize| {
-        let mut local = parts.local.clone();
+        let mut local = LocalCertificates::clone(&parts.local);
         local.nodes.truncate(1);
         local.bounds.truncate(1);
         local.mode_starts = vec![0, count as u32];

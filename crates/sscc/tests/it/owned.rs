@@ -1,0 +1,91 @@
+//! Queries and detectors are owned values: they outlive the data from which they were made, and go to other threads.
+
+use std::thread;
+
+use glam::DVec3;
+use sscc::{
+    Answer, Certificates, CertifyOptions, ContactFilter, Detector, KineticQuery, Pair, PosedShape, Query,
+    ReducedModel, Scope, SweptShape,
+};
+
+use crate::common::{Random, random_model};
+
+/// What an engine keeps of a shape.
+#[derive(Clone)]
+struct Collider {
+    query: Query,
+    detector: Detector,
+    model: ReducedModel,
+}
+
+impl Collider {
+    fn new(model: ReducedModel) -> Self {
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let query = Query::new(&model, &certificates).unwrap();
+        Self { query, detector: Detector::new(model.mesh()), model }
+    }
+
+    /// The pairs at q, twice.
+    fn pairs(&mut self, q: &[f64]) -> [Vec<Pair>; 2] {
+        let positions: Vec<DVec3> = self.model.positions(q).unwrap();
+        [self.query.discrete(q).unwrap().to_vec(), self.detector.discrete(&positions).unwrap().to_vec()]
+    }
+}
+
+#[test]
+fn one_struct_with_a_query_and_a_detector_serves_four_threads() {
+    let mut found = 0;
+    for seed in 0..40 {
+        let model = random_model(seed);
+        if model.mesh().has_split_vertices() {
+            continue;
+        }
+        let collider = Collider::new(model);
+        let work = |mut collider: Collider, seed: u64| {
+            let random = &mut Random::new(seed);
+            (0..8)
+                .map(|_| {
+                    let q: Vec<f64> = (0..collider.model.rank()).map(|_| random.signed()).collect();
+                    collider.pairs(&q)
+                })
+                .collect::<Vec<_>>()
+        };
+        let threads = [(); 4].map(|()| {
+            let collider = collider.clone();
+            thread::spawn(move || work(collider, seed + 900))
+        });
+        let here = work(collider, seed + 900);
+        for answers in threads.map(|thread| thread.join().unwrap()) {
+            assert_eq!(answers, here);
+        }
+        for [of_query, of_detector] in here {
+            assert_eq!(of_query, of_detector);
+            found += of_query.len();
+        }
+    }
+    assert!(found > 0);
+}
+
+/// Compiles only where each type is what its documentation says.
+#[test]
+fn public_types_are_owned() {
+    fn is_owned<T: Clone + Send + 'static>() {}
+    fn is_shared<T: Clone + Send + Sync + 'static>() {}
+    is_owned::<Query>();
+    is_owned::<Detector>();
+    is_owned::<PosedShape>();
+    is_owned::<SweptShape>();
+    is_shared::<ReducedModel>();
+    is_shared::<Certificates>();
+    is_shared::<Scope>();
+    is_shared::<ContactFilter>();
+    is_shared::<Answer>();
+    is_shared::<sscc::CancelToken>();
+    is_shared::<sscc::TriMesh>();
+    is_shared::<sscc::Modes>();
+    is_shared::<sscc::Error>();
+    fn is_sent<T: Send + Sync + 'static>() {}
+    is_sent::<KineticQuery>();
+    is_sent::<Query>();
+    is_sent::<Detector>();
+}
