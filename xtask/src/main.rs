@@ -12,6 +12,7 @@ mod mutants;
 mod page;
 mod program;
 mod python;
+mod sources;
 mod tally;
 mod test;
 
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
         }
         None => {
             eprintln!(
-                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]\n       cargo xtask layers [--graph [crates]]\n       cargo xtask lines\n       cargo xtask mutants [names]"
+                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]\n       cargo xtask layers\n       cargo xtask lines\n       cargo xtask mutants [names]"
             );
             ExitCode::from(2)
         }

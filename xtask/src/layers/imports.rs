@@ -1,216 +1,172 @@
-//! Collects the imports of a crate's files, with file, line and imported file or crate.
+//! Which file of a crate imports which other one.
 
 use std::collections::BTreeMap;
-use std::path::{Component, Path, PathBuf};
 
-use syn::visit::{self, Visit};
-use syn::{Attribute, Block, ImplItem, Item, ItemImpl, Macro, Meta, Stmt, TraitItem, Visibility};
+use super::order::{Order, folder};
+use super::paths::{CodePath, paths_and_items};
+use crate::sources::Crate;
 
-use super::items::{self, UseLeaf, is_for_tests, use_leaves};
-use super::modules::{Meaning, Modules};
-use super::resolve::{Target, Targets};
-use super::tokens;
-use super::workspace::Crate;
+/// Re-exports are followed so far.
+const MOST_RE_EXPORTS: usize = 16;
 
-/// A line of a file that names an item of another file or of another crate.
-pub struct Import {
-    /// The file that imports.
-    pub from: usize,
-    pub line: usize,
-    /// The imported file or crate.
-    pub to: Target,
-    /// The path as written.
-    pub path: String,
+/// The imports of one crate.
+pub struct Imports<'c> {
+    krate: &'c Crate,
+    /// For each file its paths, and the names of its items.
+    files: Vec<(Vec<CodePath>, Vec<String>)>,
+    of_module: BTreeMap<&'c [String], usize>,
+    all: Vec<Import>,
 }
 
-/// Returns all imports of the files of a crate. `crates`: those of the workspace, whose folders `include!` may reach.
-pub fn imports(modules: &Modules, crates: &[Crate]) -> Vec<Import> {
-    let mut imports = Vec::new();
-    for (file, source) in modules.files.iter().enumerate() {
-        let mut visitor = Visitor {
-            modules,
-            crates,
-            file,
-            module: source.module,
-            aliases: Vec::new(),
-            imports: &mut imports,
-        };
-        visitor.visit_file(&source.syntax);
-    }
-    imports
+/// One file imports another.
+struct Import {
+    from: usize,
+    to: usize,
+    line: usize,
+    path: String,
 }
 
-struct Visitor<'a> {
-    modules: &'a Modules,
-    crates: &'a [Crate],
-    file: usize,
-    module: usize,
-    /// The paths of `Self` and of names that blocks import, the innermost block last.
-    aliases: Vec<BTreeMap<String, Vec<String>>>,
-    imports: &'a mut Vec<Import>,
-}
-
-impl Visitor<'_> {
-    fn add(&mut self, targets: Targets, line: usize, path: &str) {
-        for to in targets {
-            if !matches!(to, Target::Module(_)) && to != Target::File(self.file) {
-                self.imports.push(Import { from: self.file, line, to, path: path.to_owned() });
+impl<'c> Imports<'c> {
+    pub fn of(krate: &'c Crate) -> Self {
+        let files = krate.files.iter().map(paths_and_items).collect();
+        let of_module = krate.files.iter().enumerate().map(|(i, file)| (&file.module[..], i)).collect();
+        let mut imports = Self { krate, files, of_module, all: Vec::new() };
+        for from in 0..krate.files.len() {
+            for path in &imports.files[from].0 {
+                if let Some(to) = imports.resolve(from, path, 0).filter(|to| *to != from) {
+                    let import = Import { from, to, line: path.line, path: path.names.join("::") };
+                    imports.all.push(import);
+                }
             }
         }
+        imports
     }
 
-    /// Adds a path in code. A single name is ignored, since a `use` imports it.
-    fn add_path(&mut self, names: &[String], line: usize) {
-        if names.len() > 1 {
-            let alias = self.aliases.iter().rev().find_map(|aliases| aliases.get(&names[0]));
-            let path = alias.map(|alias| [alias.as_slice(), &names[1..]].concat());
-            let targets = self.modules.resolve(self.module, path.as_deref().unwrap_or(names));
-            self.add(targets, line, &names.join("::"));
+    /// The file that defines what a path names; none for a path into another crate.
+    fn resolve(&self, from: usize, path: &CodePath, re_exports: usize) -> Option<usize> {
+        let (mut module, mut names) = self.start(from, path)?;
+        while let Some((name, rest)) = names.split_first() {
+            let file = *self.of_module.get(&module[..])?;
+            module.push(name.clone());
+            let is_module = self.of_module.contains_key(&module[..]);
+            if rest.is_empty() || !is_module {
+                // A module and an item may have one name.
+                let exported = self.exported(file, name, re_exports);
+                if exported.is_some() || !is_module {
+                    return exported.or(Some(file));
+                }
+            }
+            names = rest;
         }
+        self.of_module.get(&module[..]).copied()
     }
 
-    /// Adds a macro that is called by its name alone, if it is a `macro_rules!` of another file and not imported.
-    fn add_macro(&mut self, name: &str, line: usize) {
-        if self.modules.resolve_name(self.module, name).is_none()
-            && let Some(files) = self.modules.macros.get(name)
-            && !files.contains(&self.file)
-        {
-            self.add(files.iter().map(|file| Target::File(*file)).collect(), line, &format!("{name}!"));
+    /// The module in which a path begins, and the names after it; none for a path into another crate.
+    fn start<'p>(&self, from: usize, path: &'p CodePath) -> Option<(Vec<String>, &'p [String])> {
+        let (mut module, mut inner) = (self.krate.files[from].module.clone(), path.inner);
+        let first = path.names.first()?;
+        if !["crate", "self", "super"].contains(&first.as_str()) {
+            // A child, or a module that a `use` names.
+            let child = [&module[..], std::slice::from_ref(first)].concat();
+            if self.of_module.contains_key(&child[..]) {
+                return Some((module, &path.names));
+            }
+            let known = self.files[from].0.iter().find(|known| known.known_as.as_ref() == Some(first))?;
+            let is_itself = path.known_as.is_some() && known.names == path.names;
+            let (mut module, names) = (!is_itself).then(|| self.start(from, known))??;
+            module.extend(names.iter().cloned());
+            return self.of_module.contains_key(&module[..]).then(|| (module, &path.names[1..]));
         }
+        let mut names = &path.names[..];
+        while let Some((name, rest)) = names.split_first() {
+            match name.as_str() {
+                "crate" => module.clear(),
+                "self" => {}
+                "super" if inner > 0 => inner -= 1,
+                "super" => _ = module.pop(),
+                _ => break,
+            }
+            names = rest;
+        }
+        Some((module, names))
     }
 
-    fn add_tokens(&mut self, stream: proc_macro2::TokenStream) {
-        for path in tokens::paths(stream) {
-            match path.names.as_slice() {
-                [name] if path.is_macro => self.add_macro(name, path.line),
-                names => self.add_path(names, path.line),
+    /// The file of an item that a file re-exports.
+    fn exported(&self, file: usize, name: &str, re_exports: usize) -> Option<usize> {
+        if re_exports >= MOST_RE_EXPORTS {
+            return None;
+        }
+        let public = self.files[file].0.iter().filter(|path| path.is_public);
+        for path in public {
+            if path.known_as.as_deref() == Some(name) {
+                return self.resolve(file, path, re_exports + 1);
+            }
+            if path.names.last().is_some_and(|last| last == "*") {
+                let names = path.names[..path.names.len() - 1].to_vec();
+                let module = CodePath { names, ..path.clone() };
+                let found = self.resolve(file, &module, re_exports + 1);
+                if let Some(found) =
+                    found.filter(|found| self.files[*found].1.iter().any(|item| item == name))
+                {
+                    return Some(found);
+                }
             }
         }
+        None
     }
 
-    fn add_leaf(&mut self, leaf: &UseLeaf) {
-        let path = leaf.path.join("::");
-        match leaf.alias {
-            Some(_) => self.add(self.modules.resolve(self.module, &leaf.path), leaf.line, &path),
-            None => {
-                let targets = self.modules.resolve_glob(self.module, &leaf.path);
-                self.add(targets, leaf.line, &format!("{path}::*"));
+    fn describe(&self, import: &Import) -> String {
+        let path = |file: usize| &self.krate.files[file].path;
+        format!("{}:{}: imports {} ({})", path(import.from), import.line, import.path, path(import.to))
+    }
+
+    /// Imports that do not go down the order.
+    pub fn up_the_order(&self, order: &Order) -> Vec<String> {
+        let mut violations = Vec::new();
+        for import in &self.all {
+            let [from, to] = [import.from, import.to].map(|file| &self.krate.files[file].module[..]);
+            let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
+            let list = folder(&self.krate.name, &from[..common]);
+            let why = match (from.get(common), to.get(common)) {
+                (Some(from), Some(to)) => order.reason_against(&list, from, to),
+                (Some(_), None) => Some(format!("the file of {list} is above all modules in it")),
+                (None, _) => None,
+            };
+            violations.extend(why.map(|why| format!("{}: {why}", self.describe(import))));
+        }
+        violations
+    }
+
+    /// A circle of files, if there is one.
+    pub fn circle(&self) -> Option<String> {
+        let mut is_done = vec![false; self.krate.files.len()];
+        let mut way = Vec::new();
+        (0..is_done.len()).find_map(|file| self.circle_from(file, &mut way, &mut is_done))
+    }
+
+    fn circle_from<'i>(
+        &'i self,
+        file: usize,
+        way: &mut Vec<&'i Import>,
+        is_done: &mut [bool],
+    ) -> Option<String> {
+        if is_done[file] {
+            return None;
+        }
+        if let Some(start) = way.iter().position(|import| import.from == file) {
+            let circle = &way[start..];
+            let lines: Vec<String> = circle.iter().map(|import| self.describe(import)).collect();
+            return Some(format!("circle of {} files:\n    {}", circle.len(), lines.join("\n    ")));
+        }
+        for import in self.all.iter().filter(|import| import.from == file) {
+            way.push(import);
+            let circle = self.circle_from(import.to, way, is_done);
+            way.pop();
+            if circle.is_some() {
+                return circle;
             }
         }
+        is_done[file] = true;
+        None
     }
-
-    /// Adds an `include!` of a file in the folder of another crate.
-    fn add_include(&mut self, mac: &Macro) {
-        let Ok(text) = mac.parse_body::<syn::LitStr>() else { return };
-        let folder = self.modules.files[self.file].path.parent().unwrap_or(Path::new(""));
-        let included = normal(&folder.join(text.value()));
-        let own = &self.modules.files[self.file].path;
-        let holder = self.crates.iter().find(|krate| included.starts_with(&krate.folder));
-        if let Some(holder) = holder.filter(|holder| !own.starts_with(&holder.folder)) {
-            let to = Targets::from([Target::Crate(holder.name.clone())]);
-            self.add(
-                to,
-                mac.path.segments[0].ident.span().start().line,
-                &format!("include!({:?})", text.value()),
-            );
-        }
-    }
-}
-
-/// Returns a path without `..`.
-fn normal(path: &Path) -> PathBuf {
-    let mut normal = PathBuf::new();
-    for component in path.components() {
-        match component {
-            Component::ParentDir => _ = normal.pop(),
-            other => normal.push(other),
-        }
-    }
-    normal
-}
-
-impl<'ast> Visit<'ast> for Visitor<'_> {
-    fn visit_item(&mut self, item: &'ast Item) {
-        if is_for_tests(items::attributes(item)) {
-            return;
-        }
-        match item {
-            Item::Use(item) => use_leaves(&item.tree).iter().for_each(|leaf| self.add_leaf(leaf)),
-            Item::Mod(item) => {
-                let Some((_, items)) = &item.content else { return };
-                // A name may have several meanings that are modules, of which `#[cfg]` selects one.
-                let known = self.modules.modules[self.module].names.get(&items::name(&item.ident));
-                let line = item.ident.span().start().line;
-                let inner = known.into_iter().flatten().find_map(|name| match name.meaning {
-                    Meaning::Module(inner) if self.modules.modules[inner].declared.1 == line => Some(inner),
-                    _ => None,
-                });
-                // Modules within functions are ignored.
-                let Some(inner) = inner else { return };
-                let outer = std::mem::replace(&mut self.module, inner);
-                items.iter().for_each(|item| self.visit_item(item));
-                self.module = outer;
-            }
-            item => visit::visit_item(self, item),
-        }
-    }
-
-    fn visit_item_impl(&mut self, item: &'ast ItemImpl) {
-        let own = items::type_of_impl(item).map(|path| ("Self".to_owned(), path));
-        self.aliases.push(own.into_iter().collect());
-        visit::visit_item_impl(self, item);
-        self.aliases.pop();
-    }
-
-    fn visit_impl_item(&mut self, item: &'ast ImplItem) {
-        if !is_for_tests(items::attributes_in_impl(item)) {
-            visit::visit_impl_item(self, item);
-        }
-    }
-
-    fn visit_trait_item(&mut self, item: &'ast TraitItem) {
-        if !is_for_tests(items::attributes_in_trait(item)) {
-            visit::visit_trait_item(self, item);
-        }
-    }
-
-    fn visit_block(&mut self, block: &'ast Block) {
-        let uses = block.stmts.iter().filter_map(|statement| match statement {
-            Stmt::Item(Item::Use(item)) => Some(use_leaves(&item.tree)),
-            _ => None,
-        });
-        self.aliases.push(uses.flatten().filter_map(|leaf| Some((leaf.alias?, leaf.path))).collect());
-        visit::visit_block(self, block);
-        self.aliases.pop();
-    }
-
-    fn visit_path(&mut self, path: &'ast syn::Path) {
-        if path.leading_colon.is_none() {
-            let names: Vec<String> =
-                path.segments.iter().map(|segment| items::name(&segment.ident)).collect();
-            self.add_path(&names, path.segments[0].ident.span().start().line);
-        }
-        visit::visit_path(self, path);
-    }
-
-    fn visit_macro(&mut self, mac: &'ast Macro) {
-        if let Some(ident) = mac.path.get_ident() {
-            self.add_macro(&items::name(ident), ident.span().start().line);
-            if ident == "include" {
-                self.add_include(mac);
-            }
-        }
-        self.visit_path(&mac.path);
-        self.add_tokens(mac.tokens.clone());
-    }
-
-    fn visit_attribute(&mut self, attribute: &'ast Attribute) {
-        match &attribute.meta {
-            Meta::List(list) => self.add_tokens(list.tokens.clone()),
-            Meta::NameValue(value) => self.visit_expr(&value.value),
-            Meta::Path(path) => self.visit_path(path),
-        }
-    }
-
-    fn visit_visibility(&mut self, _: &'ast Visibility) {}
 }

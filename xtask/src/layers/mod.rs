@@ -1,74 +1,63 @@
 //! `cargo xtask layers`: checks that imports go down the order in `layers.toml`, between crates and between the modules
-//! of a crate, and that no files form a circle. `--graph` prints the layers as a diagram, `--graph sscc` those of one
-//! crate.
+//! of a crate, and that no files of a crate form a circle.
 //!
-//! An import is any path to an item of another file: in a `use`, in code, in the arguments of a macro or an attribute,
-//! in the body of a `macro_rules!`. It imports the file that defines the item. The tool follows re-exports to that
-//! file, and counts a re-export as an import by the file that contains it. `Type::function` also imports the file of
-//! the `impl` block. A glob imports all that it makes visible. `mod x;` is not an import, nor is `use` of a module; a
-//! path to an item of the module is.
-//!
-//! The tool ignores items for tests (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/` and
-//! `build.rs`.
-//!
-//! The tool does not know types. So it misses methods called on values, functions of a trait called by the type's path,
-//! fields, and names that a macro concatenates. It does not read text from `include!`; `include!` from another crate's
-//! folder is an import of that crate.
+//! Crates are checked by their dependencies. Within a crate an import is a path from `crate`, `super` or `self`, in a `use` or in
+//! code, or from a module that a `use` names. It imports the file that defines the item: re-exports are followed. The tool does
+//! not know types, so it misses methods. Items and files for tests do not count.
 
-mod diagram;
-mod graph;
 mod imports;
-mod items;
-mod modules;
 mod order;
-mod parse;
-mod read;
-mod resolve;
-mod rules;
-mod summary;
-mod tokens;
-mod toml_file;
-mod workspace;
-
-#[cfg(test)]
-mod tests;
+mod paths;
 
 use std::path::Path;
 use std::process::ExitCode;
 
-pub use items::{attributes, is_for_tests};
+use crate::sources::{self, Crate};
+use imports::Imports;
 use order::Order;
-pub use read::Workspace;
 
-/// Checks the layers of this workspace, or prints them.
+/// Checks the layers of this workspace.
 pub fn run(arguments: &[String]) -> ExitCode {
-    let graph_of = match arguments {
-        [] => None,
-        [flag, crates @ ..] if flag == "--graph" => Some(crates),
-        _ => {
-            eprintln!("Usage: cargo xtask layers [--graph [crates]]");
-            return ExitCode::from(2);
-        }
-    };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let read = Order::read(&root).and_then(|order| Ok((order, Workspace::read(&root)?)));
-    let (order, workspace) = match read {
-        Ok(read) => read,
+    if !arguments.is_empty() {
+        eprintln!("Usage: cargo xtask layers");
+        return ExitCode::from(2);
+    }
+    let violations = match violations(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..")) {
+        Ok(violations) => violations,
         Err(line) => {
             eprintln!("error: {line}");
             return ExitCode::from(2);
         }
     };
-    if let Some(crates) = graph_of {
-        print!("{}", diagram::diagram(&workspace, &order, crates));
-        return ExitCode::SUCCESS;
-    }
-    let violations = rules::check(&workspace, &order);
-    violations.iter().for_each(|violation| eprintln!("error: {}", violation.message));
-    println!("{}", summary::summary(&workspace));
+    violations.iter().for_each(|violation| eprintln!("error: {violation}"));
     if violations.is_empty() {
         return ExitCode::SUCCESS;
     }
-    eprintln!("{}", summary::count(&violations));
+    eprintln!("{} violations of the layers", violations.len());
     ExitCode::FAILURE
 }
+
+/// All violations in a workspace, each one or more lines `file:line: message`.
+fn violations(root: &Path) -> Result<Vec<String>, String> {
+    let (order, crates) = (Order::read(root)?, sources::read(root)?);
+    let mut violations = order.unknown_crates(&crates);
+    for krate in &crates {
+        let imports = Imports::of(krate);
+        violations.extend(dependencies(krate, &order));
+        violations.extend(order.unplaced_modules(krate));
+        violations.extend(imports.up_the_order(&order));
+        violations.extend(imports.circle());
+    }
+    Ok(violations)
+}
+
+fn dependencies(krate: &Crate, order: &Order) -> Vec<String> {
+    let why = |dependency: &String| {
+        let why = order.reason_against("crates", &krate.name, dependency)?;
+        Some(format!("{}/Cargo.toml: depends on {dependency}: {why}", krate.folder))
+    };
+    krate.dependencies.iter().filter_map(why).collect()
+}
+
+#[cfg(test)]
+mod tests;

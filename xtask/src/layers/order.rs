@@ -1,90 +1,88 @@
 //! The order of crates and of modules that `layers.toml` declares, lowest first.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use toml::de::DeValue;
+use toml::{Table, Value};
 
-use super::toml_file::TomlFile;
+use crate::sources::{self, Crate};
 
 /// The file that declares the order, at the root of the workspace.
 pub const FILE: &str = "layers.toml";
 
-/// The declared order of crates and modules.
-pub struct Order {
-    pub crates: Levels,
-    /// The levels of each crate, such as `sscc`, and folder of modules, such as `sscc/query`.
-    pub folders: BTreeMap<String, Levels>,
+/// The list of a folder of modules: `sscc`, `sscc/query`.
+pub fn folder(krate: &str, module: &[String]) -> String {
+    std::iter::once(krate).chain(module.iter().map(String::as_str)).collect::<Vec<_>>().join("/")
 }
 
-/// Names in levels, lowest first.
-#[derive(Default)]
-pub struct Levels {
-    pub rows: Vec<Vec<String>>,
-    places: BTreeMap<String, Place>,
-}
-
-#[derive(Clone, Copy)]
-pub struct Place {
-    /// The level; 0 is the lowest.
-    pub level: usize,
-    /// The line in the file.
-    pub line: usize,
-}
-
-impl Levels {
-    /// Returns the place of a name; none if the order does not have it.
-    pub fn place(&self, name: &str) -> Option<Place> {
-        self.places.get(name).copied()
-    }
-
-    /// Returns all names with the lines of their declarations.
-    pub fn entries(&self) -> impl Iterator<Item = (&str, usize)> {
-        self.places.iter().map(|(name, place)| (name.as_str(), place.line))
-    }
-
-    /// Reads an array of strings: each is one level, the names in it are separated by spaces.
-    fn read(file: &TomlFile, value: &toml::Spanned<DeValue<'_>>) -> Result<Self, String> {
-        let at = |value: &toml::Spanned<DeValue<'_>>| format!("{}:{}", file.path, file.line(value.span()));
-        let DeValue::Array(array) = value.get_ref() else {
-            return Err(format!("{}: a list of levels was expected, lowest first", at(value)));
-        };
-        let mut levels = Self::default();
-        for (level, row) in array.iter().enumerate() {
-            let Some(names) = row.get_ref().as_str() else {
-                return Err(format!("{}: a level is a string of names with spaces between them", at(row)));
-            };
-            for name in names.split_whitespace() {
-                let place = Place { level, line: file.line(row.span()) };
-                if levels.places.insert(name.to_owned(), place).is_some() {
-                    return Err(format!("{}: '{name}' is declared twice", at(row)));
-                }
-            }
-            levels.rows.push(names.split_whitespace().map(str::to_owned).collect());
-        }
-        Ok(levels)
-    }
-}
+/// For the crates (`crates`), for each crate and for some folders of modules the level of each name, 0 the lowest.
+pub struct Order(BTreeMap<String, BTreeMap<String, usize>>);
 
 impl Order {
-    /// Reads `layers.toml`; errors name the line.
+    /// Reads `layers.toml`.
     pub fn read(root: &Path) -> Result<Self, String> {
-        let file = TomlFile::read(root, FILE)?;
-        let mut order = Self { crates: Levels::default(), folders: BTreeMap::new() };
-        for (key, value) in &file.parse()? {
-            match (key.get_ref().as_ref(), value.get_ref()) {
-                ("crates", _) => order.crates = Levels::read(&file, value)?,
-                ("modules", DeValue::Table(folders)) => {
-                    for (folder, value) in folders {
-                        order.folders.insert(folder.get_ref().to_string(), Levels::read(&file, value)?);
+        let file: Table = sources::text(root, FILE)?.parse().map_err(|error| format!("{FILE}: {error}"))?;
+        let modules = file.get("modules").and_then(Value::as_table).cloned().unwrap_or_default();
+        let mut order = BTreeMap::new();
+        for (list, rows) in file.into_iter().filter(|(key, _)| key != "modules").chain(modules) {
+            let rows = rows.as_array().ok_or_else(|| format!("{FILE}: {list}: a list was expected"))?;
+            let mut levels = BTreeMap::new();
+            for (level, names) in rows.iter().enumerate() {
+                let names = names.as_str().ok_or_else(|| format!("{FILE}: {list}: names were expected"))?;
+                for name in names.split_whitespace() {
+                    if levels.insert(name.to_owned(), level).is_some() {
+                        return Err(format!("{FILE}: {list}: '{name}' is declared twice"));
                     }
                 }
-                (other, _) => {
-                    let line = file.line(key.span());
-                    return Err(format!("{FILE}:{line}: '{other}': crates and [modules] were expected"));
-                }
             }
+            order.insert(list, levels);
         }
-        Ok(order)
+        Ok(Self(order))
+    }
+
+    /// Why one name of a list must not import another; none if it may, or if one has no place.
+    pub fn reason_against(&self, list: &str, from: &str, to: &str) -> Option<String> {
+        let levels = self.0.get(list)?;
+        match levels.get(from)?.cmp(levels.get(to)?) {
+            Ordering::Less => Some(format!("{from} is below {to} in {FILE}")),
+            Ordering::Equal => Some(format!("{from} and {to} are on one level in {FILE}")),
+            Ordering::Greater => None,
+        }
+    }
+
+    /// Crates without a place, and lists of crates that do not exist.
+    pub fn unknown_crates(&self, crates: &[Crate]) -> Vec<String> {
+        let mut violations = Vec::new();
+        let levels = self.0.get("crates").cloned().unwrap_or_default();
+        let is_crate = |name: &str| crates.iter().any(|krate| krate.name == name);
+        let unplaced = crates.iter().filter(|krate| !levels.contains_key(&krate.name));
+        violations.extend(unplaced.map(|krate| format!("crate {} has no place in {FILE}", krate.name)));
+        let lists = self.0.keys().filter(|list| *list != "crates");
+        let named = levels.keys().map(String::as_str).chain(lists.filter_map(|list| list.split('/').next()));
+        let unknown = named.filter(|name| !is_crate(name));
+        violations.extend(unknown.map(|name| format!("{FILE}: there is no crate {name}")));
+        violations
+    }
+
+    /// Modules without a place in the list of their folder, and places without a module.
+    pub fn unplaced_modules(&self, krate: &Crate) -> Vec<String> {
+        let mut violations = Vec::new();
+        let lists = self
+            .0
+            .iter()
+            .filter(|(list, _)| **list == krate.name || list.starts_with(&format!("{}/", krate.name)));
+        for (list, levels) in lists {
+            let in_list = |module: &[String]| {
+                let (name, parent) = module.split_last()?;
+                (folder(&krate.name, parent) == *list).then(|| name.clone())
+            };
+            let modules: Vec<String> = krate.files.iter().filter_map(|file| in_list(&file.module)).collect();
+            let unplaced = modules.iter().filter(|name| !levels.contains_key(*name));
+            violations.extend(unplaced.map(|name| format!("{FILE}: {list}: module {name} has no place")));
+            let unknown = levels.keys().filter(|name| !modules.contains(name));
+            violations.extend(unknown.map(|name| format!("{FILE}: {list} has no module {name}")));
+        }
+        violations
     }
 }

@@ -102,15 +102,6 @@ impl Aabb8 {
         )
     }
 
-    /// The lanes whose AABB overlaps that of one lane of another packet.
-    #[inline]
-    pub(crate) fn overlapping_lane(&self, other: &Self, lane: usize) -> Lanes {
-        self.compare(
-            [0, 1, 2].map(|axis| Vec4::splat(other.lower[axis][lane])),
-            [0, 1, 2].map(|axis| Vec4::splat(other.upper[axis][lane])),
-        )
-    }
-
     /// The lanes among the first four whose AABB overlaps a given one.
     #[inline]
     pub(crate) fn overlapping_of_four(&self, other: &AabbF32) -> Lanes {
@@ -312,7 +303,6 @@ mod tests {
             }
             assert_eq!(packet.overlapping(&other), Lanes(expected));
             for (lane, b) in boxes.iter().enumerate() {
-                assert_eq!(packet.overlapping_lane(&packet, lane), packet.overlapping(b));
                 let of_four = Lanes(packet.overlapping(b).0 & 0xf);
                 assert_eq!(packet.overlapping_of_four(b), of_four);
                 assert_eq!(packet.overlapping_lane_of_four(&packet, lane), of_four);
@@ -344,7 +334,9 @@ mod tests {
         });
         for row in 0..LANES {
             let open = !(masked >> (8 * row)) as u32 & 0xff;
-            let lanes = second.overlapping_lane(packet, row).0 & open;
+            let one = |ends: &[[f32; LANES]; 3]| Vec4::new(ends[0][row], ends[1][row], ends[2][row], 0.0);
+            let other = AabbF32 { lower: one(&packet.lower), upper: one(&packet.upper) };
+            let lanes = second.overlapping(&other).0 & open;
             if rows >> row & 1 != 0 && open != 0 {
                 expected.rows += 1;
                 expected.pairs |= u64::from(lanes) << (8 * row);

@@ -5,17 +5,25 @@ use glam::DVec3;
 use super::broad_phase::BroadPhase;
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
+use crate::Error;
 use crate::geometry::Aabb;
 
 impl<const E: usize> BroadPhase<E> {
-    /// Tests all pairs of triangles, exceptions included, by the positions of vertices at each configuration. No hierarchy, no
-    /// certificates; only boxes of single triangles, compared exactly.
+    /// Finds at most `limit` hits among all pairs of triangles, exceptions included, by the positions of vertices at each
+    /// configuration. No hierarchy, no certificates; only boxes of single triangles, compared exactly.
+    ///
+    /// # Errors
+    /// When it was cancelled; then there are no hits.
     pub(crate) fn brute_force<N: NarrowPhase<E>>(
         &mut self,
         context: &Context,
         positions: impl Fn(u32) -> [DVec3; E],
         narrow: &mut N,
-    ) {
+        limit: usize,
+    ) -> Result<(), Error> {
+        let state = &mut self.state;
+        state.begin();
+        narrow.hits().begin(limit);
         let corners: Vec<[[DVec3; 3]; E]> = context
             .filter
             .faces()
@@ -26,22 +34,23 @@ impl<const E: usize> BroadPhase<E> {
             })
             .collect();
         let boxes: Vec<Aabb> = corners.iter().map(Aabb::of_swept_triangle).collect();
-        for a in 0..corners.len() {
-            self.check_cancelled(context, narrow);
+        'all: for a in 0..corners.len() {
+            state.check_cancelled(context, narrow);
             for b in a + 1..corners.len() {
                 if narrow.hits().note_if_full() {
-                    return;
+                    break 'all;
                 }
-                self.counters.box_tests += 1;
+                state.counters.box_tests += 1;
                 let pair = (a as u32, b as u32);
                 if boxes[a].is_disjoint(&boxes[b]) || context.filter.is_excluded(pair.0, pair.1) {
                     continue;
                 }
-                self.counters.triangle_tests += 1;
+                state.counters.triangle_tests += 1;
                 let relation = context.filter.relation(pair.0, pair.1);
                 let hit = N::test(&context.filter, relation, pair, &corners[a], &corners[b]);
                 narrow.hits().list.extend(hit);
             }
         }
+        state.end(narrow)
     }
 }

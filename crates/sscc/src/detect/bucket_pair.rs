@@ -1,10 +1,9 @@
 //! Tests of a bucket against itself and of two buckets: packets of boxes against packets, down to triangle pairs.
 
 use super::aabb8::{LANES, PacketPair, PairsOfLanes};
-use super::broad_phase::{BroadPhase, TriangleVertices};
-use super::context::Context;
 use super::narrow_phase::NarrowPhase;
-use super::node_volumes::BucketSlot;
+use super::node_volumes::{BucketSlot, are_slots_separated};
+use super::search::{Search, TriangleVertices};
 use super::vertex_motion::VertexMotion;
 use crate::filter::Relation;
 
@@ -18,122 +17,116 @@ struct BucketLane {
     lane: usize,
 }
 
-impl<const E: usize> BroadPhase<E> {
-    /// Whether the triangles in two slots never count.
-    #[inline]
-    fn are_adjacent(&self, context: &Context, slots: [usize; 2]) -> bool {
-        let buckets = &self.volumes.layout.buckets;
-        if context.filter.is_adjacency_alone() {
-            return buckets.has_shared_vertex(slots);
-        }
-        let [a, b] = slots.map(|slot| buckets.triangle(slot));
-        context.filter.relation(a, b) == Relation::Adjacent
-    }
-
+impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, N> {
     /// Tests a bucket against itself.
-    pub(crate) fn test_bucket<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        bucket: u32,
-        motion: &M,
-        narrow: &mut N,
-    ) {
-        self.volumes.open_bucket(bucket, motion);
-        let count = self.volumes.layout.buckets.packets(bucket).len();
-        self.counters.box_tests += (LANES * count) as u64;
-        let packets = self.volumes.packets(bucket);
+    pub(crate) fn test_bucket(&mut self, bucket: u32) {
+        self.sides[0].open_bucket(bucket);
+        let volumes = &*self.sides[0].volumes;
+        let count = volumes.layout.buckets.packets(bucket).len();
+        self.state.counters.box_tests += (LANES * count) as u64;
+        let packets = volumes.packets(bucket);
         let masked =
             right_or!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked };
-        for (i, j) in PairsOfLanes(pair.overlaps(self.volumes.instructions).pairs) {
+        for (i, j) in PairsOfLanes(pair.overlaps(volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
-            self.test_packet_pair(context, first, second, false, motion, narrow);
+            self.test_packet_pair(first, second, false);
         }
+    }
+}
+
+impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, SIDES, E, M, N> {
+    /// Whether the triangles in two slots never count.
+    #[inline]
+    fn are_adjacent(&self, slots: [usize; 2]) -> bool {
+        let side = &self.sides[0];
+        let buckets = &side.volumes.layout.buckets;
+        if side.context.filter.is_adjacency_alone() {
+            return buckets.has_shared_vertex(slots);
+        }
+        let [a, b] = slots.map(|slot| buckets.triangle(slot));
+        side.context.filter.relation(a, b) == Relation::Adjacent
     }
 
     /// Tests two buckets.
-    pub(crate) fn test_bucket_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        (n, m): (u32, u32),
-        motion: &M,
-        narrow: &mut N,
-    ) {
-        self.counters.opened += 1;
+    pub(crate) fn test_bucket_pair(&mut self, (n, m): (u32, u32)) {
+        self.state.counters.opened += 1;
         // Masks of adjacency are stored with the packet of the lower number.
-        let (n, m) = (n.min(m), n.max(m));
-        [n, m].iter().for_each(|bucket| self.volumes.prefetch_bucket(*bucket));
-        [n, m].iter().for_each(|bucket| self.volumes.open_bucket(*bucket, motion));
-        let [x, y] = [n, m].map(|bucket| *self.volumes.node(self.volumes.layout.buckets.node(bucket)));
-        self.counters.box_tests += 1;
-        if !x.overlaps(&y) {
-            self.loose_pairs += 1;
+        let (n, m) = if SIDES == 1 { (n.min(m), n.max(m)) } else { (n, m) };
+        self.sides[0].open_bucket(n);
+        self.sides[Self::LAST].open_bucket(m);
+        let [first, last] = [(0, n), (Self::LAST, m)].map(|(side, bucket)| {
+            let volumes = &*self.sides[side].volumes;
+            (volumes.node(volumes.layout.buckets.node(bucket)), volumes.packets(bucket))
+        });
+        self.state.counters.box_tests += 1;
+        if !first.0.overlaps(last.0) {
+            self.state.loose_pairs += 1;
             return;
         }
-        self.counters.box_tests += LANES as u64;
-        let [first, second] = [n, m].map(|bucket| self.volumes.packets(bucket));
-        let pair = PacketPair { first, second, rows: first.overlapping(&y).0, masked: 0 };
-        let overlaps = pair.overlaps(self.volumes.instructions);
-        self.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
-        let share_no_vertex =
-            context.filter.groups().is_none() && !self.volumes.layout.buckets.can_share_vertex(n, m);
+        self.state.counters.box_tests += LANES as u64;
+        let rows = first.1.overlapping(last.0).0;
+        let pair = PacketPair { first: first.1, second: last.1, rows, masked: 0 };
+        let volumes = &*self.sides[0].volumes;
+        let overlaps = pair.overlaps(volumes.instructions);
+        self.state.counters.box_tests += LANES as u64 * u64::from(overlaps.rows);
+        let share_no_vertex = SIDES == 2
+            || self.sides[0].context.filter.groups().is_none()
+                && !volumes.layout.buckets.can_share_vertex(n, m);
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };
-            self.test_packet_pair(context, first, second, share_no_vertex, motion, narrow);
+            self.test_packet_pair(first, second, share_no_vertex);
         }
     }
 
-    /// Tests two packets whose boxes overlap, the second not before the first, or one packet against itself.
+    /// Tests two packets whose boxes overlap, of one side the second not before the first, or one packet against itself.
     /// `share_no_vertex`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
     /// in memory.
     #[inline]
-    fn test_packet_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        x: BucketLane,
-        y: BucketLane,
-        share_no_vertex: bool,
-        motion: &M,
-        narrow: &mut N,
-    ) {
-        let buckets = &self.volumes.layout.buckets;
-        let [first, second] = [x, y].map(|packet| buckets.packets(packet.bucket).start + packet.lane);
+    fn test_packet_pair(&mut self, x: BucketLane, y: BucketLane, share_no_vertex: bool) {
+        let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
+        let buckets = [&first.layout.buckets, &last.layout.buckets];
+        let packets =
+            [buckets[0].packets(x.bucket).start + x.lane, buckets[1].packets(y.bucket).start + y.lane];
         let (masked, has_adjacent) =
-            if share_no_vertex { (0, true) } else { buckets.masked_pairs(first, second) };
-        let (start_x, start_y) = (buckets.slots(first).start, buckets.slots(second).start);
+            if share_no_vertex { (0, true) } else { buckets[0].masked_pairs(packets[0], packets[1]) };
+        let starts = [buckets[0].slots(packets[0]).start, buckets[1].slots(packets[1]).start];
         // Most triangles of a packet stay clear of the whole other packet.
-        let outer = [x, y].map(|packet| (self.volumes.packets(packet.bucket), packet.lane));
-        let [first, second] = [first, second].map(|packet| self.volumes.triangles(packet));
-        let overlaps =
-            PacketPair { first, second, rows: 0, masked }.overlaps_within(self.volumes.instructions, outer);
-        self.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
+        let outer = [(first.packets(x.bucket), x.lane), (last.packets(y.bucket), y.lane)];
+        let triangles = [first.triangles(packets[0]), last.triangles(packets[1])];
+        let pair = PacketPair { first: triangles[0], second: triangles[1], rows: 0, masked };
+        let overlaps = pair.overlaps_within(first.instructions, outer);
+        self.state.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
         let mut open = 0;
         for (row, column) in PairsOfLanes(overlaps.pairs) {
-            let slots = [start_x + row, start_y + column];
-            if !has_adjacent && self.are_adjacent(context, slots) {
+            let slots = [starts[0] + row, starts[1] + column];
+            if !has_adjacent && self.are_adjacent(slots) {
                 continue;
             }
+            let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
             let a = BucketSlot { bucket: x.bucket, slot: slots[0] };
             let b = BucketSlot { bucket: y.bucket, slot: slots[1] };
-            if self.volumes.are_separated(a, b) {
+            if are_slots_separated((first, a), (last, b)) {
                 continue;
             }
-            let corners = self.volumes.layout.buckets.corners();
-            slots.iter().for_each(|slot| self.volumes.prefetch_corners(corners[*slot]));
+            first.prefetch_corners(first.layout.buckets.corners()[slots[0]]);
+            last.prefetch_corners(last.layout.buckets.corners()[slots[1]]);
             open |= 1 << (LANES * row + column);
         }
         for (row, column) in PairsOfLanes(open) {
-            let slots = [start_x + row, start_y + column];
-            let buckets = &self.volumes.layout.buckets;
-            let [a, b] = slots.map(|slot| TriangleVertices {
-                triangle: buckets.triangle(slot),
-                vertices: buckets.corners()[slot],
+            let slots = [starts[0] + row, starts[1] + column];
+            let [a, b] = [(0, slots[0]), (Self::LAST, slots[1])].map(|(side, slot)| {
+                let buckets = &self.sides[side].volumes.layout.buckets;
+                TriangleVertices { triangle: buckets.triangle(slot), vertices: buckets.corners()[slot] }
             });
-            if share_no_vertex {
-                self.test_related_triangles(context, Relation::NonAdjacent, a, b, motion, narrow);
+            let relation = if share_no_vertex {
+                Relation::NonAdjacent
             } else {
-                self.test_triangles(context, a, b, motion, narrow);
+                self.sides[0].context.filter.relation(a.triangle, b.triangle)
+            };
+            if relation != Relation::Adjacent {
+                self.test_related_triangles(relation, a, b);
             }
         }
     }

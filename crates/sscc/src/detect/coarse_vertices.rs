@@ -67,20 +67,6 @@ impl CoarseVertices {
         self.starts[bucket as usize] as usize..self.starts[bucket as usize + 1] as usize
     }
 
-    /// Prefetches the quantized modes of the vertices of a bucket.
-    #[inline]
-    pub(crate) fn prefetch(&self, bucket: u32, modes: usize) {
-        let groups = self.groups(bucket);
-        self.instructions.prefetch(&self.quantized[groups.start * modes..groups.end * modes]);
-    }
-
-    /// Prefetches the moved vertices of a bucket.
-    #[inline]
-    pub(crate) fn prefetch_moved<const E: usize>(&self, bucket: u32, positions: &[[Vec4; E]]) {
-        let groups = self.groups(bucket);
-        self.instructions.prefetch(&positions[groups.start * LANES..groups.end * LANES]);
-    }
-
     /// Moves the vertices of a bucket.
     pub(crate) fn move_bucket<const E: usize>(
         &self,
@@ -88,23 +74,11 @@ impl CoarseVertices {
         motion: &CoarseMotion<E>,
         positions: &mut [[Vec4; E]],
     ) {
-        self.move_bucket_at(bucket, [(motion, positions)]);
-    }
-
-    /// Moves the vertices of a bucket for several motions at once, each with its own positions: displacements are read and
-    /// converted once for all of them.
-    pub(crate) fn move_bucket_at<const E: usize, const N: usize>(
-        &self,
-        bucket: u32,
-        motions: [(&CoarseMotion<E>, &mut [[Vec4; E]]); N],
-    ) {
         let groups = self.groups(bucket);
-        let modes = motions.first().map_or(0, |(motion, _)| motion.factors.len());
+        let modes = motion.factors.len();
         let displacements = &self.quantized[groups.start * modes..groups.end * modes];
-        let motions = motions.map(|(motion, positions)| {
-            (motion, positions[groups.start * LANES..groups.end * LANES].as_chunks_mut().0)
-        });
-        self.instructions.run(MoveVertices { displacements, motions });
+        let positions = positions[groups.start * LANES..groups.end * LANES].as_chunks_mut().0;
+        self.instructions.run(MoveVertices { displacements, motion, positions });
     }
 
     /// The positions of the vertices of a bucket that has been moved, in the frame, in the order of its vertices; then some more.
@@ -133,51 +107,43 @@ impl CoarseVertices {
 }
 
 /// The motion of all groups of a bucket.
-struct MoveVertices<'b, const E: usize, const N: usize> {
+struct MoveVertices<'b, const E: usize> {
     displacements: &'b [[[i16; LANES]; 3]],
-    motions: [(&'b CoarseMotion<E>, &'b mut [[[Vec4; E]; LANES]]); N],
+    motion: &'b CoarseMotion<E>,
+    positions: &'b mut [[[Vec4; E]; LANES]],
 }
 
-impl<const E: usize, const N: usize> Kernel for MoveVertices<'_, E, N> {
+impl<const E: usize> Kernel for MoveVertices<'_, E> {
     type Output = ();
 
     #[inline(always)]
     fn run<V: Vectors>(self, v: V) {
-        let Self { displacements, motions } = self;
-        let modes = motions.first().map_or(0, |(motion, _)| motion.factors.len());
+        let Self { displacements, motion: CoarseMotion { factors, shift, maps, .. }, positions } = self;
         // Loops, because maps of arrays are not inlined.
-        let mut factors: [&[[f32; E]]; N] = [&[]; N];
-        let mut shifts = [[[v.splat(0.0); 3]; E]; N];
-        for (n, (motion, _)) in motions.iter().enumerate() {
-            factors[n] = &motion.factors[..modes];
-            for end in 0..E {
-                let shift = motion.shift[end];
-                shifts[n][end] = [v.splat(shift.x), v.splat(shift.y), v.splat(shift.z)];
-            }
+        let mut shifts = [[v.splat(0.0); 3]; E];
+        for end in 0..E {
+            let shift = shift[end];
+            shifts[end] = [v.splat(shift.x), v.splat(shift.y), v.splat(shift.z)];
         }
-        for (group, displacements) in displacements.chunks_exact(modes).enumerate() {
+        for (group, displacements) in displacements.chunks_exact(factors.len()).enumerate() {
             let mut sums = shifts;
-            for (k, axes) in displacements.iter().enumerate() {
+            for (axes, factor) in displacements.iter().zip(factors) {
                 for axis in 0..3 {
                     let displacement = v.convert(&axes[axis]);
-                    for n in 0..N {
-                        for end in 0..E {
-                            let factor = v.splat(factors[n][k][end]);
-                            sums[n][end][axis] = v.multiply_add(displacement, factor, sums[n][end][axis]);
-                        }
+                    for end in 0..E {
+                        let factor = v.splat(factor[end]);
+                        sums[end][axis] = v.multiply_add(displacement, factor, sums[end][axis]);
                     }
                 }
             }
-            for n in 0..N {
-                for end in 0..E {
-                    let mut sum = sums[n][end];
-                    if let Some(maps) = &motions[n].0.maps {
-                        sum = maps[end].apply(v, sum);
-                    }
-                    let points = v.points(sum);
-                    for lane in 0..LANES {
-                        motions[n].1[group][lane][end] = points[lane];
-                    }
+            for end in 0..E {
+                let mut sum = sums[end];
+                if let Some(maps) = maps {
+                    sum = maps[end].apply(v, sum);
+                }
+                let points = v.points(sum);
+                for lane in 0..LANES {
+                    positions[group][lane][end] = points[lane];
                 }
             }
         }
@@ -242,7 +208,7 @@ mod tests {
                 continue;
             }
             used += 1;
-            compare_kernels(&layout, [ends, [&q, &q], [&later, &q], ends], &frame, rounding);
+            compare_kernels(&layout, ends, &frame, rounding);
             let mut largest = 0.0_f64;
             for bucket in 0..layout.buckets.count() as u32 {
                 layout.coarse.move_bucket(bucket, &motion, &mut positions);
@@ -263,33 +229,20 @@ mod tests {
         assert!(used > 300 && unused > 2 && worst > 0.05, "{used} {unused} {worst}");
     }
 
-    /// Both instruction sets give the same bits, for one motion and for several at once.
-    fn compare_kernels(layout: &Layout, all: [[&[f64]; 2]; 4], frame: &F32Frame, rounding: f64) {
+    /// Both instruction sets give the same bits.
+    fn compare_kernels(layout: &Layout, ends: [&[f64]; 2], frame: &F32Frame, rounding: f64) {
         let mut coarse = CoarseVertices::new(&layout.quantization, &layout.buckets, &layout.vertices);
-        let motions = all.map(|ends| {
-            let mut motion = CoarseMotion::default();
-            layout.quantization.begin(&mut motion, ends, frame, rounding);
-            motion
-        });
-        let bits = |positions: &[[Vec4; 2]]| -> Vec<[u32; 4]> {
-            positions.as_flattened().iter().map(|x| x.to_array().map(f32::to_bits)).collect()
-        };
-        let mut expected: Option<Vec<Vec<[u32; 4]>>> = None;
-        for instructions in [InstructionSet::default(), InstructionSet::Baseline] {
+        let mut motion = CoarseMotion::default();
+        layout.quantization.begin(&mut motion, ends, frame, rounding);
+        let found = [InstructionSet::default(), InstructionSet::Baseline].map(|instructions| {
             coarse.instructions = instructions;
-            let [mut one, mut group] = [(); 2].map(|()| [(); 4].map(|()| coarse.new_positions()));
+            let mut positions: Vec<[Vec4; 2]> = coarse.new_positions();
             for bucket in 0..layout.buckets.count() as u32 {
-                for (motion, positions) in motions.iter().zip(&mut one) {
-                    coarse.move_bucket(bucket, motion, positions);
-                }
-                let [a, b, c, d] = &mut group;
-                let [p, q, r, s] = &motions;
-                coarse.move_bucket_at(bucket, [(p, a), (q, b), (r, c), (s, d)]);
+                coarse.move_bucket(bucket, &motion, &mut positions);
             }
-            for found in [one, group] {
-                let found: Vec<_> = found.iter().map(|positions| bits(positions)).collect();
-                assert_eq!(expected.get_or_insert_with(|| found.clone()), &found);
-            }
-        }
+            let bits = |x: &Vec4| x.to_array().map(f32::to_bits);
+            positions.as_flattened().iter().map(bits).collect::<Vec<_>>()
+        });
+        assert_eq!(found[0], found[1]);
     }
 }

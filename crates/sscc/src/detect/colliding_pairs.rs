@@ -32,10 +32,9 @@ pub(crate) fn colliding_pairs(
     let mut broad = BroadPhase::<1>::new(&context.layout, false, None);
     let mut narrow = DiscreteHits::default();
     let motion = DeformedMotion::new([q], reach);
-    narrow.0.begin(MAX_PAIRS);
-    broad.begin_volumes(&context, &motion);
-    broad.traverse(&context, (0, 0), &motion, &mut narrow);
-    broad.end(&mut narrow)?;
+    let mut search = broad.search(&context, &motion, &mut narrow, MAX_PAIRS);
+    search.traverse((0, 0));
+    search.end()?;
     if !narrow.0.is_complete() {
         return Err(Error::TooManyCollisions { most: MAX_PAIRS });
     }

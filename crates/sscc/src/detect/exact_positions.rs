@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec4};
 
+use super::aabb8::AabbF32;
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
 use super::vertex_motion::VertexMotion;
@@ -86,6 +87,12 @@ impl<const E: usize> ExactPositions<E> {
     pub(crate) fn mapped(&self, vertices: [u32; 3]) -> [[Vec4; E]; 3] {
         let [a, b, c] = vertices;
         [self.mapped[a as usize], self.mapped[b as usize], self.mapped[c as usize]]
+    }
+
+    /// An AABB of moved vertices at all configurations, in the frame.
+    pub(crate) fn mapped_aabb(&self, vertices: &[u32]) -> AabbF32 {
+        let ends = vertices.iter().flat_map(|v| self.mapped[*v as usize]);
+        ends.fold(AabbF32::EMPTY, |all, x| AabbF32 { lower: all.lower.min(x), upper: all.upper.max(x) })
     }
 
     /// The frame of this search.

@@ -23,7 +23,6 @@ pub(crate) mod context;
 mod contour_test;
 mod detector;
 mod exact_positions;
-pub(crate) mod expected_buckets;
 pub(crate) mod f32_frame;
 mod frame_map;
 pub(crate) mod hulls;
@@ -34,8 +33,9 @@ mod node_boundaries;
 pub(crate) mod node_volumes;
 pub(crate) mod normal_cones;
 mod quantization;
+pub(crate) mod search;
 mod traversal;
-pub(crate) mod two_meshes;
+
 pub(crate) mod vertex_motion;
 mod vertex_store;
 

@@ -12,12 +12,12 @@ use glam::{DVec3, Vec4};
 
 use super::aabb8::{Aabb8, AabbF32, LANES};
 use super::exact_positions::ExactPositions;
-use super::expected_buckets::{CoarsePositions, begin_coarse};
 use super::f32_frame::F32Frame;
+use super::frame_map::FrameMap;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
 use super::quantization::CoarseMotion;
-use super::vertex_motion::VertexMotion;
+use super::vertex_motion::{InWorld, VertexMotion};
 use crate::geometry::Aabb;
 use crate::hierarchy::{BRANCHING, Hierarchy};
 use crate::vectors::InstructionSet;
@@ -39,7 +39,8 @@ pub(crate) struct NodeVolumes<const E: usize> {
     /// Whether AABBs of triangles are computed from coarse positions.
     is_coarse: bool,
     motion: CoarseMotion<E>,
-    coarse: CoarsePositions<E>,
+    /// The coarse positions of the vertices of open buckets.
+    coarse: Vec<[Vec4; E]>,
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
     corner_error: f32,
     /// The AABB of each node that is a bucket or larger.
@@ -68,7 +69,7 @@ impl<const E: usize> NodeVolumes<E> {
             positions: ExactPositions::new(layout.vertices.count()),
             is_coarse: false,
             motion: CoarseMotion::default(),
-            coarse: CoarsePositions { positions: layout.coarse.new_positions(), moved: Vec::new() },
+            coarse: layout.coarse.new_positions(),
             corner_error: f32::INFINITY,
             nodes: vec![AabbF32::EMPTY; nodes],
             node_searches: vec![0; nodes],
@@ -82,6 +83,27 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// Starts a new search: forgets all AABBs, or, where they are not lazy, refits all of them.
     pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
+        self.begin_closed(motion);
+        if !self.is_lazy {
+            self.refit(hierarchy, motion);
+        }
+    }
+
+    /// Starts a new search with exact positions, and refits all nodes; AABBs within buckets are computed where they are opened.
+    pub(super) fn begin_nodes<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
+        self.begin_closed(motion);
+        let layout = Arc::clone(&self.layout);
+        self.positions.move_all(&layout, motion);
+        let margin = self.margin(motion);
+        for bucket in 0..layout.buckets.count() as u32 {
+            let aabb = self.positions.mapped_aabb(layout.buckets.vertices(bucket));
+            self.set_node(layout.buckets.node(bucket), aabb.widened(margin));
+        }
+        self.refit_larger(hierarchy);
+    }
+
+    /// Starts a new search: forgets all AABBs.
+    fn begin_closed<M: VertexMotion<E>>(&mut self, motion: &M) {
         let layout = Arc::clone(&self.layout);
         self.search = self.search.wrapping_add(1);
         if self.search == 0 {
@@ -101,9 +123,6 @@ impl<const E: usize> NodeVolumes<E> {
         } else {
             frame.error_bound(rounding)
         };
-        if !self.is_lazy {
-            self.refit(hierarchy, motion);
-        }
     }
 
     /// Computes all AABBs from all vertices, bottom-up; those of open buckets are current.
@@ -117,12 +136,25 @@ impl<const E: usize> NodeVolumes<E> {
                 self.refit_bucket(bucket, motion);
             }
         }
+        self.refit_larger(hierarchy);
+    }
+
+    /// Computes the AABBs of all nodes larger than buckets from those of buckets.
+    fn refit_larger(&mut self, hierarchy: &Hierarchy) {
         for n in (0..hierarchy.nodes().len() as u32).rev() {
-            if layout.buckets.of_node(n).is_none() {
+            if self.layout.buckets.of_node(n).is_none() {
                 let union = self.gather_children(hierarchy, n);
                 self.set_node(n, union);
             }
         }
+    }
+
+    /// By how much AABBs of exact positions are widened, in the frame.
+    fn margin<M: VertexMotion<E>>(&self, motion: &M) -> Vec4 {
+        if motion.margin() == 0.0 {
+            return Vec4::ZERO;
+        }
+        Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32)
     }
 
     /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
@@ -205,19 +237,6 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Prefetches the vertex data of a bucket, unless the bucket is open.
-    #[inline]
-    pub(crate) fn prefetch_bucket(&self, bucket: u32) {
-        if !self.is_coarse || self.is_bucket_open(bucket) {
-            return;
-        }
-        if self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
-            self.layout.coarse.prefetch_moved(bucket, &self.coarse.positions);
-        } else {
-            self.layout.coarse.prefetch(bucket, self.motion.factors.len());
-        }
-    }
-
     /// Computes the AABB of a node that is a bucket or larger, unless it is current.
     #[inline]
     pub(crate) fn update_node<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
@@ -241,16 +260,12 @@ impl<const E: usize> NodeVolumes<E> {
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         let Layout { buckets, coarse, .. } = &*self.layout;
         let n = buckets.node(bucket);
-        let mut by = Vec4::ZERO;
-        if self.is_coarse {
-            if !self.coarse.moved.get(bucket as usize).is_some_and(|moved| *moved) {
-                coarse.move_bucket(bucket, &self.motion, &mut self.coarse.positions);
-            }
-            by =
-                self.slack(n, motion) + right_or!(self.motion.search_error(), CoarseTrianglesNotWidened, 0.0);
-        } else if motion.margin() > 0.0 {
-            by = Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32);
-        }
+        let by = if self.is_coarse {
+            coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
+            self.slack(n, motion) + right_or!(self.motion.search_error(), CoarseTrianglesNotWidened, 0.0)
+        } else {
+            self.margin(motion)
+        };
         let mut whole = AabbF32::EMPTY;
         for (lane, packet) in buckets.packets(bucket).enumerate() {
             let (slots, mut union) = (buckets.slots(packet), AabbF32::EMPTY);
@@ -268,12 +283,6 @@ impl<const E: usize> NodeVolumes<E> {
         self.packets_searches[bucket as usize] = self.search;
         self.closed_buckets -= 1;
         self.set_node(n, whole);
-    }
-
-    /// Exchanges the coarse positions of this search. Some buckets may have been moved for the search that begins next
-    /// ([`ExpectedBuckets`](super::expected_buckets::ExpectedBuckets)).
-    pub(crate) fn exchange_positions(&mut self, other: &mut CoarsePositions<E>) {
-        std::mem::swap(&mut self.coarse, other);
     }
 
     /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
@@ -305,23 +314,12 @@ impl<const E: usize> NodeVolumes<E> {
         union
     }
 
-    /// Whether two triangles certainly have no point in common, as far as single precision can tell. Each is given by an
-    /// open bucket and a slot of it.
-    #[inline]
-    pub(crate) fn are_separated(&self, a: BucketSlot, b: BucketSlot) -> bool {
-        are_separated(
-            &self.mapped_corners(a.bucket, a.slot),
-            &self.mapped_corners(b.bucket, b.slot),
-            self.corner_error,
-        )
-    }
-
     /// The corners of the triangle in a slot of a bucket, in the frame.
     #[inline(always)]
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         let Layout { buckets, coarse, .. } = &*self.layout;
         if self.is_coarse {
-            coarse.corners(bucket, slot, &self.coarse.positions)
+            coarse.corners(bucket, slot, &self.coarse)
         } else {
             self.positions.mapped(buckets.corners()[slot])
         }
@@ -331,8 +329,7 @@ impl<const E: usize> NodeVolumes<E> {
     /// of the exact ones.
     pub(crate) fn mapped_vertices(&self, bucket: u32) -> impl Iterator<Item = (u32, Vec4)> {
         let Layout { buckets, coarse, .. } = &*self.layout;
-        let moved: &[[Vec4; E]] =
-            if self.is_coarse { coarse.of_bucket(bucket, &self.coarse.positions) } else { &[] };
+        let moved: &[[Vec4; E]] = if self.is_coarse { coarse.of_bucket(bucket, &self.coarse) } else { &[] };
         let exact = |v: u32| self.positions.mapped([v; 3])[0];
         let at = move |(i, v): (usize, &u32)| (*v, moved.get(i).copied().unwrap_or_else(|| exact(*v))[0]);
         buckets.vertices(bucket).iter().enumerate().map(at)
@@ -372,8 +369,31 @@ impl<const E: usize> NodeVolumes<E> {
     }
 }
 
-/// Whether triangles of two meshes certainly have no point in common, as far as single precision can tell. Both volumes are
-/// in the same frame.
+/// Sets the coarse motion of a search. False if it must use exact positions.
+fn begin_coarse<const E: usize, M: VertexMotion<E>>(
+    layout: &Layout,
+    motion: &M,
+    frame: &F32Frame,
+    coarse: &mut CoarseMotion<E>,
+) -> bool {
+    coarse.maps = None;
+    let Some(q) = motion.coarse_coordinates().filter(|_| !layout.coarse.is_empty()) else { return false };
+    let Some(InWorld { maps, own_rounding }) = motion.in_world() else {
+        return layout.quantization.begin(coarse, q, frame, motion.rounding());
+    };
+    let own = F32Frame::around(layout.bd_tree.root(q, DVec3::splat(own_rounding)));
+    if !layout.quantization.begin(coarse, q, &own, own_rounding) {
+        return false;
+    }
+    let maps = maps.map(|map| FrameMap::new([&own, frame], map, coarse.error, motion.rounding()));
+    if maps.iter().all(Option::is_some) {
+        coarse.maps = Some(maps.map(Option::unwrap_or_default));
+    }
+    coarse.maps.is_some()
+}
+
+/// Whether two triangles certainly have no point in common, as far as single precision can tell. Each is given by volumes and a
+/// slot of an open bucket; both volumes are in the same frame, or the same.
 #[inline]
 pub(crate) fn are_slots_separated<const E: usize>(
     (x, a): (&NodeVolumes<E>, BucketSlot),

@@ -2,123 +2,140 @@
 //! certificates, but normal cones where the method has them. `query/` has the traversals with certificates; they use
 //! the same tests.
 //!
-//! One box is always compared with up to eight. The stack holds nodes `(n, n)`, and pairs `(n, m)` of nodes without
+//! One box is always compared with up to eight. The stack holds nodes `(n, n)` of one side, and pairs `(n, m)` of nodes without
 //! common triangles whose boxes overlap.
 
 use super::aabb8::LANES;
-use super::broad_phase::BroadPhase;
-use super::context::Context;
 use super::narrow_phase::NarrowPhase;
+use super::search::{Search, SearchState, Side};
 use super::vertex_motion::VertexMotion;
+use crate::Error;
 use crate::hierarchy::NodePair;
 
-impl<const E: usize> BroadPhase<E> {
+impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, SIDES, E, M, N> {
+    /// Takes the next node or node pair from the stack; none at the end of the search.
+    #[inline]
+    pub(crate) fn next_visit(&mut self) -> Option<NodePair> {
+        let next = self.state.stack.pop()?;
+        self.count_visit().then_some(next)
+    }
+
+    /// Opens two nodes whose boxes overlap (Algorithm 1, lines 15 to 30), both at once, down to buckets.
+    #[inline]
+    pub(crate) fn visit_node_pair(&mut self, (n, m): NodePair) {
+        let buckets = [self.sides[0].bucket(n), self.sides[Self::LAST].bucket(m)];
+        if let [Some(a), Some(b)] = buckets {
+            return self.test_bucket_pair((a, b));
+        }
+        self.state.counters.opened += 1;
+        self.state.counters.box_tests += LANES as u64;
+        // A bucket is not opened before the other node is one.
+        if buckets[0].is_some() {
+            self.sides[Self::LAST].open_node(m);
+            let first = self.sides[Self::LAST].first_child(m);
+            let children = self.sides[Self::LAST].volumes.children(m);
+            let open = children.overlapping_of_four(self.sides[0].volumes.node(n));
+            self.state.stack.extend(open.map(|j| (n, first + j)));
+            return;
+        }
+        self.sides[0].open_node(n);
+        let first = self.sides[0].first_child(n);
+        let children = self.sides[0].volumes.children(n);
+        let open = children.overlapping_of_four(self.sides[Self::LAST].volumes.node(m));
+        if buckets[1].is_some() {
+            self.state.stack.extend(open.map(|i| (first + i, m)));
+            return;
+        }
+        self.sides[Self::LAST].open_node(m);
+        let of_last = self.sides[Self::LAST].first_child(m);
+        for i in open {
+            self.state.counters.box_tests += LANES as u64;
+            let children = self.sides[Self::LAST].volumes.children(m);
+            let open = children.overlapping_lane_of_four(self.sides[0].volumes.children(n), i as usize);
+            self.state.stack.extend(open.map(|j| (first + i, of_last + j)));
+        }
+    }
+}
+
+impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, N> {
     /// Finds all hits between two nodes, or within one, but exceptions; for nodes within a bucket, those of the bucket.
-    pub(crate) fn traverse<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        start: NodePair,
-        motion: &M,
-        narrow: &mut N,
-    ) {
-        self.begin_traversal(start, motion);
-        while let Some((n, m)) = self.next_visit(context, narrow) {
+    pub(crate) fn traverse(&mut self, start: NodePair) {
+        self.begin_traversal(start);
+        while let Some((n, m)) = self.next_visit() {
             if n != m {
-                self.visit_node_pair(context, (n, m), motion, narrow);
-            } else if !self.is_culled_by_cones(n) && self.visit_node(context, n, motion, narrow) {
-                let node = context.hierarchy.nodes()[n as usize];
+                self.visit_node_pair((n, m));
+            } else if !self.is_culled_by_cones(n) && self.visit_node(n) {
+                let node = self.sides[0].context.hierarchy.nodes()[n as usize];
                 node.child_pairs().for_each(|pair| self.push_overlapping(n, node.first_child, pair));
             }
         }
-        self.test_deferred_bucket_pair(context, motion, narrow);
     }
 
     /// Puts a node `(n, n)` or a node pair on the empty stack.
-    pub(crate) fn begin_traversal<M: VertexMotion<E>>(&mut self, (n, m): NodePair, motion: &M) {
-        let buckets = &self.volumes.layout.buckets;
+    pub(crate) fn begin_traversal(&mut self, (n, m): NodePair) {
+        let [side] = &mut self.sides;
+        let buckets = &side.volumes.layout.buckets;
         let start = [n, m].map(|n| buckets.of_node(n).map_or(n, |bucket| buckets.node(bucket)));
-        start.iter().for_each(|n| self.volumes.update_node(*n, motion));
-        self.stack.clear();
-        self.stack.push(start.into());
-    }
-
-    /// Takes the next node or node pair from the stack; none at the end of the search.
-    #[inline]
-    pub(crate) fn next_visit<N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        narrow: &mut N,
-    ) -> Option<NodePair> {
-        let next = self.stack.pop()?;
-        self.count_visit(context, narrow).then_some(next)
+        start.iter().for_each(|n| side.update_node(*n));
+        self.state.stack.clear();
+        self.state.stack.push(start.into());
     }
 
     /// Whether the normal cones of the method, if it has any, cull a node.
     fn is_culled_by_cones(&mut self, n: u32) -> bool {
-        self.cones.as_mut().is_some_and(|cones| cones.cull(n, &self.volumes))
+        self.cones.as_mut().is_some_and(|cones| cones.cull(n, self.sides[0].volumes))
     }
 
     /// Opens a node (Algorithm 1, lines 1 to 14): tests a bucket, puts the children of a larger node on the stack. True if
-    /// the pairs of its children remain to be tested ([`BroadPhase::push_overlapping`]).
+    /// the pairs of its children remain to be tested ([`Self::push_overlapping`]).
     #[inline]
-    pub(crate) fn visit_node<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        n: u32,
-        motion: &M,
-        narrow: &mut N,
-    ) -> bool {
-        self.counters.opened += 1;
-        if let Some(bucket) = self.volumes.layout.buckets.of_node(n) {
-            self.test_bucket(context, bucket, motion, narrow);
+    pub(crate) fn visit_node(&mut self, n: u32) -> bool {
+        self.state.counters.opened += 1;
+        if let Some(bucket) = self.sides[0].bucket(n) {
+            self.test_bucket(bucket);
             return false;
         }
-        self.volumes.open_node(&context.hierarchy, n, motion);
-        let node = context.hierarchy.nodes()[n as usize];
-        self.stack.extend(node.children().map(|child| (child, child)));
+        self.sides[0].open_node(n);
+        let node = self.sides[0].context.hierarchy.nodes()[n as usize];
+        self.state.stack.extend(node.children().map(|child| (child, child)));
         true
     }
 
     /// Puts a pair of children of the open node n on the stack if their boxes overlap.
     #[inline]
     pub(crate) fn push_overlapping(&mut self, n: u32, first_child: u32, (a, b): NodePair) {
-        self.counters.box_tests += 1;
-        let lanes = self.volumes.children(n).overlapping_of_four(self.volumes.node(a));
+        self.state.counters.box_tests += 1;
+        let volumes = &*self.sides[0].volumes;
+        let lanes = volumes.children(n).overlapping_of_four(volumes.node(a));
         if lanes.0 >> (b - first_child) & 1 != 0 {
-            self.stack.push((a, b));
+            self.state.stack.push((a, b));
         }
     }
+}
 
-    /// Opens two nodes whose boxes overlap (Algorithm 1, lines 15 to 30), both at once, down to buckets.
-    #[inline]
-    pub(crate) fn visit_node_pair<M: VertexMotion<E>, N: NarrowPhase<E>>(
-        &mut self,
-        context: &Context,
-        (n, m): NodePair,
-        motion: &M,
-        narrow: &mut N,
-    ) {
-        let first_child = |n: u32| context.hierarchy.nodes()[n as usize].first_child;
-        // A bucket comes second.
-        let [n, m] = match [n, m].map(|n| self.volumes.layout.buckets.of_node(n)) {
-            [Some(a), Some(b)] => return self.defer_bucket_pair(context, (a, b), motion, narrow),
-            [Some(_), None] => [m, n],
-            [None, _] => [n, m],
-        };
-        self.counters.opened += 1;
-        self.volumes.open_node(&context.hierarchy, n, motion);
-        self.counters.box_tests += LANES as u64;
-        let open = self.volumes.children(n).overlapping_of_four(self.volumes.node(m));
-        if self.volumes.layout.buckets.of_node(m).is_some() {
-            self.stack.extend(open.map(|i| (first_child(n) + i, m)));
-            return;
+impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 2, E, M, N> {
+    /// Finds at most `limit` hits between two shapes, in pairs (triangle of the first, triangle of the second), not sorted. Their
+    /// volumes have begun the search, in the same frame. Every triangle of one is paired with every one of the other: neither
+    /// contact filter applies.
+    ///
+    /// # Errors
+    /// When the token of the first context cancels; then there are no hits.
+    pub(crate) fn between<'s>(
+        sides: [Side<'s, E, M>; 2],
+        state: &'s mut SearchState,
+        narrow: &'s mut N,
+        limit: usize,
+    ) -> Result<(), Error> {
+        let mut search = Search::new(sides, None, state, narrow, limit);
+        search.state.stack.clear();
+        search.sides.iter_mut().for_each(|side| side.update_node(0));
+        search.state.counters.box_tests += 1;
+        if search.overlap((0, 0)) {
+            search.state.stack.push((0, 0));
         }
-        self.volumes.open_node(&context.hierarchy, m, motion);
-        for i in open {
-            self.counters.box_tests += LANES as u64;
-            let open =
-                self.volumes.children(m).overlapping_lane_of_four(self.volumes.children(n), i as usize);
-            self.stack.extend(open.map(|j| (first_child(n) + i, first_child(m) + j)));
+        while let Some(nodes) = search.next_visit() {
+            search.visit_node_pair(nodes);
         }
+        search.end()
     }
 }

@@ -98,10 +98,6 @@ mutants! {
     QuantizationExact: CaughtBy("lib detect::coarse_vertices::tests::coarse_positions_are_within_their_error_bound");
     /// Boxes of triangles in single precision are not widened by the error of positions.
     CoarseTrianglesNotWidened: CaughtBy("it rounding::exact_contacts_are_found_in_single_precision");
-    /// The buckets moved ahead for one group are those of the last group.
-    BucketsOfLastGroup: CaughtBy("it batch::answers_are_those_of_single_queries");
-    /// Buckets that were moved for one group count as moved for the next one.
-    MovedBucketsKept: CaughtBy("lib detect::expected_buckets::tests::only_expected_buckets_are_moved_ahead");
     /// Boxes of nodes in single precision are not widened by their error.
     CoarseNodesNotWidened: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Swept AABBs of triangles contain the start only.
@@ -200,8 +196,6 @@ mutants! {
     LargeClassForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
     /// The triangles of a packet are not tested with each other.
     PacketNotTestedAgainstItself: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
-    /// The bucket pair that was deferred last is not tested.
-    LastBucketPairForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Of a second packet, the triangles that are clear of the first one are tested.
     PacketColumnsSwapped: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Kernels for AVX2 round a product and a sum once. Only a processor with AVX2 reaches it.

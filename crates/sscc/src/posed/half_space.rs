@@ -24,9 +24,9 @@ impl PosedShape {
         let limit = limit + right_or!(error, HalfSpaceExact, 0.0) + rounding;
         let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
         let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
-        self.stack.clear();
-        self.stack.push((0, 0));
-        while let Some((n, _)) = self.stack.pop() {
+        self.below.clear();
+        self.below.push(0);
+        while let Some(n) = self.below.pop() {
             self.volumes.update_node(n, &self.motion);
             let AabbF32 { lower, upper } = *self.volumes.node(n);
             if 0.5 * (along(lower) + along(upper) - spread(upper - lower)) > limit {
@@ -40,7 +40,7 @@ impl PosedShape {
                     near.filter(|(v, _)| local.dot(layout.vertices.position(*v, [q])[0]) < own_height);
                 found.extend(below.map(|(v, _)| layout.vertices.mesh_vertex(v)));
             } else {
-                self.stack.extend(self.context.hierarchy.nodes()[n as usize].children().map(|n| (n, 0)));
+                self.below.extend(self.context.hierarchy.nodes()[n as usize].children());
             }
         }
         // Buckets have vertices in common.

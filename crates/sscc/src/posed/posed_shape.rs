@@ -6,14 +6,12 @@ use glam::DVec3;
 
 use super::pose::Pose;
 use super::posed_motion::PosedMotion;
-use crate::detect::broad_phase::Counters;
 use crate::detect::context::Context;
 use crate::detect::layout::Needs;
 use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
-use crate::detect::two_meshes::{Side, traverse_two_meshes};
+use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
-use crate::hierarchy::NodePair;
 use crate::{Certificates, Error, Pair, ReducedModel};
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
@@ -29,7 +27,9 @@ pub struct PosedShape {
     pub(super) whole: Aabb,
     /// Whether the volumes are those of this motion.
     is_current: bool,
-    pub(super) stack: Vec<NodePair>,
+    state: SearchState,
+    /// Nodes still to be visited by searches of half-spaces.
+    pub(super) below: Vec<u32>,
     hits: DiscreteHits,
 }
 
@@ -52,7 +52,8 @@ impl PosedShape {
             motion,
             whole,
             is_current: false,
-            stack: Vec::new(),
+            state: SearchState::default(),
+            below: Vec::new(),
             hits: DiscreteHits::default(),
         })
     }
@@ -79,12 +80,13 @@ impl PosedShape {
         let around = around.union(&self.whole).union(&other.whole);
         self.enter(around);
         other.enter(around);
-        self.hits.0.begin(usize::MAX);
-        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
-        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        let Self { context, volumes, motion, state, hits, .. } = self;
+        let sides = [
+            Side { context, volumes, motion },
+            Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
+        ];
         // The contexts have no token that cancels.
-        let _ =
-            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
+        let _ = Search::between(sides, state, hits, usize::MAX);
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable();
     }

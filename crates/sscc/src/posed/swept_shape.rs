@@ -5,13 +5,11 @@ use glam::DVec3;
 use super::pose::Pose;
 use super::posed_motion::PosedMotion;
 use super::posed_shape::PosedShape;
-use crate::detect::broad_phase::Counters;
 use crate::detect::context::Context;
 use crate::detect::narrow_phase::{NearHits, SweptHits};
 use crate::detect::node_volumes::NodeVolumes;
-use crate::detect::two_meshes::{Side, traverse_two_meshes};
+use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
-use crate::hierarchy::NodePair;
 use crate::{Error, Impact, Pair, ReducedModel};
 
 /// A shape whose vertices move on straight lines between two places in the world, to be tested against others. Its ends
@@ -27,7 +25,7 @@ pub struct SweptShape {
     whole: Aabb,
     /// Whether the volumes are those of this motion.
     is_current: bool,
-    stack: Vec<NodePair>,
+    state: SearchState,
     hits: SweptHits,
     near: NearHits,
 }
@@ -45,7 +43,7 @@ impl SweptShape {
             motion: PosedMotion::new(&shape.model)?,
             whole: Aabb::EMPTY,
             is_current: false,
-            stack: Vec::new(),
+            state: SearchState::default(),
             hits: SweptHits::default(),
             near: NearHits::default(),
         })
@@ -72,12 +70,12 @@ impl SweptShape {
         let around = around.union(&self.whole).union(&other.whole);
         self.enter(around, 0.0);
         other.enter(around, 0.0);
-        self.hits.0.begin(usize::MAX);
-        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
-        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        let sides = [
+            Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion },
+            Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
+        ];
         // The contexts have no token that cancels.
-        let _ =
-            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.hits);
+        let _ = Search::between(sides, &mut self.state, &mut self.hits, usize::MAX);
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable_by_key(|impact| impact.pair);
     }
@@ -91,12 +89,12 @@ impl SweptShape {
         let around = around.union(&widened(self.whole)).union(&widened(other.whole));
         self.enter(around, margin / 2.0);
         other.enter(around, margin / 2.0);
-        self.near.0.begin(limit);
-        let mut x = Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion };
-        let mut y = Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion };
+        let sides = [
+            Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion },
+            Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
+        ];
         // The contexts have no token that cancels.
-        let _ =
-            traverse_two_meshes(&mut x, &mut y, &mut self.stack, &mut Counters::default(), &mut self.near);
+        let _ = Search::between(sides, &mut self.state, &mut self.near, limit);
         found.extend_from_slice(&self.near.0.list);
         found[first..].sort_unstable();
     }

@@ -8,20 +8,27 @@ use rayon::prelude::*;
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
-use super::search_group::{Answer, SearchGroup, is_far};
 use super::statistics::Statistics;
-use crate::detect::expected_buckets::GROUP;
 use crate::thread_pool::on_threads;
-use crate::{Error, Progress};
+use crate::{Error, Pair, Progress};
 
 /// Progress is reported once for this many q, which costs the cheapest queries nothing.
 const REPORT_INTERVAL: usize = 64;
 
+/// The answer for one q of a batch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// All colliding pairs, sorted.
+    pub pairs: Vec<Pair>,
+    /// [`Query::norm`]
+    pub norm: f64,
+    /// The cost of this q.
+    pub statistics: Statistics,
+}
+
 impl Query {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
-    /// of threads (none: all cores). `progress` may cancel it; that of [`Query::cancelled_by`] is not used.
-    ///
-    /// Far from rest it takes less time than single queries: vertices are moved for several q at once.
+    /// of threads (none: all cores). `progress` may cancel it; the token of [`Query::cancelled_by`] does not.
     ///
     /// # Errors
     /// That of the first q that has one; when `progress` cancels.
@@ -47,23 +54,13 @@ impl Query {
     ) -> Result<Vec<Answer>, Error> {
         let batch = Batch { rows: batch, limit, progress, done: AtomicUsize::new(0) };
         let answers = on_threads(threads, || {
-            let (mut answers, open) = batch.answer_by_root(self)?;
-            for (index, answer) in batch.answer_open(self, &open)? {
-                answers[index] = answer;
-            }
-            Ok(answers)
+            let mut answers = batch.answer_by_root(self)?;
+            batch.answer_open(self, &mut answers)?;
+            answers.into_iter().map(|answer| answer.ok_or(Error::Cancelled)).collect()
         });
         progress.report(batch.rows.len(), batch.rows.len());
         answers
     }
-}
-
-/// The indices of the q of a batch that the root does not prove free.
-struct OpenRows {
-    /// Those that are searched alone, ascending.
-    near: Vec<usize>,
-    /// Those that are searched in groups, by ascending norm, because at similar norms the same radii are reached.
-    far: Vec<usize>,
 }
 
 /// The q of a batch, and how they are to be answered.
@@ -76,65 +73,51 @@ struct Batch<'b, Q> {
 }
 
 impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
-    /// Answers each q that the root's certificate proves free, and finds all others, whose answers are empty.
+    /// Checks every q, and answers those that the root's certificate proves free; none for the others.
     ///
     /// # Errors
     /// That of the first q that has one; when it was cancelled.
-    fn answer_by_root(&self, query: &Query) -> Result<(Vec<Answer>, OpenRows), Error> {
-        let open = Mutex::new((Vec::new(), Vec::new()));
+    fn answer_by_root(&self, query: &Query) -> Result<Vec<Option<Answer>>, Error> {
         let answer = |check: &mut ConfigurationCheck, (index, q): (usize, &Q)| {
             if self.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             let Configuration { norm, .. } = check.measure(&query.context, q.as_ref())?;
-            if query.context.is_proven_free(norm) {
-                if index.is_multiple_of(REPORT_INTERVAL) {
-                    self.report(REPORT_INTERVAL);
-                }
-                return Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE });
+            let is_free = query.context.is_proven_free(norm);
+            if is_free && index.is_multiple_of(REPORT_INTERVAL) {
+                self.report(REPORT_INTERVAL);
             }
-            let (near, far) = &mut *lock(&open);
-            if is_far(&query.context, norm, self.limit) {
-                far.push((norm, index));
-            } else {
-                near.push(index);
-            }
-            Ok(Answer { pairs: Vec::new(), norm, statistics: Statistics::default() })
+            let free = || Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE };
+            Ok(is_free.then(free))
         };
-        let answers: Vec<Result<Answer, Error>> =
+        let answers: Vec<Result<Option<Answer>, Error>> =
             self.rows.par_iter().enumerate().map_init(|| query.check.clone(), answer).collect();
-        let answers = answers.into_iter().collect::<Result<Vec<Answer>, Error>>()?;
-        let (mut near, mut far) = open.into_inner().unwrap_or_else(PoisonError::into_inner);
-        near.sort_unstable();
-        far.sort_unstable_by(|(r, i), (s, j)| r.total_cmp(s).then(i.cmp(j)));
-        Ok((answers, OpenRows { near, far: far.into_iter().map(|(_, index)| index).collect() }))
+        answers.into_iter().collect()
     }
 
-    /// Answers the q that the root does not prove free.
+    /// Answers the q that have no answer.
     ///
     /// # Errors
     /// When it was cancelled.
-    fn answer_open(&self, query: &Query, open: &OpenRows) -> Result<Vec<(usize, Answer)>, Error> {
-        self.done.fetch_max(self.rows.len() - open.near.len() - open.far.len(), Ordering::Relaxed);
+    fn answer_open(&self, query: &Query, answers: &mut [Option<Answer>]) -> Result<(), Error> {
+        let open: Vec<_> = answers.iter_mut().zip(self.rows).filter(|(answer, _)| answer.is_none()).collect();
+        self.done.fetch_max(self.rows.len() - open.len(), Ordering::Relaxed);
+        // Queries that are not in use: a clone has memory for the whole shape.
         let idle = Mutex::new(Vec::new());
-        let answer = |group: &[usize]| {
+        let first = || query.clone().cancelled_by(self.progress.cancel_token().cloned());
+        let answer = |(answer, q): (&mut Option<Answer>, &Q)| {
             if self.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            let first = lock(&idle).pop();
-            let mut searches =
-                first.unwrap_or_else(|| SearchGroup::new(query, self.progress.cancel_token().cloned()));
-            let rows: Vec<&[f64]> = group.iter().map(|index| self.rows[*index].as_ref()).collect();
-            let answers = searches.answer(&rows, self.limit)?;
-            lock(&idle).push(searches);
-            self.report(group.len());
-            Ok(group.iter().copied().zip(answers).collect())
+            let of_others = lock(&idle).pop();
+            let mut query = of_others.unwrap_or_else(first);
+            let pairs = query.discrete_at_most(q.as_ref(), self.limit)?.to_vec();
+            *answer = Some(Answer { pairs, norm: query.norm(), statistics: query.statistics() });
+            lock(&idle).push(query);
+            self.report(1);
+            Ok(())
         };
-        // No thread is idle for the sake of groups.
-        let group_len = open.far.len().div_ceil(rayon::current_num_threads()).clamp(1, GROUP);
-        let groups = open.far.par_chunks(group_len).chain(open.near.par_chunks(1));
-        let answers: Result<Vec<Vec<(usize, Answer)>>, Error> = groups.map(answer).collect();
-        Ok(answers?.into_iter().flatten().collect())
+        open.into_par_iter().try_for_each(answer)
     }
 
     /// Reports that so many more answers are known.

@@ -1,10 +1,12 @@
 //! Chooses the traversal at a norm: of the pair tree if it is complete there, else Algorithm 1 with the certificates of
-//! nodes, else without certificates. Where Algorithm 1 would open most buckets, all AABBs are refitted first.
+//! nodes, else without certificates.
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
 use super::local_proofs::LocalProofs;
 use super::pair_tree_traversal::{PairTreeStack, traverse_pair_tree};
+use super::statistics::Proof;
+use crate::Error;
 use crate::detect::broad_phase::BroadPhase;
 use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
@@ -19,6 +21,15 @@ pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) locals: Option<LocalProofs<E>>,
 }
 
+/// Which pairs a search finds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sought {
+    /// All pairs that count.
+    All,
+    /// Those that certificates may speak of: no exceptions.
+    WithoutExceptions,
+}
+
 impl<const E: usize> CertifiedSearch<E> {
     pub(super) fn new(context: &QueryContext) -> Self {
         let layout = &context.detect.layout;
@@ -28,58 +39,46 @@ impl<const E: usize> CertifiedSearch<E> {
         Self { broad, stack: PairTreeStack::default(), hulls, locals }
     }
 
-    /// Finds all hits but exceptions. `norm`: the largest `|z|` of the motion. A certificate holds during a motion if it
-    /// holds at start and end, since its region is convex. Returns whether the root's local certificate proved the shape free.
+    /// Finds at most `limit` hits, in no particular order. `norm`: the largest `|z|` of the motion. A certificate holds during a
+    /// motion if it holds at start and end, since its region is convex. Returns what proved the answer, exceptions apart.
+    ///
+    /// # Errors
+    /// When it was cancelled; then there are no hits.
     pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &QueryContext,
         norm: f64,
         motion: &M,
         narrow: &mut N,
-    ) -> bool {
-        let locals = self.locals.as_mut().zip(context.locals.as_deref());
+        (sought, limit): (Sought, usize),
+    ) -> Result<Proof, Error> {
+        let Self { broad, stack, hulls, locals } = self;
+        let mut search = broad.search(&context.detect, motion, narrow, limit);
+        if sought == Sought::All {
+            search.test_exceptions();
+        }
+        if context.is_root_certified(norm) {
+            return search.end().map(|()| Proof::Radius);
+        }
+        let locals = locals.as_mut().zip(context.locals.as_deref());
         let mut locals = locals.filter(|_| norm >= context.local_norm);
         if let Some((proofs, tables)) = &mut locals
             && proofs.begin(tables, motion)
             && proofs.prove_root(tables)
         {
-            return true;
+            return search.end().map(|()| Proof::Local);
         }
         match (context.complete_pair_tree(norm), context.used_certificates()) {
-            (Some(tree), Some(parts)) => {
-                let radii = &parts.node_radii;
-                let mut hulls = self.hulls.as_mut().zip(context.hulls.as_deref());
+            (Some(_), Some(parts)) => {
+                let mut hulls = hulls.as_mut().zip(context.hulls.as_deref());
                 if let Some((moved, _)) = &mut hulls {
                     moved.begin();
                 }
-                traverse_pair_tree(
-                    &mut self.broad,
-                    hulls,
-                    locals,
-                    &mut self.stack,
-                    &context.detect,
-                    tree,
-                    radii,
-                    norm,
-                    motion,
-                    narrow,
-                );
+                traverse_pair_tree(&mut search, hulls, locals, stack, parts, norm);
             }
-            (_, Some(parts)) => {
-                // A search that ends at its first hits may open few nodes.
-                if norm >= context.refit_norm && narrow.hits().is_unlimited() {
-                    let is_mostly_open = locals.as_mut().is_none_or(|(proofs, tables)| {
-                        proofs.prove(tables, &context.detect.hierarchy, &parts.node_radii, norm);
-                        proofs.is_mostly_open()
-                    });
-                    if is_mostly_open {
-                        self.broad.volumes.refit(&context.detect.hierarchy, motion);
-                    }
-                }
-                traverse_certified(&mut self.broad, locals, &context.detect, parts, norm, motion, narrow);
-            }
-            (_, None) => self.broad.traverse(&context.detect, (0, 0), motion, narrow),
+            (_, Some(parts)) => traverse_certified(&mut search, locals, parts, norm),
+            (_, None) => search.traverse((0, 0)),
         }
-        false
+        search.end().map(|()| Proof::Search)
     }
 }

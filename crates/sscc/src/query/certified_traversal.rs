@@ -7,9 +7,8 @@
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use crate::CertificateParts;
-use crate::detect::broad_phase::BroadPhase;
-use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;
 
 /// All AABBs are refitted once so many pairs of buckets were tested in vain for each bucket that is not open. Such a test takes
@@ -19,31 +18,29 @@ pub(super) const LOOSE_PAIRS: usize = 2;
 
 /// Finds all hits but exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
-    broad: &mut BroadPhase<E>,
+    search: &mut Search<'_, 1, E, M, N>,
     mut locals: Option<(&mut LocalProofs<E>, &LocalTables)>,
-    context: &Context,
     certificates: &CertificateParts,
     norm: f64,
-    motion: &M,
-    narrow: &mut N,
 ) {
+    let hierarchy = &search.sides[0].context.hierarchy;
     // A search that ends at its first hits may open few nodes.
-    let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
+    let mut can_refit = search.narrow.hits().is_unlimited() && search.sides[0].volumes.closed_buckets() > 0;
     let mut visits = 0;
     // Copied, because many searches end before any node is proven.
     let mut work_before = locals.as_ref().map_or(u64::MAX, |(proofs, _)| proofs.work_before());
     let mut has_proofs = locals.as_ref().is_some_and(|(proofs, _)| proofs.is_complete());
-    broad.begin_traversal((0, 0), motion);
-    while let Some((n, m)) = broad.next_visit(context, narrow) {
-        if can_refit && broad.loose_pairs > LOOSE_PAIRS * broad.volumes.closed_buckets() {
-            broad.volumes.refit(&context.hierarchy, motion);
+    search.begin_traversal((0, 0));
+    while let Some((n, m)) = search.next_visit() {
+        if can_refit && search.state.loose_pairs > LOOSE_PAIRS * search.sides[0].volumes.closed_buckets() {
+            search.sides[0].refit();
             can_refit = false;
         }
         visits += 1;
-        if work(visits, broad.counters.box_tests) > work_before
+        if work(visits, search.state.counters.box_tests) > work_before
             && let Some((proofs, tables)) = &mut locals
         {
-            proofs.prove(tables, &context.hierarchy, &certificates.node_radii, norm);
+            proofs.prove(tables, hierarchy, &certificates.node_radii, norm);
             (work_before, has_proofs) = (u64::MAX, true);
         }
         if n != m {
@@ -53,7 +50,7 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             {
                 continue;
             }
-            broad.visit_node_pair(context, (n, m), motion, narrow);
+            search.visit_node_pair((n, m));
             continue;
         }
         let radius = certificates.node_radii[n as usize];
@@ -62,24 +59,24 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
         if is_certified || has_proofs && is_proven() {
             continue;
         }
-        if !broad.visit_node(context, n, motion, narrow) {
+        if !search.visit_node(n) {
             continue;
         }
-        let node = context.hierarchy.nodes()[n as usize];
+        let node = hierarchy.nodes()[n as usize];
         for (which, pair) in node.child_pairs().enumerate() {
             // Only the root's children have certificates as pairs.
             let is_within = |radius: f64| right_or!(norm < radius, RootPairRadiusReached, norm <= radius);
             if !(n == 0 && is_within(certificates.root_pair_radii[which])) {
-                broad.push_overlapping(n, node.first_child, pair);
+                search.push_overlapping(n, node.first_child, pair);
             }
         }
     }
-    broad.test_deferred_bucket_pair(context, motion, narrow);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detect::broad_phase::BroadPhase;
     use crate::detect::narrow_phase::DiscreteHits;
     use crate::detect::vertex_motion::DeformedMotion;
     use crate::test_models::{self, Random};
@@ -109,24 +106,14 @@ mod tests {
             let mut found = [true, false].map(|is_certified| {
                 let mut broad = BroadPhase::new(&context.detect.layout, true, None);
                 let mut narrow = DiscreteHits::default();
-                broad.begin();
-                broad.begin_volumes(&context.detect, &motion);
+                let mut search = broad.search(&context.detect, &motion, &mut narrow, usize::MAX);
                 if is_certified {
-                    let norm = certificates.norm(&q);
-                    traverse_certified(
-                        &mut broad,
-                        None,
-                        &context.detect,
-                        certificates.parts(),
-                        norm,
-                        &motion,
-                        &mut narrow,
-                    );
+                    traverse_certified(&mut search, None, certificates.parts(), certificates.norm(&q));
                 } else {
-                    broad.traverse(&context.detect, (0, 0), &motion, &mut narrow);
+                    search.traverse((0, 0));
                 }
                 narrow.0.list.sort_unstable();
-                (narrow.0.list, broad.loose_pairs, broad.volumes.closed_buckets())
+                (narrow.0.list, broad.state.loose_pairs, broad.volumes.closed_buckets())
             });
             let [(pairs, loose, closed), (others, loose_without, _)] = &mut found;
             assert_eq!(pairs, oracle.discrete(&q).unwrap());

@@ -1,7 +1,5 @@
 //! A configuration with its norm and its reach.
 
-use crate::detect::vertex_motion::DeformedMotion;
-
 /// A q that is a configuration of the model.
 #[derive(Clone, Copy)]
 pub(super) struct Configuration<'q> {
@@ -10,12 +8,4 @@ pub(super) struct Configuration<'q> {
     pub(super) norm: f64,
     /// An upper bound of the magnitude of every term of every position.
     pub(super) reach: f64,
-}
-
-impl<'q> Configuration<'q> {
-    /// The motion of vertices to q.
-    #[inline]
-    pub(super) fn motion(&self) -> DeformedMotion<'q, 1> {
-        DeformedMotion::new([self.q], self.reach)
-    }
 }

@@ -24,8 +24,6 @@ pub(super) struct QueryContext {
     pub(super) hulls: Option<Arc<PairHulls>>,
     /// Local certificates, if the method uses them.
     pub(super) locals: Option<Arc<LocalTables>>,
-    /// From this `|z|` on, so many buckets are opened that it is faster to refit all AABBs first.
-    pub(super) refit_norm: f64,
     /// From this `|z|` on, local certificates are evaluated.
     pub(super) local_norm: f64,
     /// From this `|z|` on, all pairs of a tree that has nearly all pairs of nodes are reached; infinite for other trees.
@@ -56,15 +54,14 @@ impl QueryContext {
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
-        let [mut refit_norm, mut local_norm, mut all_reached_norm] = [f64::INFINITY; 3];
+        let [mut local_norm, mut all_reached_norm] = [f64::INFINITY; 2];
         if let Some(CertificateParts { node_radii, pair_tree, .. }) = used.map(Certificates::parts) {
             let buckets = &detect.layout.buckets;
             let radius = |n: u32| node_radii[n as usize];
-            refit_norm = norm_at(REFIT_SHARE, buckets.nodes().map(radius).collect());
             let visited = (0..node_radii.len() as u32)
                 .filter(|n| buckets.of_node(*n).is_none_or(|bucket| buckets.node(bucket) == *n));
             local_norm = norm_at(LOCAL_SHARE, visited.map(radius).collect()).min(LOCAL_ROOTS * node_radii[0]);
-            all_reached_norm = self::all_reached_norm(pair_tree, buckets.count()).max(refit_norm);
+            all_reached_norm = self::all_reached_norm(pair_tree, buckets.count());
         }
         Self {
             model: model.clone(),
@@ -74,7 +71,6 @@ impl QueryContext {
             method,
             hulls,
             locals,
-            refit_norm,
             local_norm,
             all_reached_norm,
             proven_radius,
@@ -129,10 +125,6 @@ impl QueryContext {
     }
 }
 
-/// A search that opens this share of all buckets is faster if it refits all AABBs first
-/// (docs/notes/2026-11-25-refit-beyond-the-limit.md).
-const REFIT_SHARE: f64 = 0.7;
-
 /// A search that opens a smaller share of all nodes ends before evaluating the root's local certificate would pay, at so many times the
 /// root's radius (docs/notes/2026-11-27-local-certificates-by-default.md).
 const LOCAL_SHARE: f64 = 1.0 / 32.0;
@@ -158,18 +150,21 @@ fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{LOCAL_SHARE, REFIT_SHARE, all_reached_norm, norm_at};
+    use super::{LOCAL_SHARE, all_reached_norm, norm_at};
     use crate::PairTree;
 
     #[test]
     fn the_share_of_radii_is_reached_there() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
-        let norms = |radii: Vec<f64>| [REFIT_SHARE, LOCAL_SHARE].map(|share| norm_at(share, radii.clone()));
-        assert_eq!(norms(ten), [7.0, 0.0]);
-        assert_eq!(norms(vec![3.0]), [3.0, 3.0]);
-        assert_eq!(norms(vec![]), [f64::INFINITY; 2]);
-        assert_eq!(norms(vec![f64::INFINITY, 1.0]), [f64::INFINITY, 1.0]);
-        assert_eq!(norms((0..64).map(f64::from).collect()), [44.0, 2.0]);
+        for (radii, norm) in [
+            (ten, 0.0),
+            (vec![3.0], 3.0),
+            (vec![], f64::INFINITY),
+            (vec![f64::INFINITY, 1.0], 1.0),
+            ((0..64).map(f64::from).collect(), 2.0),
+        ] {
+            assert_eq!(norm_at(LOCAL_SHARE, radii), norm);
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Continuous queries: which pairs of triangles collide between two configurations, and when (paper, section 7).
 
+use super::configuration_search::SweptSearch;
 use super::query::Query;
 use super::statistics::Statistics;
-use super::swept_search::SweptSearch;
 use crate::{Error, Impact};
 
 impl Query {
@@ -37,6 +37,7 @@ impl Query {
         self.forget();
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
         self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
+        // Its memory is made where it is needed.
         if self.context.is_proven_free(self.norm) {
             self.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);

@@ -14,15 +14,15 @@ impl Query {
     /// As [`Query::discrete`].
     pub(crate) fn discrete_between(&mut self, (n, m): NodePair, q: &[f64]) -> Result<&[Pair], Error> {
         debug_assert_ne!(self.context.method, Method::Certified);
-        self.begin(usize::MAX);
+        self.forget();
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
         let (context, narrow) = (&self.context, &mut self.discrete.narrow);
         let (detect, broad) = (&context.detect, &mut self.discrete.certified.broad);
         let motion = DeformedMotion::new([q], configuration.reach);
-        broad.begin_volumes(detect, &motion);
-        broad.traverse(detect, (n, m), &motion, narrow);
-        broad.end(narrow)?;
+        let mut search = broad.search(detect, &motion, narrow, usize::MAX);
+        search.traverse((n, m));
+        search.end()?;
         let exceptions = context.certificates.as_ref().map_or(&[][..], Certificates::exceptions);
         let hierarchy = &detect.hierarchy;
         let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);

@@ -6,7 +6,7 @@
 
 use super::local_inequality::LocalInequality;
 use super::local_tables::LocalTables;
-use crate::certificates::{LEAST_PROVEN_SHARE, LocalCertificates};
+use crate::certificates::LocalCertificates;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::{Hierarchy, NodePair};
 
@@ -162,11 +162,6 @@ impl<const E: usize> LocalProofs<E> {
         self.stack.push(0);
         self.is_usable = self.inequality.set_motion(tables, motion);
         self.is_usable
-    }
-
-    /// Whether so few buckets are proven that AABBs should be refitted.
-    pub(super) fn is_mostly_open(&self) -> bool {
-        (self.proven_buckets as f64) < LEAST_PROVEN_SHARE * self.proven.len() as f64
     }
 
     /// Whether no two triangles of a node collide.

@@ -7,12 +7,11 @@ use super::certified_traversal::LOOSE_PAIRS;
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use super::pair_hulls::PairHulls;
-use crate::PairTree;
+use crate::CertificateParts;
 use crate::certificates::StoredPair;
-use crate::detect::broad_phase::BroadPhase;
-use crate::detect::context::Context;
 use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::NodePair;
 
@@ -42,22 +41,18 @@ macro_rules! is_entry_reached {
     };
 }
 
-/// Finds all hits but exceptions at a norm below the tree's limit. `node_radii`: the radii of all nodes.
-#[expect(clippy::too_many_arguments, reason = "all of them are read in the innermost loop")]
+/// Finds all hits but exceptions at a norm below the tree's limit.
 pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
-    broad: &mut BroadPhase<E>,
+    search: &mut Search<'_, 1, E, M, N>,
     mut hulls: Option<(&mut MovedHulls<E>, &PairHulls)>,
     mut locals: Option<(&mut LocalProofs<E>, &LocalTables)>,
     PairTreeStack(stack): &mut PairTreeStack,
-    context: &Context,
-    tree: &PairTree,
-    node_radii: &[f64],
+    CertificateParts { pair_tree: tree, node_radii, .. }: &CertificateParts,
     norm: f64,
-    motion: &M,
-    narrow: &mut N,
 ) {
+    let hierarchy = &search.sides[0].context.hierarchy;
     // A search that ends at its first hits may open few nodes.
-    let mut can_refit = narrow.hits().is_unlimited() && broad.volumes.closed_buckets() > 0;
+    let mut can_refit = search.narrow.hits().is_unlimited() && search.sides[0].volumes.closed_buckets() > 0;
     let mut visits = 0;
     // Copied, because most searches end before any node is proven.
     let mut work_before = locals.as_ref().map_or(u64::MAX, |(proofs, _)| proofs.work_before());
@@ -65,35 +60,34 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     stack.clear();
     stack.push(Visit { nodes: (0, 0), entry: NODE });
     while let Some(Visit { nodes: (n, m), entry }) = stack.pop() {
-        if !broad.count_visit(context, narrow) {
+        if !search.count_visit() {
             break;
         }
         visits += 1;
         if can_refit
-            && broad.loose_pairs + visits / VISITS_OF_LOOSE_PAIR
-                > LOOSE_PAIRS * broad.volumes.closed_buckets()
+            && search.state.loose_pairs + visits / VISITS_OF_LOOSE_PAIR
+                > LOOSE_PAIRS * search.sides[0].volumes.closed_buckets()
         {
-            broad.volumes.refit(&context.hierarchy, motion);
+            search.sides[0].refit();
             can_refit = false;
         }
-        if work(visits as u64, broad.counters.box_tests) > work_before
+        if work(visits as u64, search.state.counters.box_tests) > work_before
             && let Some((proofs, tables)) = &mut locals
         {
-            proofs.prove(tables, &context.hierarchy, node_radii, norm);
+            proofs.prove(tables, hierarchy, node_radii, norm);
             (work_before, has_proofs) = (u64::MAX, true);
         }
-        let buckets = &broad.volumes.layout.buckets;
         if entry == NODE {
             if has_proofs && locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n))
             {
                 continue;
             }
-            broad.counters.opened += 1;
-            if let Some(bucket) = buckets.of_node(n) {
-                broad.test_bucket(context, bucket, motion, narrow);
+            search.state.counters.opened += 1;
+            if let Some(bucket) = search.sides[0].bucket(n) {
+                search.test_bucket(bucket);
                 continue;
             }
-            let node = context.hierarchy.nodes()[n as usize];
+            let node = hierarchy.nodes()[n as usize];
             let is_reached = |child: &u32| {
                 let radius = node_radii[*child as usize];
                 right_or!(norm >= radius, TreeNodeRadiusReached, norm > radius)
@@ -116,30 +110,31 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
         {
             continue;
         }
-        broad.counters.box_tests += 1;
-        [n, m].iter().for_each(|n| broad.volumes.update_node(*n, motion));
-        if !broad.volumes.node(n).overlaps(broad.volumes.node(m)) {
+        search.state.counters.box_tests += 1;
+        let [side] = &mut search.sides;
+        [n, m].iter().for_each(|n| side.update_node(*n));
+        if !side.volumes.node(n).overlaps(side.volumes.node(m)) {
             continue;
         }
-        let buckets = [n, m].map(|n| broad.volumes.layout.buckets.of_node(n));
+        let buckets = [n, m].map(|n| side.bucket(n));
         // The boxes of open buckets are tighter and cost less.
-        let is_open = buckets.iter().all(|b| b.is_some_and(|b| broad.volumes.is_bucket_open(b)));
+        let is_open = buckets.iter().all(|b| b.is_some_and(|b| side.volumes.is_bucket_open(b)));
         if let Some((moved, pairs)) = &mut hulls
             && moved.is_useful()
             && !is_open
             && let Some(at_rest) = pairs.direction(entry)
         {
-            broad.counters.hull_tests += 1;
-            if moved.are_apart(&pairs.nodes, (n, m), at_rest, broad.volumes.frame(), motion) {
+            search.state.counters.hull_tests += 1;
+            if moved.are_apart(&pairs.nodes, (n, m), at_rest, side.volumes.frame(), side.motion) {
                 continue;
             }
         }
         if let [Some(a), Some(b)] = buckets {
-            broad.defer_bucket_pair(context, (a, b), motion, narrow);
+            search.test_bucket_pair((a, b));
             continue;
         }
-        broad.counters.opened += 1;
-        if let Some(split) = context.hierarchy.split_above_buckets(n, m) {
+        search.state.counters.opened += 1;
+        if let Some(split) = hierarchy.split_above_buckets(n, m) {
             for StoredPair { index, entry: stored } in tree.below(entry) {
                 if is_entry_reached!(stored, norm) {
                     stack.push(Visit { nodes: split.pair(stored.which()), entry: index });
@@ -147,7 +142,6 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             }
         }
     }
-    broad.test_deferred_bucket_pair(context, motion, narrow);
 }
 
 #[cfg(test)]
@@ -155,6 +149,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::detect::broad_phase::BroadPhase;
     use crate::detect::narrow_phase::DiscreteHits;
     use crate::detect::vertex_motion::DeformedMotion;
     use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, test_models};
@@ -179,7 +174,7 @@ mod tests {
         let options =
             CertifyOptions { budget: 1 << 12, local_budget: 0, reach: 16.0, ..CertifyOptions::default() };
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
-        let (tree, node_radii) = (&certificates.parts().pair_tree, &certificates.parts().node_radii);
+        let tree = &certificates.parts().pair_tree;
         let query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
         let context = &query.context.detect;
@@ -190,28 +185,16 @@ mod tests {
             let [tight, found] = [false, true].map(|is_certified| {
                 let mut broad = BroadPhase::new(&context.layout, is_certified, None);
                 let mut narrow = DiscreteHits::default();
-                broad.begin();
-                broad.begin_volumes(context, &motion);
+                let mut search = broad.search(context, &motion, &mut narrow, usize::MAX);
                 if is_certified {
                     let mut stack = PairTreeStack::default();
-                    traverse_pair_tree(
-                        &mut broad,
-                        None,
-                        None,
-                        &mut stack,
-                        context,
-                        tree,
-                        node_radii,
-                        norm,
-                        &motion,
-                        &mut narrow,
-                    );
+                    traverse_pair_tree(&mut search, None, None, &mut stack, certificates.parts(), norm);
                 } else {
-                    broad.traverse(context, (0, 0), &motion, &mut narrow);
+                    search.traverse((0, 0));
                 }
                 narrow.0.list.sort_unstable();
                 assert_eq!(narrow.0.list, oracle.discrete(&q).unwrap());
-                (broad.counters.opened, broad.loose_pairs, broad.volumes.closed_buckets())
+                (broad.state.counters.opened, broad.state.loose_pairs, broad.volumes.closed_buckets())
             });
             let ((tight, ..), (opened, loose, closed)) = (tight, found);
             // Without refitting 1,033 against 343, and 108 loose pairs.

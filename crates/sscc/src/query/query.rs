@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
+use super::configuration_search::{DiscreteSearch, SweptSearch};
 use super::context::QueryContext;
-use super::discrete_search::DiscreteSearch;
 use super::method::Method;
 use super::statistics::Statistics;
-use super::swept_search::SweptSearch;
 use crate::detect::narrow_phase::{AabbHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
@@ -117,13 +116,8 @@ impl Query {
         self.forget();
         let configuration = self.measure(q)?;
         self.norm = configuration.norm;
-        // Most queries of a simulation end here, so nothing but the answer is reset before.
-        if self.context.is_proven_free(configuration.norm) {
-            self.statistics = Statistics::PROVEN_FREE;
-        } else {
-            self.discrete.begin(limit);
-            self.discrete.find(&self.context, configuration, &mut self.statistics)?;
-        }
+        let (discrete, statistics) = (&mut self.discrete, &mut self.statistics);
+        discrete.find_pairs(&self.context, configuration, limit, statistics)?;
         Ok(&self.discrete.narrow.0.list)
     }
 
@@ -148,13 +142,6 @@ impl Query {
     pub(super) fn forget(&mut self) {
         self.statistics = Statistics::default();
         self.discrete.narrow.0.list.clear();
-    }
-
-    /// Forgets the last answer, and allows at most `limit` pairs in the next one.
-    #[inline]
-    pub(super) fn begin(&mut self, limit: usize) {
-        self.statistics = Statistics::default();
-        self.discrete.begin(limit);
     }
 
     /// Checks that q is a configuration of the model, and measures it.

@@ -27,7 +27,7 @@ impl Query {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
-        self.begin(usize::MAX);
+        self.forget();
         self.norm = self.measure(q)?.norm;
         let line = ConfigurationLine::new(&self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.as_ref().map_or(f64::INFINITY, Certificates::global_radius);

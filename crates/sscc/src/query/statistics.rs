@@ -1,6 +1,6 @@
 //! The cost of a query.
 
-use crate::detect::broad_phase::Counters;
+use crate::detect::search::Counters;
 
 /// What proved the answer of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -18,8 +18,6 @@ mod validation;
 mod widest_gap;
 
 pub(crate) use build::compute_local_certificates;
-pub(crate) use local_certificates::{
-    EllipsoidBlocks, GRADIENT, LEAST_PROVEN_SHARE, MOST_MODES, gradient_len,
-};
+pub(crate) use local_certificates::{EllipsoidBlocks, GRADIENT, MOST_MODES, gradient_len};
 pub use local_certificates::{LocalBounds, LocalCertificates};
 pub(crate) use patch_model::FactorScales;

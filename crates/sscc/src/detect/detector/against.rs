@@ -3,13 +3,8 @@
 use glam::DVec3;
 
 use super::detector::Detector;
+use super::detector_search::Refit;
 use super::given_motion::GivenMotion;
-use super::search::Search;
-use crate::detect::broad_phase::Counters;
-use crate::detect::context::Context;
-use crate::detect::narrow_phase::NarrowPhase;
-use crate::detect::two_meshes::{Side, traverse_two_meshes};
-use crate::hierarchy::NodePair;
 use crate::{Error, Impact, Pair};
 
 impl Detector {
@@ -43,11 +38,10 @@ impl Detector {
     ) -> Result<&[Pair], Error> {
         let motions = [self.check([positions])?, other.check([other_positions])?];
         let motions = in_common_frame(motions);
-        self.begin_discrete(&motions[0], positions, limit);
-        other.begin_discrete(&motions[1], other_positions, 0);
+        self.begin_discrete(&motions[0], positions, Refit::Nodes);
+        other.begin_discrete(&motions[1], other_positions, Refit::Nodes);
         let contexts = [&self.context, &other.context];
-        let result =
-            find_between(contexts, [&mut self.discrete, &mut other.discrete], &motions, &mut self.stack);
+        let result = self.discrete.find_between(&mut other.discrete, contexts, &motions, limit);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
         self.discrete.narrow.0.list.sort_unstable();
@@ -67,10 +61,10 @@ impl Detector {
         [y_t0, y_t1]: [&[DVec3]; 2],
     ) -> Result<&[Impact], Error> {
         let motions = in_common_frame([self.check([x_t0, x_t1])?, other.check([y_t0, y_t1])?]);
-        self.begin_swept(&motions[0], x_t0);
-        other.begin_swept(&motions[1], y_t0);
+        self.begin_swept(&motions[0], x_t0, Refit::Nodes);
+        other.begin_swept(&motions[1], y_t0, Refit::Nodes);
         let contexts = [&self.context, &other.context];
-        let result = find_between(contexts, [&mut self.swept, &mut other.swept], &motions, &mut self.stack);
+        let result = self.swept.find_between(&mut other.swept, contexts, &motions, Self::MAX_PAIRS);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
         self.check_complete()?;
@@ -83,30 +77,4 @@ impl Detector {
 fn in_common_frame<'x, const E: usize>(motions: [GivenMotion<'x, E>; 2]) -> [GivenMotion<'x, E>; 2] {
     let whole = motions[0].aabb().union(&motions[1].aabb());
     motions.map(|motion| motion.in_frame_of(whole))
-}
-
-/// Finds all hits between two meshes whose searches have begun, not sorted, as hits of the first search.
-///
-/// # Errors
-/// When the progress of the first context cancels; then there are no hits.
-fn find_between<const E: usize, N: NarrowPhase<E>>(
-    contexts: [&Context; 2],
-    [x, y]: [&mut Search<E, N>; 2],
-    motions: &[GivenMotion<'_, E>; 2],
-    stack: &mut Vec<NodePair>,
-) -> Result<(), Error> {
-    let mut counters = Counters::default();
-    let result = match (x.parts(), y.parts()) {
-        (Some((x_broad, hits)), Some((y_broad, _))) => {
-            let mut x = Side { context: contexts[0], volumes: &mut x_broad.volumes, motion: &motions[0] };
-            let mut y = Side { context: contexts[1], volumes: &mut y_broad.volumes, motion: &motions[1] };
-            traverse_two_meshes(&mut x, &mut y, stack, &mut counters, hits)
-        }
-        _ => Ok(()),
-    };
-    if result.is_err() {
-        x.narrow.hits().list.clear();
-    }
-    x.counters = counters;
-    result
 }

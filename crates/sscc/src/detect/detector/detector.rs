@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::detector_search::{DetectorSearch, Refit};
 use super::given_motion::GivenMotion;
-use super::search::Search;
 use super::statistics::DetectorStatistics;
 use crate::detect::context::Context;
 use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
 use crate::filter::{PairFilter, weld_classes_of_positions};
-use crate::hierarchy::{Hierarchy, NodePair};
+use crate::hierarchy::Hierarchy;
 use crate::{CancelToken, ContactFilter, Error, Impact, Pair, TriMesh, limits};
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
@@ -46,10 +46,8 @@ use crate::{CancelToken, ContactFilter, Error, Impact, Pair, TriMesh, limits};
 pub struct Detector {
     pub(super) context: Context,
     vertex_count: usize,
-    pub(super) discrete: Search<1, DiscreteHits>,
-    pub(super) swept: Search<2, SweptHits>,
-    /// Scratch of searches in two meshes.
-    pub(super) stack: Vec<NodePair>,
+    pub(super) discrete: DetectorSearch<1, DiscreteHits>,
+    pub(super) swept: DetectorSearch<2, SweptHits>,
     pub(super) statistics: DetectorStatistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,
@@ -108,9 +106,8 @@ impl Detector {
         Self {
             context,
             vertex_count: positions.len(),
-            discrete: Search::default(),
-            swept: Search::default(),
-            stack: Vec::new(),
+            discrete: DetectorSearch::default(),
+            swept: DetectorSearch::default(),
             statistics: DetectorStatistics::default(),
             is_used: false,
         }
@@ -147,8 +144,8 @@ impl Detector {
     pub fn discrete_at_most(&mut self, positions: &[DVec3], limit: usize) -> Result<&[Pair], Error> {
         let motion = self.check([positions])?;
         self.mask_adjacent();
-        self.begin_discrete(&motion, positions, limit);
-        let result = self.discrete.find(&self.context, &motion);
+        self.begin_discrete(&motion, positions, Refit::All);
+        let result = self.discrete.find(&self.context, &motion, limit);
         self.statistics.set(&mut self.discrete, result.is_ok());
         result?;
         self.discrete.narrow.0.list.sort_unstable();
@@ -180,8 +177,8 @@ impl Detector {
         self.context.filter.neighbours().check_continuous()?;
         let motion = self.check([x_t0, x_t1])?;
         self.mask_adjacent();
-        self.begin_swept(&motion, x_t0);
-        let result = self.swept.find(&self.context, &motion);
+        self.begin_swept(&motion, x_t0, Refit::All);
+        let result = self.swept.find(&self.context, &motion, Self::MAX_PAIRS);
         self.statistics.set(&mut self.swept, result.is_ok());
         result?;
         self.check_complete()?;
@@ -218,18 +215,18 @@ impl Detector {
     }
 
     /// Starts a discrete search; builds the hierarchy again, by these positions, where it has become bad.
-    pub(super) fn begin_discrete(&mut self, motion: &GivenMotion<'_, 1>, positions: &[DVec3], limit: usize) {
-        if !self.discrete.begin(&self.context, motion, limit) {
+    pub(super) fn begin_discrete(&mut self, motion: &GivenMotion<'_, 1>, positions: &[DVec3], refit: Refit) {
+        if !self.discrete.begin(&self.context, motion, refit) {
             self.rebuild(positions);
-            self.discrete.begin(&self.context, motion, limit);
+            self.discrete.begin(&self.context, motion, refit);
         }
     }
 
     /// The same for a swept search.
-    pub(super) fn begin_swept(&mut self, motion: &GivenMotion<'_, 2>, x_t0: &[DVec3]) {
-        if !self.swept.begin(&self.context, motion, Self::MAX_PAIRS) {
+    pub(super) fn begin_swept(&mut self, motion: &GivenMotion<'_, 2>, x_t0: &[DVec3], refit: Refit) {
+        if !self.swept.begin(&self.context, motion, refit) {
             self.rebuild(x_t0);
-            self.swept.begin(&self.context, motion, Self::MAX_PAIRS);
+            self.swept.begin(&self.context, motion, refit);
         }
     }
 
@@ -255,8 +252,8 @@ impl Detector {
         let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, filter));
         self.context.layout = layout;
         self.context.hierarchy = Arc::new(hierarchy);
-        self.discrete = Search::default();
-        self.swept = Search::default();
+        self.discrete = DetectorSearch::default();
+        self.swept = DetectorSearch::default();
         self.is_used = false;
         self.statistics.rebuilds += 1;
     }

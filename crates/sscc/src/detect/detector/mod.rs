@@ -4,8 +4,8 @@ mod against;
 mod batch;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod detector;
+mod detector_search;
 mod given_motion;
-mod search;
 mod statistics;
 
 pub use batch::FrameAnswer;

@@ -1,8 +1,8 @@
 //! The cost of an answer of a detector.
 
-use super::search::Search;
-use crate::detect::broad_phase::Counters;
+use super::detector_search::DetectorSearch;
 use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::search::Counters;
 
 /// The cost of the last answer of a [`Detector`](crate::Detector), and the state of its hierarchy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +30,7 @@ impl DetectorStatistics {
     /// Takes over those of a search.
     pub(super) fn set<const E: usize, N: NarrowPhase<E>>(
         &mut self,
-        search: &mut Search<E, N>,
+        search: &mut DetectorSearch<E, N>,
         is_done: bool,
     ) {
         let Counters { opened, box_tests, triangle_tests, .. } = search.counters;

@@ -9,14 +9,14 @@ use super::region_pairs::RegionPairs;
 use super::region_search::RegionSearch;
 use super::safe_distance::SafeDistances;
 use super::step_history::StepHistory;
-use crate::detect::broad_phase::Counters;
 use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
-use crate::detect::vertex_motion::DeformedMotion;
+use crate::detect::narrow_phase::NarrowPhase;
+use crate::detect::search::Counters;
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::query::configuration::Configuration;
+use crate::query::configuration_search::{SweptSearch, motion};
 use crate::query::query::Query;
 use crate::query::statistics::Statistics;
-use crate::query::swept_search::SweptSearch;
 use crate::{CancelToken, Certificates, Error, Impact, Pair, ReducedModel};
 
 /// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
@@ -61,6 +61,8 @@ pub struct KineticQuery {
     history: StepHistory,
     /// The end of the last motion that a continuous query found free; empty if there was none.
     pub(super) free_q: Vec<f64>,
+    /// The cost of the region's search, with which the counters of its first step begin.
+    region_counters: Counters,
     /// Scratch for differences of q.
     offset: Vec<f64>,
     /// Scratch: pairs whose safe distance is to be computed.
@@ -91,6 +93,7 @@ impl KineticQuery {
             control: RegionControl::FIRST,
             history: StepHistory::new(model.rank()),
             free_q: Vec::new(),
+            region_counters: Counters::default(),
             offset: vec![0.0; model.rank()],
             pending: Vec::new(),
             query,
@@ -109,7 +112,7 @@ impl KineticQuery {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
-        self.query.begin(usize::MAX);
+        self.query.forget();
         let configuration = self.query.measure(q)?;
         self.query.norm = configuration.norm;
         if self.query.context.is_root_certified(configuration.norm) {
@@ -179,7 +182,14 @@ impl KineticQuery {
             return Ok(true);
         }
         let swept = self.query.swept.get_or_insert_with(|| Box::new(SweptSearch::new(context)));
-        Ok(!swept.collides(context, [t0, t1], active)?)
+        let motion = motion([t0, t1]);
+        let mut search = swept.certified.broad.search(&context.detect, &motion, &mut swept.narrow, 1);
+        for &(a, b) in active {
+            let [a, b] = [a, b].map(|t| search.sides[0].triangle(t));
+            search.test_triangles(a, b);
+        }
+        search.end()?;
+        Ok(swept.narrow.hits().list.is_empty())
     }
 
     /// The pairs that the last query found.
@@ -199,7 +209,7 @@ impl KineticQuery {
 
     fn find_without_region(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
         let Query { context, discrete, statistics, .. } = &mut self.query;
-        discrete.find(context, configuration, statistics)
+        discrete.find_pairs(context, configuration, usize::MAX, statistics)
     }
 
     fn find_beyond_root(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
@@ -232,7 +242,7 @@ impl KineticQuery {
                 return Ok(());
             }
             self.find_without_region(configuration)?;
-            self.control.plain_cost = plain_cost(&self.query.discrete.certified.broad.counters);
+            self.control.plain_cost = plain_cost(self.query.discrete.counters());
             return Ok(());
         }
         // After an error nothing is known of any pair.
@@ -300,7 +310,7 @@ impl KineticQuery {
         let motion = CapsuleMotion::new(&self.rates, [&self.region.start, &self.region.end], radius, reach);
         let is_complete = self.search.find(context, &motion, norm, limit)?;
         let found = &self.search.narrow.0.list;
-        let counters = &self.search.certified.broad.counters;
+        let counters = &self.search.certified.broad.state.counters;
         let cost = node_cost(counters) + FIND_COST * found.len() as u64;
         if !is_complete {
             self.control.record_overflow(cost, share);
@@ -310,33 +320,29 @@ impl KineticQuery {
         self.region_pairs.take(found, &mut self.pending);
         self.control.cost = cost;
         self.control.record_search(cost + DISTANCE_COST * self.pending.len() as u64, share);
-        // The counters of this step begin with those of the search.
-        let broad = &mut self.query.discrete.certified.broad;
-        broad.counters = Counters { triangle_tests: 0, ..*counters };
+        self.region_counters = Counters { triangle_tests: 0, ..*counters };
         Ok(true)
     }
 
     /// Tests the active pairs, after computing the safe distances that are used up.
-    fn find_active(
-        &mut self,
-        Configuration { q, reach, .. }: Configuration<'_>,
-        step: f64,
-    ) -> Result<(), Error> {
-        let context = &self.query.context.detect;
-        let (search, region_pairs) = (&mut self.query.discrete, &mut self.region_pairs);
-        let (broad, narrow) = (&mut search.certified.broad, &mut search.narrow);
-        let motion = DeformedMotion::new([q], reach);
+    fn find_active(&mut self, configuration: Configuration<'_>, step: f64) -> Result<(), Error> {
+        let Query { context, discrete, statistics, .. } = &mut self.query;
+        let (context, region_pairs) = (&context.detect, &mut self.region_pairs);
+        let (broad, narrow) = (&mut discrete.certified.broad, &mut discrete.narrow);
+        let motion = motion([configuration]);
         let mut cost = 0;
-        broad.begin_volumes(context, &motion);
-        broad.test_exceptions(context, &motion, narrow);
+        let mut search = broad.search(context, &motion, narrow, usize::MAX);
+        search.state.counters = std::mem::take(&mut self.region_counters);
+        search.test_exceptions();
         if region_pairs.steps.is_multiple_of(RETRY_STEPS) {
             self.pending.append(&mut region_pairs.active);
         }
         while let Some(pair) = self.pending.pop().or_else(|| region_pairs.next_expired()) {
+            let [side] = &mut search.sides;
             let corners = [pair.0, pair.1].map(|t| {
-                let vertices = broad.triangle(context, t).vertices;
-                broad.volumes.move_corners(vertices, &motion);
-                broad.volumes.corners(vertices)[0]
+                let vertices = side.triangle(t).vertices;
+                side.move_corners(vertices);
+                side.volumes.corners(vertices)[0]
             });
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
             if distance < STEPS_WORTH_STORING * step || !region_pairs.store(pair, distance) {
@@ -344,22 +350,24 @@ impl KineticQuery {
             }
             cost += DISTANCE_COST;
             if cost.is_multiple_of(DISTANCES_PER_CHECK * DISTANCE_COST) {
-                broad.check_cancelled(context, narrow);
-                broad.end(narrow)?;
+                search.check_cancelled();
+                if search.state.is_cancelled() {
+                    return search.end();
+                }
             }
         }
         region_pairs.end_step();
         self.control.cost =
             self.control.cost.saturating_add(cost + TEST_COST * region_pairs.active.len() as u64);
         for &(a, b) in &region_pairs.active {
-            let [x, y] = [a, b].map(|t| broad.triangle(context, t));
-            broad.test_triangles(context, x, y, &motion, narrow);
+            let [x, y] = [a, b].map(|t| search.sides[0].triangle(t));
+            search.test_triangles(x, y);
         }
-        let result = broad.end(narrow);
-        self.query.statistics.set_counters(&broad.counters);
+        let result = search.end();
+        statistics.set_counters(&broad.state.counters);
         result?;
         narrow.0.list.sort_unstable();
-        self.query.statistics.complete = true;
+        statistics.complete = true;
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::detect::capsule_motion::CapsuleMotion;
 use crate::detect::narrow_phase::AabbHits;
-use crate::query::certified_search::CertifiedSearch;
+use crate::query::certified_search::{CertifiedSearch, Sought};
 use crate::query::context::QueryContext;
 
 /// Finds the pairs whose boxes overlap in a region, and owns the memory for it.
@@ -30,11 +30,7 @@ impl RegionSearch {
         limit: usize,
     ) -> Result<bool, Error> {
         let Self { certified, narrow } = self;
-        narrow.0.begin(limit);
-        certified.broad.begin();
-        certified.broad.begin_volumes(&context.detect, motion);
-        certified.find(context, norm, motion, narrow);
-        certified.broad.end(narrow)?;
+        certified.find(context, norm, motion, narrow, (Sought::WithoutExceptions, limit))?;
         if narrow.0.note_if_full() {
             return Ok(false);
         }

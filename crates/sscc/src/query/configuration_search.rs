@@ -1,0 +1,102 @@
+//! The search at one configuration, or on the straight lines between two: by the method of the query.
+
+use super::certified_search::{CertifiedSearch, Sought};
+use super::configuration::Configuration;
+use super::context::QueryContext;
+use super::method::Method;
+use super::statistics::{Proof, Statistics};
+use crate::Error;
+use crate::detect::narrow_phase::{DiscreteHits, NarrowPhase};
+use crate::detect::search::Counters;
+use crate::detect::vertex_motion::DeformedMotion;
+
+/// Finds the hits at `E` configurations, and owns the memory for it.
+#[derive(Clone)]
+pub(super) struct ConfigurationSearch<const E: usize, N> {
+    pub(super) certified: CertifiedSearch<E>,
+    pub(super) narrow: N,
+}
+
+/// The search for the pairs that collide at q.
+pub(super) type DiscreteSearch = ConfigurationSearch<1, DiscreteHits>;
+
+/// The search for the pairs that the narrow phase finds between two q.
+pub(super) type SweptSearch<N> = ConfigurationSearch<2, N>;
+
+impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
+    pub(super) fn new(context: &QueryContext) -> Self {
+        Self { certified: CertifiedSearch::new(context), narrow: N::default() }
+    }
+
+    /// The counters of the last search.
+    pub(super) fn counters(&self) -> &Counters {
+        &self.certified.broad.state.counters
+    }
+
+    /// Finds at most `limit` hits, in no particular order; all of them where the search is complete.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    #[inline]
+    pub(super) fn find(
+        &mut self,
+        context: &QueryContext,
+        ends: [Configuration<'_>; E],
+        norm: f64,
+        limit: usize,
+        statistics: &mut Statistics,
+    ) -> Result<(), Error> {
+        // Most queries of a simulation end here.
+        if context.is_proven_free(norm) {
+            self.narrow.hits().begin(limit);
+            *statistics = Statistics::PROVEN_FREE;
+            return Ok(());
+        }
+        let result = self.search(context, ends, norm, limit);
+        statistics.set_counters(self.counters());
+        statistics.set_proof(result?);
+        statistics.complete = self.narrow.hits().is_complete();
+        Ok(())
+    }
+
+    fn search(
+        &mut self,
+        context: &QueryContext,
+        ends: [Configuration<'_>; E],
+        norm: f64,
+        limit: usize,
+    ) -> Result<Proof, Error> {
+        let Self { certified, narrow } = self;
+        if context.method == Method::BruteForce {
+            let positions = |v| ends.map(|end| context.model.position(v, end.q));
+            certified.broad.brute_force(&context.detect, positions, narrow, limit)?;
+            return Ok(Proof::Search);
+        }
+        certified.find(context, norm, &motion(ends), narrow, (Sought::All, limit))
+    }
+}
+
+impl DiscreteSearch {
+    /// Finds at most `limit` colliding pairs at q, sorted.
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    #[inline]
+    pub(super) fn find_pairs(
+        &mut self,
+        context: &QueryContext,
+        configuration: Configuration<'_>,
+        limit: usize,
+        statistics: &mut Statistics,
+    ) -> Result<(), Error> {
+        self.find(context, [configuration], configuration.norm, limit, statistics)?;
+        self.narrow.0.list.sort_unstable();
+        Ok(())
+    }
+}
+
+/// The motion of vertices to a configuration, or from one to another.
+#[inline]
+pub(super) fn motion<const E: usize>(ends: [Configuration<'_>; E]) -> DeformedMotion<'_, E> {
+    DeformedMotion::new(ends.map(|end| end.q), ends.iter().map(|end| end.reach).fold(0.0, f64::max))
+}
