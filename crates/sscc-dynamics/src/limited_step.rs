@@ -27,7 +27,7 @@ const CONTACT_TIME: f64 = 0.9;
 /// Distance, in skins, within which triangles near an impact make contacts.
 const NEAR_MARGIN: f64 = 2.0;
 
-/// Bodies move less than this share of their way not at all.
+/// Where a body could move only a smaller share of its way, it keeps its place.
 const MIN_SHARE: f64 = 1e-3;
 
 /// Maximum number of times for which bodies are moved a share of their way; then they keep their place.

@@ -1,4 +1,5 @@
-//! Recovery of gaps: contacts whose points are too near part slowly, as far as energy budgets pay for it.
+//! Recovery of gaps: the points of a contact that are nearer than they should be move apart slowly, while the energy budgets of
+//! their bodies allow it.
 
 use crate::World;
 use crate::step_buffers::StepBuffers;

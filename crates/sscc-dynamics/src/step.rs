@@ -12,7 +12,7 @@ pub enum Phase {
     /// Search for vertices in contact with the ground.
     Ground,
     /// Contact constraints and their impulses.
-    Penalty,
+    Contacts,
     /// Integration of the motion.
     Dynamics,
     /// End of the step.

@@ -214,7 +214,7 @@ impl World {
         observer.enter(Phase::Ground);
         self.find_ground_contacts()?;
         counts.ground = self.ground_contacts.iter().map(|contacts| contacts.count).sum();
-        observer.enter(Phase::Penalty);
+        observer.enter(Phase::Contacts);
         let within = matches!(self.options.response, Response::Contact | Response::Penalty);
         let max_age = 1.0 / (self.options.contact.frequency * self.options.step);
         let (skin, max_age) = (self.skin(), f64::max(max_age, 2.0) as u32);

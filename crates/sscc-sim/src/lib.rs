@@ -62,7 +62,9 @@ pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
     StateLayout, StateLog, StepRecord, Summary, TraditionalCost, run,
 };
-pub use scenes::{BodySpec, GENTLE, ModelSpec, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene};
+pub use scenes::{
+    BodySpec, ModelSpec, OWN_AMPLITUDE_SCENES, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene,
+};
 pub use simulate::{Request, make_folder, simulate};
 pub use sweeps::{SweepRange, SweepRequest, SweepRow, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};

@@ -1,6 +1,6 @@
 //! List of the scenarios by name.
 
-use sscc_sim::{GENTLE, SHIPPED, Scene, nearest};
+use sscc_sim::{OWN_AMPLITUDE_SCENES, SHIPPED, Scene, nearest};
 
 use super::models::ModelsScenario;
 use crate::error::Error;
@@ -76,7 +76,7 @@ fn all() -> impl Iterator<Item = (&'static str, Scenario)> {
     };
     SHIPPED
         .iter()
-        .chain(&GENTLE)
+        .chain(&OWN_AMPLITUDE_SCENES)
         .map(single)
         .chain(OTHERS.iter().map(|(name, scenario, _)| (*name, *scenario)))
 }
@@ -100,7 +100,7 @@ impl Scenario {
     /// When a scene cannot be parsed.
     pub fn list() -> Result<Vec<ListedScenario>, Error> {
         let mut list = Vec::new();
-        for (name, text) in SHIPPED.into_iter().chain(GENTLE) {
+        for (name, text) in SHIPPED.into_iter().chain(OWN_AMPLITUDE_SCENES) {
             list.push(ListedScenario { name, about: Scene::parse(name.as_ref(), text)?.about });
         }
         list.extend(OTHERS.iter().map(|(name, _, about)| ListedScenario { name, about: (*about).into() }));

@@ -106,7 +106,7 @@ fn part(phase: Phase) -> Option<usize> {
         Phase::SelfCollision => Some(0),
         Phase::InterObject => Some(1),
         Phase::Ground => Some(2),
-        Phase::Penalty => Some(3),
+        Phase::Contacts => Some(3),
         Phase::Dynamics => Some(4),
         Phase::Done => None,
     }

@@ -13,4 +13,4 @@ pub use bodies::BodySpec;
 pub use models::ModelSpec;
 pub use scene::{Scene, Sound};
 pub use shake::{Shake, ShakeUnit};
-pub use shipped::{GENTLE, SHIPPED, read_scene};
+pub use shipped::{OWN_AMPLITUDE_SCENES, SHIPPED, read_scene};

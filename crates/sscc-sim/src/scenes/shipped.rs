@@ -17,7 +17,7 @@ pub const SHIPPED: [(&str, &str); 5] = [
 
 /// Names and texts of scenes made for the method: so gentle that most steps are within the root's radius, in a metric
 /// measured in their own motion.
-pub const GENTLE: [(&str, &str); 2] = [
+pub const OWN_AMPLITUDE_SCENES: [(&str, &str); 2] = [
     ("spring-gentle", include_str!("../../../../scenes/spring-gentle.toml")),
     ("bunny16-gentle", include_str!("../../../../scenes/bunny16-gentle.toml")),
 ];
@@ -27,7 +27,7 @@ pub const GENTLE: [(&str, &str); 2] = [
 /// # Errors
 /// Those of [`Scene::read`]. If a name is neither, the error names the nearest one.
 pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
-    let all = || SHIPPED.iter().chain(&GENTLE);
+    let all = || SHIPPED.iter().chain(&OWN_AMPLITUDE_SCENES);
     let shipped = path.to_str().and_then(|name| all().find(|(known, _)| *known == name));
     match shipped {
         Some((name, text)) if !path.is_file() => Scene::parse(Path::new(&format!("{name}.toml")), text),

@@ -10,10 +10,10 @@ use crate::{Certificates, Error, Impact, Method, Pair, PairTree, Progress, Query
 /// Brute force is quadratic: up to this many triangles it runs for every sample, beyond for three of them.
 const BRUTE_FORCE_TRIANGLES: usize = 2000;
 
-/// One comparison for this many samples ...
+/// One comparison is made for this many samples.
 const SAMPLES_PER_COMPARISON: usize = 50;
 
-/// ... and at most this many.
+/// At most this many comparisons are made.
 const MAX_COMPARISONS: usize = 200;
 
 /// One in this many compares continuous queries, too.

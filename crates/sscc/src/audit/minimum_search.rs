@@ -31,10 +31,10 @@ pub(super) struct Confirmed {
     pub(super) norm: f64,
 }
 
-/// The exact test may miss triangles that meet in one point alone: it is repeated at q times these factors ...
+/// The exact test may miss triangles that meet in one point alone: it is repeated at q times these factors.
 const FACTORS: [f64; 5] = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.001];
 
-/// ... and at configurations where other points meet: the points found, moved by these fractions towards the centroids.
+/// The exact test is also repeated where other points meet: the points found, moved by these fractions towards the centroids.
 const INWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.01, 0.05, 0.2];
 
 /// Steps of the local search.

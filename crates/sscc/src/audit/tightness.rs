@@ -18,10 +18,10 @@ const NODES: usize = 200;
 /// Entries of the pair tree measured.
 const STORED: usize = 100;
 
-/// Absent pairs measured: those with the smallest bounds ...
+/// How many absent pairs are measured: those with the smallest bounds.
 const ABSENT: usize = 50;
 
-/// ... below this many nodes and pairs.
+/// Absent pairs are looked for below this many nodes and pairs.
 const PARENTS: usize = 4096;
 
 /// The closest collisions found, and what follows from them.

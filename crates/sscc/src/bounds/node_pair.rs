@@ -38,7 +38,7 @@ pub(crate) struct NodePairScratch {
 
 /// Where the first direction gives less than this share of a sufficient bound, no other direction is tried
 /// (docs/notes/2026-11-23-bounds.md).
-const HOPELESS: f64 = 0.8;
+const LEAST_FIRST_SHARE: f64 = 0.8;
 
 /// Corners of a box.
 const CORNERS: usize = 8;
@@ -144,8 +144,8 @@ impl Kernel for NodeBound<'_> {
             // Half extents are larger than the boxes, so this gap is smaller than theirs.
             if dir.dot(between) - dir.abs().dot(half) > 0.0 {
                 best = best.max(bound_corners_along(n, m, dir, model, scratch));
-                // The first direction is usually the best one: where it is hopeless, the others are, too.
-                if best >= sufficient || best < HOPELESS * sufficient {
+                // The first direction is usually the best one: where it gives little, so do the others.
+                if best >= sufficient || best < LEAST_FIRST_SHARE * sufficient {
                     break;
                 }
             }

@@ -19,6 +19,7 @@ use crate::model::{RoundingAlong, RoundingBound};
 use crate::vectors::{InstructionSet, Kernel, Vectors};
 
 /// The modes of six corners along a direction: scratch of six rows.
+#[derive(Clone)]
 pub(crate) struct CornerProjections {
     pub(super) instructions: InstructionSet,
     pub(super) rows: Vec<f64>,

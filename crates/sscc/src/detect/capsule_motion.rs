@@ -11,6 +11,7 @@ use crate::model::rounding::norm_up;
 
 /// For each vertex and each node how fast positions can change with z. By Cauchy and Schwarz, a vertex moves along an axis
 /// by at most `|A| |dz|`, where A is its scaled row of that axis; the rounding of both computed positions is added.
+#[derive(Clone)]
 pub(crate) struct CapsuleRates {
     /// The norms of the three rows of each vertex, by its index in the layout, rounded up.
     vertices: Vec<DVec3>,

@@ -4,11 +4,11 @@ use super::hierarchy::Hierarchy;
 use super::node::{BRANCHING, Node};
 use crate::Error;
 
-/// Leaves of a hierarchy from a file have at most this many triangles ...
+/// Leaves of a hierarchy from a file have at most this many triangles.
 const MAX_LEAF_TRIANGLES: u32 = 64;
 
-/// ... and the hierarchy at most this many levels. Built hierarchies have at most log N / log(8/7) levels, 166 for 2^32
-/// triangles. Both limits bound the time of traversals.
+/// A hierarchy from a file has at most this many levels. Built hierarchies have at most log N / log(8/7) levels, 166 for 2^32
+/// triangles. With [`MAX_LEAF_TRIANGLES`] it bounds the time of traversals.
 const MAX_LEVELS: usize = 256;
 
 impl Hierarchy {

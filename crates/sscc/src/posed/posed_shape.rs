@@ -1,5 +1,6 @@
 //! A shape in the world, tested against others: BD-trees in their own axes, rotated and moved.
 
+use std::fmt;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -12,7 +13,8 @@ use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
-use crate::{Certificates, Error, Pair, ReducedModel};
+use crate::hierarchy::Hierarchy;
+use crate::{Certificates, ContactFilter, Error, Pair, ReducedModel};
 
 /// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
 /// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
@@ -33,6 +35,13 @@ pub struct PosedShape {
     hits: DiscreteHits,
 }
 
+/// Its last answer alone.
+impl fmt::Debug for PosedShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PosedShape").field("whole", &self.whole).finish_non_exhaustive()
+    }
+}
+
 impl PosedShape {
     /// A shape at q = 0 in its own axes. Of the certificates only the hierarchy is used.
     ///
@@ -40,8 +49,20 @@ impl PosedShape {
     /// When the certificates were computed for another model.
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         certificates.check_model(model)?;
-        let hierarchy = Arc::clone(&certificates.parts().hierarchy);
-        let context = Context::new(model, hierarchy, certificates.filter(), &[], Some(Needs::LAZY));
+        Self::with_hierarchy(model, Arc::clone(&certificates.parts().hierarchy))
+    }
+
+    /// A shape without certificates, which builds a hierarchy of its own: the same answers.
+    ///
+    /// # Errors
+    /// When the model is beyond the range of numbers.
+    pub fn without_certificates(model: &ReducedModel) -> Result<Self, Error> {
+        Self::with_hierarchy(model, Arc::new(Hierarchy::build(model, model.metric())))
+    }
+
+    fn with_hierarchy(model: &ReducedModel, hierarchy: Arc<Hierarchy>) -> Result<Self, Error> {
+        // No contact filter applies between shapes.
+        let context = Context::new(model, hierarchy, &ContactFilter::default(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
         let mut motion = PosedMotion::new(model)?;
         let whole = motion.place(model, &context.layout, [(&vec![0.0; model.rank()], &Pose::default())])?;
@@ -250,6 +271,32 @@ mod tests {
             found += pairs.len();
         }
         assert!(found > 1000, "{found}");
+    }
+
+    #[test]
+    fn shapes_without_certificates_give_the_same_answers() {
+        let state = &mut 21;
+        let models = [model(300, state), model(120, state)];
+        let mut alone = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
+        let mut shapes = models.each_ref().map(|model| {
+            let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+            PosedShape::new(model, &Certificates::compute(model, &options, &()).unwrap()).unwrap()
+        });
+        let mut found = 0;
+        for _ in 0..30 {
+            let pose = Pose { translation: vector(state), ..Pose::default() };
+            let q = [random(state), random(state)];
+            let answers = [&mut alone, &mut shapes].map(|shapes| {
+                let [x, y] = shapes;
+                x.place(&q, &pose).unwrap();
+                let mut pairs = Vec::new();
+                x.colliding(y, Aabb::default(), &mut pairs);
+                pairs
+            });
+            assert_eq!(answers[0], answers[1]);
+            found += answers[0].len();
+        }
+        assert!(found > 100, "{found}");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A shape that moves through the world, tested against others: continuous queries between objects.
 
+use std::fmt;
+
 use glam::DVec3;
 
 use super::pose::Pose;
@@ -28,6 +30,13 @@ pub struct SweptShape {
     state: SearchState,
     hits: SweptHits,
     near: NearHits,
+}
+
+/// Its last answer alone.
+impl fmt::Debug for SweptShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SweptShape").field("whole", &self.whole).finish_non_exhaustive()
+    }
 }
 
 impl SweptShape {

@@ -1,5 +1,6 @@
 //! The query: collisions of one reduced model with itself at q.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::configuration::Configuration;
@@ -32,6 +33,17 @@ pub struct Query {
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) check: ConfigurationCheck,
+}
+
+/// Its last answer alone.
+impl fmt::Debug for Query {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Query")
+            .field("pairs", &self.pairs())
+            .field("norm", &self.norm)
+            .field("statistics", &self.statistics)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Query {

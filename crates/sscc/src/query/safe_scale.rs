@@ -182,10 +182,10 @@ impl Query {
 /// than the rounding of their positions, which is part of every radius.)
 const DOWN: f64 = 1.0 - 64.0 * f64::EPSILON;
 
-/// Leaf pairs are advanced up to this many times the scale up to which all others are free ...
+/// Leaf pairs are advanced up to this many times the scale up to which all others are free.
 const LOOK_AHEAD: f64 = 1.5;
 
-/// ... but at least up to this share of the best known scale.
+/// Leaf pairs are advanced at least up to this share of the best known scale.
 const MIN_GOAL: f64 = 1.0 / 64.0;
 
 /// No entry: a node, or a node pair that is certified up to the limit of the pair tree.

@@ -1,5 +1,6 @@
 //! Queries and detectors are owned values: they outlive the data from which they were made, and go to other threads.
 
+use std::fmt::Debug;
 use std::thread;
 
 use glam::DVec3;
@@ -69,23 +70,31 @@ fn one_struct_with_a_query_and_a_detector_serves_four_threads() {
 /// Compiles only where each type is what its documentation says.
 #[test]
 fn public_types_are_owned() {
-    fn is_owned<T: Clone + Send + 'static>() {}
-    fn is_shared<T: Clone + Send + Sync + 'static>() {}
+    fn is_owned<T: Clone + Debug + Send + Sync + 'static>() {}
     is_owned::<Query>();
+    is_owned::<KineticQuery>();
     is_owned::<Detector>();
     is_owned::<PosedShape>();
     is_owned::<SweptShape>();
-    is_shared::<ReducedModel>();
-    is_shared::<Certificates>();
-    is_shared::<Scope>();
-    is_shared::<ContactFilter>();
-    is_shared::<Answer>();
-    is_shared::<sscc::CancelToken>();
-    is_shared::<sscc::TriMesh>();
-    is_shared::<sscc::Modes>();
-    is_shared::<sscc::Error>();
-    fn is_sent<T: Send + Sync + 'static>() {}
-    is_sent::<KineticQuery>();
-    is_sent::<Query>();
-    is_sent::<Detector>();
+    is_owned::<ReducedModel>();
+    is_owned::<Certificates>();
+    is_owned::<CertifyOptions>();
+    is_owned::<Scope>();
+    is_owned::<ContactFilter>();
+    is_owned::<Answer>();
+    is_owned::<sscc::AuditReport>();
+    is_owned::<sscc::CancelToken>();
+    is_owned::<sscc::ContactCurves>();
+    is_owned::<sscc::DetectorStatistics>();
+    is_owned::<sscc::Error>();
+    is_owned::<sscc::FreeSamples>();
+    is_owned::<sscc::Impact>();
+    is_owned::<sscc::Metric>();
+    is_owned::<sscc::Modes>();
+    is_owned::<sscc::Resolved>();
+    is_owned::<sscc::Statistics>();
+    is_owned::<sscc::Sweep>();
+    is_owned::<sscc::TriMesh>();
+    is_owned::<sscc::TriangleGroups>();
+    is_owned::<sscc::hierarchy::Hierarchy>();
 }

@@ -8,10 +8,10 @@ use crate::model::rounding::to_f32_down;
 /// The first limit, as a share of the global radius.
 const FIRST_SHARE: f64 = 1.0 / 16.0;
 
-/// If there is no room even for the first limit, the next one is smaller by this factor ...
+/// If there is no room even for the first limit, the next one is smaller by this factor.
 const RETRY_DIVISOR: f64 = 2.0;
 
-/// ... and the last one tried is this share of the global radius.
+/// Then the last limit tried is this share of the global radius.
 const LAST_SHARE: f64 = FIRST_SHARE / 32.0;
 
 /// The next limit is at most the one before times this: farther away it is not known how the number of pairs grows.

@@ -25,7 +25,7 @@ pub(crate) enum Task {
 pub(crate) struct NodeRadiusTask {
     /// A leaf or a bucket is searched within.
     pub(crate) node: u32,
-    /// Of any other node these pairs of nodes below it are searched; their radii make up the one wanted.
+    /// The pairs of nodes below any other node. They are searched, and the smallest of their radii is that of the node.
     pub(crate) pairs: Vec<BoundedNodePair>,
     pub(crate) goal: SearchGoal,
 }

@@ -1,6 +1,7 @@
 //! The detector for given positions: exact collisions of any deforming triangle mesh, with itself or with another one.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -51,6 +52,16 @@ pub struct Detector {
     pub(super) statistics: DetectorStatistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,
+}
+
+/// Its last answer alone.
+impl fmt::Debug for Detector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Detector")
+            .field("vertex_count", &self.vertex_count)
+            .field("statistics", &self.statistics)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Detector {

@@ -1,6 +1,7 @@
 //! `KineticQuery`: tests only active pairs while z stays in a region, searches a new region when z leaves it, and falls
 //! back to an ordinary query where no region pays.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::region::Region;
@@ -28,11 +29,13 @@ const RETRY_STEPS: u64 = 16;
 /// Safe distances computed between two checks whether the query was cancelled.
 const DISTANCES_PER_CHECK: u64 = 1024;
 
-/// A search may find at most this many pairs for each triangle, and so many more ...
+/// A search may find at most this many pairs for each triangle, and [`MAX_MORE_PAIRS`].
 const MAX_PAIRS_PER_TRIANGLE: usize = 8;
+
+/// See [`MAX_PAIRS_PER_TRIANGLE`].
 const MAX_MORE_PAIRS: usize = 1024;
 
-/// ... and at most so many more than its cost allows.
+/// A search may find at most so many pairs more than its cost allows.
 const CHEAP_PAIRS: usize = 64;
 
 /// A motion is a jump where a step is longer than this share of `|z|`.
@@ -49,6 +52,7 @@ const FIND_COST: u64 = 150;
 /// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
 /// cost the same as in a [`Query`]. Takes three times its memory.
+#[derive(Clone)]
 pub struct KineticQuery {
     pub(in crate::query) query: Query,
     search: RegionSearch,
@@ -69,8 +73,15 @@ pub struct KineticQuery {
     pending: Vec<Pair>,
 }
 
+/// Its last answer alone.
+impl fmt::Debug for KineticQuery {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("KineticQuery").field("query", &self.query).finish_non_exhaustive()
+    }
+}
+
 impl KineticQuery {
-    /// A query that knows nothing of any q yet.
+    /// A query that has answered nothing, so that its first answer has no region.
     ///
     /// # Errors
     /// When the certificates were computed for another model, or their metric does not fit it.

@@ -8,7 +8,7 @@ use crate::query::kinetic::region_pairs::up;
 const MAX_DETOUR: f64 = 1.1;
 
 /// All z within a radius of the segment between the z of two q: a capsule, or, where both are the same, a ball.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Region {
     pub(super) start: Vec<f64>,
     /// Where the motion is expected to leave the region. Any q of finite numbers.

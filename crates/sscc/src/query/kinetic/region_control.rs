@@ -15,10 +15,14 @@ pub(super) const MAX_CAPSULE: f64 = 1.0;
 const GROWTH: f64 = 1.25;
 const SHRINKAGE: f64 = 1.0 / 1.5;
 
-/// A search may cost this share of the plain queries that it is expected to save, within limits.
+/// A search may cost this share of the plain queries that it is expected to save, within [`LEAST_COST`] and [`MOST_COST`].
 const LARGEST_SHARE: f64 = 0.25;
-const FEW: u64 = 8;
-const MANY: u64 = 64;
+
+/// The least cost that a search may have, in plain queries.
+const LEAST_COST: u64 = 8;
+
+/// The largest cost that a search may have, in plain queries.
+const MOST_COST: u64 = 64;
 
 /// Where the cost of a ball for each step is not known, this share of a plain query is expected.
 const UNKNOWN_COST_PER_STEP: f64 = 0.2;
@@ -107,7 +111,7 @@ impl RegionControl {
 
     /// The largest cost of a search for a region that is expected to last for so many steps.
     pub(super) fn largest_cost(&self, steps: f64) -> u64 {
-        self.plain_cost.saturating_mul(((LARGEST_SHARE * steps) as u64).clamp(FEW, MANY))
+        self.plain_cost.saturating_mul(((LARGEST_SHARE * steps) as u64).clamp(LEAST_COST, MOST_COST))
     }
 
     /// Whether a ball may cost less for each step than a capsule. Motions that return stay long in balls.

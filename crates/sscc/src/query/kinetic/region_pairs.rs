@@ -17,7 +17,7 @@ const MAX_REMEMBERED: usize = 8;
 pub(super) type SafePair = MinHeapEntry<Pair>;
 
 /// All pairs that can collide in the region. All other pairs are free in the whole region.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct RegionPairs {
     /// The distance that z has travelled since the last jump, rounded up.
     pub(super) travelled: f64,

@@ -7,6 +7,7 @@ use crate::query::certified_search::{CertifiedSearch, Sought};
 use crate::query::context::QueryContext;
 
 /// Finds the pairs whose boxes overlap in a region, and owns the memory for it.
+#[derive(Clone)]
 pub(super) struct RegionSearch {
     pub(super) certified: CertifiedSearch<2>,
     pub(super) narrow: AabbHits,

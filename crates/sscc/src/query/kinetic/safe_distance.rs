@@ -1,6 +1,8 @@
 //! Safe distances: how far z may move before two triangles that are apart can collide. This is the separating-direction
 //! bound of certificates ([`bound_along`]) about the current z instead of the centre.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::Pair;
@@ -18,8 +20,9 @@ use crate::model::{RoundingBound, ScaledModel, scale_direction};
 const MAX_NORMS: f64 = 2.0;
 
 /// Computes safe distances, from the model in scaled coordinates.
+#[derive(Clone)]
 pub(super) struct SafeDistances {
-    model: ScaledModel,
+    model: Arc<ScaledModel>,
     error: RoundingBound,
     /// No distance is larger: the rounding bound holds that far.
     largest: f64,
@@ -32,7 +35,7 @@ impl SafeDistances {
             error: model.rounding.between_configurations(0.0),
             largest: 0.0,
             projections: CornerProjections::new(model.row_len),
-            model,
+            model: Arc::new(model),
         }
     }
 

@@ -14,7 +14,7 @@ const ADDED_RADIUS: f64 = 1.0 / 64.0;
 const MAX_STEPS: f64 = 1000.0;
 
 /// The last steps of discrete queries that the root's certificate does not answer.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct StepHistory {
     /// The last q; empty if there was none.
     pub(super) last_q: Vec<f64>,

@@ -26,10 +26,10 @@ const BRACKET: f64 = 0.999e-9;
 /// Intervals that a pair blocks before it counts as one that cannot be left behind.
 const MAX_BLOCKED: usize = 32;
 
-/// Intervals grow by this factor, so that a few of them suffice after a pair that was left behind ...
+/// Intervals grow by this factor, so that a few of them suffice after a pair that was left behind.
 const GROWTH: f64 = 8.0;
 
-/// ... and by this one once an interval had too many candidates.
+/// Once an interval had too many candidates, intervals grow by this factor.
 const CAREFUL_GROWTH: f64 = 2.0;
 
 /// Candidates of the shortest intervals, at most.

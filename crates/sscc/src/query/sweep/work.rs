@@ -16,10 +16,10 @@ const MIN_CANDIDATES: usize = 4096;
 const WORK: usize = 1 << 15;
 const MIN_WORK: usize = 1 << 21;
 
-/// The work of advancing a candidate by a few rounded directions, ...
+/// The work of advancing a candidate by a few rounded directions.
 const ADVANCE: usize = 8;
 
-/// ... and that of a step along features, which is also that of a candidate for which rounded directions do not suffice.
+/// The work of a step along features, which is also that of a candidate for which rounded directions do not suffice.
 const FEATURE_STEP: usize = 128;
 
 /// Steps along features of one candidate in one interval, at most: more than all narrow pairs need that can be left behind
