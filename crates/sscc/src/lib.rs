@@ -281,12 +281,12 @@ pub mod hierarchy;
 pub mod limits;
 mod min_heap;
 mod model;
+mod parallel;
 mod posed;
 mod progress;
 mod query;
 #[cfg(test)]
 mod test_models;
-mod thread_pool;
 mod vectors;
 
 pub use audit::{AuditOptions, AuditReport, audit};

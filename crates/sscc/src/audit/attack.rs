@@ -1,13 +1,12 @@
 //! Attacks single claims. Of radii it tests configurations inside the radius of a node or a node pair: a collision there of one of
 //! its triangle pairs refutes the radius. Half of the attacks are on local certificates, where there are any.
 
-use rayon::prelude::*;
-
 use super::claims::{Claim, Claims};
 use super::local_attack::{LocalAttack, LocalQueries};
 use super::minimum_search::{Collision, MinimumSearch};
 use super::options::AuditOptions;
 use super::random::Random;
+use crate::parallel::map_with;
 use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};
 
 /// One in this many attacks is on the root, another on a pair of its children: they cost as much as
@@ -61,40 +60,39 @@ impl Attack<'_> {
             return Ok(Attacks::default());
         }
         let blocks = self.options.samples.div_ceil(64);
-        let results: Vec<Result<Attacks, Error>> = (0..blocks)
-            .into_par_iter()
-            .map_init(
-                || {
-                    let query = |method| Query::with_method(self.model, self.certificates, method);
-                    let root = query(Method::Traditional)?;
-                    let local = local.is_possible().then(|| query(Method::Certified)).transpose()?;
-                    Ok(Queries { root, part: query(Method::BdTree)?, local })
-                },
-                |queries: &mut Result<Queries, Error>, block| {
-                    let queries = queries.as_mut().map_err(|error| error.clone())?;
-                    let mut attacks = Attacks::default();
-                    for sample in block * 64..self.options.samples.min(block * 64 + 64) {
-                        if self.progress.is_cancelled() {
-                            break;
-                        }
-                        let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
-                        let attack = match &mut queries.local {
-                            Some(certified) if !is_any_claimed || random.below(2) == 0 => {
-                                let queries = LocalQueries { certified, exact: &mut queries.part };
-                                let attack = local.attack(sample, &mut random, queries);
-                                attacks.local_samples += usize::from(attack.is_some());
-                                attack
-                            }
-                            _ => self.attack(sample, &mut random, queries),
-                        };
-                        attacks.samples += usize::from(attack.is_some());
-                        attacks.violations.extend(attack.flatten());
+        let results: Vec<Result<Attacks, Error>> = map_with(
+            0..blocks,
+            usize::MAX,
+            || {
+                let query = |method| Query::with_method(self.model, self.certificates, method);
+                let root = query(Method::Traditional)?;
+                let local = local.is_possible().then(|| query(Method::Certified)).transpose()?;
+                Ok(Queries { root, part: query(Method::BdTree)?, local })
+            },
+            |queries: &mut Result<Queries, Error>, block| {
+                let queries = queries.as_mut().map_err(|error| error.clone())?;
+                let mut attacks = Attacks::default();
+                for sample in block * 64..self.options.samples.min(block * 64 + 64) {
+                    if self.progress.is_cancelled() {
+                        break;
                     }
-                    self.progress.report(block, blocks);
-                    Ok(attacks)
-                },
-            )
-            .collect();
+                    let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
+                    let attack = match &mut queries.local {
+                        Some(certified) if !is_any_claimed || random.below(2) == 0 => {
+                            let queries = LocalQueries { certified, exact: &mut queries.part };
+                            let attack = local.attack(sample, &mut random, queries);
+                            attacks.local_samples += usize::from(attack.is_some());
+                            attack
+                        }
+                        _ => self.attack(sample, &mut random, queries),
+                    };
+                    attacks.samples += usize::from(attack.is_some());
+                    attacks.violations.extend(attack.flatten());
+                }
+                self.progress.report(block, blocks);
+                Ok(attacks)
+            },
+        );
         let mut total = Attacks::default();
         for attacks in results {
             let Attacks { samples, local_samples, violations } = attacks?;

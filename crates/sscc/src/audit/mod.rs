@@ -23,7 +23,7 @@ mod tightness;
 
 use crate::filter::PairFilter;
 use crate::model::ScaledModel;
-use crate::thread_pool::on_threads;
+use crate::parallel::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
 pub use options::AuditOptions;

@@ -1,8 +1,6 @@
 //! Measures tightness: radii divided by the norm of the closest collision found. A confirmed collision below a radius
 //! is a violation; all collisions are directions for `attack`.
 
-use rayon::prelude::*;
-
 use super::claims::{Claim, Claims};
 use super::minimum_search::{Collision, Confirmed, MinimumSearch};
 use super::random::Random;
@@ -10,6 +8,7 @@ use crate::bounds::NodePairBounds;
 use crate::certificates::{
     BoundedNodePair, NodeGroups, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
 };
+use crate::parallel::{map, map_with};
 use crate::{Certificates, Pair, Progress};
 
 /// Nodes measured beside the root and the pairs of its children.
@@ -75,42 +74,36 @@ pub(super) fn measure(
     measured.extend(spread(claims.stored_len(), STORED).map(|index| claims.stored(index)));
     let absent: Vec<Claim> =
         spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
-    let mut bounded: Vec<(f64, Claim)> = absent
-        .into_par_iter()
-        .map_init(search, |search, claim| (search.bound_nodes(claim.nodes, 2.0 * limit), claim))
-        .collect();
+    let bound =
+        |search: &mut RadiusSearch<'_>, claim: Claim| (search.bound_nodes(claim.nodes, 2.0 * limit), claim);
+    let mut bounded = map_with(absent, usize::MAX, search, bound);
     bounded.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.nodes.cmp(&b.1.nodes)));
     measured.extend(bounded.into_iter().take(ABSENT).map(|(_, claim)| claim));
     measured.retain(|claim| claim.radius > 0.0);
-    let critical: Vec<Option<Pair>> = measured
-        .par_iter()
-        .map_init(search, |search, claim| {
-            // Beyond the radius: a search up to it alone could refute no claim.
-            let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
-            let (n, m) = claim.nodes;
-            if n != m {
-                search.between(vec![BoundedNodePair::unbounded((n, m))], goal);
+    let critical: Vec<Option<Pair>> = map_with(&measured, usize::MAX, search, |search, claim| {
+        // Beyond the radius: a search up to it alone could refute no claim.
+        let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
+        let (n, m) = claim.nodes;
+        if n != m {
+            search.between(vec![BoundedNodePair::unbounded((n, m))], goal);
+        } else {
+            let n = find_responsible_node(certificates, n);
+            let node = &nodes[n as usize];
+            if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
+                search.within(n, goal);
             } else {
-                let n = find_responsible_node(certificates, n);
-                let node = &nodes[n as usize];
-                if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
-                    search.within(n, goal);
-                } else {
-                    search.between(node.child_pairs().map(BoundedNodePair::unbounded).collect(), goal);
-                }
+                search.between(node.child_pairs().map(BoundedNodePair::unbounded).collect(), goal);
             }
-            search.closest()
-        })
-        .collect();
+        }
+        search.closest()
+    });
     // Many claims have the same critical pair.
     let mut faces: Vec<Pair> = critical.iter().flatten().copied().collect();
     faces.sort_unstable();
     faces.dedup();
-    let collisions: Vec<Option<Collision>> = faces
-        .par_iter()
-        .enumerate()
-        .map(|(stream, faces)| minimum.search(*faces, &mut Random::new(seed, stream as u64)))
-        .collect();
+    let collisions: Vec<Option<Collision>> = map(faces.iter().enumerate(), |(stream, faces)| {
+        minimum.search(*faces, &mut Random::new(seed, stream as u64))
+    });
     let mut result = Tightness { root: None, quotients: vec![], violations: vec![], collisions: vec![] };
     for (claim, critical) in measured.iter().zip(critical) {
         let at = critical.and_then(|critical| faces.binary_search(&critical).ok());

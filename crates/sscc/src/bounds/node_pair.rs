@@ -12,15 +12,14 @@
 //!
 //! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/2026-11-23-bounds.md.
 
-use glam::{DMat3, DVec3};
-use rayon::prelude::*;
-
 use super::node_modes::NodeModes;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::mode_rows::{dot, gram, project};
 use crate::model::rounding::{ROUND_UP, quotient_down};
 use crate::model::{ScaledModel, scale_direction};
+use crate::parallel;
 use crate::vectors::{InstructionSet, Kernel, Vectors};
+use glam::{DMat3, DVec3};
 
 /// The affine modes of every node, from which pairs of nodes are bounded.
 pub(crate) struct NodePairBounds {
@@ -80,7 +79,7 @@ impl NodePairScratch {
 impl NodePairBounds {
     pub(crate) fn new(model: &ScaledModel, hierarchy: &Hierarchy) -> Self {
         let fit = |node| NodeModes::fit(model, &hierarchy.vertices(node, &model.faces));
-        Self { nodes: hierarchy.nodes().par_iter().map(fit).collect() }
+        Self { nodes: parallel::map(hierarchy.nodes(), fit) }
     }
 
     /// The squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.

@@ -1,8 +1,5 @@
 //! The BD-tree (James and Pai 2004): AABBs that follow q at a cost of O(r) each, without touching vertices.
 
-use glam::{DVec3, Vec4};
-use rayon::prelude::*;
-
 use super::aabb8::AabbF32;
 use super::moving_modes::MovingModes;
 use super::quantization::{CoarseMotion, Quantization};
@@ -11,7 +8,9 @@ use crate::ReducedModel;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::model::rounding::larger_or_nan;
+use crate::parallel;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
+use glam::{DVec3, Vec4};
 
 /// Components of a mean and a growth.
 const COMPONENTS: usize = 6;
@@ -52,7 +51,7 @@ impl BdTree {
         let has = |n: usize| n == 0 || is_wanted(n as u32);
         let nodes: Vec<usize> = (0..hierarchy.nodes().len()).filter(|n| has(*n)).collect();
         let of_nodes: Vec<Vec<u32>> =
-            nodes.par_iter().map(|n| hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces())).collect();
+            parallel::map(&nodes, |n| hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces()));
         let in_store =
             |of_node: &Vec<u32>| -> Vec<u32> { of_node.iter().map(|v| vertices.index_of(*v)).collect() };
         let groups: Vec<Vec<u32>> = of_nodes.iter().map(in_store).collect();
@@ -60,7 +59,7 @@ impl BdTree {
         let boxes = |(index, of_node): (usize, &Vec<u32>)| {
             rest_and_rates(model, of_node, &moving.of_item(index as u32).collect::<Vec<_>>())
         };
-        let all: Vec<_> = of_nodes.par_iter().enumerate().map(boxes).collect();
+        let all: Vec<_> = parallel::map(of_nodes.iter().enumerate(), boxes);
         let mut next = 0..;
         let index = |n| if has(n) { next.next().unwrap_or(u32::MAX) } else { u32::MAX };
         let indices = (0..hierarchy.nodes().len()).map(index).collect();

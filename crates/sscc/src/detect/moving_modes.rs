@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel;
 
 /// For each item the modes that move it, ascending, and where its numbers are in an array with one number for each mode of each
 /// item.
@@ -43,7 +43,7 @@ impl MovingModes {
             }
             (0..self.rank as u32).filter(|k| is_moving[*k as usize]).collect()
         };
-        let lists: Vec<Vec<u32>> = groups.par_iter().map(union).collect();
+        let lists: Vec<Vec<u32>> = parallel::map(groups, union);
         Self::listed(self.rank, lists)
     }
 

@@ -3,13 +3,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use rayon::prelude::*;
-
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
 use super::statistics::Statistics;
-use crate::thread_pool::on_threads;
+use crate::parallel::{map, map_with, on_threads};
 use crate::{Error, Pair, Progress};
 
 /// Progress is reported once for this many q, which costs the cheapest queries nothing.
@@ -91,7 +89,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
             Ok(is_free.then(free))
         };
         let answers: Vec<Result<Option<Answer>, Error>> =
-            self.rows.par_iter().enumerate().map_init(|| query.check.clone(), answer).collect();
+            map_with(self.rows.iter().enumerate(), usize::MAX, || query.check.clone(), answer);
         answers.into_iter().collect()
     }
 
@@ -117,7 +115,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
             self.report(1);
             Ok(())
         };
-        open.into_par_iter().try_for_each(answer)
+        map(open, answer).into_iter().collect()
     }
 
     /// Reports that so many more answers are known.

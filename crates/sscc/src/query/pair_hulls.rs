@@ -3,15 +3,14 @@
 //! A query turns this direction with the two nodes, and tests the plane across it. Node pairs that nothing separates at the
 //! centre are opened without a test of hulls: only the time of queries depends on that.
 
-use glam::Vec3;
-use rayon::prelude::*;
-
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::hulls::{MovedHulls, NodeHulls};
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::hierarchy::{Hierarchy, NodePair};
+use crate::parallel;
 use crate::{PairTree, ReducedModel};
+use glam::Vec3;
 
 /// The hulls of nodes, and a direction for each entry of the pair tree.
 pub(super) struct PairHulls {
@@ -43,7 +42,7 @@ impl PairHulls {
         moved.update_all(&nodes, &F32Frame::around(motion.overall_aabb(layout)), &motion);
         let quantized = |dir: Vec3| (dir * WHOLE).to_array().map(|x| x.round() as i16);
         let direction = |pair: &NodePair| moved.separating_direction(&nodes, *pair).map_or([0; 3], quantized);
-        let directions = pairs.par_iter().map(direction).collect();
+        let directions = parallel::map(&pairs, direction);
         Some(Self { nodes, directions })
     }
 

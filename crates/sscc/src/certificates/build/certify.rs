@@ -8,7 +8,7 @@ use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use crate::certificates::pair_tree::{PairEntry, PairTree};
 use crate::certificates::{CertificateParts, Certificates, CertifyOptions, LocalCertificates};
-use crate::thread_pool::on_threads;
+use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 impl Certificates {

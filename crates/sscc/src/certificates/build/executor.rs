@@ -3,11 +3,10 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 use super::preparation::Preparation;
 use super::radius_search::RadiusSearch;
 use super::task::{Task, TaskResult, run_task};
+use crate::parallel;
 use crate::{Error, Progress};
 
 /// Tasks that are independent of each other. The next stage depends on their results.
@@ -73,8 +72,8 @@ impl Executor for ThreadExecutor<'_> {
             (stage.on_finished)(1);
             Some(result)
         };
-        let tasks = (0..stage.count).into_par_iter().with_max_len(stage.grain);
-        let results: Vec<Option<TaskResult>> = tasks.map_init(|| preparation.search(progress), run).collect();
+        let search = || preparation.search(progress);
+        let results = parallel::map_with(0..stage.count, stage.grain, search, run);
         if limit.is_exceeded() {
             return Ok(None);
         }

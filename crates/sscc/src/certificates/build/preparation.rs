@@ -14,6 +14,7 @@ use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::{ScaledModel, check_scaled_modes};
+use crate::parallel;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
 /// The input of all tasks, and the parts of the certificates that need no task.
@@ -66,7 +67,7 @@ impl Preparation {
             (hierarchy, at_rest)
         };
         let ((hierarchy, at_rest), scaled) =
-            rayon::join(collide_at_rest, || ScaledModel::new(model, &metric, &center));
+            parallel::join(collide_at_rest, || ScaledModel::new(model, &metric, &center));
         let at_rest = at_rest?;
         let rest_collisions = at_rest.len() as u64;
         let at_center = if center == rest {
@@ -83,7 +84,7 @@ impl Preparation {
         let exceptions = exceptions(at_center, &filter, max_exceptions);
         let scope = Scope { metric, center, filter, exceptions };
         let (digest, nodes) =
-            rayon::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
+            parallel::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
         let filter = PairFilter::new(model, &scope.filter).excluding(&scope.exceptions);
         let global_radius = global_radius(model, &scope.metric, &scope.center);
         Ok(Self {

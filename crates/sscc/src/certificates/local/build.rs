@@ -1,8 +1,5 @@
 //! The computation of local certificates.
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use super::corner_gaps::{CornerGaps, TightPair};
 use super::local_certificates::{
     LEAST_PROVEN_SHARE, LocalBounds, LocalCertificates, MOST_MODES, gradient_len,
@@ -15,8 +12,10 @@ use super::touching_nodes::TouchingNodes;
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
 use crate::model::mode_rows::squared_distance;
+use crate::parallel;
 use crate::vectors::{InstructionSet, LANES};
 use crate::{Neighbours, ReducedModel};
+use glam::DVec3;
 
 /// Vertices that the ellipsoid is fitted to, and parts of the node of which it is fitted to the tightest pair.
 const VERTEX_BLOCKS: usize = 16;
@@ -61,11 +60,9 @@ pub(crate) fn compute_local_certificates(
     let mut wanted = certified_nodes(hierarchy);
     wanted.sort_by_key(|n| std::cmp::Reverse(hierarchy.nodes()[*n as usize].triangle_count));
     let scratch = || Scratch::new(patch_model.positions.len());
-    let mut found: Vec<(u32, LocalCertificate)> = wanted
-        .par_iter()
-        .map_init(scratch, |scratch, n| Some((*n, builder.certify(*n, scratch)?)))
-        .flatten()
-        .collect();
+    let certified =
+        parallel::map_with(wanted, usize::MAX, scratch, |scratch, n| Some((n, builder.certify(n, scratch)?)));
+    let mut found: Vec<(u32, LocalCertificate)> = certified.into_iter().flatten().collect();
     keep_within(&mut found, hierarchy, most_bytes);
     if found.is_empty() {
         return LocalCertificates::default();

@@ -3,12 +3,11 @@
 //! For leaves that are near each other a table has, for each two vertices, the smallest gap over all pairs of triangles that
 //! have them as corners. Leaves that are farther apart have one direction for all their triangles.
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use crate::filter::{PairFilter, Relation, SimplexPair};
 use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, NodePair};
+use crate::parallel;
+use glam::DVec3;
 
 /// Leaves have a table where the gap of their spheres is at most this share of the sum of the radii.
 const NEAR: f64 = 0.3;
@@ -94,7 +93,7 @@ impl<'g> CornerGaps<'g> {
         gaps.spheres = gaps.node_spheres();
         let mut near = gaps.near_leaves();
         near.sort_unstable();
-        let tables: Vec<Option<GapTable>> = near.par_iter().map(|pair| gaps.table(*pair)).collect();
+        let tables: Vec<Option<GapTable>> = parallel::map(&near, |pair| gaps.table(*pair));
         (gaps.tight_starts, gaps.table_starts) = (vec![0; nodes.len() + 1], vec![0; nodes.len() + 1]);
         for (pair, table) in near.iter().zip(&tables) {
             gaps.table_starts[pair.0 as usize + 1] += 1;

@@ -5,7 +5,7 @@ use super::job_result::{JobResult, ResultLayout};
 use super::seal::{HASH, Key};
 use crate::certificates::build::{AddedPairLimit, CertifiedRadii, Executor, Preparation, Stage, TaskResult};
 use crate::certificates::{Certificates, CertifyOptions};
-use crate::thread_pool::on_threads;
+use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 /// Has jobs run, each by [`ShardWorker::run`](crate::ShardWorker::run) in some process; gives the results in the order

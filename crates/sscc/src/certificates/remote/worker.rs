@@ -5,7 +5,7 @@ use super::job_result::JobResult;
 use super::seal::Key;
 use crate::certificates::CertifyOptions;
 use crate::certificates::build::{AddedPairLimit, Preparation, run_task};
-use crate::thread_pool::on_threads;
+use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
 /// Runs jobs of one model; threads may share it.

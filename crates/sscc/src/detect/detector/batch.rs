@@ -2,13 +2,11 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use super::detector::Detector;
 use super::statistics::DetectorStatistics;
-use crate::thread_pool::on_threads;
+use crate::parallel::{map_with, on_threads};
 use crate::{Error, Pair, Progress};
+use glam::DVec3;
 
 /// The answer for one frame of a batch.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +67,7 @@ impl Detector {
             Ok(FrameAnswer { pairs, statistics: detector.statistics() })
         };
         let answers: Vec<Result<FrameAnswer, Error>> =
-            on_threads(threads, || frames.par_iter().map_init(detector, answer).collect());
+            on_threads(threads, || map_with(frames, usize::MAX, detector, answer));
         answers.into_iter().collect()
     }
 }

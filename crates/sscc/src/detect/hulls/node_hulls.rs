@@ -1,12 +1,11 @@
 //! The hulls of all nodes of a hierarchy that are worth one.
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
 use crate::ReducedModel;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::rounding::larger_or_nan;
+use crate::parallel;
+use glam::DVec3;
 
 /// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
 const MAX_TRIANGLES: u32 = 1024;
@@ -74,7 +73,7 @@ impl NodeHulls {
             let of_node = hierarchy.vertices(&hierarchy.nodes()[*n], mesh.faces());
             NodeHull::fit(&vertices, &of_node, residuals)
         };
-        let hulls: Vec<NodeHull> = wanted.par_iter().map_init(Vec::new, fit).collect();
+        let hulls: Vec<NodeHull> = parallel::map_with(&wanted, usize::MAX, Vec::new, fit);
         let mut indices = vec![NONE; hierarchy.nodes().len()];
         wanted.iter().enumerate().for_each(|(i, n)| indices[*n] = i as u32);
         let mut weights = vec![0.0_f64; rank + 1];

@@ -2,12 +2,10 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 use super::answer::{ResolveOptions, Resolved};
 use super::counted::Counted;
+use crate::parallel::{map_with, on_threads};
 use crate::query::query::Query;
-use crate::thread_pool::on_threads;
 use crate::{Error, Progress};
 
 /// Free configurations from the draws of a distribution.
@@ -98,7 +96,7 @@ impl Query {
             Ok(resolved)
         };
         let answers: Vec<Result<Resolved, Error>> =
-            on_threads(threads, || batch.par_iter().map_init(query, answer).collect());
+            on_threads(threads, || map_with(batch, usize::MAX, query, answer));
         answers.into_iter().collect()
     }
 }

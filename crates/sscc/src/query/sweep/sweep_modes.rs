@@ -2,11 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 use super::sweep::Sweep;
+use crate::parallel::{map_with, on_threads};
 use crate::query::query::Query;
-use crate::thread_pool::on_threads;
 use crate::{Error, Progress};
 
 impl Query {
@@ -48,8 +46,7 @@ impl Query {
             progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, ways.len());
             Ok(found)
         };
-        let all: Vec<Result<Sweep, Error>> =
-            on_threads(threads, || ways.par_iter().with_max_len(1).map_init(start, sweep).collect());
+        let all: Vec<Result<Sweep, Error>> = on_threads(threads, || map_with(&ways, 1, start, sweep));
         all.into_iter().collect()
     }
 }

@@ -1,0 +1,48 @@
+//! Work on several threads, with the feature `parallel`; without it, everything runs on the calling thread. Results are the same.
+
+/// Runs `work` with a number of threads (none: all cores).
+pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
+    #[cfg(feature = "parallel")]
+    if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
+        return pool.install(work);
+    }
+    // The system grants no more threads.
+    let _ = threads;
+    work()
+}
+
+/// Maps items on the threads of the current pool. The results are in the order of the items.
+pub(crate) fn map<I: Send, R: Send>(
+    items: impl IntoIterator<Item = I>,
+    f: impl Fn(I) -> R + Sync + Send,
+) -> Vec<R> {
+    map_with(items, usize::MAX, || (), |(), item| f(item))
+}
+
+/// The same with scratch, which one thread makes for at most `grain` items, and keeps for more of them.
+pub(crate) fn map_with<I: Send, S, R: Send>(
+    items: impl IntoIterator<Item = I>,
+    grain: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    f: impl Fn(&mut S, I) -> R + Sync + Send,
+) -> Vec<R> {
+    let items: Vec<I> = items.into_iter().collect();
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.into_par_iter().with_max_len(grain).map_init(scratch, f).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        let (_, mut scratch) = (grain, scratch());
+        items.into_iter().map(|item| f(&mut scratch, item)).collect()
+    }
+}
+
+/// Does two things, at the same time where there are threads.
+pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    return rayon::join(a, b);
+    #[cfg(not(feature = "parallel"))]
+    (a(), b())
+}
