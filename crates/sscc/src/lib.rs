@@ -219,7 +219,8 @@
 //! # Batches, threads, cancelling
 //!
 //! A query owns its memory and serves one thread; clone it for another, or use [`Query::batch`]. Certificates and batches
-//! take a number of threads (none: all cores), and are the same for any number. Long work reports to a [`Progress`]. A
+//! take a number of threads (none: all cores), and are the same for any number; without the feature `parallel`, which is on by default,
+//! they run on the calling thread. Long work reports to a [`Progress`]. A
 //! [`CancelToken`] cancels it, or with [`Query::cancelled_by`] a single query. The `Progress` `()` does neither.
 //!
 //! ```

@@ -2,9 +2,12 @@
 
 use glam::{DMat3, DVec3};
 use sscc::{
-    Certificates, CertifyOptions, Detector, KineticQuery, Method, Modes, Pair, Query, ReducedModel, TriMesh,
+    Aabb, Certificates, CertifyOptions, Detector, KineticQuery, Method, Modes, Pair, Pose, PosedShape, Query,
+    ReducedModel, ResolveOptions, SweptShape, TriMesh, intersect_triangle_triangle,
 };
 use sscc_testing::Numbers;
+
+use crate::sweep::check;
 
 const BONES: usize = 12;
 const LENGTH: usize = 66;
@@ -94,4 +97,73 @@ fn answers_are_those_of_brute_force_and_of_the_positions() {
         kinetic.discrete(&last).unwrap();
     }
     assert!(free > 10 && hits > 100, "{free} {hits}");
+}
+
+/// Safe scales, sweeps and free configurations, against brute force.
+#[test]
+fn ways_from_a_configuration_are_free_as_far_as_they_say() {
+    let (model, random) = (tube(), &mut Numbers(6));
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let mut query = Query::new(&model, &certificates).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let (mut scaled, mut swept, mut resolved) = (0, 0, 0);
+    for case in 0..6 {
+        let q = pose(random, [0.05, 1.0, 3.0][case % 3]);
+        let scale = query.safe_scale(&q).unwrap();
+        for share in [0.1, 0.5, 0.9, 1.0] {
+            let at: Vec<f64> = q.iter().map(|x| x * scale.min(1.0) * share).collect();
+            assert_eq!(oracle.first(&at).unwrap(), None, "case {case}, {share} of {scale}");
+        }
+        scaled += usize::from(scale < 1.0);
+        if oracle.first(&q).unwrap().is_none() {
+            let mode = 12 * (case % BONES) + 9 + case % 3;
+            let sweep = query.sweep(&q, mode, q[mode] + if case % 2 == 0 { 3.0 } else { -3.0 }).unwrap();
+            check(&sweep, &model, &q, &mut oracle, 6);
+            swept += usize::from(sweep.first_hit.is_some());
+        } else if let Some(found) = query.resolve(&q, &ResolveOptions::default()).unwrap().q {
+            assert_eq!(oracle.first(&found).unwrap(), None, "case {case}");
+            resolved += 1;
+        }
+    }
+    assert!(scaled > 1 && swept > 0 && resolved > 0, "{scaled} {swept} {resolved}");
+}
+
+/// Two shapes in the world, at rest and in motion, against all pairs of their triangles.
+#[test]
+fn posed_shapes_meet_where_their_triangles_do() {
+    let (model, random) = (tube(), &mut Numbers(7));
+    let [mut x, mut y] = [(); 2].map(|()| PosedShape::without_certificates(&model).unwrap());
+    let [mut moving, mut resting] = [&x, &y].map(|shape| SweptShape::new(shape).unwrap());
+    let (mut pairs, mut impacts) = (Vec::new(), Vec::new());
+    let (mut found, mut met) = (0, 0);
+    for case in 0..6 {
+        let (q, r) = (pose(random, 0.5), pose(random, 1.0));
+        let [here, there] = [0.0, 0.4 * f64::from(case)]
+            .map(|z| Pose { translation: DVec3::new(0.3, 0.1, z), ..Pose::default() });
+        x.place(&q, &here).unwrap();
+        y.place(&r, &there).unwrap();
+        pairs.clear();
+        x.colliding(&mut y, Aabb::default(), &mut pairs);
+        let faces = model.mesh().faces().len() as u32;
+        let corners = [&x, &y].map(|shape| (0..faces).map(|t| shape.corners(t)).collect::<Vec<_>>());
+        let mut expected = Vec::new();
+        for (i, a) in (0..).zip(&corners[0]) {
+            let meets = |b: &[DVec3; 3]| intersect_triangle_triangle(a, b);
+            expected.extend((0..).zip(&corners[1]).filter(|(_, b)| meets(b)).map(|(j, _): (u32, _)| (i, j)));
+        }
+        assert_eq!(pairs, expected, "case {case}");
+        // A motion that ends there meets at least these pairs.
+        moving.place((&q, &Pose { translation: DVec3::Z * -9.0, ..here.clone() }), (&q, &here)).unwrap();
+        resting.place((&r, &there), (&r, &there)).unwrap();
+        impacts.clear();
+        moving.impacts(&mut resting, Aabb::default(), &mut impacts);
+        for pair in &pairs {
+            assert!(
+                impacts.binary_search_by_key(pair, |impact| impact.pair).is_ok(),
+                "case {case}: {pair:?}"
+            );
+        }
+        (found, met) = (found + pairs.len(), met + impacts.len());
+    }
+    assert!(found > 20 && met > found, "{found} {met}");
 }
