@@ -5,7 +5,7 @@ use crate::contact_constraint::Source;
 
 /// Arm of the resisting torque, as a share of the body's radius: a chosen number. Soft bodies lose energy by the
 /// deformation that moves along their surface, which a few modes do not show. Without it a bunny rocks for more than half
-/// a minute (docs/notes/2026-11-23-contacts-at-rest.md).
+/// a minute (docs/notes/dynamics.md#contacts-between-bodies).
 const ROLLING_FRICTION: f64 = 0.05;
 
 impl World {

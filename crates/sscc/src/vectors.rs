@@ -1,9 +1,9 @@
 //! Vectors of eight single-precision numbers, in the instruction set that the processor has: AVX2, or the baseline.
 //!
 //! A [`Kernel`] is written once, over [`Vectors`], or over plain numbers that the compiler puts into vectors of the
-//! instruction set, as the bounds of certificates do (docs/notes/2026-11-26-time-of-certificates.md). [`InstructionSet`]
+//! instruction set, as the bounds of certificates do (docs/notes/bounds.md#time-of-certificates). [`InstructionSet`]
 //! chooses the vectors at run time. Both kinds round each operation to nearest, and no product is fused with a sum, so a
-//! kernel gives the same bits with both (docs/notes/2026-11-25-explicit-vectors.md).
+//! kernel gives the same bits with both (docs/notes/broad-phase.md#instruction-sets).
 
 use glam::{BVec4A, Mat4, Vec4};
 
@@ -91,7 +91,7 @@ impl InstructionSet {
     }
 
     /// Asks the processor to fetch all of a slice into its caches, where it has AVX2. Loads that depend on each other then
-    /// wait for memory once, not one after the other (docs/notes/2026-11-25-growth-of-queries.md).
+    /// wait for memory once, not one after the other (docs/notes/traversal.md#growth-with-triangles).
     #[inline(always)]
     pub(crate) fn prefetch<T>(self, data: &[T]) {
         match self {

@@ -5,7 +5,7 @@
 //! those of stratified sampling (Cochran 1977, *Sampling Techniques*, chapter 5): the mean of each stratum is weighted
 //! by the stratum's share of the whole scene, for any number of drawn steps. Such a mean is an unbiased estimate of the
 //! mean over the whole scene if the measured steps of a stratum represent the others. Experiment:
-//! docs/notes/2026-11-23-strata.md.
+//! docs/notes/measuring.md#strata.
 
 use crate::random::Random;
 

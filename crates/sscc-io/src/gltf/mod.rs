@@ -13,7 +13,7 @@
 //! skins.
 //!
 //! The module has its own parser: version 1.4.1 of the crate `gltf` panics on unchecked accessors. See
-//! `docs/notes/2026-11-23-parsers-of-other-crates.md`.
+//! `docs/notes/files-and-page.md#readers-of-files`.
 
 mod accessors;
 mod animation;

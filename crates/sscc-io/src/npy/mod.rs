@@ -2,7 +2,7 @@
 //!
 //! The module has its own parser: in the crate `npyz`, parsing takes time exponential in the number of open brackets.
 //! Here the header must have the form that NumPy writes for an array of numbers. The tests compare both on valid files.
-//! See `docs/notes/2026-11-23-parsers-of-other-crates.md`.
+//! See `docs/notes/files-and-page.md#readers-of-files`.
 
 mod array;
 mod blocks;

@@ -18,7 +18,7 @@ use super::BlockSparse;
 use super::dissection::nested_dissection;
 use crate::ModesError;
 
-/// Number of right-hand sides per task. The factor is read once per group: see `docs/notes/2026-11-23-lanczos.md`.
+/// Number of right-hand sides per task. The factor is read once per group: see `docs/notes/modes.md#lanczos`.
 const COLUMNS_PER_TASK: usize = 8;
 
 /// Symbolic factorization for all matrices of one pattern: the order of elimination and the entries of the factor.

@@ -2,7 +2,7 @@
 //!
 //! Reading the processor clock takes a system call, which is too slow for the parts of short steps. One reading of the
 //! processor clock therefore serves a block of steps, and the parts of these steps share it in proportion to the wall
-//! clock (docs/notes/2026-11-23-processor-time.md). The mean of each part is unbiased: let a part work `c` of the
+//! clock (docs/notes/measuring.md#processor-time). The mean of each part is unbiased: let a part work `c` of the
 //! block's `C` seconds, and let another program take `g` seconds at a uniformly distributed moment of the work. The
 //! part gets `(c + g) C / (C + g)` with probability `c / C`, else `c C / (C + g)`; the mean is `c`. The error of a
 //! single step is at most one block.

@@ -4,7 +4,7 @@
 //! the token of the address, a `Host` of this machine (against DNS rebinding) and, if an `Origin` is present, the
 //! page's own. Limits apply to heads, bodies, times and the number of connections.
 //!
-//! The server uses only the parser `httparse` (`docs/notes/2026-11-22-page-server.md`).
+//! The server uses only the parser `httparse` (`docs/notes/files-and-page.md#server`).
 
 mod access;
 mod connection;

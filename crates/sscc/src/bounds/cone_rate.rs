@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use super::strain::StrainGram;
 
-/// Cones of one triangle pair, at most (docs/notes/2026-11-23-bounds.md).
+/// Cones of one triangle pair, at most (docs/notes/bounds.md#affine-bounds-and-directions).
 const MAX_CONES: usize = 48;
 
 struct Cone {

@@ -10,7 +10,7 @@
 //! R_nm >= min over corners (i, j) of  (dir.d_ij - e0) / (|B_ij' dir| + rho_n(dir) + rho_m(dir) + e1)
 //! ```
 //!
-//! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/2026-11-23-bounds.md.
+//! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/bounds.md#affine-bounds-and-directions.
 
 use super::node_modes::NodeModes;
 use crate::hierarchy::{Hierarchy, NodePair};
@@ -36,7 +36,7 @@ pub(crate) struct NodePairScratch {
 }
 
 /// Where the first direction gives less than this share of a sufficient bound, no other direction is tried
-/// (docs/notes/2026-11-23-bounds.md).
+/// (docs/notes/bounds.md#affine-bounds-and-directions).
 const LEAST_FIRST_SHARE: f64 = 0.8;
 
 /// Corners of a box.

@@ -8,7 +8,7 @@ use crate::filter::{PairFilter, Relation};
 const MAX_VERTEX_TRIANGLES: usize = 24;
 
 /// For each two packets with adjacent triangles, a mask of the pairs that never count. Nearly all triangles whose AABBs
-/// overlap share a vertex, so masks avoid most calls of the narrow phase (docs/notes/2026-11-21-packets.md).
+/// overlap share a vertex, so masks avoid most calls of the narrow phase (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct AdjacencyMasks {
     /// For each packet the start of its masks, and the end of all.

@@ -17,7 +17,7 @@ const _: () = assert!(PACKET_TRIANGLES == LANES && BUCKET_TRIANGLES == LANES * L
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///
 /// A bucket is cut into full packets, not into the leaves of the hierarchy, which fill only half of a packet
-/// (docs/notes/2026-11-21-packets.md, docs/notes/2026-11-23-packets-of-buckets.md).
+/// (docs/notes/broad-phase.md#packets, docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct Buckets {
     /// For each node the bucket that it is, or lies in.
@@ -101,7 +101,7 @@ impl Buckets {
     }
 
     /// Computes the masks of adjacent triangles, unless they are known. They take as long as four searches and save nearly
-    /// half of each later one (docs/notes/2026-11-23-one-shot.md).
+    /// half of each later one (docs/notes/queries.md#one-shot-detector).
     pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
         let masks = || AdjacencyMasks::new(&self.packets, &self.slots, &self.triangles, filter);
         self.adjacency.get_or_init(masks);

@@ -11,7 +11,7 @@ use super::vertex_store::VertexStore;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// Quantized rest positions and modes of the vertices of each bucket. A vertex of several buckets is stored in each of
-/// them, so that a bucket is read from contiguous memory (docs/notes/2026-11-23-packets-of-buckets.md).
+/// them, so that a bucket is read from contiguous memory (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct CoarseVertices {
     /// For each bucket its first group of eight vertices, and the end.

@@ -109,7 +109,7 @@ impl NormalCones {
 }
 
 /// The directions on whose positive side the normal of a triangle certainly is. The corners come one by one, not in
-/// an array (docs/notes/2026-11-23-normal-cones.md).
+/// an array (docs/notes/broad-phase.md#normal-cones).
 #[inline]
 fn positive_sides(a: DVec3, b: DVec3, c: DVec3) -> u16 {
     let (e, f) = (b - a, c - a);

@@ -91,7 +91,7 @@ impl<'a> Plane<'a> {
         let [p, q, r] = points;
         let (at_p, at_q, at_r) = (self.estimate(p), self.estimate(q), self.estimate(r));
         // Most calls end here, so all three determinants come before the first branch
-        // (docs/notes/2026-11-23-triangle-tests.md).
+        // (docs/notes/exact-tests.md#triangle-tests).
         if (at_p.det > at_p.error) & (at_q.det > at_q.error) & (at_r.det > at_r.error)
             | (at_p.det < -at_p.error) & (at_q.det < -at_q.error) & (at_r.det < -at_r.error)
         {

@@ -6,7 +6,7 @@ use super::k_means::cluster;
 use super::node::Node;
 use crate::{Metric, ReducedModel};
 
-/// Nodes of at most this many triangles are leaves (docs/notes/2026-11-23-hierarchy.md).
+/// Nodes of at most this many triangles are leaves (docs/notes/broad-phase.md#hierarchy).
 const LEAF_TRIANGLES: usize = 8;
 
 impl Hierarchy {

@@ -12,7 +12,7 @@ use glam::DVec3;
 use crate::{Metric, ReducedModel};
 
 /// How many numbers represent the modes of a triangle: sums of the scaled mode entries with fixed random signs
-/// (docs/notes/2026-11-23-hierarchy.md).
+/// (docs/notes/broad-phase.md#hierarchy).
 const MODE_FEATURES: usize = 9;
 
 pub(super) const FEATURES: usize = 3 + MODE_FEATURES;

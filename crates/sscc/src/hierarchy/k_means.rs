@@ -3,7 +3,7 @@
 use super::cluster_features::{ClusterFeature, FEATURES};
 use super::node::BRANCHING;
 
-/// Iterations of k-means (docs/notes/2026-11-23-hierarchy.md).
+/// Iterations of k-means (docs/notes/broad-phase.md#hierarchy).
 const ITERATIONS: usize = 6;
 
 /// A child may have at most this share of its parent's triangles, 7/8; otherwise the parent is cut evenly. So no input

@@ -3,7 +3,7 @@
 //! Each node is split in half along the longest axis of its triangles' centroids, twice, so that it has up to four
 //! children. Sizes are multiples of a bucket's, so that all buckets but the last are full. Buckets are split the same way, and
 //! the triangles of each bucket are in the order of its packets. The k-means build gives stronger
-//! certificates and takes more than ten times as long (docs/notes/2026-11-23-one-shot.md).
+//! certificates and takes more than ten times as long (docs/notes/queries.md#one-shot-detector).
 
 use glam::{DVec3, Vec3};
 

@@ -13,7 +13,7 @@ use crate::detect::vertex_motion::VertexMotion;
 
 /// All AABBs are refitted once so many pairs of buckets were tested in vain for each bucket that is not open. Such a test takes
 /// about a tenth of the time in which a bucket is opened, so a search never loses much more than it can gain, and takes
-/// little longer than the traditional method (docs/notes/2026-11-26-loose-pairs.md).
+/// little longer than the traditional method (docs/notes/traversal.md#loose-aabbs).
 pub(super) const LOOSE_PAIRS: usize = 2;
 
 /// Finds all hits but exceptions at a norm.

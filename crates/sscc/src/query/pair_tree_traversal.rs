@@ -1,7 +1,7 @@
 //! The traversal of the certified pair tree: only node pairs whose radius is reached are opened.
 //!
 //! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
-//! exactly one of them (docs/notes/2026-11-23-pair-tree-traversal.md).
+//! exactly one of them (docs/notes/traversal.md#end-at-buckets).
 
 use super::certified_traversal::LOOSE_PAIRS;
 use super::local_proofs::{LocalProofs, work};
@@ -34,7 +34,7 @@ const VISITS_OF_LOOSE_PAIR: usize = 8;
 const NODE: u32 = u32::MAX;
 
 /// Whether `|z|` has reached the radius of a stored pair: equality is no proof. A macro keeps the plain comparison of the
-/// release build, see docs/notes/2026-11-23-pair-tree-traversal.md.
+/// release build, see docs/notes/traversal.md#end-at-buckets.
 macro_rules! is_entry_reached {
     ($entry:expr, $norm:expr) => {
         right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)

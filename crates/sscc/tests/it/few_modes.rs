@@ -153,7 +153,7 @@ fn posed_shapes_meet_where_their_triangles_do() {
         }
         assert_eq!(pairs, expected, "case {case}");
         // A motion that ends there meets at least these pairs.
-        moving.place((&q, &Pose { translation: DVec3::Z * -9.0, ..here.clone() }), (&q, &here)).unwrap();
+        moving.place((&q, &Pose { translation: DVec3::Z * -9.0, ..here }), (&q, &here)).unwrap();
         resting.place((&r, &there), (&r, &there)).unwrap();
         impacts.clear();
         moving.impacts(&mut resting, Aabb::default(), &mut impacts);

@@ -1,7 +1,7 @@
 //! Reader for polygon files (PLY): text, binary little endian and binary big endian.
 //!
 //! The module has its own parser: the crate `ply-rs-bw` trusts the counts of the header. Here bytes must back each row,
-//! and only coordinates and corners are kept. See `docs/notes/2026-11-23-parsers-of-other-crates.md`.
+//! and only coordinates and corners are kept. See `docs/notes/files-and-page.md#readers-of-files`.
 
 mod header;
 mod rows;

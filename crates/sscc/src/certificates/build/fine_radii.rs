@@ -5,7 +5,7 @@
 //! a bucket with itself, because no AABB and no plane separates their triangles at any q: wherever the radius is reached,
 //! all of their triangles are moved and compared. Their closest triangles are two rings apart on the surface, where a
 //! radius without subdivision is too small by a fifth in the median. A fine search takes up to milliseconds, so their
-//! numbers are limited (docs/notes/2026-11-25-fine-radii.md).
+//! numbers are limited (docs/notes/bounds.md#fine-radii).
 
 use super::bvtt::{Bvtt, BvttPair, PairState};
 use super::executor::{Executor, Stage};

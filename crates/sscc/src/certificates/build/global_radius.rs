@@ -2,7 +2,7 @@
 //!
 //! The paper caps all radii at `R_global`. Bodies move farther than that, and radii beyond it are proofs like the others: their
 //! bounds hold at any `|z|`. So the pair tree goes on up to [`CertifyOptions::reach`](crate::CertifyOptions::reach) times
-//! `R_global` while its budget lasts (docs/notes/2026-11-26-reach.md).
+//! `R_global` while its budget lasts (docs/notes/pair-tree.md#reach).
 
 use crate::geometry::Aabb;
 use crate::model::rounding::to_f32_down;

@@ -1,7 +1,7 @@
 //! The limits up to which the BVTT is built, one after the other, until the budget of the pair tree is used up.
 //!
 //! The number of node pairs below a limit is not known in advance, so each limit is extrapolated from its growth so far
-//! (docs/notes/2026-11-23-pair-tree-limits.md).
+//! (docs/notes/pair-tree.md#rise-of-the-limit).
 
 use crate::model::rounding::to_f32_down;
 
@@ -24,7 +24,7 @@ const MIN_STEP: f64 = 1.2;
 /// are estimated for one tenth too many, which are dropped in the end.
 const BUDGET_MARGIN: f64 = 1.1;
 
-/// Limits beyond the global radius may use the budget divided by this (docs/notes/2026-11-26-reach.md).
+/// Limits beyond the global radius may use the budget divided by this (docs/notes/pair-tree.md#reach).
 const REACH_DIVISOR: usize = 2;
 
 /// The outer limit is this many times the last one.

@@ -7,7 +7,7 @@
 //!
 //! The outer round adds the pairs beyond the last limit, up to a larger one, with bounds that take less time and may be
 //! smaller. Without them queries beyond the last limit would open every two buckets whose AABBs overlap
-//! (docs/notes/2026-11-26-outer-pairs.md).
+//! (docs/notes/pair-tree.md#outer-round).
 
 use std::ops::Range;
 

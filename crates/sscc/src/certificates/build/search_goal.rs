@@ -3,7 +3,7 @@
 //! The radii that determine the root's radius are precise, and those that queries meet most often are fine
 //! (`fine_radii.rs`). Larger radii are coarse: small parts of a model all collapse at about the same radius, tens of
 //! times the root's, and a precise bound there would need subdivision of every pair
-//! (docs/notes/2026-11-23-coarse-radii.md).
+//! (docs/notes/bounds.md#coarse-radii).
 
 /// How closely a radius is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(super) const COARSE_EPSILON: f64 = 0.4;
 pub(super) const COARSE_SUBDIVISIONS: usize = 4;
 
 /// The relative error of fine searches: the less, the fewer node pairs queries open
-/// (docs/notes/2026-11-25-fine-radii.md).
+/// (docs/notes/bounds.md#fine-radii).
 pub(super) const FINE_EPSILON: f64 = 0.03;
 
 /// The maximum number of subdivisions of one triangle pair in fine searches.

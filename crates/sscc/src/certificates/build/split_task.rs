@@ -11,7 +11,7 @@ use crate::model::rounding::to_f32_down;
 const BUCKET_LOOKAHEAD: f64 = 2.0;
 
 /// In the outer round a pair of buckets is searched where its bound by the nodes alone is below this share of the limit.
-/// Moving hulls separate most of the others until close to their radius (docs/notes/2026-11-26-outer-pairs.md).
+/// Moving hulls separate most of the others until close to their radius (docs/notes/pair-tree.md#outer-round).
 const OUTER_SEARCH_SHARE: f64 = 0.75;
 
 /// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads

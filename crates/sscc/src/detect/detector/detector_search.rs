@@ -7,7 +7,7 @@ use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::{Counters, Search, SearchState, Side};
 
-/// The hierarchy is built again when its cost has grown by this factor (docs/notes/2026-11-23-one-shot.md).
+/// The hierarchy is built again when its cost has grown by this factor (docs/notes/queries.md#one-shot-detector).
 const MAX_COST_GROWTH: f64 = 2.0;
 
 /// Which boxes are refitted before a search.

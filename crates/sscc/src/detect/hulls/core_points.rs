@@ -6,7 +6,7 @@ use crate::geometry::nearest_within;
 use crate::model::rounding::larger_or_nan;
 
 /// Core points of each hull. With 24, hulls leave more node pairs open; more points hardly make them tighter, and take longer
-/// (docs/notes/2026-11-24-moving-hulls.md).
+/// (docs/notes/traversal.md#moving-hulls).
 pub(super) const CORE_POINTS: usize = 32;
 
 /// Directions in which the first core points are extreme: the corners, edge midpoints and face centres of a cube, one

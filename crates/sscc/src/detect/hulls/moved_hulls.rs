@@ -69,7 +69,7 @@ impl<const E: usize> MovedHulls<E> {
     }
 
     /// Whether a test may succeed in this search. Where many triangles collide most tests fail, but those that succeed save
-    /// more (docs/notes/2026-11-25-growth-of-queries.md).
+    /// more (docs/notes/traversal.md#growth-with-triangles).
     #[inline]
     pub(crate) fn is_useful(&self) -> bool {
         self.is_useful

@@ -7,7 +7,7 @@
 //! are closest, and exact numbers decide the signs of gaps along it where rounding does not
 //! ([`feature_direction`](super::feature_direction)). The number of steps then depends on how often the closest
 //! features change, and only by its logarithm on how narrow the gap is. Limits of steps:
-//! docs/notes/2026-11-23-continuous-tests.md.
+//! docs/notes/exact-tests.md#steps-of-conservative-advancement.
 
 use super::candidate_direction::MovingPair;
 use super::closest_points::ClosestPoints;

@@ -7,7 +7,7 @@
 //! (Verlet 1967) with a safe distance for each pair.
 //!
 //! Where the motion of z is nearly straight, the region is a capsule along the predicted motion, else a ball. A capsule costs
-//! little more than a swept query and lasts for tens of steps (docs/notes/2026-11-25-capsules.md).
+//! little more than a swept query and lasts for tens of steps (docs/notes/queries.md#capsules).
 
 mod kinetic_query;
 mod region;

@@ -12,7 +12,7 @@ const MIN_CANDIDATES: usize = 4096;
 
 /// The work for each triangle, at most, and [`MIN_WORK`] more. The unit is the work of finding one candidate. Two layers that
 /// nearly touch everywhere and turn need a quarter of it
-/// (docs/notes/2026-11-26-sweeps-of-near-layers.md).
+/// (docs/notes/queries.md#sweeps-of-near-layers).
 const WORK: usize = 1 << 15;
 const MIN_WORK: usize = 1 << 21;
 
@@ -23,7 +23,7 @@ const ADVANCE: usize = 8;
 const FEATURE_STEP: usize = 128;
 
 /// Steps along features of one candidate in one interval, at most: more than all narrow pairs need that can be left behind
-/// (docs/notes/2026-11-23-continuous-tests.md).
+/// (docs/notes/exact-tests.md#steps-of-conservative-advancement).
 const FEATURE_STEPS: usize = 256;
 
 /// What a sweep has done, and what it may still do.
