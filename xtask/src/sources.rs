@@ -47,8 +47,13 @@ fn read_crate(root: &Path, folder: &str) -> Result<Crate, String> {
     let manifest = table(root, &path)?;
     let name = manifest.get("package").and_then(|package| package.get("name")).and_then(Value::as_str);
     let name = name.ok_or_else(|| format!("{path}: there is no name"))?.to_owned();
-    let dependencies = manifest.get("dependencies").and_then(Value::as_table);
-    let dependencies = dependencies.map_or_else(Vec::new, |all| all.keys().cloned().collect());
+    let targets = manifest.get("target").and_then(Value::as_table);
+    let tables = targets.into_iter().flat_map(|all| all.values()).filter_map(Value::as_table);
+    let dependencies = tables
+        .chain([&manifest])
+        .filter_map(|table| table.get("dependencies")?.as_table())
+        .flat_map(|all| all.keys().cloned())
+        .collect();
     let mut files = Vec::new();
     add_files(root, &format!("{folder}/src"), &[], &mut files)?;
     Ok(Crate { name, folder: folder.to_owned(), dependencies, files })
@@ -78,7 +83,7 @@ fn add_files(root: &Path, folder: &str, module: &[String], files: &mut Vec<Sourc
         }
     }
     // Files that are modules for tests alone.
-    let is_tested = |lines: &[(usize, String)], name: &str| {
+    let is_declared = |lines: &[(usize, String)], name: &str| {
         lines.iter().any(|(_, line)| line.trim_end().ends_with(&format!("mod {name};")))
     };
     let roots: Vec<Vec<(usize, String)>> =
@@ -88,7 +93,7 @@ fn add_files(root: &Path, folder: &str, module: &[String], files: &mut Vec<Sourc
             let Some(child) = file.module.strip_prefix(module).and_then(|rest| rest.first()) else {
                 return true;
             };
-            roots.iter().any(|lines| is_tested(lines, child))
+            roots.iter().any(|lines| is_declared(lines, child))
         });
     }
     Ok(())

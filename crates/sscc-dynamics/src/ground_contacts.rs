@@ -125,6 +125,7 @@ impl GroundContacts {
         if is_same && self.search_limit.is_some() {
             return Ok(());
         }
+        // A clone shares the shape, so that the body can change.
         let shape = &body.shape().clone();
         let displacement_travel = ground.normal.dot(body.rigid.position - self.position).abs();
         let near_travel =

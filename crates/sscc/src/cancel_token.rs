@@ -30,7 +30,7 @@ impl CancelToken {
     }
 
     /// A token that is cancelled as soon as a condition holds, too: for example when a time is over. The condition is asked often,
-    /// by several threads, and should stay true.
+    /// by several threads, and must stay true while work has this token: work that it has cut short and then denies would seem whole.
     pub fn when(condition: impl Fn() -> bool + Send + Sync + 'static) -> Self {
         Self(Arc::new(Shared { condition: Some(Box::new(condition)), ..Shared::default() }))
     }
@@ -49,6 +49,6 @@ impl CancelToken {
 
 impl fmt::Debug for CancelToken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("CancelToken").field(&self.is_cancelled()).finish()
+        f.debug_tuple("CancelToken").field(&self.0.is_cancelled).finish()
     }
 }

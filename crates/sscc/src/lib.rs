@@ -34,8 +34,8 @@
 //! ```
 //!
 //! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`hierarchy::Hierarchy`] and
-//! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and nothing has a lifetime: keep
-//! queries where they are used. This crate reads no files, knows no clock and prints nothing. Positions are vectors of
+//! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and no query, detector or
+//! body has a lifetime: keep them where they are used. This crate reads no files, knows no clock and prints nothing. Positions are vectors of
 //! [`glam`], which it re-exports.
 //!
 //! # Any mesh

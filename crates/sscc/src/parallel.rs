@@ -6,7 +6,7 @@ pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() ->
     if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         return pool.install(work);
     }
-    // The system grants no more threads.
+    // There are no threads, or the system grants no more.
     let _ = threads;
     work()
 }
@@ -19,7 +19,7 @@ pub(crate) fn map<I: Send, R: Send>(
     map_with(items, usize::MAX, || (), |(), item| f(item))
 }
 
-/// The same with scratch, which one thread makes for at most `grain` items, and keeps for more of them.
+/// The same with scratch. Each piece of at most `grain` items has its own, as far as there are threads.
 pub(crate) fn map_with<I: Send, S, R: Send>(
     items: impl IntoIterator<Item = I>,
     grain: usize,

@@ -12,11 +12,9 @@ pub trait Progress: Sync {
     fn cancel_token(&self) -> Option<&CancelToken> {
         None
     }
-}
 
-impl dyn Progress + '_ {
-    /// Whether the computation should end.
-    pub fn is_cancelled(&self) -> bool {
+    /// Whether the computation should end: as its token says.
+    fn is_cancelled(&self) -> bool {
         self.cancel_token().is_some_and(CancelToken::is_cancelled)
     }
 }

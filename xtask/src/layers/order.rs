@@ -68,6 +68,9 @@ impl Order {
     /// Modules without a place in the list of their folder, and places without a module.
     pub fn unplaced_modules(&self, krate: &Crate) -> Vec<String> {
         let mut violations = Vec::new();
+        if !self.0.contains_key(&krate.name) {
+            violations.push(format!("{FILE}: the modules of {} have no list", krate.name));
+        }
         let lists = self
             .0
             .iter()

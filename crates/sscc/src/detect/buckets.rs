@@ -17,7 +17,7 @@ const _: () = assert!(PACKET_TRIANGLES == LANES && BUCKET_TRIANGLES == LANES * L
 /// The buckets of a hierarchy, as far as they do not depend on q.
 ///
 /// A bucket is cut into full packets, not into the leaves of the hierarchy, which fill only half of a packet
-/// (docs/notes/broad-phase.md#packets, docs/notes/broad-phase.md#packets).
+/// (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct Buckets {
     /// For each node the bucket that it is, or lies in.

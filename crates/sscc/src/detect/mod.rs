@@ -1,6 +1,6 @@
 //! Collision detection without certificates: finds the colliding triangles of a deforming mesh.
 //!
-//! The broad phase ([`broad_phase`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed for the
+//! The broad phase ([`search`], [`traversal`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed for the
 //! nodes that a traversal visits (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64
 //! triangles ([`buckets`]), whose boxes are compared eight at a time ([`aabb8`]). The narrow phase ([`narrow_phase`]) is exact.
 //! Where vertices come from is a static parameter ([`vertex_motion`]).

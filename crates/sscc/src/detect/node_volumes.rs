@@ -4,7 +4,7 @@
 //! configurations each AABB is a swept AABB. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
 //! 2004), computed where the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
 //! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel
-//! or not. The traditional method refits everything first, as certified searches do far beyond the pair tree.
+//! or not. The traditional method refits everything first, as certified searches do once loose pairs abound; detectors refit nodes.
 
 use std::sync::Arc;
 

@@ -214,7 +214,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         a: TriangleVertices,
         b: TriangleVertices,
     ) {
-        if self.state.is_cancelled {
+        if self.state.is_cancelled || !self.narrow.hits().is_complete() {
             return;
         }
         let (a, b) = if SIDES == 2 || a.triangle < b.triangle { (a, b) } else { (b, a) };
@@ -226,10 +226,10 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
             [self.sides[0].volumes.corners(a.vertices), self.sides[Self::LAST].volumes.corners(b.vertices)];
         let Context { filter, .. } = self.sides[0].context;
         debug_assert!(SIDES == 2 || relation == filter.relation(pair.0, pair.1));
-        let is_counted = || SIDES == 2 || !filter.is_excluded(pair.0, pair.1);
+        let is_counted =
+            || SIDES == 2 || !filter.is_excluded(pair.0, pair.1) && !self.sides[0].context.is_exception(pair);
         if let Some(hit) = N::test(filter, relation, pair, &corners[0], &corners[1])
             && is_counted()
-            && (SIDES == 2 || !self.sides[0].context.is_exception(pair))
             && !self.narrow.hits().note_if_full()
         {
             self.narrow.hits().list.push(hit);

@@ -283,8 +283,8 @@ mod tests {
             PosedShape::new(model, &Certificates::compute(model, &options, &()).unwrap()).unwrap()
         });
         let mut found = 0;
-        for _ in 0..30 {
-            let pose = Pose { translation: vector(state), ..Pose::default() };
+        for _ in 0..60 {
+            let pose = Pose { translation: vector(state) * 0.5, ..Pose::default() };
             let q = [random(state), random(state)];
             let answers = [&mut alone, &mut shapes].map(|shapes| {
                 let [x, y] = shapes;

@@ -100,9 +100,9 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
     fn answer_open(&self, query: &Query, answers: &mut [Option<Answer>]) -> Result<(), Error> {
         let open: Vec<_> = answers.iter_mut().zip(self.rows).filter(|(answer, _)| answer.is_none()).collect();
         self.done.fetch_max(self.rows.len() - open.len(), Ordering::Relaxed);
-        // Queries that are not in use: a clone has memory for the whole shape.
+        // Queries that are not in use: each has memory for the whole shape.
         let idle = Mutex::new(Vec::new());
-        let first = || query.clone().cancelled_by(self.progress.cancel_token().cloned());
+        let first = || query.discrete_alone().cancelled_by(self.progress.cancel_token().cloned());
         let answer = |(answer, q): (&mut Option<Answer>, &Q)| {
             if self.progress.is_cancelled() {
                 return Err(Error::Cancelled);

@@ -106,7 +106,7 @@ mod tests {
     }
 
     /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs, and in
-    /// others where all AABBs are refitted first, about centres and in a dense metric.
+    /// others far beyond them, about centres and in a dense metric.
     #[test]
     fn hulls_change_no_answer() {
         let (mut free, mut colliding, mut tests) = (0, 0, 0);

@@ -103,6 +103,19 @@ impl Query {
         Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, check }
     }
 
+    /// A clone without the memory of continuous queries and sweeps.
+    pub(super) fn discrete_alone(&self) -> Self {
+        Self {
+            context: self.context.clone(),
+            discrete: self.discrete.clone(),
+            swept: None,
+            candidates: None,
+            norm: self.norm,
+            statistics: self.statistics,
+            check: self.check.clone(),
+        }
+    }
+
     /// The same query, which checks now and then whether the token cancels it; without one, no longer.
     #[must_use]
     pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {

@@ -100,7 +100,7 @@ impl Default for LocalBounds {
 /// A patch that more modes move has no certificate.
 pub(crate) const MOST_MODES: usize = 200;
 
-/// Where less than this share of a shape is proven, searches refit all AABBs. So certificates that cover less would only take time.
+/// Certificates that cover less than this share of a shape take more time than they save (docs/notes/local-certificates.md).
 pub(crate) const LEAST_PROVEN_SHARE: f64 = 0.6;
 
 /// The entries of the gradient of one mode.
