@@ -165,6 +165,7 @@ fn crates_and_modules_have_places_and_are_in_order() {
             "layers.toml: there is no crate c",
             "layers.toml: a has no module three",
             "a/src/one.rs:1: imports crate::two::f (a/src/two.rs): one and two are on one level in layers.toml",
+            "layers.toml: the modules of b have no list",
         ]
     );
     write(&tree, "layers.toml", "crates = [\"b\", \"a\"]\n[modules]\na = [\"two\"]\n");
@@ -173,6 +174,7 @@ fn crates_and_modules_have_places_and_are_in_order() {
         [
             "layers.toml: a: module one has no place",
             "b/Cargo.toml: depends on a: b is below a in layers.toml",
+            "layers.toml: the modules of b have no list",
         ]
     );
     write(&tree, "layers.toml", "crates = [\"a a\"]\n");
