@@ -25,7 +25,7 @@ pub(crate) use build::{
 };
 pub use certificates::{CertificateParts, Certificates};
 pub use digest::Digest;
-pub(crate) use local::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, gradient_len};
+pub(crate) use local::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, PatchModel, gradient_len};
 pub use local::{LocalBounds, LocalCertificates};
 pub use options::CertifyOptions;
 pub use pair_tree::PairTree;

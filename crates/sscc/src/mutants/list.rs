@@ -318,6 +318,12 @@ mutants! {
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
     /// The rounding of a position along each axis is that along any direction.
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
+    /// The rounding of factors without their affine part is left out.
+    LocalAffineRounding: CaughtBy("lib query::affine_modes::tests::the_rest_of_factors_is_within_its_error");
+    /// The rounding of the map of the affine part is left out.
+    LocalAffineMapExact: CaughtBy("lib query::affine_modes::tests::the_rest_of_factors_is_within_its_error");
+    /// What an affine map leaves of a combination of modes is left out.
+    LocalAffineResidual: CaughtBy("lib query::affine_modes::tests::residuals_of_combinations_are_within_their_bounds");
     /// `W f` in single precision is exact.
     LocalStrainExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// F in single precision is exact.

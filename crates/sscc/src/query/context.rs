@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::local_tables::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
-use crate::certificates::FactorScales;
+use crate::certificates::{FactorScales, PatchModel};
 use crate::detect::context::Context;
 use crate::detect::normal_cones::NormalCones;
 use crate::hierarchy::Hierarchy;
@@ -50,7 +50,14 @@ impl QueryContext {
         });
         let locals = used.and_then(|used| {
             let (scales, center) = (FactorScales::new(model, used.center())?, used.center());
-            LocalTables::new(&used.parts().local, used.hierarchy(), center, scales).map(Arc::new)
+            let mut tables = LocalTables::new(&used.parts().local, used.hierarchy(), center, scales)?;
+            // Where few modes move a vertex, a bone moves most parts alone, and their own modes are affine.
+            if !detect.layout.vertices.moving_modes().are_listed()
+                && let Some(model) = PatchModel::new(model, center)
+            {
+                tables.add_affine_modes(&model);
+            }
+            Some(Arc::new(tables))
         });
         let proven = used.filter(|_| exceptions.is_empty());
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);

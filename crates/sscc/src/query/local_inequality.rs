@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::affine_modes::AffineFree;
 use super::local_tables::LocalTables;
 use super::smallest_stretch::{smallest_stretch, stretches_between};
 use crate::certificates::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, gradient_len};
@@ -18,14 +19,42 @@ const ROUND_UP: f64 = 1.0 + 1e-12;
 #[derive(Clone)]
 pub(super) struct LocalInequality<const E: usize> {
     instructions: InstructionSet,
-    /// The factors of the modes at each configuration, in single precision, padded with zeros.
-    factors: [Vec<f32>; E],
-    /// `T` at each configuration, rounded up.
-    sums: [f64; E],
+    ends: [Factors; E],
     /// The radius of the region in z around the segment between the configurations.
     radius: f64,
     /// `eta`
     error: f64,
+}
+
+/// The factors of one configuration without its affine part, which are all of them where none is known (`affine_modes.rs`).
+#[derive(Clone, Default)]
+struct Factors {
+    exact: AffineFree,
+    /// In single precision, padded with zeros.
+    single: Vec<f32>,
+    /// `T`, rounded up.
+    sum: f64,
+}
+
+impl Factors {
+    /// Sets them for q. False for q so far away that sums may overflow.
+    fn set(&mut self, q: &[f64], tables: &LocalTables, is_region: bool) -> bool {
+        let offsets = q.iter().zip(&tables.center).map(|(q, c)| q - c);
+        self.exact.set(offsets.zip(&tables.scales.sizes).map(|(offset, size)| offset * size));
+        let whole = self.exact.sum();
+        // How fast the affine part changes in a region is not known.
+        if let Some(modes) = &tables.affine
+            && !is_region
+        {
+            modes.take_from(&mut self.exact);
+        }
+        let factors = &self.exact.factors;
+        self.single.clear();
+        self.single.extend(factors.iter().map(|factor| *factor as f32));
+        self.single.resize(factors.len().next_multiple_of(LANES), 0.0);
+        self.sum = (self.exact.sum() + self.exact.error) * ROUND_UP;
+        whole.max(self.sum) < 1e30
+    }
 }
 
 impl<const E: usize> LocalInequality<E> {
@@ -33,8 +62,7 @@ impl<const E: usize> LocalInequality<E> {
     pub(super) fn new() -> Self {
         Self {
             instructions: InstructionSet::default(),
-            factors: [const { Vec::new() }; E],
-            sums: [0.0; E],
+            ends: std::array::from_fn(|_| Factors::default()),
             radius: 0.0,
             error: f64::INFINITY,
         }
@@ -49,23 +77,16 @@ impl<const E: usize> LocalInequality<E> {
         if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
             return false;
         }
-        let FactorScales { sizes, scale, reach } = &tables.scales;
-        for (end, q) in coordinates.into_iter().enumerate() {
-            let all = &mut self.factors[end];
-            all.clear();
-            let mut sum = 0.0;
-            all.extend(q.iter().zip(&tables.center).zip(sizes).map(|((q, c), size)| {
-                let factor = (q - c) * size;
-                sum += factor.abs();
-                factor as f32
-            }));
-            all.resize(all.len().next_multiple_of(LANES), 0.0);
-            self.sums[end] = sum * ROUND_UP;
+        let is_region = self.radius > 0.0;
+        let mut is_near = true;
+        for (end, q) in self.ends.iter_mut().zip(coordinates) {
+            is_near &= end.set(q, tables, is_region);
         }
+        let FactorScales { sizes, scale, reach } = &tables.scales;
         let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
         let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
         self.error = right_or!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
-        self.error.is_finite() && self.sums.iter().all(|sum| *sum < 1e30)
+        self.error.is_finite() && is_near
     }
 
     /// The ratios that a certificate allows: those below this.
@@ -95,29 +116,32 @@ impl<const E: usize> LocalInequality<E> {
         // The error of sums of products in single precision, and of the factors.
         let single = 2.0 * (modes.len() as f64 + 4.0) * f64::from(f32::EPSILON);
         let at = |end: usize| {
-            let (mut gathered, mut sum) = ([0.0_f32; MOST_MODES], self.sums[end]);
+            let Factors { exact, single: factors, sum } = &self.ends[end];
+            let (mut gathered, mut sum) = ([0.0_f32; MOST_MODES], *sum);
             let factors = if is_dense {
-                &*self.factors[end]
+                &**factors
             } else {
                 let mut local = 0.0;
                 for (g, k) in gathered.iter_mut().zip(modes) {
-                    *g = self.factors[end][*k as usize];
+                    *g = factors[*k as usize];
                     local += f64::from(g.abs());
                 }
-                sum = sum.min(local * (1.0 + 1e-6) + 1e-30);
+                sum = sum.min((local + exact.error) * (1.0 + 1e-6) + 1e-30);
                 &gathered[..modes.len().next_multiple_of(LANES)]
             };
             sum += more_sum;
             let (gradient, strain) =
                 self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
             let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
-            let strain = strain + rounding + more_strain + 1e-30;
+            let strain = strain + rounding + bounds.widest * exact.error + more_strain + 1e-30;
             let error = bounds.per_factor * sum
-                + bounds.per_error * self.error
+                + bounds.per_error * (self.error + exact.length)
                 + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
+                + bounds.steepest * exact.error
+                + exact.map_error
                 + more_map
                 + 1e-30;
-            (DMat3::IDENTITY + gradient, strain * ROUND_UP, error * ROUND_UP)
+            (DMat3::IDENTITY + exact.map + gradient, strain * ROUND_UP, error * ROUND_UP)
         };
         let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
         let allowed = |stretches: [f64; E], lost: [f64; E]| {

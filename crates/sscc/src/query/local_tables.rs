@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::affine_modes::AffineModes;
 use super::region_rates::RegionRates;
 use crate::Metric;
-use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, gradient_len};
+use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, PatchModel, gradient_len};
 use crate::hierarchy::Hierarchy;
 use crate::vectors::LANES;
 
@@ -23,6 +24,8 @@ pub(super) struct LocalTables {
     pub(super) starts: Vec<[u32; 2]>,
     /// By how much numbers of certificates change in regions; none before [`Self::add_region_rates`], and for dense metrics.
     pub(super) rates: Option<RegionRates>,
+    /// Combinations of modes that move the whole shape by affine maps; none before [`Self::add_affine_modes`].
+    pub(super) affine: Option<AffineModes>,
     /// For each certificate the [bits](list_bit) of the nodes of its list: most nodes are on none.
     list_bits: Vec<u64>,
     /// For each node its buckets, as a range of positions in the order of triangles.
@@ -57,13 +60,28 @@ impl LocalTables {
         let list_bits = certificates.list_starts.windows(2).map(bits).collect();
         let (certificates, center) = (Arc::clone(certificates), center.to_vec());
         let buckets = bucket_ranges(hierarchy);
-        Some(Self { certificates, center, scales, of_node, starts, rates: None, list_bits, buckets })
+        Some(Self {
+            certificates,
+            center,
+            scales,
+            of_node,
+            starts,
+            rates: None,
+            affine: None,
+            list_bits,
+            buckets,
+        })
     }
 
     /// Adds the rates that proofs in regions need. A dense metric has none: its factor may be nearly singular.
     pub(super) fn add_region_rates(&mut self, metric: &Metric) {
         let rates = || RegionRates::new(&self.certificates, &self.scales, &metric.scales());
         self.rates = metric.dense_factor().is_none().then(rates);
+    }
+
+    /// Adds the combinations of modes that move the whole shape by affine maps, if there are any.
+    pub(super) fn add_affine_modes(&mut self, model: &PatchModel<'_>) {
+        self.affine = AffineModes::new(model);
     }
 
     #[inline]

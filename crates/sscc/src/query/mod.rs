@@ -1,6 +1,7 @@
 //! Queries: which pairs of triangles collide at q, or between two q, with traversals that certificates cull (paper,
 //! Algorithm 1 and section 7).
 
+mod affine_modes;
 mod approximate_cones;
 mod batch;
 mod certified_search;

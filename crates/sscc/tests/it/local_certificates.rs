@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use sscc::{
     AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, KineticQuery, Method,
     Metric, MetricKind, Modes, Neighbours, PairTree, Proof, Query, ReducedModel, TriMesh, TriangleGroups,
@@ -10,7 +10,7 @@ use sscc::{
 };
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
-use crate::common::{random_model, random_options};
+use crate::common::{Random, random_model, random_options};
 
 fn model_of(shape: &FlexibleShape) -> ReducedModel {
     let mesh = TriMesh::new(shape.positions.clone(), shape.faces.clone()).unwrap();
@@ -492,4 +492,76 @@ fn heights_that_become_lengths_are_no_proof() {
     compare(&model, &certificates, rays, "pressed", &mut seen);
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     assert!(!oracle.discrete(&[1.0]).unwrap().is_empty());
+}
+
+/// A coil with four handles of twelve modes, whose weights add up to 1: it turns within q.
+fn coil_with_handles() -> ReducedModel {
+    let around = 16;
+    let positions: Vec<DVec3> = (0..=6 * around)
+        .flat_map(|i| {
+            let angle = f64::from(i) / f64::from(around) * std::f64::consts::TAU;
+            let at = DVec3::new(angle.cos(), angle.sin(), 0.06 * angle);
+            [at, at + DVec3::new(0.2 * angle.cos(), 0.2 * angle.sin(), 0.1)]
+        })
+        .collect();
+    let faces = (0..12 * around as u32).map(|i| [i, i + 1, i + 2]).collect();
+    let places =
+        [DVec3::new(1.0, 0.0, 0.0), DVec3::new(-1.0, 0.0, 0.7), DVec3::Y, DVec3::new(0.0, -1.0, 2.0)];
+    let modes = positions.iter().flat_map(|p| {
+        let weights = places.map(|place| (-(*p - place).length_squared()).exp());
+        let sum: f64 = weights.iter().sum();
+        weights.into_iter().flat_map(move |w| {
+            [p.x, p.y, p.z, 1.0].into_iter().flat_map(move |x| DVec3::AXES.map(|axis| axis * (w / sum * x)))
+        })
+    });
+    let modes = Modes::new(48, modes.collect()).unwrap();
+    ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap()
+}
+
+/// The q of a turn of the whole shape after maps of its handles that differ from the identity by a share.
+fn turned_handles(random: &mut Random, degrees: f64, bend: f64) -> Vec<f64> {
+    let turn = DMat3::from_axis_angle(random.vector().normalize(), degrees.to_radians());
+    (0..4)
+        .flat_map(|_| {
+            let bent = DMat3::from_cols(random.vector(), random.vector(), random.vector()) * bend;
+            let map = turn * (DMat3::IDENTITY + bent) - DMat3::IDENTITY;
+            let shift = turn * random.vector() * bend;
+            [map.x_axis, map.y_axis, map.z_axis, shift].into_iter().flat_map(|column| column.to_array())
+        })
+        .collect()
+}
+
+/// Would fail if a turn that needs all handles left a strain, or if what bends the shape were taken away with it.
+#[test]
+fn shapes_that_turn_by_all_handles_are_proven_and_no_contact_is_missed() {
+    let (model, random) = (coil_with_handles(), &mut Random::new(77));
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let mut query = Query::new(&model, &certificates).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    for degrees in [40.0, 90.0, 180.0] {
+        for bend in [0.0, 1e-3] {
+            let q = turned_handles(random, degrees, bend);
+            assert!(query.discrete(&q).unwrap().is_empty() && oracle.first(&q).unwrap().is_none());
+            assert_eq!(query.statistics().proof, Proof::Local, "{degrees} {bend}");
+            // The motion to a little farther turn.
+            let next: Vec<f64> = q.iter().map(|x| x * 1.001).collect();
+            assert!(query.continuous(&q, &next).unwrap().is_empty());
+        }
+    }
+    let (mut free, mut colliding) = (0, 0);
+    for case in 0..cases(240) {
+        let degrees = 180.0 * random.uniform();
+        let bend = [0.01, 0.1, 0.3, 0.6, 1.2][case as usize % 5] * random.uniform();
+        let q = turned_handles(random, degrees, bend);
+        let expected = oracle.discrete(&q).unwrap().to_vec();
+        assert_eq!(query.discrete(&q).unwrap(), expected, "case {case}");
+        (free, colliding) =
+            (free + usize::from(expected.is_empty()), colliding + usize::from(!expected.is_empty()));
+        if case % 8 == 0 {
+            let next = turned_handles(random, degrees, bend);
+            let impacts = oracle.continuous(&q, &next).unwrap().to_vec();
+            assert_eq!(query.continuous(&q, &next).unwrap(), impacts, "case {case}");
+        }
+    }
+    assert!(free >= threshold(40) && colliding >= threshold(40), "{free} {colliding}");
 }

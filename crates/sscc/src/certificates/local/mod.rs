@@ -20,4 +20,4 @@ mod widest_gap;
 pub(crate) use build::compute_local_certificates;
 pub(crate) use local_certificates::{EllipsoidBlocks, GRADIENT, MOST_MODES, gradient_len};
 pub use local_certificates::{LocalBounds, LocalCertificates};
-pub(crate) use patch_model::FactorScales;
+pub(crate) use patch_model::{FactorScales, PatchModel};

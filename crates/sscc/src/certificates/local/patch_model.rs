@@ -48,13 +48,37 @@ impl FactorScales {
 
 impl<'m> PatchModel<'m> {
     /// None where [`FactorScales::new`] gives none.
-    pub(super) fn new(model: &'m ReducedModel, center: &[f64]) -> Option<Self> {
+    pub(crate) fn new(model: &'m ReducedModel, center: &[f64]) -> Option<Self> {
         let (scales, middle) = FactorScales::with_middle(model, center)?;
         let mut positions = vec![DVec3::ZERO; model.mesh().rest_positions().len()];
         for v in model.mesh().used_vertices() {
             positions[v as usize] = (model.position(v, center) - middle) * scales.scale;
         }
         Some(Self { model, positions, scales })
+    }
+
+    /// The number of modes.
+    pub(crate) fn rank(&self) -> usize {
+        self.scales.sizes.len()
+    }
+
+    /// The vertices that faces use.
+    pub(crate) fn used_vertices(&self) -> Vec<u32> {
+        self.model.mesh().used_vertices()
+    }
+
+    /// The position of a vertex: within a cube with sides of length 2, up to rounding.
+    pub(crate) fn position(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    /// Calls `f` with each mode that moves a vertex, and its displacement over the mode's largest one.
+    pub(crate) fn for_each_mode(&self, vertex: u32, mut f: impl FnMut(usize, DVec3)) {
+        for (k, u) in self.model.modes().of_vertex(vertex).iter().enumerate() {
+            if *u != DVec3::ZERO && self.scales.sizes[k] > 0.0 {
+                f(k, *u / self.model.mode_displacement_bound(k, 1.0));
+            }
+        }
     }
 
     /// The modes that move one of these vertices, ascending; none where there are more than `most`.

@@ -1,0 +1,272 @@
+//! Combinations of modes that move the whole shape by one affine map, above all its rotations within q.
+//!
+//! The ellipsoid of a local certificate bounds residuals by `|W f|`. Of handles, corners of a cage or bones a rotation needs all modes
+//! at once; each of them leaves residuals, which cancel. W, with few digits and a floor, does not see that. So f is split:
+//! take any vectors `n_j`, and any numbers `a_j`, as computed. With `f' = f - sum_j a_j n_j` the residuals of a patch are, exactly,
+//!
+//! ```text
+//! (E_i - E_h) f = (E_i - E_h) f' + sum_j a_j (E_i - E_h) n_j
+//! ```
+//!
+//! The first term is at most `s (kappa |W f'| + rho T')`, with `T' = sum_k |f'_k|`. For the second, let `A_j` and `t_j` be any matrix and any
+//! vector, and `e_jv = U_v n_j - A_j p_v - t_j`. Let `E'` be the residuals of another map of the patch, `F' = I + G f' + sum_j a_j A_j`. Then
+//!
+//! ```text
+//! E'_i - E'_h = (E_i - E_h) f' + sum_j a_j (e_ji - e_jh)
+//! ```
+//!
+//! whose second term is at most `2 sum_j |a_j| max |e_j|`, a length L: small where the `n_j` move the shape by affine maps, and right for any
+//! `n_j`. The comparison of the certificate, whose gaps are at least s, becomes
+//!
+//! ```text
+//! kappa |W f'| + rho T' + (L + eta) / s  <  sigma_min(F')
+//! ```
+
+use glam::{DMat3, DVec3};
+
+use crate::certificates::PatchModel;
+
+/// Affine maps of a shape have so many dimensions. More combinations, of modes that move nothing, would gain nothing.
+const MOST: usize = 12;
+
+/// A combination is one whose square of residuals is at most this share of the largest one of a mode.
+const TOLERANCE: f64 = 1e-13;
+
+/// Combinations whose residuals are larger, in units of half the shape's size, gain nothing.
+const MOST_RESIDUAL: f64 = 1e-5;
+
+/// Vertices that combinations are searched with; their residuals are those of all vertices.
+const MOST_FITTED: usize = 1024;
+
+/// Rounds a sum of numbers that are not negative up.
+const ROUND_UP: f64 = 1.0 + 1e-10;
+
+/// Combinations of modes.
+#[derive(Clone)]
+pub(super) struct AffineModes {
+    combinations: Vec<Combination>,
+}
+
+/// One combination `n` of modes.
+#[derive(Clone)]
+struct Combination {
+    /// A unit vector, up to rounding.
+    factors: Vec<f64>,
+    /// `A`
+    map: DMat3,
+    /// An upper bound of the length of `e_v`, for each vertex v.
+    residual: f64,
+}
+
+/// A configuration without its affine part; where nothing is taken away, `a` is zero.
+#[derive(Clone, Default)]
+pub(super) struct AffineFree {
+    /// `f'`, as computed.
+    pub(super) factors: Vec<f64>,
+    /// An upper bound of `sum_k |f'_k - computed f'_k|`, also for factors that err by two units in the last place.
+    pub(super) error: f64,
+    /// `sum_j a_j A_j`, as computed.
+    pub(super) map: DMat3,
+    /// An upper bound of the error of `map` in the Frobenius norm.
+    pub(super) map_error: f64,
+    /// An upper bound of `L`.
+    pub(super) length: f64,
+}
+
+impl AffineFree {
+    /// Sets all factors, with nothing taken away.
+    pub(super) fn set(&mut self, factors: impl Iterator<Item = f64>) {
+        self.factors.clear();
+        self.factors.extend(factors);
+        (self.error, self.map, self.map_error, self.length) = (0.0, DMat3::ZERO, 0.0, 0.0);
+    }
+
+    /// The sum of the magnitudes of the factors as computed.
+    pub(super) fn sum(&self) -> f64 {
+        self.factors.iter().map(|f| f.abs()).sum()
+    }
+}
+
+impl AffineModes {
+    /// The combinations of a model's modes that move it by affine maps; none where there are none.
+    pub(super) fn new(model: &PatchModel<'_>) -> Option<Self> {
+        let fits = Fits::new(model)?;
+        let mut units: Vec<Vec<f64>> = Vec::new();
+        for mut factors in fits.null_vectors() {
+            // Twice, so that the vectors are orthogonal up to rounding.
+            for unit in units.iter().chain(&units) {
+                let along = dot(&factors, unit);
+                factors.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
+            }
+            let length = dot(&factors, &factors).sqrt();
+            if length > 1e-6 && units.len() < MOST {
+                units.push(factors.iter().map(|x| x / length).collect());
+            }
+        }
+        let all = Self::with_directions(model, &fits, units);
+        let combinations: Vec<Combination> =
+            all.combinations.into_iter().filter(|one| one.residual <= MOST_RESIDUAL).collect();
+        (!combinations.is_empty()).then_some(Self { combinations })
+    }
+
+    /// These combinations, whatever they do.
+    fn with_directions(model: &PatchModel<'_>, fits: &Fits, directions: Vec<Vec<f64>>) -> Self {
+        let combination = |factors: Vec<f64>| {
+            let fit = fits.of(&factors);
+            let residual = residual(model, &factors, fit);
+            Combination { factors, map: fit.0, residual }
+        };
+        Self { combinations: directions.into_iter().map(combination).collect() }
+    }
+
+    /// Takes the affine part away from a configuration that has all of its factors.
+    pub(super) fn take_from(&self, free: &mut AffineFree) {
+        let (mut terms, mut map_terms) = (free.sum(), 0.0);
+        for Combination { factors, map, residual } in &self.combinations {
+            let a = dot(&free.factors, factors);
+            free.factors.iter_mut().zip(factors).for_each(|(f, n)| *f -= a * n);
+            terms += a.abs() * factors.iter().map(|n| n.abs()).sum::<f64>();
+            free.map += *map * a;
+            map_terms += norm(map) * a.abs();
+            free.length += 2.0 * residual * a.abs();
+        }
+        // Each of the differences rounds by a unit of what is left or of its product, and all of these are terms of the sum.
+        let rounding = (2 * self.combinations.len() + 4) as f64 * f64::EPSILON;
+        free.error = right_or!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
+        free.map_error = right_or!(rounding * map_terms * ROUND_UP, LocalAffineMapExact, 0.0);
+        free.length = right_or!(free.length * ROUND_UP, LocalAffineResidual, 0.0);
+    }
+}
+
+/// An upper bound of the length of `U_v n - A p_v - t` of every used vertex.
+fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3)) -> f64 {
+    let mut most = 0.0_f64;
+    for v in model.used_vertices() {
+        let mut moved = DVec3::ZERO;
+        model.for_each_mode(v, |k, u| moved += u * factors[k]);
+        let left = (moved - map * model.position(v) - shift).length();
+        if !(left <= most) {
+            most = left;
+        }
+    }
+    // Displacements in units of the largest one are at most 1 along each axis, and err by two units in the last place; so do their
+    // products and sums.
+    let terms: f64 = factors.iter().map(|f| f.abs()).sum::<f64>() + norm(&map) + shift.length();
+    (most + 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms) * ROUND_UP
+}
+
+/// The Gram matrix of what the best affine map leaves of each mode, and these maps.
+struct Fits {
+    rank: usize,
+    gram: Vec<f64>,
+    /// For each mode the map and the translation.
+    maps: Vec<(DMat3, DVec3)>,
+}
+
+impl Fits {
+    /// None where the shape has no volume of its own: positions that are all in one plane.
+    fn new(model: &PatchModel<'_>) -> Option<Self> {
+        let rank = model.rank();
+        let mut gram = vec![0.0; rank * rank];
+        // Of the functions x, y, z and 1 of a position: their products, and those with displacements.
+        let (mut products, mut with) = ([[0.0; 4]; 4], vec![[DVec3::ZERO; 4]; rank]);
+        let mut own: Vec<(usize, DVec3)> = Vec::new();
+        let vertices = model.used_vertices();
+        for v in vertices.iter().copied().step_by(vertices.len().div_ceil(MOST_FITTED).max(1)) {
+            let p = model.position(v);
+            let functions = [p.x, p.y, p.z, 1.0];
+            for (a, row) in functions.iter().zip(&mut products) {
+                row.iter_mut().zip(functions).for_each(|(sum, b)| *sum += a * b);
+            }
+            own.clear();
+            model.for_each_mode(v, |k, u| own.push((k, u)));
+            for (i, (k, u)) in own.iter().enumerate() {
+                with[*k].iter_mut().zip(functions).for_each(|(sum, a)| *sum += *u * a);
+                own[i..].iter().for_each(|(l, w)| gram[k * rank + l] += u.dot(*w));
+            }
+        }
+        let inverse = glam::DMat4::from_cols_array_2d(&products);
+        let determinant = inverse.determinant();
+        let volume: f64 = (0..4).map(|i| products[i][i]).product();
+        if !(determinant > 1e-9 * volume) {
+            return None;
+        }
+        let inverse = inverse.inverse().to_cols_array_2d();
+        let solved: Vec<[DVec3; 4]> = with
+            .iter()
+            .map(|with| std::array::from_fn(|i| (0..4).map(|j| with[j] * inverse[j][i]).sum()))
+            .collect();
+        for k in 0..rank {
+            for l in k..rank {
+                let fitted: f64 = (0..4).map(|i| solved[k][i].dot(with[l][i])).sum();
+                gram[k * rank + l] -= fitted;
+                gram[l * rank + k] = gram[k * rank + l];
+            }
+        }
+        let maps = solved.into_iter().map(|[x, y, z, one]| (DMat3::from_cols(x, y, z), one)).collect();
+        Some(Self { rank, gram, maps })
+    }
+
+    /// The map of a combination.
+    fn of(&self, factors: &[f64]) -> (DMat3, DVec3) {
+        let add = |(map, shift): (DMat3, DVec3), (f, own): (&f64, &(DMat3, DVec3))| {
+            (map + own.0 * *f, shift + own.1 * *f)
+        };
+        factors.iter().zip(&self.maps).fold((DMat3::ZERO, DVec3::ZERO), add)
+    }
+
+    /// Combinations that affine maps leave nothing of, by a Cholesky factorisation with pivots: each mode that is not one is a combination
+    /// of the pivots.
+    fn null_vectors(&self) -> Vec<Vec<f64>> {
+        let Self { rank, gram, .. } = self;
+        let rank = *rank;
+        let mut left: Vec<f64> = (0..rank).map(|k| gram[k * rank + k]).collect();
+        let least = left.iter().fold(0.0, |most: f64, x| most.max(*x)) * TOLERANCE;
+        // Rows of the factor: of each mode its products with the pivots so far.
+        let (mut pivots, mut rows) = (Vec::<usize>::new(), vec![Vec::<f64>::new(); rank]);
+        loop {
+            let next = (0..rank).filter(|k| !pivots.contains(k)).max_by(|a, b| left[*a].total_cmp(&left[*b]));
+            let Some(pivot) = next.filter(|k| left[*k] > least) else { break };
+            let length = left[pivot].sqrt();
+            let of_pivot = rows[pivot].clone();
+            for k in 0..rank {
+                let entry = if k == pivot {
+                    length
+                } else if pivots.contains(&k) {
+                    0.0
+                } else {
+                    (gram[pivot * rank + k] - dot(&of_pivot, &rows[k])) / length
+                };
+                rows[k].push(entry);
+                left[k] -= entry * entry;
+            }
+            pivots.push(pivot);
+        }
+        let others = (0..rank).filter(|k| !pivots.contains(k));
+        others
+            .map(|other| {
+                let mut vector = vec![0.0; rank];
+                vector[other] = 1.0;
+                // Backwards, because each pivot has products with the pivots before it alone.
+                for (i, pivot) in pivots.iter().enumerate().rev() {
+                    let later = pivots[i + 1..].iter();
+                    let sum: f64 = later.map(|later| vector[*later] * rows[*later][i]).sum();
+                    vector[*pivot] = -(rows[other][i] + sum) / rows[*pivot][i];
+                }
+                vector
+            })
+            .collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The Frobenius norm.
+fn norm(matrix: &DMat3) -> f64 {
+    dot(&matrix.to_cols_array(), &matrix.to_cols_array()).sqrt()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Combinations of modes of shapes with handles, and their bounds.
+
+use num_rational::BigRational;
+use sscc_testing::Numbers;
+
+use super::super::exact_matrix::exact;
+use super::*;
+use crate::certificates::FactorScales;
+use crate::{Modes, ReducedModel, TriMesh};
+
+const HANDLES: usize = 3;
+const RANK: usize = 12 * HANDLES;
+
+fn vector(random: &mut Numbers) -> DVec3 {
+    DVec3::new(random.signed(), random.signed(), random.signed())
+}
+
+/// A cloud of triangles, and three handles of twelve modes, whose weights add up to 1.
+fn handles(random: &mut Numbers) -> ReducedModel {
+    let positions: Vec<DVec3> = (0..90).map(|_| vector(random)).collect();
+    let places = [(); HANDLES].map(|()| vector(random));
+    let modes = positions.iter().flat_map(|p| {
+        let weights = places.map(|place| (-(*p - place).length_squared()).exp());
+        let sum: f64 = weights.iter().sum();
+        weights.into_iter().flat_map(move |w| {
+            [p.x, p.y, p.z, 1.0].into_iter().flat_map(move |x| DVec3::AXES.map(|axis| axis * (w / sum * x)))
+        })
+    });
+    let modes = Modes::new(RANK, modes.collect()).unwrap();
+    let faces = (0..30).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap()
+}
+
+/// The q that moves each handle by a map.
+fn coordinates(map: impl Fn(usize) -> (DMat3, DVec3)) -> Vec<f64> {
+    (0..HANDLES)
+        .flat_map(|handle| {
+            let (map, shift) = map(handle);
+            let map = map - DMat3::IDENTITY;
+            [map.x_axis, map.y_axis, map.z_axis, shift].into_iter().flat_map(|column| column.to_array())
+        })
+        .collect()
+}
+
+#[test]
+fn affine_motions_of_all_handles_are_taken_away() {
+    let random = &mut Numbers(4);
+    for _ in 0..20 {
+        let model = handles(random);
+        let center = [0.0; RANK];
+        let patch = PatchModel::new(&model, &center).unwrap();
+        let modes = AffineModes::new(&patch).unwrap();
+        assert_eq!(modes.combinations.len(), 12);
+        let largest = modes.combinations.iter().map(|one| one.residual).fold(0.0, f64::max);
+        assert!(largest < 1e-9, "{largest}");
+        let sizes = FactorScales::new(&model, &center).unwrap().sizes;
+        let factors = |q: Vec<f64>| -> Vec<f64> { q.iter().zip(&sizes).map(|(q, size)| q * size).collect() };
+        let sum = |f: &[f64]| f.iter().map(|f| f.abs()).sum::<f64>();
+        let turn =
+            (DMat3::from_axis_angle(vector(random).normalize(), 3.0 * random.signed()), vector(random));
+        let free = |factors: &[f64]| {
+            let mut free = AffineFree::default();
+            free.set(factors.iter().copied());
+            modes.take_from(&mut free);
+            free
+        };
+        let whole = factors(coordinates(|_| turn));
+        let left = free(&whole);
+        assert!(left.sum() < 1e-8 * sum(&whole), "{} {}", left.sum(), sum(&whole));
+        let map = turn.0 - DMat3::IDENTITY;
+        assert!(norm(&(left.map - map)) < 1e-8 * norm(&map), "{} {map}", left.map);
+        // What bends the shape stays.
+        let bent =
+            factors(coordinates(|handle| if handle == 0 { turn } else { (DMat3::IDENTITY, DVec3::ZERO) }));
+        assert!(free(&bent).sum() > 0.05 * sum(&bent));
+    }
+    // Modes that have no such combination, and a shape in one plane.
+    let positions: Vec<DVec3> = (0..30).map(|_| vector(random)).collect();
+    let faces: Vec<[u32; 3]> = (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let modes = || Modes::new(2, (0..60).map(|i| DVec3::splat((i as f64).sin())).collect()).unwrap();
+    let flat = positions.iter().map(|p| p.with_z(0.0)).collect();
+    for positions in [positions.clone(), flat] {
+        let model = ReducedModel::new(TriMesh::new(positions, faces.clone()).unwrap(), modes()).unwrap();
+        assert!(AffineModes::new(&PatchModel::new(&model, &[0.0; 2]).unwrap()).is_none());
+    }
+}
+
+/// For any combination and any map, here those that fit best.
+#[test]
+fn residuals_of_combinations_are_within_their_bounds() {
+    let random = &mut Numbers(9);
+    let mut tight = 0.0_f64;
+    for case in 0..60 {
+        let model = handles(random);
+        let patch = PatchModel::new(&model, &[0.0; RANK]).unwrap();
+        let fits = Fits::new(&patch).unwrap();
+        let directions: Vec<Vec<f64>> =
+            (0..2).map(|_| (0..RANK).map(|_| random.signed()).collect()).collect();
+        let modes = AffineModes::with_directions(&patch, &fits, directions);
+        let factors: Vec<f64> = (0..RANK).map(|_| random.signed()).collect();
+        let mut free = AffineFree::default();
+        free.set(factors.iter().copied());
+        modes.take_from(&mut free);
+        // What the affine part moves a vertex beside its map and translation.
+        let taken: Vec<f64> = factors.iter().zip(&free.factors).map(|(f, rest)| f - rest).collect();
+        let left = |v: u32| {
+            let mut moved = DVec3::ZERO;
+            patch.for_each_mode(v, |k, u| moved += u * taken[k]);
+            moved - free.map * patch.position(v)
+        };
+        for (i, h) in (0..90).flat_map(|i| (0..i).map(move |h| (i, h))) {
+            let residual = (left(i) - left(h)).length();
+            assert!(residual <= free.length, "case {case}: {residual} {}", free.length);
+            tight = tight.max(residual / free.length);
+        }
+    }
+    assert!(tight > 0.4, "{tight}");
+}
+
+#[test]
+fn the_rest_of_factors_is_within_its_error() {
+    let random = &mut Numbers(2);
+    let mut worst = [0.0_f64; 2];
+    for case in 0..40 {
+        let model = handles(random);
+        let modes = AffineModes::new(&PatchModel::new(&model, &[0.0; RANK]).unwrap()).unwrap();
+        let size = [1.0, 1e-200, 1e100, 1e-3][case % 4];
+        let factors: Vec<f64> = (0..RANK).map(|_| random.signed() * size).collect();
+        let mut free = AffineFree::default();
+        free.set(factors.iter().copied());
+        modes.take_from(&mut free);
+        // The same numbers `a` once more.
+        let mut rest = factors.clone();
+        let amounts = modes.combinations.iter().map(|one| {
+            let a = dot(&rest, &one.factors);
+            rest.iter_mut().zip(&one.factors).for_each(|(f, n)| *f -= a * n);
+            a
+        });
+        let amounts: Vec<f64> = amounts.collect();
+        assert_eq!(rest, free.factors);
+        let magnitude = |x: BigRational| if x < exact(0.0) { -x } else { x };
+        let mut error = exact(0.0);
+        for (k, (f, computed)) in factors.iter().zip(&free.factors).enumerate() {
+            let taken = modes.combinations.iter().zip(&amounts);
+            let taken: BigRational = taken.map(|(one, a)| exact(one.factors[k]) * exact(*a)).sum();
+            error += magnitude(exact(*f) - taken - exact(*computed));
+        }
+        let mut map_error = exact(0.0);
+        for e in 0..9 {
+            let entry = |map: &DMat3| exact(map.to_cols_array()[e]);
+            let sum: BigRational =
+                modes.combinations.iter().zip(&amounts).map(|(one, a)| entry(&one.map) * exact(*a)).sum();
+            let difference = sum - entry(&free.map);
+            map_error += &difference * &difference;
+        }
+        let bounds = [exact(free.error), exact(free.map_error) * exact(free.map_error)];
+        for ((error, bound), worst) in [error, map_error].into_iter().zip(bounds).zip(&mut worst) {
+            assert!(error <= bound, "case {case}");
+            let quotient = error / bound;
+            let share = quotient.numer().bits() as f64 - quotient.denom().bits() as f64;
+            *worst = worst.max(share.exp2());
+        }
+    }
+    assert!(worst[0] > 1e-3 && worst[1] > 1e-6, "{worst:?}");
+}
