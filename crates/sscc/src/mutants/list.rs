@@ -320,10 +320,20 @@ mutants! {
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
     /// The rounding of factors without their affine part is left out.
     LocalAffineRounding: CaughtBy("lib query::affine_modes::tests::the_rest_of_factors_is_within_its_error");
-    /// The rounding of the map of the affine part is left out.
-    LocalAffineMapExact: CaughtBy("lib query::affine_modes::tests::the_rest_of_factors_is_within_its_error");
     /// What an affine map leaves of a combination of modes is left out.
     LocalAffineResidual: CaughtBy("lib query::affine_modes::tests::residuals_of_combinations_are_within_their_bounds");
+    /// That of one of two points is left out.
+    LocalAffineResidualOnce: CaughtBy("lib query::affine_modes::tests::residuals_of_combinations_are_within_their_bounds");
+    /// The residuals of combinations are exact.
+    LocalAffineFitExact: CaughtBy("lib query::affine_modes::tests::residuals_include_their_rounding");
+    /// The rounding of factors without their affine part is no strain.
+    LocalAffineStrainExact: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
+    /// The map without the affine part, and that of the affine part, are exact.
+    LocalAffineMapExact: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
+    /// The map of the affine part is the identity.
+    LocalAffineMapForgotten: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
+    /// What affine maps leave closes no gaps.
+    LocalAffineLengthForgotten: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
     /// `W f` in single precision is exact.
     LocalStrainExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// F in single precision is exact.

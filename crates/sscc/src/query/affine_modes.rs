@@ -1,30 +1,28 @@
 //! Combinations of modes that move the whole shape by one affine map, above all its rotations within q.
 //!
 //! The ellipsoid of a local certificate bounds residuals by `|W f|`. Of handles, corners of a cage or bones a rotation needs all modes
-//! at once; each of them leaves residuals, which cancel. W, with few digits and a floor, does not see that. So f is split:
-//! take any vectors `n_j`, and any numbers `a_j`, as computed. With `f' = f - sum_j a_j n_j` the residuals of a patch are, exactly,
+//! at once; each of them leaves residuals, which cancel. W, with few digits and a floor, does not see that. So f is split: take any vectors
+//! `n_j`, any numbers `a_j`, as computed, and `f' = f - sum_j a_j n_j`. For each j let `A_j` and `t_j` be any matrix and any vector, and
+//! `e_jv = U_v n_j - A_j p_v - t_j`. With the map `F' = I + G f' + sum_j a_j A_j` of the patch, in place of `I + G f`, two of its points differ by
 //!
 //! ```text
-//! (E_i - E_h) f = (E_i - E_h) f' + sum_j a_j (E_i - E_h) n_j
+//! x_i - x_h = F' (p_i - p_h) + (E_i - E_h) f' + sum_j a_j (e_ji - e_jh)
 //! ```
 //!
-//! The first term is at most `s (kappa |W f'| + rho T')`, with `T' = sum_k |f'_k|`. For the second, let `A_j` and `t_j` be any matrix and any
-//! vector, and `e_jv = U_v n_j - A_j p_v - t_j`. Let `E'` be the residuals of another map of the patch, `F' = I + G f' + sum_j a_j A_j`. Then
-//!
-//! ```text
-//! E'_i - E'_h = (E_i - E_h) f' + sum_j a_j (e_ji - e_jh)
-//! ```
-//!
-//! whose second term is at most `2 sum_j |a_j| max |e_j|`, a length L: small where the `n_j` move the shape by affine maps, and right for any
-//! `n_j`. The comparison of the certificate, whose gaps are at least s, becomes
+//! exactly. The second term is at most `s (kappa |W f'| + rho T')`, with `T' = sum_k |f'_k|`, as for f itself. The last one
+//! is at most `L = 2 sum_j |a_j| max |e_j|`: small where the `n_j` move the shape by affine maps, and right for any `n_j`. The comparison
+//! of the certificate, whose gaps are at least s, becomes
 //!
 //! ```text
 //! kappa |W f'| + rho T' + (L + eta) / s  <  sigma_min(F')
 //! ```
+//!
+//! In a region around a configuration or a motion the `a_j` stay those of the configuration, so that f' changes as f does.
 
 use glam::{DMat3, DVec3};
 
-use crate::certificates::PatchModel;
+use crate::certificates::{MOST_MODES, PatchModel};
+use crate::model::rounding::larger_or_nan;
 
 /// Affine maps of a shape have so many dimensions. More combinations, of modes that move nothing, would gain nothing.
 const MOST: usize = 12;
@@ -33,7 +31,7 @@ const MOST: usize = 12;
 const TOLERANCE: f64 = 1e-13;
 
 /// Combinations whose residuals are larger, in units of half the shape's size, gain nothing.
-const MOST_RESIDUAL: f64 = 1e-5;
+const MOST_RESIDUAL: f64 = 1e-6;
 
 /// Vertices that combinations are searched with; their residuals are those of all vertices.
 const MOST_FITTED: usize = 1024;
@@ -63,7 +61,8 @@ struct Combination {
 pub(super) struct AffineFree {
     /// `f'`, as computed.
     pub(super) factors: Vec<f64>,
-    /// An upper bound of `sum_k |f'_k - computed f'_k|`, also for factors that err by two units in the last place.
+    /// An upper bound of `sum_k |f'_k - computed f'_k|` where something is taken away, also for factors that err by two units in the last place;
+    /// elsewhere the conversion to single precision errs by more than they do.
     pub(super) error: f64,
     /// `sum_j a_j A_j`, as computed.
     pub(super) map: DMat3,
@@ -90,7 +89,7 @@ impl AffineFree {
 impl AffineModes {
     /// The combinations of a model's modes that move it by affine maps; none where there are none.
     pub(super) fn new(model: &PatchModel<'_>) -> Option<Self> {
-        let fits = Fits::new(model)?;
+        let fits = (model.rank() <= MOST_MODES).then(|| Fits::new(model, MOST_FITTED))??;
         let mut units: Vec<Vec<f64>> = Vec::new();
         for mut factors in fits.null_vectors() {
             // Twice, so that the vectors are orthogonal up to rounding.
@@ -104,9 +103,16 @@ impl AffineModes {
             }
         }
         let all = Self::with_directions(model, &fits, units);
-        let combinations: Vec<Combination> =
-            all.combinations.into_iter().filter(|one| one.residual <= MOST_RESIDUAL).collect();
+        let is_affine = |one: &Combination| one.residual <= MOST_RESIDUAL;
+        let combinations: Vec<Combination> = all.combinations.into_iter().filter(is_affine).collect();
         (!combinations.is_empty()).then_some(Self { combinations })
+    }
+
+    /// Any combinations, each with any map and a bound of its residuals.
+    #[cfg(test)]
+    pub(super) fn of_parts(parts: Vec<(Vec<f64>, DMat3, f64)>) -> Self {
+        let combination = |(factors, map, residual)| Combination { factors, map, residual };
+        Self { combinations: parts.into_iter().map(combination).collect() }
     }
 
     /// These combinations, whatever they do.
@@ -128,12 +134,12 @@ impl AffineModes {
             terms += a.abs() * factors.iter().map(|n| n.abs()).sum::<f64>();
             free.map += *map * a;
             map_terms += norm(map) * a.abs();
-            free.length += 2.0 * residual * a.abs();
+            free.length += right_or!(2.0, LocalAffineResidualOnce, 1.0) * residual * a.abs();
         }
         // Each of the differences rounds by a unit of what is left or of its product, and all of these are terms of the sum.
         let rounding = (2 * self.combinations.len() + 4) as f64 * f64::EPSILON;
         free.error = right_or!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
-        free.map_error = right_or!(rounding * map_terms * ROUND_UP, LocalAffineMapExact, 0.0);
+        free.map_error = rounding * map_terms * ROUND_UP;
         free.length = right_or!(free.length * ROUND_UP, LocalAffineResidual, 0.0);
     }
 }
@@ -145,14 +151,13 @@ fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3
         let mut moved = DVec3::ZERO;
         model.for_each_mode(v, |k, u| moved += u * factors[k]);
         let left = (moved - map * model.position(v) - shift).length();
-        if !(left <= most) {
-            most = left;
-        }
+        most = larger_or_nan(most, left);
     }
     // Displacements in units of the largest one are at most 1 along each axis, and err by two units in the last place; so do their
     // products and sums.
     let terms: f64 = factors.iter().map(|f| f.abs()).sum::<f64>() + norm(&map) + shift.length();
-    (most + 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms) * ROUND_UP
+    let rounding = 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms;
+    (most + right_or!(rounding, LocalAffineFitExact, 0.0)) * ROUND_UP
 }
 
 /// The Gram matrix of what the best affine map leaves of each mode, and these maps.
@@ -165,14 +170,15 @@ struct Fits {
 
 impl Fits {
     /// None where the shape has no volume of its own: positions that are all in one plane.
-    fn new(model: &PatchModel<'_>) -> Option<Self> {
+    /// By at most so many vertices.
+    fn new(model: &PatchModel<'_>, most: usize) -> Option<Self> {
         let rank = model.rank();
         let mut gram = vec![0.0; rank * rank];
         // Of the functions x, y, z and 1 of a position: their products, and those with displacements.
         let (mut products, mut with) = ([[0.0; 4]; 4], vec![[DVec3::ZERO; 4]; rank]);
         let mut own: Vec<(usize, DVec3)> = Vec::new();
         let vertices = model.used_vertices();
-        for v in vertices.iter().copied().step_by(vertices.len().div_ceil(MOST_FITTED).max(1)) {
+        for v in vertices.iter().copied().step_by(vertices.len().div_ceil(most).max(1)) {
             let p = model.position(v);
             let functions = [p.x, p.y, p.z, 1.0];
             for (a, row) in functions.iter().zip(&mut products) {

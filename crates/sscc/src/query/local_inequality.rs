@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::affine_modes::AffineFree;
+use super::affine_modes::{AffineFree, AffineModes};
 use super::local_tables::LocalTables;
 use super::smallest_stretch::{smallest_stretch, stretches_between};
 use crate::certificates::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, gradient_len};
@@ -11,6 +11,9 @@ use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 
 /// The root of three, rounded up: errors are along each axis, gaps along any direction.
 const DIAGONAL: f64 = 1.7321;
+
+/// The affine part of a motion is taken away where less than this share of the factors is left.
+const MOST_LEFT: f64 = 0.5;
 
 /// Rounds a sum of a handful of non-negative numbers up.
 const ROUND_UP: f64 = 1.0 + 1e-12;
@@ -26,7 +29,7 @@ pub(super) struct LocalInequality<const E: usize> {
     error: f64,
 }
 
-/// The factors of one configuration without its affine part, which are all of them where none is known (`affine_modes.rs`).
+/// The factors of one configuration, without its affine part where that is taken away (`affine_modes.rs`).
 #[derive(Clone, Default)]
 struct Factors {
     exact: AffineFree,
@@ -37,23 +40,18 @@ struct Factors {
 }
 
 impl Factors {
-    /// Sets them for q. False for q so far away that sums may overflow.
-    fn set(&mut self, q: &[f64], tables: &LocalTables, is_region: bool) -> bool {
+    /// Sets them for q, and takes the part of these modes away.
+    fn set(&mut self, q: &[f64], tables: &LocalTables, affine: Option<&AffineModes>) {
         let offsets = q.iter().zip(&tables.center).map(|(q, c)| q - c);
         self.exact.set(offsets.zip(&tables.scales.sizes).map(|(offset, size)| offset * size));
-        let whole = self.exact.sum();
-        // How fast the affine part changes in a region is not known.
-        if let Some(modes) = &tables.affine
-            && !is_region
-        {
-            modes.take_from(&mut self.exact);
+        if let Some(affine) = affine {
+            affine.take_from(&mut self.exact);
         }
         let factors = &self.exact.factors;
         self.single.clear();
         self.single.extend(factors.iter().map(|factor| *factor as f32));
         self.single.resize(factors.len().next_multiple_of(LANES), 0.0);
         self.sum = (self.exact.sum() + self.exact.error) * ROUND_UP;
-        whole.max(self.sum) < 1e30
     }
 }
 
@@ -77,16 +75,37 @@ impl<const E: usize> LocalInequality<E> {
         if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
             return false;
         }
-        let is_region = self.radius > 0.0;
-        let mut is_near = true;
-        for (end, q) in self.ends.iter_mut().zip(coordinates) {
-            is_near &= end.set(q, tables, is_region);
+        // Not so far away that sums may overflow.
+        let mut is_near = self.set_factors(tables, &coordinates, None);
+        if let Some(affine) = &tables.affine {
+            let whole = self.sum();
+            is_near &= self.set_factors(tables, &coordinates, Some(affine));
+            // A part of the shape that moves alone has an affine part, too, by which other parts would seem to bend.
+            if self.sum() >= MOST_LEFT * whole {
+                self.set_factors(tables, &coordinates, None);
+            }
         }
         let FactorScales { sizes, scale, reach } = &tables.scales;
         let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
         let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
         self.error = right_or!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
         self.error.is_finite() && is_near
+    }
+
+    /// Sets the factors of all configurations. False where one is too far away.
+    fn set_factors(
+        &mut self,
+        tables: &LocalTables,
+        coordinates: &[&[f64]; E],
+        affine: Option<&AffineModes>,
+    ) -> bool {
+        self.ends.iter_mut().zip(coordinates).for_each(|(end, q)| end.set(q, tables, affine));
+        self.ends.iter().all(|end| end.sum < 1e30)
+    }
+
+    /// The sum of `T` over all configurations.
+    fn sum(&self) -> f64 {
+        self.ends.iter().map(|end| end.sum).sum()
     }
 
     /// The ratios that a certificate allows: those below this.
@@ -133,15 +152,19 @@ impl<const E: usize> LocalInequality<E> {
             let (gradient, strain) =
                 self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
             let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
-            let strain = strain + rounding + bounds.widest * exact.error + more_strain + 1e-30;
+            let strain = strain
+                + rounding
+                + right_or!(bounds.widest * exact.error, LocalAffineStrainExact, 0.0)
+                + more_strain
+                + 1e-30;
             let error = bounds.per_factor * sum
-                + bounds.per_error * (self.error + exact.length)
+                + bounds.per_error * (self.error + right_or!(exact.length, LocalAffineLengthForgotten, 0.0))
                 + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
-                + bounds.steepest * exact.error
-                + exact.map_error
+                + right_or!(bounds.steepest * exact.error + exact.map_error, LocalAffineMapExact, 0.0)
                 + more_map
                 + 1e-30;
-            (DMat3::IDENTITY + exact.map + gradient, strain * ROUND_UP, error * ROUND_UP)
+            let affine = right_or!(exact.map, LocalAffineMapForgotten, DMat3::ZERO);
+            (DMat3::IDENTITY + affine + gradient, strain * ROUND_UP, error * ROUND_UP)
         };
         let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
         let allowed = |stretches: [f64; E], lost: [f64; E]| {

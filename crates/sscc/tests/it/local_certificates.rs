@@ -531,23 +531,49 @@ fn turned_handles(random: &mut Random, degrees: f64, bend: f64) -> Vec<f64> {
         .collect()
 }
 
+/// The q of one map of all handles.
+fn affine_handles(map: &DMat3) -> Vec<f64> {
+    let map = *map - DMat3::IDENTITY;
+    [map.x_axis, map.y_axis, map.z_axis, DVec3::ZERO].map(|column| column.to_array()).as_flattened().repeat(4)
+}
+
 /// Would fail if a turn that needs all handles left a strain, or if what bends the shape were taken away with it.
 #[test]
 fn shapes_that_turn_by_all_handles_are_proven_and_no_contact_is_missed() {
-    let (model, random) = (coil_with_handles(), &mut Random::new(77));
-    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    for center in [None, Some(turned_handles(&mut Random::new(5), 20.0, 0.1))] {
+        turn_and_bend(center);
+    }
+}
+
+fn turn_and_bend(center: Option<Vec<f64>>) {
+    let (model, random, is_at_rest) = (coil_with_handles(), &mut Random::new(77), center.is_none());
+    let options = CertifyOptions { center, ..CertifyOptions::default() };
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     for degrees in [40.0, 90.0, 180.0] {
         for bend in [0.0, 1e-3] {
             let q = turned_handles(random, degrees, bend);
             assert!(query.discrete(&q).unwrap().is_empty() && oracle.first(&q).unwrap().is_none());
-            assert_eq!(query.statistics().proof, Proof::Local, "{degrees} {bend}");
+            if is_at_rest {
+                assert_eq!(query.statistics().proof, Proof::Local, "{degrees} {bend}");
+            }
             // The motion to a little farther turn.
             let next: Vec<f64> = q.iter().map(|x| x * 1.001).collect();
             assert!(query.continuous(&q, &next).unwrap().is_empty());
         }
     }
+    // Flat, and turned inside out through flat: affine maps, too.
+    let flat = affine_handles(&DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
+    let inside_out = affine_handles(&DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)));
+    assert_eq!(query.discrete(&flat).unwrap(), oracle.discrete(&flat).unwrap());
+    assert!(!query.pairs().is_empty());
+    let still = vec![0.0; 48];
+    assert_eq!(
+        query.continuous(&still, &inside_out).unwrap(),
+        oracle.continuous(&still, &inside_out).unwrap()
+    );
+    assert!(!query.pairs().is_empty());
     let (mut free, mut colliding) = (0, 0);
     for case in 0..cases(240) {
         let degrees = 180.0 * random.uniform();

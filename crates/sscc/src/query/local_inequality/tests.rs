@@ -1,6 +1,7 @@
 //! The inequality of local certificates against exact arithmetic.
 
 use num_rational::BigRational;
+use num_traits::ToPrimitive;
 use sscc_testing::Numbers;
 
 use super::super::exact_matrix::{Matrix, exact, gram, is_above, matrix, of_map};
@@ -164,6 +165,113 @@ fn allowed_ratios_are_at_most_exact() {
         }
     }
     assert!(positive > 500 && swept > 150 && short > 500, "{positive} {swept} {short}");
+}
+
+/// The numbers `a` of a configuration, as they were taken away.
+fn amounts_of(parts: &[(Vec<f64>, DMat3, f64)], f: &[f64], exact: &AffineFree) -> Vec<f64> {
+    let mut left = f.to_vec();
+    let amount = |(factors, _, _): &(Vec<f64>, DMat3, f64)| {
+        let a = left.iter().zip(factors).map(|(f, n)| f * n).sum::<f64>();
+        left.iter_mut().zip(factors).for_each(|(f, n)| *f -= a * n);
+        a
+    };
+    let amounts: Vec<f64> = parts.iter().map(amount).collect();
+    if left == exact.factors { amounts } else { vec![0.0; parts.len()] }
+}
+
+/// Combinations of any kind, with any maps and residuals; patches that all modes move, and others; numbers so large that rounding of
+/// what is taken away decides.
+#[test]
+fn ratios_without_an_affine_part_are_at_most_exact() {
+    let random = &mut Numbers(11);
+    let single = |x: f64| f64::from(x as f32);
+    let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+    let (mut taken, mut positive, mut swept) = (0, 0, 0);
+    for case in 0..3000 {
+        let (rank, own) = (5 + random.below(4), usize::from(case % 2 == 0));
+        let norm = |n: &[f64]| n.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut parts: Vec<(Vec<f64>, DMat3, f64)> = Vec::new();
+        for _ in 0..1 + case % 2 {
+            let mut n: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            for (other, _, _) in &parts {
+                let along: f64 = n.iter().zip(other).map(|(x, u)| x * u).sum();
+                n.iter_mut().zip(other).for_each(|(x, u)| *x -= along * u);
+            }
+            let length = norm(&n);
+            let map = DMat3::from_cols_array(&[(); 9].map(|()| random.signed() * [0.3, 1e3][case % 4 / 3]));
+            parts.push((n.iter().map(|x| x / length).collect(), map, random.power(-9.0, -1.0)));
+        }
+        // Large numbers, so that the rounding of what is left decides: of W, or of the gradients.
+        let [steep, wide] = [[1.0, 1.0], [1e10, 1.0], [1.0, 1e13]][case % 3];
+        let count = rank - own;
+        let gradients: Vec<DMat3> = (0..count)
+            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * steep))))
+            .collect();
+        let ellipsoid: Vec<Vec<f64>> = (0..count)
+            .map(|i| (0..count).map(|k| if k >= i { half(random.signed() * wide) } else { 0.0 }).collect())
+            .collect();
+        let mut certificate = certificate(gradients, ellipsoid);
+        // The first mode may not move the patch.
+        certificate.local.modes.iter_mut().for_each(|k| *k += own as u32);
+        certificate.local.bounds[0].per_error = random.power(-2.0, 2.0);
+        let per_error = certificate.local.bounds[0].per_error;
+        let rest = [0.0, 1e-16, 1e-9, 1e-2][random.below(4)] / steep;
+        let start: Vec<f64> = parts.iter().map(|_| random.signed()).collect();
+        let draw = |random: &mut Numbers, spread: f64| -> Vec<f64> {
+            let along: Vec<f64> = start.iter().map(|a| a + spread * random.signed()).collect();
+            let of_parts = |k: usize| parts.iter().zip(&along).map(|((n, _, _), a)| n[k] * a).sum::<f64>();
+            (0..rank).map(|k| of_parts(k) + rest * random.signed()).collect()
+        };
+        let ends = [draw(random, 0.0), draw(random, 0.02)];
+        let (mut tables, _) = tables_of(&certificate.local, &vec![0.0; rank], &Metric::identity(rank));
+        tables.affine = Some(AffineModes::of_parts(parts.clone()));
+        let mut one = LocalInequality::<1>::new();
+        assert!(one.set_motion(&tables, &DeformedMotion::new([&ends[0]], 0.0)));
+        let allowed = f64::from(one.allowed(&tables, 0));
+        let of_ends = [&ends[0], &ends[1]].map(|f| f.as_slice());
+        let mut two = LocalInequality::<2>::new();
+        assert!(two.set_motion(&tables, &DeformedMotion::new(of_ends, 0.0)));
+        let during = f64::from(two.allowed(&tables, 0));
+        // Whether the comparison holds at a time of the motion, up to rounding on its smaller side.
+        let holds = |ratio: f64, amounts: &[Vec<f64>; 2], t: f64| {
+            let mix = |x: f64, y: f64| exact(x) * exact(1.0 - t) + exact(y) * exact(t);
+            let a: Vec<BigRational> = amounts[0].iter().zip(&amounts[1]).map(|(x, y)| mix(*x, *y)).collect();
+            let left: Vec<BigRational> = (own..rank)
+                .map(|k| {
+                    let taken = parts.iter().zip(&a).map(|((n, _, _), a)| exact(n[k]) * a);
+                    mix(ends[0][k], ends[1][k]) - taken.sum::<BigRational>()
+                })
+                .collect();
+            let map = matrix(|i, j| {
+                let own = certificate.gradients.iter().zip(&left).map(|(g, f)| exact(g.col(j)[i]) * f);
+                let affine = parts.iter().zip(&a).map(|((_, map, _), a)| exact(map.col(j)[i]) * a);
+                own.chain(affine).sum::<BigRational>() + exact(f64::from(u8::from(i == j)))
+            });
+            let image = certificate
+                .ellipsoid
+                .iter()
+                .map(|row| row.iter().zip(&left).map(|(w, f)| exact(*w) * f).sum::<BigRational>());
+            let square: BigRational = image.map(|x| &x * &x).sum();
+            let strain = square.to_f64().unwrap().sqrt();
+            let length: f64 =
+                parts.iter().zip(&a).map(|((_, _, e), a)| 2.0 * e * a.to_f64().unwrap().abs()).sum();
+            is_below((ratio * strain + per_error * length) * (1.0 - 1e-9), &map)
+        };
+        let amounts = [0, 1].map(|end| amounts_of(&parts, &ends[end], &two.ends[end].exact));
+        let alone = amounts_of(&parts, &ends[0], &one.ends[0].exact);
+        taken += usize::from(alone.iter().any(|a| *a != 0.0));
+        if allowed > 0.0 {
+            positive += 1;
+            assert!(holds(allowed, &[alone.clone(), alone], 0.0), "case {case}: {allowed}");
+        }
+        if during > 0.0 {
+            swept += 1;
+            for t in [0.0, 0.25, 0.75, 1.0] {
+                assert!(holds(during, &amounts, t), "case {case}: {during} at {t}");
+            }
+        }
+    }
+    assert!(taken > 2000 && positive > 500 && swept > 300, "{taken} {positive} {swept}");
 }
 
 #[test]
