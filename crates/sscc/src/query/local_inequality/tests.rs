@@ -187,7 +187,7 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
     let single = |x: f64| f64::from(x as f32);
     let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
     let (mut taken, mut positive, mut swept) = (0, 0, 0);
-    for case in 0..3000 {
+    for case in 0..900 {
         let (rank, own) = (5 + random.below(4), usize::from(case % 2 == 0));
         let norm = |n: &[f64]| n.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut parts: Vec<(Vec<f64>, DMat3, f64)> = Vec::new();
@@ -271,7 +271,7 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
             }
         }
     }
-    assert!(taken > 2000 && positive > 500 && swept > 300, "{taken} {positive} {swept}");
+    assert!(taken > 600 && positive > 150 && swept > 90, "{taken} {positive} {swept}");
 }
 
 #[test]
