@@ -1,15 +1,18 @@
 //! The nearest known name to a mistyped one.
 
+use strsim::levenshtein;
+
 /// Returns the name with the smallest edit distance to `typed`, the first of several. None without names.
 pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    names.into_iter().min_by_key(|name| edits(typed, name))
+    names.into_iter().min_by_key(|name| levenshtein(typed, name))
 }
 
 /// Returns "; did you mean 'NAME'?" with the nearest name that has about half of its characters in common with `typed`, else
 /// an empty text.
 pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let typed: String = typed.chars().take(MAX_COMPARED).collect();
-    let is_near = |name: &&str| 2 * edits(&typed, name) <= name.chars().count().max(typed.chars().count());
+    let is_near =
+        |name: &&str| 2 * levenshtein(&typed, name) <= name.chars().count().max(typed.chars().count());
     match nearest(&typed, names).filter(is_near) {
         Some(name) => format!("; did you mean '{name}'?"),
         None => String::new(),
@@ -19,28 +22,13 @@ pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -
 /// Number of characters that are compared with a name: more are no name that was mistyped.
 const MAX_COMPARED: usize = 100;
 
-/// Returns the number of characters to insert, delete or replace (Levenshtein distance).
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn edits_are_counted() {
-        assert_eq!(["", "spring", "sprnig", "string"].map(|name| edits(name, "spring")), [6, 0, 2, 1]);
+        assert_eq!(["", "spring", "sprnig", "string"].map(|name| levenshtein(name, "spring")), [6, 0, 2, 1]);
         assert_eq!(nearest("sprng", ["bunny", "spring"]), Some("spring"));
         assert_eq!(nearest("x", []), None);
     }
