@@ -80,16 +80,13 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Pseudo-random numbers, the same in every run (SplitMix64).
+/// Pseudo-random numbers, the same in every run.
 struct Random(u64);
 
 impl Random {
     /// Uniform in (0, 1].
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (((x ^ (x >> 31)) >> 11) + 1) as f64 / (1_u64 << 53) as f64
+        ((sscc::random::bits(&mut self.0) >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 
     /// Normal, mean 0 and deviation 1 (Box and Muller).

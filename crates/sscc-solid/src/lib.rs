@@ -7,7 +7,8 @@
 //! - [`PartialMaterial`]: the known properties of a material; [`Material::new`] fills in the others;
 //! - [`Element`]: one tetrahedron or cube with its integration points;
 //! - [`Boundary`] and [`MassProperties`] of a solid, [`MassData`] of a reduced model;
-//! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q.
+//! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q;
+//! - [`DisjointSets`]: which cells, triangles or bodies are connected.
 //!
 //! Constructors check their data, so functions can rely on valid values.
 //!
@@ -27,6 +28,7 @@
 //! ```
 
 mod boundary;
+mod disjoint_sets;
 mod elasticity;
 mod element;
 mod error;
@@ -42,6 +44,7 @@ mod stiffness;
 mod volume_mesh;
 
 pub use boundary::Boundary;
+pub use disjoint_sets::DisjointSets;
 pub use elasticity::Elasticity;
 pub use element::{Element, IntegrationPoint};
 pub use error::SolidError;

@@ -286,6 +286,7 @@ mod parallel;
 mod posed;
 mod progress;
 mod query;
+pub mod random;
 #[cfg(test)]
 mod test_models;
 mod vectors;

@@ -1,23 +1,9 @@
 //! Random models for tests within the crate.
 
 use glam::DVec3;
+pub(crate) use sscc_testing::Numbers as Random;
 
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
-
-/// Pseudo-random numbers (an LCG).
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    /// In [-1, 1).
-    pub(crate) fn signed(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
-        (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
-    }
-
-    pub(crate) fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.signed(), self.signed(), self.signed())
-    }
-}
 
 /// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
 /// metric that is not diagonal.

@@ -2,9 +2,7 @@
 
 use glam::DVec3;
 use sscc::{Impact, MovingTriangle, ReducedModel};
-use sscc_testing::first_contact;
-
-use super::distance::distance_triangle_triangle;
+use sscc_testing::{distance, first_contact};
 
 /// Returns whether a pair that some methods list for a motion and others do not proves one of them wrong. It does if
 /// the two triangles have a common point during the motion (exact arithmetic on the positions at both ends), or if
@@ -19,15 +17,14 @@ pub fn is_mismatch(model: &ReducedModel, q_t0: &[f64], q_t1: &[f64], impact: &Im
     first_contact(&x, &y).is_some() || !are_close(&x, &y, impact.time)
 }
 
-/// Returns whether the distance is within twice the tolerance at a time, in floating-point arithmetic.
+/// Returns whether the distance is within twice the tolerance at a time.
 fn are_close(x: &MovingTriangle, y: &MovingTriangle, time: f64) -> bool {
-    // Relative to a corner, so that small differences far from the origin are not lost.
-    let origin = [x.t0[0], x.t1[0]];
-    let ends = |m: &MovingTriangle| [m.t0.map(|p| p - origin[0]), m.t1.map(|p| p - origin[1])];
-    let (x, y) = (ends(x), ends(y));
-    let size = [x, y].as_flattened().as_flattened().iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
-    let at = |[t0, t1]: [[DVec3; 3]; 2]| [0, 1, 2].map(|i: usize| t0[i] + (t1[i] - t0[i]) * time);
-    distance_triangle_triangle(&at(x), &at(y)) <= 2.0 * Impact::TOLERANCE * size
+    // The tolerance is relative to the extent of both triangles, not to their distance from the origin.
+    let extent = |ends: [[DVec3; 3]; 2], origin: DVec3| {
+        ends.as_flattened().iter().fold(0.0_f64, |m, p| m.max((*p - origin).abs().max_element()))
+    };
+    let size = extent([x.t0, y.t0], x.t0[0]).max(extent([x.t1, y.t1], x.t1[0]));
+    distance(x, y, time) <= 2.0 * Impact::TOLERANCE * size
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 mod agreement;
 mod clock;
 mod comparison;
-mod distance;
 mod kinetic;
 mod mismatch;
 mod step;

@@ -6,16 +6,13 @@ use sscc_dynamics::{ContactOptions, Damping, Ground, WorldOptions};
 use sscc_modes::natural_frequencies;
 use sscc_solid::Elasticity;
 
-/// Numbers that are the same on every machine (SplitMix64).
+/// Numbers that are the same on every machine.
 pub struct Random(pub u64);
 
 impl Random {
     /// Returns a number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        sscc::random::uniform(&mut self.0)
     }
 
     /// Returns a number whose logarithm is uniform.

@@ -41,16 +41,13 @@ pub(crate) fn add_product(to: MatMut<f64>, a: MatRef<f64>, b: MatRef<f64>, facto
         .for_each(|(to, a)| matmul(to, Accum::Add, a, b, factor, Par::Seq));
 }
 
-/// Pseudo-random numbers between -1 and 1, the same in every run (Steele, Lea and Flood 2014: splitmix64).
+/// Pseudo-random numbers between -1 and 1, the same in every run.
 pub(super) struct Random(pub u64);
 
 impl Random {
     /// Returns the next number.
     pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        2.0 * sscc::random::uniform(&mut self.0) - 1.0
     }
 
     /// Returns a matrix of random numbers.

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use sscc::Progress;
+use sscc_solid::DisjointSets;
 
 use super::cells::{CELL_SAMPLES, Cells};
 use super::crossings::{Interval, SAMPLES};
-use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
 use super::overlap::{Block, SLACK};
 use super::pieces::{SampleSet, for_each_piece};

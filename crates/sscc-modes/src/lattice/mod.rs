@@ -25,7 +25,6 @@ use surface::{Surface, check_rest};
 mod cells;
 mod copies;
 mod crossings;
-mod disjoint_sets;
 mod grid;
 mod interpolation;
 mod nodes;

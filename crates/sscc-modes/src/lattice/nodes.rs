@@ -1,11 +1,11 @@
 //! Nodes of a lattice: corners of copies that coincide.
 
 use glam::DVec3;
+use sscc_solid::DisjointSets;
 
 use super::cells::{Cells, NONE};
 use super::copies::Copies;
 use super::crossings::Interval;
-use super::disjoint_sets::DisjointSets;
 use super::grid::Grid;
 use super::overlap::{Block, SLACK};
 use super::pieces::for_each_piece;

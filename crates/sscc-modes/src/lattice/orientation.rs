@@ -1,7 +1,8 @@
 //! Check that each part of a surface is oriented as the boundary of a solid.
 
+use sscc_solid::DisjointSets;
+
 use super::crossings::Interval;
-use super::disjoint_sets::DisjointSets;
 use super::surface::Surface;
 use crate::ModesError;
 

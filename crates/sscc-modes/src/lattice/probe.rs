@@ -7,10 +7,10 @@
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
+use sscc_solid::DisjointSets;
 
 use super::cells::{CELL_SAMPLES, Cells};
 use super::crossings::{SAMPLES, cross, sample_at};
-use super::disjoint_sets::DisjointSets;
 use super::pieces::SampleSet;
 
 /// A cell with triangles.

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::{Metric, ReducedModel};
+use crate::{Metric, ReducedModel, random};
 
 /// How many numbers represent the modes of a triangle: sums of the scaled mode entries with fixed random signs
 /// (docs/notes/broad-phase.md#hierarchy).
@@ -68,10 +68,7 @@ fn normalize(features: &mut [ClusterFeature], range: Range<usize>) {
     }
 }
 
-/// Fixed pseudo-random bits (the mixing function of SplitMix64).
+/// Fixed pseudo-random bits: number x of a generator that begins at 0.
 fn hash(x: u64) -> u64 {
-    let x = x.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
+    random::bits(&mut x.wrapping_mul(random::INCREMENT))
 }

@@ -3,17 +3,13 @@
 use glam::DVec3;
 use sscc::TriMesh;
 
-/// Generator of pseudo-random numbers (splitmix64).
+/// Generator of pseudo-random numbers.
 pub struct Random(pub u64);
 
 impl Random {
     /// Returns a number between -1 and 1.
     pub fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as i64 as f64 / 2.0_f64.powi(63)
+        sscc::random::bits(&mut self.0) as i64 as f64 / 2.0_f64.powi(63)
     }
 
     /// Returns a vector in the cube from -1 to 1.

@@ -1,6 +1,8 @@
-//! Pseudo-random numbers of the tests (SplitMix64).
+//! Pseudo-random numbers of the tests.
 
 use glam::DVec3;
+
+use crate::random;
 
 /// A stream of pseudo-random numbers, the same in every run.
 pub(crate) struct Random(u64);
@@ -13,15 +15,12 @@ impl Random {
     }
 
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
+        random::bits(&mut self.0)
     }
 
     /// In [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        random::uniform(&mut self.0)
     }
 
     /// In 0 .. n.

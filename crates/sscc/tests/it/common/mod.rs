@@ -11,7 +11,7 @@ use sscc::{
     TriMesh,
 };
 
-/// Small pseudo-random numbers (SplitMix64).
+/// Small pseudo-random numbers.
 pub struct Random(u64);
 
 impl Random {
@@ -22,15 +22,12 @@ impl Random {
     }
 
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
+        sscc::random::bits(&mut self.0)
     }
 
     /// In [0, 1).
     pub fn uniform(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        sscc::random::uniform(&mut self.0)
     }
 
     /// In [-1, 1).
