@@ -1,25 +1,20 @@
 //! Lines of text in a picture.
 
-use super::glyphs::{HEIGHT, WIDTH, strokes};
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
 use super::image::Image;
 
-/// Height of a line (pixels).
-pub const LINE: usize = 20;
+/// Size of letters.
+const SIZE: RasterHeight = RasterHeight::Size20;
 
-/// Pixels for a unit of the grid of letters.
-const SCALE: f64 = 1.7;
+/// Height of a line (pixels).
+pub const LINE: usize = SIZE.val();
 
 /// Distance from one letter to the next (pixels).
-const ADVANCE: f64 = 10.0;
-
-/// Half the width of a stroke (pixels).
-const PEN: f64 = 0.75;
-
-/// Samples along each side of a pixel.
-const SAMPLES: usize = 4;
+const ADVANCE: usize = get_raster_width(FontWeight::Regular, SIZE);
 
 /// Empty space beside a label (pixels).
-const MARGIN: f64 = 8.0;
+const MARGIN: usize = 8;
 
 /// Largest number of lines of a label.
 const MAX_LINES: usize = 6;
@@ -29,7 +24,7 @@ const ELLIPSIS: &str = "...";
 
 /// Breaks a text into lines for a width (pixels): after blanks and punctuation where there is any, else anywhere.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let fitting = ((width as f64 - 2.0 * MARGIN) / ADVANCE).max(1.0 + ELLIPSIS.len() as f64) as usize;
+    let fitting = (width.saturating_sub(2 * MARGIN) / ADVANCE).max(1 + ELLIPSIS.len());
     let letters: Vec<char> = text.chars().take(fitting * MAX_LINES + 1).collect();
     let (mut lines, mut rest) = (Vec::new(), &letters[..]);
     while rest.len() > fitting {
@@ -49,45 +44,16 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 /// Draws a line of text in the middle of a width (pixels) from `left` on.
 pub fn draw(image: &mut Image, text: &str, left: usize, width: usize, top: usize) {
-    let count = text.chars().count() as f64;
-    let length = (count - 1.0) * ADVANCE + WIDTH * SCALE;
-    let begin = left as f64 + ((width as f64 - length) / 2.0).round();
-    let upper = top as f64 + ((LINE as f64 - HEIGHT * SCALE) / 2.0).round() + 0.5;
+    let begin = left + width.saturating_sub(text.chars().count() * ADVANCE) / 2;
     for (i, letter) in text.chars().enumerate() {
-        draw_letter(image, letter, [begin + i as f64 * ADVANCE + 0.5, upper]);
-    }
-}
-
-/// Draws a letter; `at`: the upper left corner of its grid.
-fn draw_letter(image: &mut Image, letter: char, at: [f64; 2]) {
-    let placed = |point: [f64; 2]| [0, 1].map(|axis| at[axis] + SCALE * point[axis]);
-    let segments: Vec<[[f64; 2]; 2]> = strokes(letter)
-        .flat_map(|stroke| {
-            let ends = stroke.iter().skip(1).chain(stroke.last());
-            stroke.iter().zip(ends).map(|(a, b)| [placed(*a), placed(*b)]).collect::<Vec<_>>()
-        })
-        .collect();
-    // A pixel of space for the pen. `as` converts coordinates left of the picture or above it to 0.
-    let [lower, upper] = [[0.0; 2], [WIDTH, HEIGHT]].map(placed);
-    for y in (lower[1] - 1.0) as usize..=(upper[1] + 1.0) as usize {
-        for x in (lower[0] - 1.0) as usize..=(upper[0] + 1.0) as usize {
-            let offset = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
-            let samples = (0..SAMPLES * SAMPLES)
-                .map(|i| [x as f64 + offset(i % SAMPLES), y as f64 + offset(i / SAMPLES)]);
-            let covered = samples.filter(|p| segments.iter().any(|s| is_covered(*s, *p))).count();
-            image.ink(x, y, covered as f64 / (SAMPLES * SAMPLES) as f64);
+        let raster = |letter| get_raster(letter, FontWeight::Regular, SIZE);
+        let Some(raster) = raster(letter).or_else(|| raster(char::REPLACEMENT_CHARACTER)) else { continue };
+        for (y, row) in raster.rows().enumerate() {
+            for (x, share) in row.iter().enumerate() {
+                image.ink(begin + i * ADVANCE + x, top + y, f64::from(*share) / 255.0);
+            }
         }
     }
-}
-
-/// Whether a point is at most the pen's half width from a segment.
-fn is_covered([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> bool {
-    let (along, to) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-    let square = along[0] * along[0] + along[1] * along[1];
-    let share = if square > 0.0 { (along[0] * to[0] + along[1] * to[1]) / square } else { 0.0 };
-    let share = share.clamp(0.0, 1.0);
-    let away = [to[0] - share * along[0], to[1] - share * along[1]];
-    away[0] * away[0] + away[1] * away[1] <= PEN * PEN
 }
 
 #[cfg(test)]
@@ -98,10 +64,10 @@ mod tests {
     fn names_are_whole_and_break_at_punctuation() {
         assert_eq!(wrapped("jawOpen", 160), ["jawOpen"]);
         assert_eq!(wrapped("mouth_corner_pulls_left", 160), ["mouth_corner_", "pulls_left"]);
-        assert_eq!(wrapped(&"x".repeat(30), 160), ["x".repeat(14), "x".repeat(14), "xx".into()]);
+        assert_eq!(wrapped(&"x".repeat(30), 160), ["x".repeat(16), "x".repeat(14)]);
         assert_eq!(wrapped("", 160), [""]);
         let long = wrapped(&"y".repeat(100_000), 160);
-        assert_eq!((long.len(), long[5].as_str()), (6, "yyyyyyyyyyy..."));
+        assert_eq!((long.len(), long[5].as_str()), (6, "yyyyyyyyyyyyy..."));
         assert!(wrapped("abcdef", 0).iter().all(|line| line.len() <= 4));
     }
 
@@ -116,6 +82,14 @@ mod tests {
         // The bar of the T is darkest in its middle.
         let dark = inked.iter().filter(|(x, y)| image.at(*x, *y)[0] < 90).count();
         assert!(dark > 10, "{dark}");
+        // Letters with accents have shapes of their own, and those that the font lacks have one together.
+        let drawn = |text: &str| {
+            let mut image = Image::new(20, 20);
+            draw(&mut image, text, 0, 20, 0);
+            (0..400).map(|i| image.at(i % 20, i / 20)).collect::<Vec<_>>()
+        };
+        assert!(drawn("\u{e4}") != drawn("a") && drawn("\u{e4}") != drawn("\u{7}"));
+        assert!(drawn("\u{3b1}") == drawn("\u{7}") && drawn("\u{7}") != drawn(" "));
         // Beyond the picture nothing is drawn.
         draw(&mut image, "beyond", 55, 4, 39);
     }

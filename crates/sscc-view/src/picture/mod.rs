@@ -3,7 +3,6 @@
 
 mod camera;
 mod color;
-mod glyphs;
 mod image;
 mod label;
 mod panel;
