@@ -65,76 +65,27 @@
 //! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
 //! mass-orthonormal, so generalised forces are accelerations of q.
 
-mod body;
-mod body_collisions;
-mod broyden;
-mod change;
-mod contact;
-mod contact_constraint;
-mod contact_geometry;
-mod contact_rows;
-mod contact_set;
-mod contact_solver;
-mod correction;
-mod correction_solver;
-mod depth_field;
-mod displacement;
-mod elastic_energy;
+mod bodies;
+mod contacts;
 mod error;
-mod friction_cone;
-mod gauss_seidel;
 mod ground;
-mod ground_contacts;
-mod ground_point;
-mod ground_points;
-mod implicit_step;
-mod island_energy;
-mod islands;
-mod kinematics;
-mod limited_step;
-mod linear_oscillator;
-mod materials;
 mod nearest_point;
-mod nearest_triangles;
-mod nonlinear_oscillator;
 mod options;
 mod packed_rows;
-mod potential_limit;
-mod pseudonormals;
-mod recovery;
-mod rest;
-mod resting_velocities;
-mod rigid_contacts;
-mod rigid_motion;
-mod rigid_velocity;
-mod rolling;
-mod root_constraint;
-mod shape;
-mod sleep;
 mod sound;
-mod start;
 mod state;
 mod step;
-mod step_buffers;
-mod sweep_and_prune;
-mod trial;
 mod world;
 
-pub use body::Body;
-pub use body_collisions::BodyPairs;
-pub use depth_field::{DepthField, SignedDistance};
-pub use elastic_energy::{ElasticEnergy, Evaluation};
+pub use bodies::{
+    Body, Damping, DepthField, Detection, ElasticEnergy, Evaluation, LinearOscillator, NewmarkBuffers,
+    NonlinearOscillator, RigidMotion, Shape, SignedDistance, Start,
+};
+pub use contacts::BodyPairs;
 pub use error::{DynamicsError, Obstacle};
 pub use ground::Ground;
-pub use implicit_step::NewmarkBuffers;
-pub use linear_oscillator::{Damping, LinearOscillator};
-pub use materials::{MATERIALS, SoundMaterial};
-pub use nonlinear_oscillator::NonlinearOscillator;
 pub use options::{ContactOptions, Response, SleepOptions, WorldOptions};
-pub use rigid_motion::RigidMotion;
-pub use shape::Shape;
-pub use sound::SoundBank;
-pub use start::{Detection, Start};
+pub use sound::{MATERIALS, SoundBank, SoundMaterial};
 pub use state::State;
 pub use step::{Counts, Impulse, Observer, Phase};
 pub use world::World;

@@ -2,11 +2,11 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::body::Body;
-use crate::contact::{Anchor, Contact};
-use crate::contact_constraint::GROUND;
-use crate::ground_point::GroundPoint;
-use crate::{DynamicsError, World};
+use crate::contacts::contact::{Anchor, Contact};
+use crate::contacts::contact_constraint::GROUND;
+use crate::contacts::ground_point::GroundPoint;
+use crate::contacts::world_contacts::WorldContacts;
+use crate::{Body, DynamicsError};
 
 /// State of a world. A world with the same options and bodies continues from it with the same bits (see "Determinism" in
 /// [the crate's guarantees](crate#guarantees)).
@@ -27,11 +27,11 @@ const RIGID: usize = 13 + 11 + 1;
 /// a vertex for the first triangle.
 const CONTACT: usize = 2 + 2 + 6 + 3 + 10;
 
-impl World {
-    /// Returns the current state.
-    pub fn state(&self) -> State {
+impl State {
+    /// Returns the state of a world after so many steps.
+    pub(crate) fn of(step: u64, bodies: &[Body], contacts: &WorldContacts) -> Self {
         let mut numbers = Vec::new();
-        for (body, ground) in self.bodies.iter().zip(&self.ground_contacts) {
+        for (body, ground) in bodies.iter().zip(&contacts.ground) {
             let rigid = &body.rigid;
             numbers.extend([&body.q, &body.v, &body.a].into_iter().flatten());
             numbers.extend(rigid.position.to_array());
@@ -47,7 +47,7 @@ impl World {
             numbers.push(body.energy_budget);
             numbers.extend(&rest.q);
         }
-        for contact in &self.contacts.list {
+        for contact in &contacts.triangles.list {
             numbers.extend(contact.bodies.map(f64::from));
             numbers.extend(contact.anchors.iter().map(|anchor| f64::from(anchor.triangle)));
             numbers.extend(contact.anchors.iter().flat_map(|anchor| anchor.weights));
@@ -57,7 +57,7 @@ impl World {
             numbers.extend([f64::from(kind), f64::from(contact.features), contact.normal_impulse]);
             numbers.extend(contact.friction_impulse.to_array());
         }
-        for (n, ground) in self.ground_contacts.iter().enumerate() {
+        for (n, ground) in contacts.ground.iter().enumerate() {
             for point in &ground.points {
                 let mut one = [0.0; CONTACT];
                 one[..3].copy_from_slice(&[n as f64, f64::from(GROUND), f64::from(point.vertex)]);
@@ -66,38 +66,38 @@ impl World {
                 numbers.extend(one);
             }
         }
-        State { step: self.step, numbers }
+        Self { step, numbers }
     }
 
-    /// Restores a state of a world with the same options and bodies.
+    /// Restores the state of bodies, and of their contacts.
     ///
     /// # Errors
-    /// When the state does not fit the bodies or holds an invalid number; then the world is unchanged.
-    pub fn restore(&mut self, state: &State) -> Result<(), DynamicsError> {
-        let expected = self.bodies.iter().map(numbers_of).sum::<usize>();
-        let found = state.numbers.len();
-        let (motion, contacts) = state.numbers.split_at(expected.min(found));
+    /// When the state does not fit the bodies or holds an invalid number; then nothing is changed.
+    pub(crate) fn restore(&self, bodies: &mut [Body], all: &mut WorldContacts) -> Result<(), DynamicsError> {
+        let expected = bodies.iter().map(numbers_of).sum::<usize>();
+        let found = self.numbers.len();
+        let invalid = || DynamicsError::State { found, expected };
+        let (motion, contacts) = self.numbers.split_at(expected.min(found));
         let (contacts, rest) = contacts.as_chunks::<CONTACT>();
-        if motion.len() < expected || !rest.is_empty() || state.numbers.iter().any(|x| !x.is_finite()) {
-            return Err(DynamicsError::State { found, expected });
+        if motion.len() < expected || !rest.is_empty() || self.numbers.iter().any(|x| !x.is_finite()) {
+            return Err(invalid());
         }
         let first_point = contacts.partition_point(|numbers| numbers[1] != f64::from(GROUND));
         let (contacts, points) = contacts.split_at(first_point);
         let points: Option<Vec<(usize, GroundPoint)>> =
-            points.iter().map(|numbers| self.ground_point(numbers)).collect();
-        let points = points.ok_or(DynamicsError::State { found, expected })?;
-        let contacts: Option<Vec<Contact>> = contacts.iter().map(|numbers| self.contact(numbers)).collect();
-        let mut contacts = contacts.ok_or(DynamicsError::State { found, expected })?;
+            points.iter().map(|numbers| ground_point(numbers, bodies)).collect();
+        let contacts: Option<Vec<Contact>> =
+            contacts.iter().map(|numbers| contact(numbers, bodies)).collect();
+        let (points, mut contacts) = (points.ok_or_else(invalid)?, contacts.ok_or_else(invalid)?);
         // `ContactSet::update` requires contacts sorted by key.
         let in_order = contacts.is_sorted_by(|a, b| a.key() < b.key())
             && points.is_sorted_by(|(n, a), (m, b)| (n, a.vertex) < (m, b.vertex));
-        if !in_order || !self.is_valid_motion(motion) {
-            return Err(DynamicsError::State { found, expected });
+        if !in_order || !is_valid_motion(motion, bodies) {
+            return Err(invalid());
         }
-        self.step = state.step;
         let mut numbers = motion.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
-        for (body, ground) in self.bodies.iter_mut().zip(&mut self.ground_contacts) {
+        for (body, ground) in bodies.iter_mut().zip(&mut all.ground) {
             body.q.iter_mut().chain(&mut body.v).chain(&mut body.a).for_each(|x| *x = next());
             let rigid = &mut body.rigid;
             rigid.position = DVec3::from_array([(); 3].map(|()| next()));
@@ -120,69 +120,67 @@ impl World {
             body.pairs.clear();
         }
         for contact in &mut contacts {
-            contact.attach(contact.bodies.map(|body| &self.bodies[body as usize]));
+            contact.attach(contact.bodies.map(|body| &bodies[body as usize]));
         }
-        self.contacts.list = contacts;
+        all.triangles.list = contacts;
         for (body, point) in points {
-            self.ground_contacts[body].points.push(point);
+            all.ground[body].points.push(point);
         }
-        self.body_collisions.reset();
-        self.impulses.clear();
+        all.collisions.reset();
         Ok(())
     }
+}
 
-    /// Whether orientations have the length 1, vertices on the ground exist, and energy budgets are not negative.
-    fn is_valid_motion(&self, motion: &[f64]) -> bool {
-        let mut at = 0;
-        self.bodies.iter().all(|body| {
-            let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
-            at += numbers_of(body);
-            let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
-            let vertices = body.shape().model().mesh().rest_positions().len() as f64;
-            let is_count = (0.0..=vertices).contains(&rigid[13]);
-            (length - 1.0).abs() < 1e-9 && is_count && rigid[RIGID - 1] >= 0.0
-        })
-    }
+/// Whether orientations have the length 1, vertices on the ground exist, and energy budgets are not negative.
+fn is_valid_motion(motion: &[f64], bodies: &[Body]) -> bool {
+    let mut at = 0;
+    bodies.iter().all(|body| {
+        let rigid = &motion[at + body.q.len() + body.v.len() + body.a.len()..][..RIGID];
+        at += numbers_of(body);
+        let length: f64 = rigid[3..7].iter().map(|x| x * x).sum();
+        let vertices = body.shape().model().mesh().rest_positions().len() as f64;
+        let is_count = (0.0..=vertices).contains(&rigid[13]);
+        (length - 1.0).abs() < 1e-9 && is_count && rigid[RIGID - 1] >= 0.0
+    })
+}
 
-    /// Creates a point on the ground from its numbers, with its body. None if one of them is not valid.
-    fn ground_point(&self, numbers: &[f64; CONTACT]) -> Option<(usize, GroundPoint)> {
-        let body = index(numbers[0], self.bodies.len())?;
-        let vertices = self.bodies[body as usize].shape().model().mesh().rest_positions().len();
-        let vertex = index(numbers[2], vertices)?;
-        let is_point = numbers[1] == f64::from(GROUND) && numbers[3..19].iter().all(|x| *x == 0.0);
-        let friction_impulse = DVec3::new(numbers[20], numbers[21], numbers[22]);
-        let point =
-            GroundPoint { vertex, normal_impulse: numbers[19], friction_impulse, ..Default::default() };
-        is_point.then_some((body as usize, point))
-    }
+/// Creates a point on the ground from its numbers, with its body. None if one of them is not valid.
+fn ground_point(numbers: &[f64; CONTACT], all: &[Body]) -> Option<(usize, GroundPoint)> {
+    let body = index(numbers[0], all.len())?;
+    let vertices = all[body as usize].shape().model().mesh().rest_positions().len();
+    let vertex = index(numbers[2], vertices)?;
+    let is_point = numbers[1] == f64::from(GROUND) && numbers[3..19].iter().all(|x| *x == 0.0);
+    let friction_impulse = DVec3::new(numbers[20], numbers[21], numbers[22]);
+    let point = GroundPoint { vertex, normal_impulse: numbers[19], friction_impulse, ..Default::default() };
+    is_point.then_some((body as usize, point))
+}
 
-    /// Creates a contact from its numbers. None if a body, a triangle or the age is not a valid number.
-    fn contact(&self, numbers: &[f64; CONTACT]) -> Option<Contact> {
-        let bodies = [index(numbers[0], self.bodies.len())?, index(numbers[1], self.bodies.len())?];
-        let triangle = |n: usize| {
-            let mesh = self.bodies[bodies[n] as usize].shape().model().mesh();
-            index(numbers[2 + n], mesh.faces().len())
-        };
-        let anchor = |n: usize| {
-            let weights = [0, 1, 2].map(|k| numbers[4 + 3 * n + k]);
-            Some(Anchor { triangle: triangle(n)?, weights })
-        };
-        Some(Contact {
-            bodies,
-            anchors: [anchor(0)?, anchor(1)?],
-            normal: DVec3::new(numbers[10], numbers[11], numbers[12]),
-            offset: numbers[13],
-            max_slip: numbers[14],
-            preload: numbers[15],
-            age: index(numbers[16], u32::MAX as usize)?,
-            is_rigid: index(numbers[17], 3)? > 0,
-            is_duplicate: numbers[17] == 2.0,
-            features: index(numbers[18], 32)? as u8,
-            normal_impulse: numbers[19],
-            friction_impulse: DVec3::new(numbers[20], numbers[21], numbers[22]),
-            ..Contact::default()
-        })
-    }
+/// Creates a contact from its numbers. None if a body, a triangle or the age is not a valid number.
+fn contact(numbers: &[f64; CONTACT], all: &[Body]) -> Option<Contact> {
+    let bodies = [index(numbers[0], all.len())?, index(numbers[1], all.len())?];
+    let triangle = |n: usize| {
+        let mesh = all[bodies[n] as usize].shape().model().mesh();
+        index(numbers[2 + n], mesh.faces().len())
+    };
+    let anchor = |n: usize| {
+        let weights = [0, 1, 2].map(|k| numbers[4 + 3 * n + k]);
+        Some(Anchor { triangle: triangle(n)?, weights })
+    };
+    Some(Contact {
+        bodies,
+        anchors: [anchor(0)?, anchor(1)?],
+        normal: DVec3::new(numbers[10], numbers[11], numbers[12]),
+        offset: numbers[13],
+        max_slip: numbers[14],
+        preload: numbers[15],
+        age: index(numbers[16], u32::MAX as usize)?,
+        is_rigid: index(numbers[17], 3)? > 0,
+        is_duplicate: numbers[17] == 2.0,
+        features: index(numbers[18], 32)? as u8,
+        normal_impulse: numbers[19],
+        friction_impulse: DVec3::new(numbers[20], numbers[21], numbers[22]),
+        ..Contact::default()
+    })
 }
 
 /// Returns a number as an index below `count`. None if it is not one.

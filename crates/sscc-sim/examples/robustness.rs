@@ -11,7 +11,7 @@
 //! The arguments are the number of scenes and the seed. The exit code is 1 if a scene did not run to its end.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "../../sscc-dynamics/tests/common/random_scene.rs"]
+#[path = "../../sscc-dynamics/tests/it/common/random_scene.rs"]
 mod random_scene;
 
 use std::path::Path;

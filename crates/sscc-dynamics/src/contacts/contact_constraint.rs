@@ -1,0 +1,89 @@
+//! Contact constraint of one step, which can only push, with Coulomb friction.
+
+use glam::DVec3;
+
+use super::contact::{Contact, ModalInverseMass};
+use crate::Shape;
+
+/// Number of the ground where a constraint lists its bodies.
+pub(crate) const GROUND: u32 = u32::MAX;
+
+/// Origin of a contact constraint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    /// Contact of this vertex with the ground.
+    Vertex(u32),
+    /// Triangle contact with this number.
+    Contact(u32),
+}
+
+/// Contact constraint of one step. Vectors are in axes of the world; for a contact within one body, in axes of the
+/// body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactConstraint {
+    /// Numbers of the two bodies; equal for a contact within one body.
+    pub bodies: [u32; 2],
+    pub source: Source,
+    /// Unit normal; pushes the first body away from the second.
+    pub normal: DVec3,
+    /// Vectors from the centres of mass to the common point on which impulses act.
+    pub arms: [DVec3; 2],
+    /// Length by which the spring is compressed: penetration depth beyond the skin; negative where the contact is open.
+    pub compression: f64,
+    /// Modal inverse masses of the two points.
+    pub modal_inverse_mass: [ModalInverseMass; 2],
+    /// Coulomb's coefficient of friction.
+    pub friction: f64,
+    /// Accumulated impulse on the first body along the normal; never negative.
+    pub normal_impulse: f64,
+    /// Accumulated impulse on the first body perpendicular to the normal.
+    pub friction_impulse: DVec3,
+}
+
+/// Body that takes part in a constraint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side {
+    /// 0 for the first body, 1 for the second.
+    pub n: usize,
+    pub body: usize,
+    /// Sign of the impulse on this body.
+    pub sign: f64,
+}
+
+impl ContactConstraint {
+    /// Whether both sides belong to one body.
+    pub fn is_within(&self) -> bool {
+        self.bodies[0] == self.bodies[1]
+    }
+
+    /// Returns the impulse on the first body.
+    pub fn impulse(&self) -> DVec3 {
+        self.normal * self.normal_impulse + self.friction_impulse
+    }
+
+    /// Returns the bodies of the constraint, each once, without the ground.
+    pub fn sides(&self) -> impl Iterator<Item = Side> + use<> {
+        sides(self.bodies)
+    }
+
+    /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
+    pub fn modes<'s>(&self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
+        self.source.modes(n, shape, contacts)
+    }
+}
+
+/// Returns the bodies of a pair, each once, without the ground.
+pub(crate) fn sides(bodies: [u32; 2]) -> impl Iterator<Item = Side> {
+    let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || bodies[0] != bodies[1]);
+    (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
+}
+
+impl Source {
+    /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
+    pub fn modes<'s>(self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
+        match self {
+            Self::Vertex(v) => shape.model().modes().of_vertex(v),
+            Self::Contact(contact) => &contacts[contact as usize].modes[n],
+        }
+    }
+}

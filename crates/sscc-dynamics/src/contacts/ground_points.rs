@@ -1,0 +1,96 @@
+//! Choice of the points on the ground: vertices of a body that the corrections of a step keep above the ground.
+//!
+//! Few of the vertices near the ground bear the body, and all others follow from them through the modes. So a step begins
+//! with the points that bore the body in the last one, and adds the lowest of the vertices that would still sink.
+
+use super::contact_laws::ContactLaws;
+use super::ground_contacts::GroundContacts;
+use super::ground_point::GroundPoint;
+use crate::{Body, DynamicsError, Ground};
+
+/// Maximum number of points that a body gains in one round of corrections.
+const MAX_NEW_POINTS: usize = 8;
+
+/// Minimum distance between points that a body gains in the same round, as a share of its radius.
+const MIN_DISTANCE: f64 = 0.05;
+
+impl GroundContacts {
+    /// Begins a step: finds the vertices near the ground, and keeps the points that bore the body in the last step.
+    pub fn begin(
+        &mut self,
+        body: &mut Body,
+        ground: &Ground,
+        laws: &ContactLaws,
+    ) -> Result<(), DynamicsError> {
+        self.update(body, ground, laws.skin)?;
+        self.count = self.touching.len();
+        self.touching_at_start.clone_from(&self.touching);
+        self.points.retain(|point| point.normal_impulse > 0.0);
+        self.locate(body, ground, laws);
+        Ok(())
+    }
+
+    /// Computes the geometry of all points at the beginning of the step.
+    fn locate(&mut self, body: &Body, ground: &Ground, laws: &ContactLaws) {
+        for point in &mut self.points {
+            let GroundPoint { normal_impulse, friction_impulse, .. } = *point;
+            *point = GroundPoint {
+                normal_impulse,
+                friction_impulse,
+                ..GroundPoint::at(point.vertex, body, ground, laws)
+            };
+        }
+    }
+
+    /// Makes points of the lowest vertices that sink in the motion to the current state, which was the last one to be
+    /// updated. Returns whether there are any.
+    pub fn add_sinking(&mut self, body: &Body, ground: &Ground, laws: &ContactLaws) -> bool {
+        let mut sinking: Vec<(u32, f64)> = Vec::new();
+        for &(vertex, gap) in &self.touching {
+            if gap < laws.min_gap() && gap < self.start_gap(vertex) && self.find(vertex).is_err() {
+                sinking.push((vertex, gap));
+            }
+        }
+        sinking.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let distance = MIN_DISTANCE * body.shape().radius();
+        let mut new: Vec<GroundPoint> = Vec::new();
+        for (vertex, _) in sinking {
+            let point = GroundPoint::at(vertex, body, ground, laws);
+            if new.iter().all(|other| other.arm.distance(point.arm) > distance) {
+                new.push(point);
+                if new.len() == MAX_NEW_POINTS {
+                    break;
+                }
+            }
+        }
+        self.points.extend_from_slice(&new);
+        self.points.sort_unstable_by_key(|point| point.vertex);
+        !new.is_empty()
+    }
+
+    /// Returns the share of the step after which the first vertex is below the ground in the current state, which was the
+    /// last one to be updated; None if all stay above. Vertices that begin below do not count.
+    pub fn sinks_after(&self) -> Option<f64> {
+        let mut first = None;
+        for &(vertex, gap) in self.touching.iter().filter(|(_, gap)| *gap < 0.0) {
+            // Vertices that began beyond the skin have at least this gap at the beginning.
+            let start = self.start_gap(vertex);
+            if start >= 0.0 {
+                let share = start / (start - gap);
+                first = Some(first.map_or(share, |other: f64| other.min(share)));
+            }
+        }
+        first
+    }
+
+    /// Returns the gap of a vertex at the beginning of the step, or the skin if it is larger.
+    fn start_gap(&self, vertex: u32) -> f64 {
+        let found = self.touching_at_start.binary_search_by_key(&vertex, |(vertex, _)| *vertex);
+        found.map_or(self.skin, |n| self.touching_at_start[n].1)
+    }
+
+    /// Returns the place of a vertex's point, or where it would be.
+    pub fn find(&self, vertex: u32) -> Result<usize, usize> {
+        self.points.binary_search_by_key(&vertex, |point| point.vertex)
+    }
+}

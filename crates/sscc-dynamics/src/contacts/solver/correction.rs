@@ -1,0 +1,48 @@
+//! Constraint on the end of a step, of a contact or of a point on the ground.
+
+use glam::{DMat3, DVec3};
+
+use crate::contacts::contact_constraint::Source;
+
+/// Constraint on the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Correction {
+    pub bodies: [u32; 2],
+    pub source: Source,
+    pub normal: DVec3,
+    pub arms: [DVec3; 2],
+    /// Matrix from impulse to change of velocity.
+    pub inverse_mass: DMat3,
+    /// Change of velocity along the normal by a unit impulse along the normal.
+    pub normal_inverse_mass: f64,
+    /// The constraint along the normal is `n . w >= target`.
+    pub target: f64,
+    /// Mean velocity between the points in the step, without w.
+    pub slip: DVec3,
+    pub friction: f64,
+    /// Velocity at which the points of an impact part after the step; None if they do not bounce.
+    pub bounce: Option<f64>,
+    /// Total impulse along the normal; never negative.
+    pub normal_impulse: f64,
+    /// Total impulse perpendicular to the normal.
+    pub friction_impulse: DVec3,
+    /// Impulse at the end of the step: see [`resting_velocities`](crate::resting_velocities).
+    pub end_impulse: DVec3,
+}
+
+impl Correction {
+    /// Returns the impulse on the first body by which the end of the step is displaced.
+    pub fn impulse(&self) -> DVec3 {
+        self.normal * self.normal_impulse + self.friction_impulse
+    }
+
+    /// Returns the impulse on the first body in the whole step.
+    pub fn total_impulse(&self) -> DVec3 {
+        self.impulse() + self.end_impulse
+    }
+
+    /// Whether both points belong to one body. Their impulses then change its modes alone.
+    pub fn is_within(&self) -> bool {
+        self.bodies[0] == self.bodies[1]
+    }
+}

@@ -1,0 +1,278 @@
+//! Solver for corrections: the smallest change of the end of a step at which all contacts hold.
+//!
+//! The unknown is the change w of the mean velocity of each body in the step (rigid motion and modes). The end of the
+//! step is displaced by `step * w`, and the velocity there changes by w. The metric is that of mass, inertia and modes, in
+//! which fast modes weigh more: an impulse at the beginning of a step of Newmark's method moves them by as much less. A
+//! contact bounds the gap at the end of the step, which is a linear function of w, from below. Friction opposes the
+//! tangential displacement in the step, within Coulomb's cone. The solution is that of projected Gauss-Seidel, which
+//! begins with the impulses of the last step.
+
+use glam::{DMat3, DVec3};
+
+use super::contact_rows::{ContactRows, RowPoint};
+use super::correction::Correction;
+use super::gauss_seidel::{Active, GaussSeidel};
+use super::rigid_velocity::{RigidVelocity, modal_inverse_mass};
+use crate::bodies::body_set::BodySet;
+use crate::bodies::change::Change;
+use crate::bodies::displacement::displacement;
+use crate::contacts::contact::Contact;
+use crate::contacts::contact_constraint::{GROUND, Side, Source, sides};
+use crate::contacts::contact_laws::ContactLaws;
+use crate::contacts::ground_contacts::GroundContacts;
+use crate::contacts::ground_point::{GroundPoint, rest_position};
+use crate::contacts::islands::Islands;
+use crate::packed_rows::dispatch;
+use crate::{Body, Ground};
+
+/// Corrections of a step, and the buffers to find them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CorrectionSolver {
+    pub list: Vec<Correction>,
+    active: Vec<Active>,
+    islands: Islands,
+    /// Also those of [`resting_velocities`](crate::resting_velocities).
+    pub rows: ContactRows,
+    masses: Vec<RigidVelocity>,
+    /// Change of each body, and that of the modes of all bodies, one after the other.
+    changes: Vec<Change>,
+    modes: Vec<f64>,
+    /// First mode of each body.
+    first_mode: Vec<usize>,
+    /// The changes with which bodies were moved last.
+    applied: (Vec<Change>, Vec<f64>),
+}
+
+/// Iterations end when one changes displacements by less than this share of the gap at rest.
+const TOLERANCE: f64 = 1e-3;
+
+impl CorrectionSolver {
+    /// Begins a step.
+    pub fn begin(&mut self, bodies: &[Body]) {
+        self.list.clear();
+        self.masses.clear();
+        self.masses.extend(bodies.iter().map(|body| RigidVelocity::at(body, &body.start.rigid)));
+        self.changes.clear();
+        self.changes.resize(bodies.len(), Change::default());
+        self.first_mode.clear();
+        let mut modes = 0;
+        for body in bodies {
+            self.first_mode.push(modes);
+            modes += body.q.len();
+        }
+        self.modes.clear();
+        self.modes.resize(modes, 0.0);
+        self.applied.0.clone_from(&self.changes);
+        self.applied.1.clone_from(&self.modes);
+    }
+
+    /// Makes the list of constraints of the ground and of contacts, in the bodies' current state.
+    pub fn gather(
+        &mut self,
+        bodies: &[Body],
+        ground: &[GroundContacts],
+        contacts: &[Contact],
+        laws: &ContactLaws,
+    ) {
+        self.list.clear();
+        if let Some(plane) = &laws.ground {
+            for (n, (body, contacts)) in bodies.iter().zip(ground).enumerate() {
+                for point in contacts.points.iter().filter(|_| !body.is_asleep()) {
+                    self.add_ground(n, point, body, plane, laws);
+                }
+            }
+        }
+        for (n, contact) in contacts.iter().enumerate() {
+            let both = contact.bodies.map(|body| &bodies[body as usize]);
+            if !contact.is_rigid_constraint() || both.iter().all(|body| body.is_asleep()) {
+                continue;
+            }
+            if contact.is_within() {
+                self.add_within(n, contact, both[0], laws);
+            } else {
+                self.add_rigid(n, contact, both, laws);
+            }
+        }
+    }
+
+    fn add_ground(
+        &mut self,
+        number: usize,
+        point: &GroundPoint,
+        body: &Body,
+        ground: &Ground,
+        laws: &ContactLaws,
+    ) {
+        let GroundPoint { vertex, arm, gap, min_gap, normal_impulse, friction_impulse } = *point;
+        let (rest, modes) =
+            (rest_position(body.shape(), vertex), body.shape().model().modes().of_vertex(vertex));
+        let start = body.start.rigid.position + arm;
+        let normal = ground.normal;
+        let inverse_mass = self.masses[number].inverse_mass_at(arm, modes, &body.step_weights);
+        let applied = self.velocity(number, arm, modes, &self.applied.0, &self.applied.1);
+        let slip = (body.point(rest, modes) - start) / laws.step - applied;
+        let trial = normal.dot(body.trial.point(rest, modes) - start) / laws.step;
+        let approach = -normal.dot(body.start.rigid.velocity_at(arm));
+        self.list.push(Correction {
+            bodies: [number as u32, GROUND],
+            source: Source::Vertex(vertex),
+            normal,
+            arms: [arm, DVec3::ZERO],
+            inverse_mass,
+            normal_inverse_mass: normal.dot(inverse_mass * normal),
+            target: (min_gap - gap) / laws.step - normal.dot(slip),
+            slip,
+            friction: ground.friction,
+            bounce: laws.bounce(approach.min(-trial)),
+            normal_impulse,
+            friction_impulse,
+            end_impulse: DVec3::ZERO,
+        });
+    }
+
+    fn add_rigid(&mut self, number: usize, contact: &Contact, both: [&Body; 2], laws: &ContactLaws) {
+        let mut inverse_mass = DMat3::ZERO;
+        let mut applied = DVec3::ZERO;
+        let mut now = [DVec3::ZERO; 2];
+        for (n, sign) in [(0, 1.0), (1, -1.0)] {
+            let (body, modes, arm) = (both[n], &contact.modes[n], contact.arms[n]);
+            let number = contact.bodies[n] as usize;
+            inverse_mass += self.masses[number].inverse_mass_at(arm, modes, &body.step_weights);
+            let (changes, modal) = (&self.applied.0, &self.applied.1);
+            applied += self.velocity(number, arm, modes, changes, modal) * sign;
+            now[n] = body.point(contact.rest[n], modes);
+        }
+        let normal = contact.world_normal;
+        let slip = (now[0] - now[1] - contact.between) / laws.step - applied;
+        let trial = contact.between(both.map(|body| &body.trial)) - contact.between;
+        let approach = -normal.dot(trial) / laws.step;
+        let friction_impulse = contact.friction_impulse;
+        self.list.push(Correction {
+            bodies: contact.bodies,
+            source: Source::Contact(number as u32),
+            normal,
+            arms: contact.arms,
+            inverse_mass,
+            normal_inverse_mass: normal.dot(inverse_mass * normal),
+            target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
+            slip,
+            friction: laws.friction,
+            bounce: laws.bounce(contact.approach(both).min(approach)),
+            normal_impulse: contact.normal_impulse,
+            friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
+            end_impulse: DVec3::ZERO,
+        });
+    }
+
+    /// Adds the constraint of a contact within a body. Its vectors are in axes of the body.
+    fn add_within(&mut self, number: usize, contact: &Contact, body: &Body, laws: &ContactLaws) {
+        let (modes, normal) = (&contact.modes[0], contact.normal);
+        let inverse_mass = modal_inverse_mass(modes, &body.step_weights);
+        let own = contact.bodies[0] as usize;
+        let applied = displacement(modes, &self.applied.1[self.first_mode[own]..][..modes.len()]);
+        let now = contact.rest[0] - contact.rest[1] + displacement(modes, &body.q);
+        let slip = (now - contact.between) / laws.step - applied;
+        let friction_impulse = contact.friction_impulse;
+        self.list.push(Correction {
+            bodies: contact.bodies,
+            source: Source::Contact(number as u32),
+            normal,
+            arms: [DVec3::ZERO; 2],
+            inverse_mass,
+            normal_inverse_mass: normal.dot(inverse_mass * normal),
+            target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
+            slip,
+            friction: laws.friction,
+            bounce: None,
+            normal_impulse: contact.normal_impulse,
+            friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
+            end_impulse: DVec3::ZERO,
+        });
+    }
+
+    /// Solves the constraints that act on a body of `among`, which must contain whole islands, and moves these bodies.
+    pub fn solve(&mut self, bodies: &mut [Body], contacts: &[Contact], laws: &ContactLaws, among: &BodySet) {
+        self.gather_islands(bodies, contacts, among);
+        let tolerance = TOLERANCE * laws.rest_gap / laws.step;
+        let (active, rows, list) = (&self.active, &mut self.rows, &mut self.list[..]);
+        let mut first = 0;
+        for island in active.chunk_by(|a, b| a.island == b.island) {
+            dispatch(GaussSeidel { list, island, first, rows, tolerance });
+            first += island.len();
+        }
+        for (n, body) in bodies.iter().enumerate().filter(|(n, _)| among.contains(*n)) {
+            self.changes[n] = Change::default();
+            self.modes[self.first_mode[n]..][..body.q.len()].fill(0.0);
+        }
+        for active in 0..self.active.len() {
+            let one = self.list[self.active[active].number as usize];
+            let impulse = one.impulse();
+            if impulse != DVec3::ZERO {
+                self.apply(&one, impulse, bodies, contacts);
+            }
+        }
+        for (n, body) in bodies.iter_mut().enumerate().filter(|(n, _)| among.contains(*n)) {
+            let modes = &self.modes[self.first_mode[n]..][..body.q.len()];
+            body.correct(&self.changes[n], modes, laws.step);
+        }
+        self.applied.0.clone_from(&self.changes);
+        self.applied.1.clone_from(&self.modes);
+    }
+
+    /// Gathers the constraints that act on a body of `among`, island by island, with their rows.
+    fn gather_islands(&mut self, bodies: &[Body], contacts: &[Contact], among: &BodySet) {
+        let Self { list, active, islands, rows, masses, .. } = self;
+        let is_active = |one: &Correction| {
+            one.normal_inverse_mass > 0.0 && sides(one.bodies).any(|side| among.contains(side.body))
+        };
+        islands.reset(bodies.len());
+        for one in list.iter().filter(|one| is_active(one) && one.bodies[1] != GROUND) {
+            islands.join(one.bodies[0] as usize, one.bodies[1] as usize);
+        }
+        active.clear();
+        let numbered = (0_u32..).zip(&*list).filter(|(_, one)| is_active(one));
+        active.extend(
+            numbered.map(|(number, one)| Active { island: islands.of(one.bodies[0] as usize), number }),
+        );
+        active.sort_unstable_by_key(|one| (one.island, one.number));
+        rows.begin(masses.iter().zip(bodies).map(|(mass, body)| (mass, &body.step_weights[..])));
+        for one in active.iter().map(|active| &list[active.number as usize]) {
+            let points = sides(one.bodies).map(|Side { n, body, sign }| RowPoint {
+                body,
+                sign,
+                arm: (!one.is_within()).then_some(one.arms[n]),
+                modes: one.source.modes(n, bodies[body].shape(), contacts),
+            });
+            rows.push(one.normal, points);
+        }
+    }
+
+    /// Returns the change of velocity of a point of a body.
+    fn velocity(&self, body: usize, arm: DVec3, modes: &[DVec3], changes: &[Change], modal: &[f64]) -> DVec3 {
+        let change = &changes[body];
+        let own = &modal[self.first_mode[body]..][..modes.len()];
+        change.velocity
+            + change.angular_velocity.cross(arm)
+            + self.masses[body].rotation * displacement(modes, own)
+    }
+
+    /// Adds an impulse to the changes of the bodies.
+    fn apply(&mut self, one: &Correction, impulse: DVec3, bodies: &[Body], contacts: &[Contact]) {
+        for Side { n, body, sign } in sides(one.bodies) {
+            let (mass, change, impulse) = (&self.masses[body], &mut self.changes[body], impulse * sign);
+            if bodies[body].is_free() && !one.is_within() {
+                let angular_impulse = one.arms[n].cross(impulse);
+                change.impulse += impulse;
+                change.angular_impulse += angular_impulse;
+                change.velocity += impulse * mass.inverse_mass;
+                change.angular_velocity += mass.inverse_inertia * angular_impulse;
+            }
+            let local = if one.is_within() { impulse } else { mass.rotation.transpose() * impulse };
+            let modes = one.source.modes(n, bodies[body].shape(), contacts);
+            let own = &mut self.modes[self.first_mode[body]..][..modes.len()];
+            for ((w, u), weight) in own.iter_mut().zip(modes).zip(&bodies[body].step_weights) {
+                *w += weight * u.dot(local);
+            }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Tests of bodies.
+
+mod oscillators;
+mod root_constraint;
+mod shape;

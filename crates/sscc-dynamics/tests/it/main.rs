@@ -1,0 +1,10 @@
+//! Dynamics through its public interface, against closed forms, conservation laws and brute force. One program, so that the
+//! crate is linked once.
+#![allow(clippy::unwrap_used)]
+
+mod bodies;
+mod common;
+mod contacts;
+mod state;
+mod step;
+mod world;
