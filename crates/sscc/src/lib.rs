@@ -274,6 +274,7 @@ mod audit;
 mod bounds;
 mod cancel_token;
 mod certificates;
+mod curves;
 mod detect;
 mod error;
 mod filter;
@@ -297,7 +298,7 @@ pub use certificates::{
     BUILD, CertificateParts, Certificates, CertifyOptions, Digest, LocalBounds, LocalCertificates, PairTree,
     RunJobs, Scope, ShardWorker,
 };
-pub use detect::contact_curves::{
+pub use curves::{
     ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,
     contact_curves_between,
 };

@@ -11,13 +11,12 @@ use std::sync::Arc;
 use glam::{DVec3, Vec4};
 
 use super::aabb8::{Aabb8, AabbF32, LANES};
+use super::coarse_positions::CoarsePositions;
 use super::exact_positions::ExactPositions;
 use super::f32_frame::F32Frame;
-use super::frame_map::FrameMap;
 use super::layout::Layout;
 use super::narrow_phase::are_separated;
-use super::quantization::CoarseMotion;
-use super::vertex_motion::{InWorld, VertexMotion};
+use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BRANCHING, Hierarchy};
 use crate::vectors::InstructionSet;
@@ -36,11 +35,7 @@ pub(crate) struct NodeVolumes<const E: usize> {
     /// Buckets of this search that are not open.
     closed_buckets: usize,
     positions: ExactPositions<E>,
-    /// Whether AABBs of triangles are computed from coarse positions.
-    is_coarse: bool,
-    motion: CoarseMotion<E>,
-    /// The coarse positions of the vertices of open buckets.
-    coarse: Vec<[Vec4; E]>,
+    coarse: CoarsePositions<E>,
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
     corner_error: f32,
     /// The AABB of each node that is a bucket or larger.
@@ -67,9 +62,7 @@ impl<const E: usize> NodeVolumes<E> {
             search: 0,
             closed_buckets: buckets,
             positions: ExactPositions::new(layout.vertices.count()),
-            is_coarse: false,
-            motion: CoarseMotion::default(),
-            coarse: layout.coarse.new_positions(),
+            coarse: CoarsePositions::new(layout),
             corner_error: f32::INFINITY,
             nodes: vec![AabbF32::EMPTY; nodes],
             node_searches: vec![0; nodes],
@@ -115,11 +108,11 @@ impl<const E: usize> NodeVolumes<E> {
         self.closed_buckets = layout.buckets.count();
         self.positions.begin(self.search, motion.overall_aabb(&layout));
         let (frame, rounding) = (self.positions.frame(), motion.rounding());
-        self.is_coarse = begin_coarse(&layout, motion, frame, &mut self.motion);
+        self.coarse.begin(&layout, motion, frame);
         self.corner_error = if !M::HAS_ERROR_BOUND {
             f32::INFINITY
-        } else if self.is_coarse {
-            self.motion.search_error()
+        } else if self.coarse.are_used() {
+            self.coarse.error()
         } else {
             frame.error_bound(rounding)
         };
@@ -128,7 +121,7 @@ impl<const E: usize> NodeVolumes<E> {
     /// Computes all AABBs from all vertices, bottom-up; those of open buckets are current.
     pub(crate) fn refit<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
-        if !self.is_coarse {
+        if !self.coarse.are_used() {
             self.positions.move_all(&layout, motion);
         }
         for bucket in 0..layout.buckets.count() as u32 {
@@ -228,7 +221,7 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn open_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         if self.packets_searches[bucket as usize] != self.search {
-            if !self.is_coarse {
+            if !self.coarse.are_used() {
                 let layout = &*self.layout;
                 let vertices = layout.buckets.vertices(bucket).iter();
                 vertices.for_each(|&v| self.positions.move_vertex(layout, v, motion));
@@ -241,13 +234,11 @@ impl<const E: usize> NodeVolumes<E> {
     #[inline]
     pub(crate) fn update_node<M: VertexMotion<E>>(&mut self, n: u32, motion: &M) {
         if self.node_searches[n as usize] != self.search {
-            if self.is_coarse
-                && let Some(aabb) = self.layout.bd_tree.coarse(n, &self.motion)
-            {
-                self.set_node(n, aabb.widened(self.slack(n, motion)));
+            let frame = self.positions.frame();
+            if let Some(aabb) = self.coarse.node(&self.layout, n) {
+                self.set_node(n, aabb.widened(CoarsePositions::slack(n, motion, frame)));
                 return;
             }
-            let frame = self.positions.frame();
             // A node without an AABB of its own overlaps everything.
             let aabb = motion.node_aabb(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
                 AabbF32 { lower: frame.map(lower), upper: frame.map(upper) }
@@ -258,11 +249,12 @@ impl<const E: usize> NodeVolumes<E> {
 
     /// Computes all AABBs of a bucket; where exact positions are needed, its vertices have been moved.
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
-        let Layout { buckets, coarse, .. } = &*self.layout;
+        let buckets = &self.layout.buckets;
         let n = buckets.node(bucket);
-        let by = if self.is_coarse {
-            coarse.move_bucket(bucket, &self.motion, &mut self.coarse);
-            self.slack(n, motion) + right_or!(self.motion.search_error(), CoarseTrianglesNotWidened, 0.0)
+        let by = if self.coarse.are_used() {
+            self.coarse.move_bucket(&self.layout, bucket);
+            let slack = CoarsePositions::slack(n, motion, self.positions.frame());
+            slack + right_or!(self.coarse.error(), CoarseTrianglesNotWidened, 0.0)
         } else {
             self.margin(motion)
         };
@@ -283,17 +275,6 @@ impl<const E: usize> NodeVolumes<E> {
         self.packets_searches[bucket as usize] = self.search;
         self.closed_buckets -= 1;
         self.set_node(n, whole);
-    }
-
-    /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
-    #[inline]
-    fn slack<M: VertexMotion<E>>(&self, n: u32, motion: &M) -> Vec4 {
-        motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
-            let slack = slack * (self.positions.frame().scale() * (1.0 + 1e-5));
-            // Finite, as all corners of AABBs are that contain something.
-            let slack = slack.as_vec3().extend(0.0).min(Vec4::MAX);
-            right_or!(slack, CoarseSlackForgotten, Vec4::ZERO)
-        })
     }
 
     #[inline]
@@ -317,22 +298,21 @@ impl<const E: usize> NodeVolumes<E> {
     /// The corners of the triangle in a slot of a bucket, in the frame.
     #[inline(always)]
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
-        let Layout { buckets, coarse, .. } = &*self.layout;
-        if self.is_coarse {
-            coarse.corners(bucket, slot, &self.coarse)
+        if self.coarse.are_used() {
+            self.coarse.corners(&self.layout, bucket, slot)
         } else {
-            self.positions.mapped(buckets.corners()[slot])
+            self.positions.mapped(self.layout.buckets.corners()[slot])
         }
     }
 
     /// The vertices of an open bucket, with their positions in the frame at the start of the motion: within [`Self::corner_error`]
     /// of the exact ones.
     pub(crate) fn mapped_vertices(&self, bucket: u32) -> impl Iterator<Item = (u32, Vec4)> {
-        let Layout { buckets, coarse, .. } = &*self.layout;
-        let moved: &[[Vec4; E]] = if self.is_coarse { coarse.of_bucket(bucket, &self.coarse) } else { &[] };
+        let is_coarse = self.coarse.are_used();
+        let moved = if is_coarse { self.coarse.of_bucket(&self.layout, bucket) } else { &[] };
         let exact = |v: u32| self.positions.mapped([v; 3])[0];
         let at = move |(i, v): (usize, &u32)| (*v, moved.get(i).copied().unwrap_or_else(|| exact(*v))[0]);
-        buckets.vertices(bucket).iter().enumerate().map(at)
+        self.layout.buckets.vertices(bucket).iter().enumerate().map(at)
     }
 
     /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
@@ -367,29 +347,6 @@ impl<const E: usize> NodeVolumes<E> {
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         self.positions.corners(vertices)
     }
-}
-
-/// Sets the coarse motion of a search. False if it must use exact positions.
-fn begin_coarse<const E: usize, M: VertexMotion<E>>(
-    layout: &Layout,
-    motion: &M,
-    frame: &F32Frame,
-    coarse: &mut CoarseMotion<E>,
-) -> bool {
-    coarse.maps = None;
-    let Some(q) = motion.coarse_coordinates().filter(|_| !layout.coarse.is_empty()) else { return false };
-    let Some(InWorld { maps, own_rounding }) = motion.in_world() else {
-        return layout.quantization.begin(coarse, q, frame, motion.rounding());
-    };
-    let own = F32Frame::around(layout.bd_tree.root(q, DVec3::splat(own_rounding)));
-    if !layout.quantization.begin(coarse, q, &own, own_rounding) {
-        return false;
-    }
-    let maps = maps.map(|map| FrameMap::new([&own, frame], map, coarse.error, motion.rounding()));
-    if maps.iter().all(Option::is_some) {
-        coarse.maps = Some(maps.map(Option::unwrap_or_default));
-    }
-    coarse.maps.is_some()
 }
 
 /// Whether two triangles certainly have no point in common, as far as single precision can tell. Each is given by volumes and a

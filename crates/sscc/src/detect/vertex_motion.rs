@@ -2,7 +2,7 @@
 //!
 //! A search has `E` configurations: one, or the start and the end of a motion. Sources are dispatched statically:
 //! positions deformed by modes ([`DeformedMotion`]), all positions in a capsule of configurations
-//! ([`CapsuleMotion`](super::capsule_motion::CapsuleMotion)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
+//! ([`CapsuleMotion`](crate::query)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
 //! given positions ([`Detector`](crate::Detector)).
 
 use glam::{DMat3, DVec3};

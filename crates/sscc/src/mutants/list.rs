@@ -109,45 +109,45 @@ mutants! {
     /// The norm of a continuous query is that of its end.
     SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
     /// Vertices go half as far within the radius of a capsule.
-    CapsuleVerticesHalfAsFar: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    CapsuleVerticesHalfAsFar: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The radius of a moving hull omits the distance of vertices from the core points' hull.
-    HullCoreExact: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullCoreExact: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The radius of a moving hull omits the residuals of the modes.
-    HullResidualForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullResidualForgotten: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The bound of residuals by a few vectors omits the remainder.
-    HullRemainderForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullRemainderForgotten: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The bound of residuals by a few vectors omits the part along the vectors.
-    HullVectorsForgotten: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullVectorsForgotten: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// Sums over the modes of residuals have no rounding error.
-    HullSumsExact: CaughtBy("lib detect::hulls::tests::radii_cover_sums_that_cancel");
+    HullSumsExact: CaughtBy("lib query::hulls::tests::radii_cover_sums_that_cancel");
     /// A moving hull does not stretch the distance of vertices from the core points' hull.
-    HullNotStretched: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullNotStretched: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The radius of a moving hull is that at the end of a motion.
-    HullRadiusAtEnd: CaughtBy("lib detect::hulls::tests::motions_and_capsules_are_covered");
+    HullRadiusAtEnd: CaughtBy("lib query::hulls::tests::motions_and_capsules_are_covered");
     /// Hulls about a configuration move by q, not by the difference from it.
-    HullWithoutConfiguration: CaughtBy("lib detect::hulls::tests::vertices_are_within_the_radius_of_their_hull");
+    HullWithoutConfiguration: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
     /// The radius of a moving hull omits the error of single precision.
-    HullSinglePrecisionExact: CaughtBy("lib detect::hulls::tests::radii_cover_single_precision");
+    HullSinglePrecisionExact: CaughtBy("lib query::hulls::tests::radii_cover_single_precision");
     /// The radius of a moving hull omits the rounding of the shape's positions.
-    HullShapeExact: CaughtBy("lib detect::hulls::tests::radii_cover_the_rounding_of_the_shape");
+    HullShapeExact: CaughtBy("lib query::hulls::tests::radii_cover_the_rounding_of_the_shape");
     /// Hulls in a capsule have the radius on its segment.
-    HullCapsuleNotWidened: CaughtBy("lib detect::hulls::tests::motions_and_capsules_are_covered");
+    HullCapsuleNotWidened: CaughtBy("lib query::hulls::tests::motions_and_capsules_are_covered");
     /// A plane separates hulls of any radius.
-    HullsTouch: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    HullsTouch: CaughtBy("lib query::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// The gap along a normal is compared as if the normal had length 1.
-    HullNormalTakenAsUnit: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    HullNormalTakenAsUnit: CaughtBy("lib query::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// The gap of two hulls is not rounded down.
-    HullGapToNearest: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
+    HullGapToNearest: CaughtBy("lib query::hulls::tests::gaps_are_rounded_down");
     /// Planes are tested along normals whose squared length underflows.
-    HullNormalOfAnyLength: CaughtBy("lib detect::hulls::tests::gaps_are_rounded_down");
+    HullNormalOfAnyLength: CaughtBy("lib query::hulls::tests::gaps_are_rounded_down");
     /// Displacements are squared before they are scaled to the frame, so that squares underflow.
-    HullSlackUnscaled: CaughtBy("lib detect::hulls::hull_motion::tests::displacements_are_never_short_in_the_frame");
+    HullSlackUnscaled: CaughtBy("lib query::hulls::hull_motion::tests::displacements_are_never_short_in_the_frame");
     /// A plane separates hulls at the start of a motion alone.
-    HullsAtStart: CaughtBy("lib detect::hulls::tests::only_gaps_wider_than_the_radii_separate");
+    HullsAtStart: CaughtBy("lib query::hulls::tests::only_gaps_wider_than_the_radii_separate");
     /// Nodes go half as far within the radius of a capsule.
-    CapsuleNodesHalfAsFar: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    CapsuleNodesHalfAsFar: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The volumes of a capsule are those of a ball around its start.
-    CapsuleWithoutEnd: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    CapsuleWithoutEnd: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// A capsule contains what is near the line through its segment.
     SegmentWithoutEnds: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
     /// z stays in the region that a search was made for, wherever it moves.
@@ -163,9 +163,9 @@ mutants! {
     /// The modes of a node are those of its first vertex.
     MovingModesOfOneVertex: CaughtBy("lib detect::bd_tree::tests::boxes_contain_all_computed_positions");
     /// Nodes larger than buckets do not move within the radius of a capsule.
-    CapsuleInnerNodesStill: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
+    CapsuleInnerNodesStill: CaughtBy("lib query::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// AABBs from coarse positions are those of the segment of a capsule.
-    CoarseSlackForgotten: CaughtBy("lib detect::capsule_motion::tests::node_volumes_contain_the_capsule");
+    CoarseSlackForgotten: CaughtBy("lib query::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// A search that ends with open triangle pairs has their bounds, too.
     OpenTrianglesForgotten: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
     /// A refused outer round raises the limit.
@@ -187,7 +187,7 @@ mutants! {
     /// A fine radius is stored for another pair.
     FineRadiusOfAnother: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
     /// A capsule omits the rounding error of positions.
-    CapsuleExact: CaughtBy("lib detect::capsule_motion::tests::vertices_stay_in_the_capsule");
+    CapsuleExact: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The travelled distance of z is not rounded up.
     TravelledToNearest: CaughtBy("lib query::kinetic::region_pairs::tests::the_travelled_distance_is_never_short");
     /// Safe distances still hold after a jump.
@@ -221,11 +221,11 @@ mutants! {
     /// A kinetic motion is taken to begin at the last q, wherever it does.
     MotionStartUnchecked: CaughtBy("lib query::kinetic::tests::motions_may_begin_anywhere");
     /// Two hulls are apart where their gap is wider than the larger radius, not than the sum of both.
-    LargerHullRadius: CaughtBy("lib detect::hulls::tests::hulls_are_apart_only_where_their_triangles_are");
+    LargerHullRadius: CaughtBy("lib query::hulls::tests::hulls_are_apart_only_where_their_triangles_are");
     /// The norm of an affine map is the root of the largest entry of F'F, not of the largest row sum.
-    HullStretchLargestEntry: CaughtBy("lib detect::hulls::moved_hulls::tests::no_vector_is_stretched_by_more_than_the_bound");
+    HullStretchLargestEntry: CaughtBy("lib query::hulls::moved_hulls::tests::no_vector_is_stretched_by_more_than_the_bound");
     /// A hull whose radius or map is NaN has the radius of other numbers.
-    HullNanIgnored: CaughtBy("lib detect::hulls::moved_hulls::tests::hulls_that_are_no_numbers_prove_nothing");
+    HullNanIgnored: CaughtBy("lib query::hulls::moved_hulls::tests::hulls_that_are_no_numbers_prove_nothing");
     /// The remainder of residuals is that of vectors before they are rounded to single precision.
     HullVectorsUnrounded: Covered("the relative error of sums has room for one more rounding");
     /// Residuals of hulls have no rounding error.

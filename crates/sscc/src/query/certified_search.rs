@@ -3,12 +3,12 @@
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
+use super::hulls::MovedHulls;
 use super::local_proofs::LocalProofs;
 use super::pair_tree_traversal::{PairTreeStack, traverse_pair_tree};
 use super::statistics::Proof;
 use crate::Error;
 use crate::detect::broad_phase::BroadPhase;
-use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::VertexMotion;
 

@@ -4,6 +4,7 @@
 mod affine_modes;
 mod approximate_cones;
 mod batch;
+mod capsule_motion;
 mod certified_search;
 mod certified_traversal;
 mod configuration;
@@ -14,6 +15,7 @@ mod continuous;
 mod discrete_between;
 #[cfg(test)]
 mod exact_matrix;
+mod hulls;
 mod kinetic;
 mod local_claims;
 mod local_inequality;

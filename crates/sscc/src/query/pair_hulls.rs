@@ -3,8 +3,8 @@
 //! A query turns this direction with the two nodes, and tests the plane across it. Node pairs that nothing separates at the
 //! centre are opened without a test of hulls: only the time of queries depends on that.
 
+use super::hulls::{MovedHulls, NodeHulls};
 use crate::detect::f32_frame::F32Frame;
-use crate::detect::hulls::{MovedHulls, NodeHulls};
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::hierarchy::{Hierarchy, NodePair};

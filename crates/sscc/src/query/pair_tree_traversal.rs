@@ -4,12 +4,12 @@
 //! exactly one of them (docs/notes/traversal.md#end-at-buckets).
 
 use super::certified_traversal::LOOSE_PAIRS;
+use super::hulls::MovedHulls;
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use super::pair_hulls::PairHulls;
 use crate::CertificateParts;
 use crate::certificates::StoredPair;
-use crate::detect::hulls::MovedHulls;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;

@@ -68,7 +68,7 @@ impl Region {
     ///
     /// The distance from any point of the segment is an upper bound of the distance from the segment. The point's rounding
     /// moves vertices by less than the rounding bound of positions, which
-    /// [`CapsuleMotion`](crate::detect::capsule_motion::CapsuleMotion) adds.
+    /// [`CapsuleMotion`](crate::query::capsule_motion::CapsuleMotion) adds.
     pub(super) fn contains(&mut self, metric: &Metric, at: Configuration<'_>) -> bool {
         if !(at.norm <= self.norm && at.reach <= self.reach) {
             return false;

@@ -1,8 +1,8 @@
 //! The region search: all pairs that can collide at some z of a region.
 
 use crate::Error;
-use crate::detect::capsule_motion::CapsuleMotion;
 use crate::detect::narrow_phase::AabbHits;
+use crate::query::capsule_motion::CapsuleMotion;
 use crate::query::certified_search::{CertifiedSearch, Sought};
 use crate::query::context::QueryContext;
 

@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3};
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
-use crate::detect::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::hierarchy::{Node, NodePair};
 use crate::model::ScaledModel;
+use crate::query::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::{
     Certificates, CertifyOptions, ContactFilter, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours,
     Pair, Query, ReducedModel, TriMesh,

@@ -1,6 +1,5 @@
 //! The curves in which a mesh intersects itself or another one, and the contact of each colliding pair of triangles.
 
-#[allow(clippy::module_inception)]
 mod contact_curves;
 mod mesh_feature;
 mod pair_contact;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::layout::Layout;
-use super::vertex_motion::{VertexMotion, rounding_bound};
+use crate::detect::layout::Layout;
+use crate::detect::vertex_motion::{VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
