@@ -231,9 +231,8 @@ impl World {
     /// Stores the impulses of the step.
     fn record_impulses(&mut self) {
         self.impulses.clear();
-        let soft = self.solver.constraints.iter().map(|one| (one.bodies, one.source, one.impulse()));
-        let rigid = self.limiter.corrections.list.iter();
-        let rigid = rigid.map(|one| (one.bodies, one.source, one.total_impulse()));
+        let soft = self.solver.constraints.iter().map(|one| (&one.points, one.impulse()));
+        let rigid = self.limiter.corrections.list.iter().map(|one| (&one.points, one.total_impulse()));
         let contacts = &self.contacts.triangles.list;
         impulses::record(soft.chain(rigid), &self.bodies, contacts, &mut self.impulses);
     }

@@ -77,6 +77,70 @@ enum Detector {
     Kinetic(Box<KineticQuery>),
 }
 
+impl Oscillator {
+    /// Creates the integrator of a body. Returns it with its state for the initial q and the forces on q.
+    fn new(
+        shape: &Shape,
+        start: &Start,
+        step: f64,
+        (q, load): (&[f64], &[f64]),
+    ) -> Result<(Self, Vec<f64>), DynamicsError> {
+        let stiffness = shape.elasticity().stiffness();
+        let Some(energy) = shape.elastic_energy() else {
+            let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
+            let oscillator = LinearOscillator::new(&eigenvalues, start.damping, step)?;
+            return Ok((Self::Linear(oscillator), Vec::new()));
+        };
+        let oscillator = NonlinearOscillator::new(energy.clone(), stiffness, start.damping, step)?;
+        let a = oscillator.undamped_acceleration(q, load, &mut NewmarkBuffers::default());
+        Ok((Self::Nonlinear(oscillator), a))
+    }
+}
+
+impl Detector {
+    /// Creates the query of a body. An equal one of a body of the same shape is cloned.
+    fn new(shape: &Shape, detection: Detection, same_shape: Option<&Body>) -> Result<Self, DynamicsError> {
+        let (model, certificates) = (shape.model(), shape.certificates());
+        let known = same_shape.filter(|other| other.detection == detection);
+        let method = match (detection, known.map(|other| &other.detector)) {
+            (Detection::Off, _) => return Ok(Self::Off),
+            (Detection::Kinetic, _) => {
+                return Ok(Self::Kinetic(Box::new(KineticQuery::new(model, certificates)?)));
+            }
+            (_, Some(Self::Discrete(query))) => return Ok(Self::Discrete(query.clone())),
+            (Detection::Method(method), _) => method,
+            (Detection::Certified, _) => Method::Certified,
+        };
+        Ok(Self::Discrete(Box::new(Query::with_method(model, certificates, method)?)))
+    }
+}
+
+/// Returns the rigid motion with which a body starts.
+fn initial_motion(shape: &Shape, start: &Start, step: f64) -> Result<RigidMotion, DynamicsError> {
+    let mut rigid = RigidMotion::new(*shape.mass())?;
+    let position = start.position.unwrap_or(shape.mass().center);
+    let orientation = start.orientation.normalize();
+    let vectors = [position, start.velocity, start.spin];
+    if !(vectors.iter().all(|x| x.is_finite()) && orientation.is_finite()) {
+        return Err(DynamicsError::Start);
+    }
+    let rotation_angle = start.spin.length() * step;
+    if rotation_angle > MAX_STEP_ROTATION {
+        let what = "the rotation of a body by its spin in a step (rad)";
+        return Err(DynamicsError::Option {
+            what,
+            value: rotation_angle,
+            range: "at most 1: take a smaller step",
+        });
+    }
+    (rigid.position, rigid.orientation) = (position, orientation);
+    if start.is_free {
+        rigid.momentum = start.velocity * shape.mass().mass;
+        rigid.angular_momentum = orientation * (shape.mass().inertia * (orientation.inverse() * start.spin));
+    }
+    Ok(rigid)
+}
+
 impl Body {
     /// Creates a body in its initial state. `same_shape` is an existing body of the same shape; its query and posed
     /// shape are cloned instead of computed.
@@ -92,68 +156,26 @@ impl Body {
         let (q, v) = (coordinates(&start.q), coordinates(&start.v));
         model.check_coordinates(&q)?;
         model.check_coordinates(&v)?;
-        let mut rigid = RigidMotion::new(*shape.mass())?;
-        let position = start.position.unwrap_or(shape.mass().center);
-        let orientation = start.orientation.normalize();
-        let vectors = [position, start.velocity, start.spin];
-        if !(vectors.iter().all(|x| x.is_finite()) && orientation.is_finite()) {
-            return Err(DynamicsError::Start);
-        }
-        let rotation_angle = start.spin.length() * step;
-        if rotation_angle > MAX_STEP_ROTATION {
-            let what = "the rotation of a body by its spin in a step (rad)";
-            return Err(DynamicsError::Option {
-                what,
-                value: rotation_angle,
-                range: "at most 1: take a smaller step",
-            });
-        }
-        (rigid.position, rigid.orientation) = (position, orientation);
-        if start.is_free {
-            rigid.momentum = start.velocity * shape.mass().mass;
-            rigid.angular_momentum =
-                orientation * (shape.mass().inertia * (orientation.inverse() * start.spin));
-        }
+        let rigid = initial_motion(shape, start, step)?;
         let load = if start.is_free {
             vec![0.0; r]
         } else {
-            shape.moments().iter().map(|m| m.dot(orientation.inverse() * gravity)).collect()
+            shape.moments().iter().map(|m| m.dot(rigid.orientation.inverse() * gravity)).collect()
         };
         let stiffness = shape.elasticity().stiffness();
-        let (oscillator, a) = match shape.elastic_energy() {
-            None => {
-                let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
-                let oscillator = LinearOscillator::new(&eigenvalues, start.damping, step)?;
-                (Oscillator::Linear(oscillator), Vec::new())
-            }
-            Some(energy) => {
-                let oscillator = NonlinearOscillator::new(energy.clone(), stiffness, start.damping, step)?;
-                let a = oscillator.undamped_acceleration(&q, &load, &mut NewmarkBuffers::default());
-                (Oscillator::Nonlinear(oscillator), a)
-            }
-        };
+        let (oscillator, a) = Oscillator::new(shape, start, step, (&q, &load))?;
         let square = contact.rate() * contact.rate();
         let slow_weights = stiffness.diagonal().map(|lambda| square / (square + lambda)).collect();
         // Newmark's method, linear about the rest pose.
         let weight =
             |lambda: f64| 1.0 / (1.0 + step / 2.0 * (start.damping.of(lambda) + lambda * step / 2.0));
         let step_weights = stiffness.diagonal().map(weight).collect();
-        let method = match start.detection {
-            Detection::Method(method) => method,
-            _ => Method::Certified,
-        };
-        let detector = match (start.detection, same_shape.map(|other| (other.detection, &other.detector))) {
-            (Detection::Off, _) => Detector::Off,
-            (Detection::Kinetic, _) => Detector::Kinetic(Box::new(KineticQuery::new(model, certificates)?)),
-            (own, Some((other, Detector::Discrete(query)))) if own == other => {
-                Detector::Discrete(query.clone())
-            }
-            _ => Detector::Discrete(Box::new(Query::with_method(model, certificates, method)?)),
-        };
+        let detector = Detector::new(shape, start.detection, same_shape)?;
         let posed = match same_shape {
             Some(other) => other.posed.clone(),
             None => PosedShape::new(model, certificates)?,
         };
+        let RigidMotion { position, orientation, .. } = rigid;
         let rest = Rest { is_asleep: false, time: 0.0, position, orientation, q: q.clone() };
         let now = Kinematics { rigid, q: q.clone(), v: v.clone() };
         Ok(Self {

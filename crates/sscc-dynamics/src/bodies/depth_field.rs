@@ -106,14 +106,20 @@ impl DepthField {
 
     /// Computes the distances of all grid points: first in the band, then inwards.
     fn compute_distances(&mut self, mesh: &TriMesh) {
-        let (p, faces) = (mesh.rest_positions(), mesh.faces());
-        let corners = |t: u32| faces[t as usize].map(|v| p[v as usize]);
+        let mut nearest = self.nearest_in_band(mesh);
         let normals = Pseudonormals::new(mesh);
-        let count = self.size.iter().product();
-        let mut nearest = vec![(f32::INFINITY, u32::MAX); count];
+        let inner = self.sign_band(mesh, &normals, &nearest);
+        if normals.is_closed {
+            self.propagate_inwards(mesh, inner, &mut nearest);
+        }
+    }
+
+    /// Returns for each grid point in the band the distance of the nearest triangle, and its number.
+    fn nearest_in_band(&self, mesh: &TriMesh) -> Vec<(f32, u32)> {
+        let mut nearest = vec![(f32::INFINITY, u32::MAX); self.size.iter().product()];
         let mut parts = Vec::new();
-        for t in 0..faces.len() as u32 {
-            let triangle = corners(t);
+        for t in 0..mesh.faces().len() as u32 {
+            let triangle = corners(mesh, t);
             parts.push(triangle);
             while let Some([a, b, c]) = parts.pop() {
                 let [low, high] = [a.min(b).min(c), a.max(b).max(c)];
@@ -125,74 +131,89 @@ impl DepthField {
                 let from = ((low - self.origin) / self.spacing - BAND).ceil().max(DVec3::ZERO);
                 let to = ((high - self.origin) / self.spacing + BAND).floor();
                 let from = from.to_array().map(|x| x as usize);
-                let to: [usize; 3] = std::array::from_fn(|n| (to[n] as usize).min(self.size[n] - 1));
-                for k in from[2]..=to[2] {
-                    for j in from[1]..=to[1] {
-                        for i in from[0]..=to[0] {
-                            let x = self.point([i, j, k]);
-                            let distance = nearest_point_triangle(x, triangle).0.distance(x) as f32;
-                            let best = &mut nearest[self.index([i, j, k])];
-                            // A triangle beyond the band might not be the nearest one.
-                            if distance < best.0 && f64::from(distance) <= BAND * self.spacing {
-                                *best = (distance, t);
-                            }
-                        }
+                let to: [usize; 3] = std::array::from_fn(|n| (to[n] as usize).min(self.size[n] - 1) + 1);
+                grid(from, to).for_each(|at| {
+                    let x = self.point(at);
+                    let distance = nearest_point_triangle(x, triangle).0.distance(x) as f32;
+                    let best = &mut nearest[self.index(at)];
+                    // A triangle beyond the band might not be the nearest one.
+                    if distance < best.0 && f64::from(distance) <= BAND * self.spacing {
+                        *best = (distance, t);
                     }
-                }
+                });
             }
         }
-        let signed = |at: DVec3, t: u32| {
-            let (y, feature) = nearest_point_triangle(at, corners(t));
-            let outside = (at - y).dot(normals.of(t, feature)) >= 0.0;
-            (at.distance(y) * if outside { 1.0 } else { -1.0 }) as f32
-        };
-        self.distances = vec![f32::INFINITY; count];
-        let mut queue = VecDeque::new();
-        for k in 0..self.size[2] {
-            for j in 0..self.size[1] {
-                for i in 0..self.size[0] {
-                    let index = self.index([i, j, k]);
-                    let t = nearest[index].1;
-                    if t != u32::MAX {
-                        self.distances[index] = signed(self.point([i, j, k]), t);
-                        if self.distances[index] < 0.0 {
-                            queue.push_back([i, j, k]);
-                        }
-                    }
-                }
+        nearest
+    }
+
+    /// Computes the signed distances of all grid points in the band. Returns those inside.
+    fn sign_band(
+        &mut self,
+        mesh: &TriMesh,
+        normals: &Pseudonormals,
+        nearest: &[(f32, u32)],
+    ) -> VecDeque<[usize; 3]> {
+        self.distances = vec![f32::INFINITY; nearest.len()];
+        let mut inner = VecDeque::new();
+        for at in grid([0; 3], self.size) {
+            let (index, x) = (self.index(at), self.point(at));
+            let t = nearest[index].1;
+            if t == u32::MAX {
+                continue;
+            }
+            let (y, feature) = nearest_point_triangle(x, corners(mesh, t));
+            let is_outside = (x - y).dot(normals.of(t, feature)) >= 0.0;
+            self.distances[index] = (x.distance(y) * if is_outside { 1.0 } else { -1.0 }) as f32;
+            if self.distances[index] < 0.0 {
+                inner.push_back(at);
             }
         }
-        if !normals.is_closed {
-            queue.clear();
-        }
-        // Propagates inwards: the triangle nearest to a point is nearly the nearest one of its neighbours.
+        inner
+    }
+
+    /// Computes the distances inside the band: the triangle nearest to a point is nearly the nearest one of its neighbours.
+    fn propagate_inwards(
+        &mut self,
+        mesh: &TriMesh,
+        mut queue: VecDeque<[usize; 3]>,
+        nearest: &mut [(f32, u32)],
+    ) {
         while let Some(at) = queue.pop_front() {
             let t = nearest[self.index(at)].1;
-            for axis in 0..3 {
-                for step in [usize::MAX, 1] {
-                    let mut next = at;
-                    next[axis] = next[axis].wrapping_add(step);
-                    if next[axis] >= self.size[axis] {
-                        continue;
-                    }
-                    let index = self.index(next);
-                    let x = self.point(next);
-                    if nearest[index].0.is_infinite() && nearest[index].1 == u32::MAX {
-                        nearest[index].1 = t;
-                        queue.push_back(next);
-                    } else if nearest[index].0.is_finite() {
-                        continue;
-                    }
-                    // A point that is reached from several neighbours keeps the minimum distance.
-                    let distance = nearest_point_triangle(x, corners(t)).0.distance(x) as f32;
-                    if distance < self.distances[index].abs() {
-                        self.distances[index] = -distance;
-                        nearest[index].1 = t;
-                    }
+            for (axis, step) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, usize::MAX), (axis, 1)]) {
+                let mut next = at;
+                next[axis] = next[axis].wrapping_add(step);
+                if next[axis] >= self.size[axis] {
+                    continue;
+                }
+                let index = self.index(next);
+                let x = self.point(next);
+                if nearest[index].0.is_infinite() && nearest[index].1 == u32::MAX {
+                    nearest[index].1 = t;
+                    queue.push_back(next);
+                } else if nearest[index].0.is_finite() {
+                    continue;
+                }
+                // A point that is reached from several neighbours keeps the minimum distance.
+                let distance = nearest_point_triangle(x, corners(mesh, t)).0.distance(x) as f32;
+                if distance < self.distances[index].abs() {
+                    self.distances[index] = -distance;
+                    nearest[index].1 = t;
                 }
             }
         }
     }
+}
+
+/// Returns the points of a grid from one, inclusive, to another, exclusive; the first coordinate varies fastest.
+fn grid(from: [usize; 3], to: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let plane = move |k| (from[1]..to[1]).flat_map(move |j| (from[0]..to[0]).map(move |i| [i, j, k]));
+    (from[2]..to[2]).flat_map(plane)
+}
+
+/// Returns the rest positions of the corners of a triangle.
+fn corners(mesh: &TriMesh, triangle: u32) -> [DVec3; 3] {
+    mesh.faces()[triangle as usize].map(|v| mesh.rest_positions()[v as usize])
 }
 
 /// Splits a triangle at the midpoint of its longest edge.

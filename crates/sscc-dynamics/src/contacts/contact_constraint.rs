@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::contact::{Contact, ModalInverseMass};
-use crate::Shape;
+use crate::{Body, Shape};
 
 /// Number of the ground where a constraint lists its bodies.
 pub(crate) const GROUND: u32 = u32::MAX;
@@ -17,17 +17,23 @@ pub(crate) enum Source {
     Contact(u32),
 }
 
-/// Contact constraint of one step. Vectors are in axes of the world; for a contact within one body, in axes of the
-/// body.
+/// Where the impulses of a contact constraint act. Vectors are in axes of the world; for a contact within one body, in axes of
+/// the body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ContactConstraint {
+pub(crate) struct ContactPoints {
     /// Numbers of the two bodies; equal for a contact within one body.
     pub bodies: [u32; 2],
     pub source: Source,
     /// Unit normal; pushes the first body away from the second.
     pub normal: DVec3,
-    /// Vectors from the centres of mass to the common point on which impulses act.
+    /// Vectors from the centres of mass to the common point on which impulses act; zeros for a contact within one body.
     pub arms: [DVec3; 2],
+}
+
+/// Constraint of a soft contact in one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactConstraint {
+    pub points: ContactPoints,
     /// Length by which the spring is compressed: penetration depth beyond the skin; negative where the contact is open.
     pub compression: f64,
     /// Modal inverse masses of the two points.
@@ -51,39 +57,57 @@ pub(crate) struct Side {
 }
 
 impl ContactConstraint {
-    /// Whether both sides belong to one body.
+    /// Returns the impulse on the first body.
+    pub fn impulse(&self) -> DVec3 {
+        self.points.normal * self.normal_impulse + self.friction_impulse
+    }
+}
+
+impl ContactPoints {
+    /// Whether both points belong to one body. Their impulses then change its modes alone.
     pub fn is_within(&self) -> bool {
         self.bodies[0] == self.bodies[1]
     }
 
-    /// Returns the impulse on the first body.
-    pub fn impulse(&self) -> DVec3 {
-        self.normal * self.normal_impulse + self.friction_impulse
-    }
-
     /// Returns the bodies of the constraint, each once, without the ground.
     pub fn sides(&self) -> impl Iterator<Item = Side> + use<> {
-        sides(self.bodies)
+        let bodies = self.bodies;
+        let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || bodies[0] != bodies[1]);
+        (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
     }
 
     /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
     pub fn modes<'s>(&self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
-        self.source.modes(n, shape, contacts)
+        match self.source {
+            Source::Vertex(v) => shape.model().modes().of_vertex(v),
+            Source::Contact(contact) => &contacts[contact as usize].modes[n],
+        }
     }
-}
 
-/// Returns the bodies of a pair, each once, without the ground.
-pub(crate) fn sides(bodies: [u32; 2]) -> impl Iterator<Item = Side> {
-    let counts = move |n: &usize| bodies[*n] != GROUND && (*n == 0 || bodies[0] != bodies[1]);
-    (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
-}
-
-impl Source {
-    /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
-    pub fn modes<'s>(self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
-        match self {
-            Self::Vertex(v) => shape.model().modes().of_vertex(v),
-            Self::Contact(contact) => &contacts[contact as usize].modes[n],
+    /// Adds an impulse on the first body, and its reaction, to momenta and modal velocities. `inverse_mass`
+    /// returns that of a mode from its [`Body::step_weights`].
+    pub fn push(
+        &self,
+        impulse: DVec3,
+        bodies: &mut [Body],
+        contacts: &[Contact],
+        inverse_mass: impl Fn(f64) -> f64,
+    ) {
+        for Side { n, body, sign } in self.sides() {
+            let body = &mut bodies[body];
+            let mut local = impulse;
+            if !self.is_within() {
+                let impulse = impulse * sign;
+                if body.is_free() {
+                    body.rigid.momentum += impulse;
+                    body.rigid.angular_momentum += self.arms[n].cross(impulse);
+                }
+                local = body.rotation().transpose() * impulse;
+            }
+            let modes = self.modes(n, &body.shape, contacts);
+            for ((v, u), weight) in body.v.iter_mut().zip(modes).zip(&body.step_weights) {
+                *v += inverse_mass(*weight) * u.dot(local);
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use sscc::Pair;
 
 use super::body_collisions::{BodyCollisions, BodyPairs};
 use super::contact::Contact;
-use super::contact_constraint::{ContactConstraint, Source};
+use super::contact_constraint::{ContactConstraint, ContactPoints, Source};
 use super::contact_laws::ContactLaws;
 use super::nearest_triangles::{Nearest, nearest_features};
 use crate::Body;
@@ -211,24 +211,26 @@ impl ContactSet {
             }
             contact.preload = adapt_preload(contact.preload, contact.gap, skin, preload_rate);
             let [a, b] = both;
-            let mut constraint = ContactConstraint {
+            let mut points = ContactPoints {
                 bodies: contact.bodies,
                 source: Source::Contact(n as u32),
                 normal: contact.normal,
                 arms: [DVec3::ZERO; 2],
+            };
+            if !contact.is_within() {
+                points.normal = b.rigid.orientation * contact.normal;
+                let [x, y] = contact.world_points([a, b]);
+                let middle = (x + y) * 0.5;
+                points.arms = [middle - a.rigid.position, middle - b.rigid.position];
+            }
+            constraints.push(ContactConstraint {
+                points,
                 compression: skin - contact.gap + contact.preload,
                 modal_inverse_mass: contact.modal_inverse_mass,
                 friction,
                 normal_impulse: 0.0,
                 friction_impulse: DVec3::ZERO,
-            };
-            if !contact.is_within() {
-                constraint.normal = b.rigid.orientation * contact.normal;
-                let [x, y] = contact.world_points([a, b]);
-                let middle = (x + y) * 0.5;
-                constraint.arms = [middle - a.rigid.position, middle - b.rigid.position];
-            }
-            constraints.push(constraint);
+            });
         }
     }
 }

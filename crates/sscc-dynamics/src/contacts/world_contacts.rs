@@ -71,13 +71,13 @@ impl WorldContacts {
     pub fn keep_impulses(&mut self, corrections: &[Correction]) {
         for one in corrections {
             let (normal_impulse, friction_impulse) = (one.normal_impulse, one.friction_impulse);
-            match one.source {
+            match one.points.source {
                 Source::Contact(contact) => {
                     let contact = &mut self.triangles.list[contact as usize];
                     (contact.normal_impulse, contact.friction_impulse) = (normal_impulse, friction_impulse);
                 }
                 Source::Vertex(vertex) => {
-                    let contacts = &mut self.ground[one.bodies[0] as usize];
+                    let contacts = &mut self.ground[one.points.bodies[0] as usize];
                     if let Ok(n) = contacts.find(vertex) {
                         let point = &mut contacts.points[n];
                         (point.normal_impulse, point.friction_impulse) = (normal_impulse, friction_impulse);

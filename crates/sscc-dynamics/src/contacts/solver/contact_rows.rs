@@ -9,6 +9,9 @@ use glam::{DMat3, DVec3};
 use pulp::Simd;
 
 use super::rigid_velocity::RigidVelocity;
+use crate::Body;
+use crate::contacts::contact::Contact;
+use crate::contacts::contact_constraint::{ContactPoints, Side};
 use crate::packed_rows::{ROW_LANES, add_rows_to, products};
 
 /// The rows of one side of a contact, and the numbers of its body.
@@ -93,17 +96,23 @@ impl ContactRows {
         self.state.resize(state, 0.0);
     }
 
-    /// Adds a contact, which gets the next number.
-    pub fn push<'m>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
-        self.push_rows::<3>(normal, points);
+    /// Adds a contact, which gets the next number. It has N rows: 3, or 1, along its normal, for [`Self::along_normal`] and
+    /// [`Self::push_along_normal`].
+    pub fn push<const N: usize>(&mut self, at: &ContactPoints, bodies: &[Body], contacts: &[Contact]) {
+        let points = at.sides().map(|Side { n, body, sign }| RowPoint {
+            body,
+            sign,
+            arm: (!at.is_within()).then_some(at.arms[n]),
+            modes: at.modes(n, bodies[body].shape(), contacts),
+        });
+        self.push_rows::<N>(at.normal, points);
     }
 
-    /// Adds a contact with the row along its normal alone, for [`Self::along_normal`] and [`Self::push_along_normal`].
-    pub fn push_normal<'m>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
-        self.push_rows::<1>(normal, points);
-    }
-
-    fn push_rows<'m, const N: usize>(&mut self, normal: DVec3, points: impl Iterator<Item = RowPoint<'m>>) {
+    pub(super) fn push_rows<'m, const N: usize>(
+        &mut self,
+        normal: DVec3,
+        points: impl Iterator<Item = RowPoint<'m>>,
+    ) {
         let (first, second) = normal.any_orthonormal_pair();
         let none = RowSide { rows: 0, state: 0, stride: 0 };
         let mut contact = RowContact { axes: [normal, first, second], sides: [none; 2], count: 0 };

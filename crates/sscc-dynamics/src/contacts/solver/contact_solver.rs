@@ -11,25 +11,25 @@
 use glam::{DMat3, DVec3};
 use pulp::{Simd, WithSimd};
 
-use super::contact_rows::{ContactRows, RowPoint};
+use super::contact_rows::ContactRows;
 use super::friction_cone::stop_sliding;
 use super::rigid_velocity::RigidVelocity;
 use crate::Body;
 use crate::bodies::displacement::displacement;
 use crate::contacts::contact::Contact;
-use crate::contacts::contact_constraint::{ContactConstraint, Side};
+use crate::contacts::contact_constraint::{ContactConstraint, ContactPoints, Side};
 use crate::packed_rows::dispatch;
 
 /// Constants of a constraint in the solver.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Coefficients {
+struct Coefficients {
     /// Matrix from impulse to velocity change (inverse effective mass).
     inverse_mass: DMat3,
     /// Velocity change along the normal by a unit impulse along the normal.
     normal_inverse_mass: f64,
     /// Compliance of the implicit spring and damper (velocity by impulse). The constraint along the normal is
     /// `v + compliance * normal_impulse = target_velocity`.
-    pub compliance: f64,
+    compliance: f64,
     /// Velocity along the normal at which the spring separates the points.
     target_velocity: f64,
 }
@@ -57,8 +57,7 @@ const SELF_CONTACT_COMPLIANCE: f64 = 1e-2;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactSolver {
     pub constraints: Vec<ContactConstraint>,
-    /// Those of the constraints of the last solution.
-    pub coefficients: Vec<Coefficients>,
+    coefficients: Vec<Coefficients>,
     velocities: Vec<RigidVelocity>,
     /// Number of constraints of each body.
     counts: Vec<usize>,
@@ -82,17 +81,17 @@ impl ContactSolver {
         self.velocities.extend(bodies.iter().map(RigidVelocity::of));
         self.counts.clear();
         self.counts.resize(bodies.len(), 0);
-        for side in self.constraints.iter().flat_map(ContactConstraint::sides) {
+        for side in self.constraints.iter().flat_map(|constraint| constraint.points.sides()) {
             self.counts[side.body] += 1;
         }
         self.coefficients.clear();
         for constraint in &self.constraints {
             let (mut all_modes, mut slow_modes, mut count) = (DMat3::ZERO, DMat3::ZERO, 1);
-            for Side { n, body, .. } in constraint.sides() {
+            for Side { n, body, .. } in constraint.points.sides() {
                 let [a, b] = self.velocities[body].inverse_masses(
-                    constraint.arms[n],
+                    constraint.points.arms[n],
                     &constraint.modal_inverse_mass[n],
-                    constraint.is_within(),
+                    constraint.points.is_within(),
                 );
                 all_modes += a;
                 slow_modes += b;
@@ -100,9 +99,9 @@ impl ContactSolver {
             }
             let implicit = spring.implicit_share(count);
             let mut coefficients = Coefficients::new(constraint, all_modes, slow_modes, spring, implicit);
-            if constraint.is_within() {
+            if constraint.points.is_within() {
                 // Where hardly any mode separates the two points, the impulse would otherwise have no bound.
-                let mass = bodies[constraint.bodies[0] as usize].shape().mass().mass;
+                let mass = bodies[constraint.points.bodies[0] as usize].shape().mass().mass;
                 coefficients.compliance += SELF_CONTACT_COMPLIANCE / mass;
             }
             self.coefficients.push(coefficients);
@@ -111,16 +110,16 @@ impl ContactSolver {
         self.budgets.extend(bodies.iter().map(|body| body.energy_budget));
         self.velocities_before.clear();
         for constraint in &self.constraints {
-            self.velocities_before.push(self.relative_velocity(constraint, bodies, contacts));
+            self.velocities_before.push(self.relative_velocity(&constraint.points, bodies, contacts));
         }
         self.add_rows(bodies, contacts);
         dispatch(SpringGaussSeidel { solver: self, max_iterations: spring.max_iterations });
         for (body, budget) in bodies.iter_mut().zip(&self.budgets) {
             body.energy_budget = *budget;
         }
-        for n in 0..self.constraints.len() {
-            let constraint = self.constraints[n];
-            self.apply_impulse(&constraint, constraint.impulse(), bodies, contacts);
+        for constraint in &self.constraints {
+            // Modes have mass 1.
+            constraint.points.push(constraint.impulse(), bodies, contacts, |_| 1.0);
         }
     }
 
@@ -134,62 +133,24 @@ impl ContactSolver {
             velocities.iter().zip(bodies).map(|(velocity, body)| (velocity, &mode_weights[..body.v.len()])),
         );
         for constraint in &*constraints {
-            let points = constraint.sides().map(|Side { n, body, sign }| RowPoint {
-                body,
-                sign,
-                arm: (!constraint.is_within()).then_some(constraint.arms[n]),
-                modes: constraint.modes(n, bodies[body].shape(), contacts),
-            });
             if constraint.friction > 0.0 {
-                rows.push(constraint.normal, points);
+                rows.push::<3>(&constraint.points, bodies, contacts);
             } else {
-                rows.push_normal(constraint.normal, points);
+                rows.push::<1>(&constraint.points, bodies, contacts);
             }
         }
     }
 
     /// Returns the velocity of the first body at the contact, less that of the second.
-    fn relative_velocity(
-        &self,
-        constraint: &ContactConstraint,
-        bodies: &[Body],
-        contacts: &[Contact],
-    ) -> DVec3 {
+    fn relative_velocity(&self, points: &ContactPoints, bodies: &[Body], contacts: &[Contact]) -> DVec3 {
         let mut sum = DVec3::ZERO;
-        for Side { n, body, sign } in constraint.sides() {
+        for Side { n, body, sign } in points.sides() {
             let rigid = &self.velocities[body];
             let body = &bodies[body];
-            let modal = displacement(constraint.modes(n, &body.shape, contacts), &body.v);
-            sum +=
-                if constraint.is_within() { modal } else { rigid.of_point(constraint.arms[n], modal) * sign };
+            let modal = displacement(points.modes(n, &body.shape, contacts), &body.v);
+            sum += if points.is_within() { modal } else { rigid.of_point(points.arms[n], modal) * sign };
         }
         sum
-    }
-
-    /// Adds an impulse to the momenta and modal velocities of the bodies.
-    fn apply_impulse(
-        &mut self,
-        constraint: &ContactConstraint,
-        impulse: DVec3,
-        bodies: &mut [Body],
-        contacts: &[Contact],
-    ) {
-        for Side { n, body, sign } in constraint.sides() {
-            let rigid = &mut self.velocities[body];
-            let body = &mut bodies[body];
-            let mut local = impulse;
-            if !constraint.is_within() {
-                let impulse = impulse * sign;
-                if body.is_free() {
-                    rigid.push(impulse, constraint.arms[n]);
-                    body.rigid.momentum += impulse;
-                    body.rigid.angular_momentum += constraint.arms[n].cross(impulse);
-                }
-                local = rigid.rotation.transpose() * impulse;
-            }
-            let modes = constraint.modes(n, &body.shape, contacts);
-            body.v.iter_mut().zip(modes).for_each(|(v, u)| *v += u.dot(local));
-        }
     }
 }
 
@@ -233,8 +194,8 @@ impl ContactSolver {
         if normal_inverse_mass <= 0.0 {
             return 0.0;
         }
-        let budget: f64 = constraint.sides().map(|side| budgets[side.body]).sum();
-        let normal = constraint.normal;
+        let budget: f64 = constraint.points.sides().map(|side| budgets[side.body]).sum();
+        let normal = constraint.points.normal;
         let along = rows.along_normal(simd, n);
         let approach = velocities_before[n].dot(normal) + along;
         let mut change = (target_velocity - approach - compliance * constraint.normal_impulse)
@@ -285,8 +246,8 @@ impl ContactSolver {
 /// Charges the work of an impulse to the energy budgets of the bodies, whose sum is `budget`.
 fn account(constraint: &ContactConstraint, work: f64, budget: f64, budgets: &mut [f64]) {
     // Added energy is paid by the bodies in proportion to their budgets; dissipated energy is shared equally.
-    let count = constraint.sides().count() as f64;
-    for Side { body, .. } in constraint.sides() {
+    let count = constraint.points.sides().count() as f64;
+    for Side { body, .. } in constraint.points.sides() {
         let own = &mut budgets[body];
         let share = if work > 0.0 && budget > 0.0 { *own / budget } else { 1.0 / count };
         *own = (*own - work * share).max(0.0);
@@ -311,7 +272,7 @@ impl Coefficients {
         spring: &Spring,
         implicit: f64,
     ) -> Self {
-        let normal = constraint.normal;
+        let normal = constraint.points.normal;
         let normal_inverse_mass = normal.dot(all_modes * normal);
         // Per mass: stiffness w^2, damping 2 zeta w.
         let Spring { rate, damping, step, .. } = *spring;

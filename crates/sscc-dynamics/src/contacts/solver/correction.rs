@@ -2,15 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::contacts::contact_constraint::Source;
+use crate::contacts::contact_constraint::ContactPoints;
 
 /// Constraint on the end of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Correction {
-    pub bodies: [u32; 2],
-    pub source: Source,
-    pub normal: DVec3,
-    pub arms: [DVec3; 2],
+    pub points: ContactPoints,
     /// Matrix from impulse to change of velocity.
     pub inverse_mass: DMat3,
     /// Change of velocity along the normal by a unit impulse along the normal.
@@ -33,16 +30,11 @@ pub(crate) struct Correction {
 impl Correction {
     /// Returns the impulse on the first body by which the end of the step is displaced.
     pub fn impulse(&self) -> DVec3 {
-        self.normal * self.normal_impulse + self.friction_impulse
+        self.points.normal * self.normal_impulse + self.friction_impulse
     }
 
     /// Returns the impulse on the first body in the whole step.
     pub fn total_impulse(&self) -> DVec3 {
         self.impulse() + self.end_impulse
-    }
-
-    /// Whether both points belong to one body. Their impulses then change its modes alone.
-    pub fn is_within(&self) -> bool {
-        self.bodies[0] == self.bodies[1]
     }
 }

@@ -9,7 +9,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::contact_rows::{ContactRows, RowPoint};
+use super::contact_rows::ContactRows;
 use super::correction::Correction;
 use super::gauss_seidel::{Active, GaussSeidel};
 use super::rigid_velocity::{RigidVelocity, modal_inverse_mass};
@@ -17,7 +17,7 @@ use crate::bodies::body_set::BodySet;
 use crate::bodies::change::Change;
 use crate::bodies::displacement::displacement;
 use crate::contacts::contact::Contact;
-use crate::contacts::contact_constraint::{GROUND, Side, Source, sides};
+use crate::contacts::contact_constraint::{ContactPoints, GROUND, Side, Source};
 use crate::contacts::contact_laws::ContactLaws;
 use crate::contacts::ground_contacts::GroundContacts;
 use crate::contacts::ground_point::{GroundPoint, rest_position};
@@ -114,10 +114,12 @@ impl CorrectionSolver {
         let trial = normal.dot(body.trial.point(rest, modes) - start) / laws.step;
         let approach = -normal.dot(body.start.rigid.velocity_at(arm));
         self.list.push(Correction {
-            bodies: [number as u32, GROUND],
-            source: Source::Vertex(vertex),
-            normal,
-            arms: [arm, DVec3::ZERO],
+            points: ContactPoints {
+                bodies: [number as u32, GROUND],
+                source: Source::Vertex(vertex),
+                normal,
+                arms: [arm, DVec3::ZERO],
+            },
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
             target: (min_gap - gap) / laws.step - normal.dot(slip),
@@ -148,10 +150,12 @@ impl CorrectionSolver {
         let approach = -normal.dot(trial) / laws.step;
         let friction_impulse = contact.friction_impulse;
         self.list.push(Correction {
-            bodies: contact.bodies,
-            source: Source::Contact(number as u32),
-            normal,
-            arms: contact.arms,
+            points: ContactPoints {
+                bodies: contact.bodies,
+                source: Source::Contact(number as u32),
+                normal,
+                arms: contact.arms,
+            },
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
             target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
@@ -174,10 +178,12 @@ impl CorrectionSolver {
         let slip = (now - contact.between) / laws.step - applied;
         let friction_impulse = contact.friction_impulse;
         self.list.push(Correction {
-            bodies: contact.bodies,
-            source: Source::Contact(number as u32),
-            normal,
-            arms: [DVec3::ZERO; 2],
+            points: ContactPoints {
+                bodies: contact.bodies,
+                source: Source::Contact(number as u32),
+                normal,
+                arms: [DVec3::ZERO; 2],
+            },
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
             target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
@@ -223,27 +229,22 @@ impl CorrectionSolver {
     fn gather_islands(&mut self, bodies: &[Body], contacts: &[Contact], among: &BodySet) {
         let Self { list, active, islands, rows, masses, .. } = self;
         let is_active = |one: &Correction| {
-            one.normal_inverse_mass > 0.0 && sides(one.bodies).any(|side| among.contains(side.body))
+            one.normal_inverse_mass > 0.0 && one.points.sides().any(|side| among.contains(side.body))
         };
         islands.reset(bodies.len());
-        for one in list.iter().filter(|one| is_active(one) && one.bodies[1] != GROUND) {
-            islands.join(one.bodies[0] as usize, one.bodies[1] as usize);
+        for one in list.iter().filter(|one| is_active(one) && one.points.bodies[1] != GROUND) {
+            islands.join(one.points.bodies[0] as usize, one.points.bodies[1] as usize);
         }
         active.clear();
         let numbered = (0_u32..).zip(&*list).filter(|(_, one)| is_active(one));
         active.extend(
-            numbered.map(|(number, one)| Active { island: islands.of(one.bodies[0] as usize), number }),
+            numbered
+                .map(|(number, one)| Active { island: islands.of(one.points.bodies[0] as usize), number }),
         );
         active.sort_unstable_by_key(|one| (one.island, one.number));
         rows.begin(masses.iter().zip(bodies).map(|(mass, body)| (mass, &body.step_weights[..])));
         for one in active.iter().map(|active| &list[active.number as usize]) {
-            let points = sides(one.bodies).map(|Side { n, body, sign }| RowPoint {
-                body,
-                sign,
-                arm: (!one.is_within()).then_some(one.arms[n]),
-                modes: one.source.modes(n, bodies[body].shape(), contacts),
-            });
-            rows.push(one.normal, points);
+            rows.push::<3>(&one.points, bodies, contacts);
         }
     }
 
@@ -258,17 +259,17 @@ impl CorrectionSolver {
 
     /// Adds an impulse to the changes of the bodies.
     fn apply(&mut self, one: &Correction, impulse: DVec3, bodies: &[Body], contacts: &[Contact]) {
-        for Side { n, body, sign } in sides(one.bodies) {
+        for Side { n, body, sign } in one.points.sides() {
             let (mass, change, impulse) = (&self.masses[body], &mut self.changes[body], impulse * sign);
-            if bodies[body].is_free() && !one.is_within() {
-                let angular_impulse = one.arms[n].cross(impulse);
+            if bodies[body].is_free() && !one.points.is_within() {
+                let angular_impulse = one.points.arms[n].cross(impulse);
                 change.impulse += impulse;
                 change.angular_impulse += angular_impulse;
                 change.velocity += impulse * mass.inverse_mass;
                 change.angular_velocity += mass.inverse_inertia * angular_impulse;
             }
-            let local = if one.is_within() { impulse } else { mass.rotation.transpose() * impulse };
-            let modes = one.source.modes(n, bodies[body].shape(), contacts);
+            let local = if one.points.is_within() { impulse } else { mass.rotation.transpose() * impulse };
+            let modes = one.points.modes(n, bodies[body].shape(), contacts);
             let own = &mut self.modes[self.first_mode[body]..][..modes.len()];
             for ((w, u), weight) in own.iter_mut().zip(modes).zip(&bodies[body].step_weights) {
                 *w += weight * u.dot(local);

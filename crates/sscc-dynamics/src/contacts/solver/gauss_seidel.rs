@@ -71,18 +71,18 @@ impl GaussSeidel<'_> {
             }
             one.normal_impulse = normal_impulse;
             rows.push_along_normal(simd, contact, change);
-            return (one.inverse_mass * (one.normal * change)).length();
+            return (one.inverse_mass * (one.points.normal * change)).length();
         }
         let axes = rows.axes(contact);
         let [second, third] = rows.across(simd, contact);
         let w = axes[0] * along + axes[1] * second + axes[2] * third;
-        let mut impulse = one.normal * change;
+        let mut impulse = one.points.normal * change;
         let after = one.slip + w + one.inverse_mass * impulse;
-        let sliding = after - one.normal * one.normal.dot(after);
+        let sliding = after - one.points.normal * one.points.normal.dot(after);
         let friction_impulse = limit_friction(
             one.friction_impulse + stop_sliding(sliding, &one.inverse_mass),
             one.friction,
-            one.normal,
+            one.points.normal,
             normal_impulse,
             &one.inverse_mass,
         );
@@ -104,7 +104,7 @@ mod tests {
 
     use super::*;
     use crate::bodies::displacement::displacement;
-    use crate::contacts::contact_constraint::{GROUND, Side, Source, sides};
+    use crate::contacts::contact_constraint::{ContactPoints, GROUND, Side, Source};
     use crate::contacts::islands::Islands;
     use crate::contacts::solver::contact_rows::RowPoint;
     use crate::contacts::solver::rigid_velocity::{RigidVelocity, modal_inverse_mass};
@@ -170,7 +170,9 @@ mod tests {
                 let own = bodies.map(|body| of(body, state));
                 let (normal, arms) = (vector(state).normalize(), [vector(state), vector(state)]);
                 let mut inverse_mass = DMat3::ZERO;
-                for Side { n, body, .. } in sides(bodies) {
+                let source = Source::Contact(n as u32);
+                let points = ContactPoints { bodies, source, normal, arms };
+                for Side { n, body, .. } in points.sides() {
                     let weights = &all[body].step_weights;
                     inverse_mass += if bodies[0] == bodies[1] {
                         modal_inverse_mass(&own[n], weights)
@@ -180,10 +182,7 @@ mod tests {
                 }
                 let normal_impulse = (random(state) - 0.2).max(0.0);
                 list.push(Correction {
-                    bodies,
-                    source: Source::Contact(n as u32),
-                    normal,
-                    arms,
+                    points,
                     inverse_mass,
                     normal_inverse_mass: normal.dot(inverse_mass * normal),
                     target: random(state),
@@ -208,13 +207,13 @@ mod tests {
             let bodies = self.masses.iter().zip(&self.bodies);
             rows.begin(bodies.map(|(mass, body)| (mass, &body.step_weights[..])));
             for (one, modes) in self.list.iter().zip(&self.modes) {
-                let points = sides(one.bodies).map(|Side { n, body, sign }| RowPoint {
+                let points = one.points.sides().map(|Side { n, body, sign }| RowPoint {
                     body,
                     sign,
-                    arm: (!one.is_within()).then_some(one.arms[n]),
+                    arm: (!one.points.is_within()).then_some(one.points.arms[n]),
                     modes: &modes[n],
                 });
-                rows.push(one.normal, points);
+                rows.push_rows::<3>(one.points.normal, points);
             }
             rows
         }
@@ -237,18 +236,22 @@ mod tests {
             let (one, modes) = (&self.contacts.list[contact], &self.contacts.modes[contact]);
             let of = |Side { n, body, sign }: Side| {
                 let modal = displacement(&modes[n], &self.modal[body]);
-                if one.is_within() { modal } else { self.masses[body].of_point(one.arms[n], modal) * sign }
+                if one.points.is_within() {
+                    modal
+                } else {
+                    self.masses[body].of_point(one.points.arms[n], modal) * sign
+                }
             };
-            sides(one.bodies).map(of).sum()
+            one.points.sides().map(of).sum()
         }
 
         fn push(&mut self, contact: usize, impulse: DVec3) {
             let (one, modes) = (&self.contacts.list[contact], &self.contacts.modes[contact]);
-            for Side { n, body, sign } in sides(one.bodies) {
+            for Side { n, body, sign } in one.points.sides() {
                 let impulse = impulse * sign;
                 let mut local = impulse;
-                if !one.is_within() {
-                    self.masses[body].push(impulse, one.arms[n]);
+                if !one.points.is_within() {
+                    self.masses[body].push(impulse, one.points.arms[n]);
                     local = self.masses[body].rotation.transpose() * impulse;
                 }
                 let weights = &self.contacts.bodies[body].step_weights;
@@ -268,18 +271,18 @@ mod tests {
                     let n = if iteration % 2 == 0 { n } else { list.len() - 1 - n };
                     let w = self.velocity(n);
                     let one = &mut list[n];
-                    let change = (one.target - one.normal.dot(w)) / one.normal_inverse_mass;
+                    let change = (one.target - one.points.normal.dot(w)) / one.normal_inverse_mass;
                     let change = change.max(-one.normal_impulse);
-                    let mut impulse = one.normal * change;
+                    let mut impulse = one.points.normal * change;
                     one.normal_impulse += change;
                     if one.friction > 0.0 {
                         let after = one.slip + w + one.inverse_mass * impulse;
-                        let sliding = after - one.normal * one.normal.dot(after);
+                        let sliding = after - one.points.normal * one.points.normal.dot(after);
                         let wanted = one.friction_impulse + stop_sliding(sliding, &one.inverse_mass);
                         let limited = limit_friction(
                             wanted,
                             one.friction,
-                            one.normal,
+                            one.points.normal,
                             one.normal_impulse,
                             &one.inverse_mass,
                         );

@@ -15,7 +15,7 @@
 use glam::{DMat3, DVec3};
 use pulp::{Simd, WithSimd};
 
-use super::contact_rows::{ContactRows, RowPoint};
+use super::contact_rows::ContactRows;
 use super::correction::Correction;
 use super::correction_solver::CorrectionSolver;
 use super::friction_cone::{limit_friction, stop_sliding};
@@ -23,7 +23,7 @@ use super::rigid_velocity::{RigidVelocity, modal_inverse_mass};
 use crate::Body;
 use crate::bodies::displacement::displacement;
 use crate::contacts::contact::Contact;
-use crate::contacts::contact_constraint::{Side, Source, sides};
+use crate::contacts::contact_constraint::{ContactPoints, Side, Source};
 use crate::contacts::ground_point::rest_position;
 use crate::packed_rows::dispatch;
 
@@ -37,11 +37,7 @@ const RELATIVE_TOLERANCE: f64 = 1e-3;
 struct Load {
     /// Number of the correction.
     correction: usize,
-    bodies: [u32; 2],
-    source: Source,
-    normal: DVec3,
-    /// Vectors from the centres of mass to the common point.
-    arms: [DVec3; 2],
+    points: ContactPoints,
     /// Matrix from impulse to change of velocity.
     inverse_mass: DMat3,
     friction: f64,
@@ -75,7 +71,7 @@ impl CorrectionSolver {
         let mut loads: Vec<Load> = corrections
             .map(|(n, one)| {
                 let load = Load::new(n, one, bodies, contacts, &velocities);
-                load.add_rows(bodies, contacts, rows);
+                rows.push::<3>(&load.points, bodies, contacts);
                 load
             })
             .collect();
@@ -91,9 +87,9 @@ impl CorrectionSolver {
             dispatch(Stopping { loads: &mut loads, rows });
         }
         for load in &loads {
-            let impulse = load.normal * load.normal_impulse + load.friction_impulse;
+            let impulse = load.points.normal * load.normal_impulse + load.friction_impulse;
             list[load.correction].end_impulse = impulse;
-            load.push_apart(impulse, bodies, contacts, &velocities);
+            load.points.push(impulse, bodies, contacts, |weight| weight);
         }
     }
 }
@@ -103,96 +99,52 @@ impl Load {
     fn new(
         correction: usize,
         one: &Correction,
-        all: &[Body],
+        bodies: &[Body],
         contacts: &[Contact],
         velocities: &[RigidVelocity],
     ) -> Self {
-        let Correction { bodies, source, normal, friction, .. } = *one;
-        let mut load = Self {
+        let mut points = one.points;
+        if !points.is_within() {
+            let of_sides = points.sides().map(|Side { n, body, .. }| {
+                let body = &bodies[body];
+                let rest = match points.source {
+                    Source::Vertex(vertex) => rest_position(body.shape(), vertex),
+                    Source::Contact(contact) => contacts[contact as usize].rest[n],
+                };
+                body.point(rest, points.modes(n, body.shape(), contacts))
+            });
+            let (count, sum) = of_sides.fold((0.0, DVec3::ZERO), |(count, sum), x| (count + 1.0, sum + x));
+            points.arms = [DVec3::ZERO; 2];
+            for Side { n, body, .. } in points.sides() {
+                points.arms[n] = sum / count - bodies[body].rigid.position;
+            }
+        }
+        let (mut inverse_mass, mut velocity) = (DMat3::ZERO, DVec3::ZERO);
+        for Side { n, body, sign } in points.sides() {
+            let (rigid, body, arm) = (&velocities[body], &bodies[body], points.arms[n]);
+            let modes = points.modes(n, body.shape(), contacts);
+            let modal = displacement(modes, &body.v);
+            if points.is_within() {
+                inverse_mass += modal_inverse_mass(modes, &body.step_weights);
+                velocity += modal;
+            } else {
+                inverse_mass += rigid.inverse_mass_at(arm, modes, &body.step_weights);
+                velocity += rigid.of_point(arm, modal) * sign;
+            }
+        }
+        Self {
             correction,
-            bodies,
-            source,
-            normal,
-            arms: [DVec3::ZERO; 2],
-            inverse_mass: DMat3::ZERO,
-            friction,
+            points,
+            inverse_mass,
+            friction: one.friction,
             given_normal: one.normal_impulse,
             given_friction: one.friction_impulse,
             bounce: one.bounce,
-            velocity: DVec3::ZERO,
+            velocity,
             target: 0.0,
             range: [if one.bounce.is_some() { 0.0 } else { -one.normal_impulse }, f64::INFINITY],
             normal_impulse: 0.0,
             friction_impulse: DVec3::ZERO,
-        };
-        if !one.is_within() {
-            let points = sides(bodies).map(|Side { n, body, .. }| {
-                let body = &all[body];
-                let rest = match source {
-                    Source::Vertex(vertex) => rest_position(body.shape(), vertex),
-                    Source::Contact(contact) => contacts[contact as usize].rest[n],
-                };
-                body.point(rest, source.modes(n, body.shape(), contacts))
-            });
-            let (count, sum) = points.fold((0.0, DVec3::ZERO), |(count, sum), x| (count + 1.0, sum + x));
-            for Side { n, body, .. } in sides(bodies) {
-                load.arms[n] = sum / count - all[body].rigid.position;
-            }
-        }
-        for Side { n, body, sign } in sides(bodies) {
-            let (rigid, body) = (&velocities[body], &all[body]);
-            let modes = source.modes(n, body.shape(), contacts);
-            let modal = displacement(modes, &body.v);
-            if one.is_within() {
-                load.inverse_mass += modal_inverse_mass(modes, &body.step_weights);
-                load.velocity += modal;
-            } else {
-                load.inverse_mass += rigid.inverse_mass_at(load.arms[n], modes, &body.step_weights);
-                load.velocity += rigid.of_point(load.arms[n], modal) * sign;
-            }
-        }
-        load
-    }
-
-    /// Whether both points belong to one body.
-    fn is_within(&self) -> bool {
-        self.bodies[0] == self.bodies[1]
-    }
-
-    /// Adds the rows of the contact.
-    fn add_rows(&self, bodies: &[Body], contacts: &[Contact], rows: &mut ContactRows) {
-        let points = sides(self.bodies).map(|Side { n, body, sign }| RowPoint {
-            body,
-            sign,
-            arm: (!self.is_within()).then_some(self.arms[n]),
-            modes: self.source.modes(n, bodies[body].shape(), contacts),
-        });
-        rows.push(self.normal, points);
-    }
-
-    /// Adds an impulse to the momenta and modal velocities of the bodies.
-    fn push_apart(
-        &self,
-        impulse: DVec3,
-        bodies: &mut [Body],
-        contacts: &[Contact],
-        velocities: &[RigidVelocity],
-    ) {
-        for Side { n, body, sign } in sides(self.bodies) {
-            let (rigid, body) = (&velocities[body], &mut bodies[body]);
-            let mut local = impulse;
-            if !self.is_within() {
-                let impulse = impulse * sign;
-                if body.is_free() {
-                    body.rigid.momentum += impulse;
-                    body.rigid.angular_momentum += self.arms[n].cross(impulse);
-                }
-                local = rigid.rotation.transpose() * impulse;
-            }
-            let modes = self.source.modes(n, &body.shape, contacts);
-            for ((v, u), weight) in body.v.iter_mut().zip(modes).zip(&body.step_weights) {
-                *v += weight * u.dot(local);
-            }
         }
     }
 }
@@ -231,7 +183,7 @@ impl Stopping<'_> {
     #[inline(always)]
     fn stop_contact<S: Simd>(&mut self, simd: S, n: usize) -> f64 {
         let (load, rows) = (&mut self.loads[n], &mut *self.rows);
-        let Load { normal, inverse_mass, friction, .. } = *load;
+        let Load { points: ContactPoints { normal, .. }, inverse_mass, friction, .. } = *load;
         let normal_inverse_mass = normal.dot(inverse_mass * normal);
         if normal_inverse_mass <= 0.0 {
             return 0.0;

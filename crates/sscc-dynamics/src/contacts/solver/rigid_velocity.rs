@@ -48,6 +48,7 @@ impl RigidVelocity {
     }
 
     /// Adds the change by an impulse.
+    #[cfg(test)]
     pub fn push(&mut self, impulse: DVec3, arm: DVec3) {
         self.velocity += impulse * self.inverse_mass;
         self.angular_velocity += self.inverse_inertia * arm.cross(impulse);
