@@ -45,7 +45,6 @@ pub(super) fn measure(
     progress: &dyn Progress,
 ) -> Tightness {
     let parts = certificates.parts();
-    let nodes = parts.hierarchy.nodes();
     let bounds = NodePairBounds::new(minimum.scaled, &parts.hierarchy);
     let groups = NodeGroups::new(minimum.filter, &parts.hierarchy);
     let context = RadiusSearchContext {
@@ -64,14 +63,7 @@ pub(super) fn measure(
         (n, m) if n != m => claim.radius == limit,
         (n, _) => n != 0 && limit > 0.0 && claim.radius >= node_cap,
     };
-    let mut measured = vec![claims.node(0)];
-    measured.extend(claims.root_pairs());
-    let spread = |count: usize, most: usize| (0..count).step_by(count.div_ceil(most).max(1));
-    let within_buckets = parts.hierarchy.nodes_within_buckets();
-    let with_own_radius: Vec<u32> =
-        (1..nodes.len() as u32).filter(|n| !within_buckets[*n as usize]).collect();
-    measured.extend(spread(with_own_radius.len(), NODES).map(|at| claims.node(with_own_radius[at])));
-    measured.extend(spread(claims.stored_len(), STORED).map(|index| claims.stored(index)));
+    let mut measured = spread_claims(certificates, claims);
     let absent: Vec<Claim> =
         spread(claims.parents_len(), PARENTS).flat_map(|parent| claims.absent(parent)).collect();
     let bound =
@@ -81,21 +73,7 @@ pub(super) fn measure(
     measured.extend(bounded.into_iter().take(ABSENT).map(|(_, claim)| claim));
     measured.retain(|claim| claim.radius > 0.0);
     let critical: Vec<Option<Pair>> = map_with(&measured, usize::MAX, search, |search, claim| {
-        // Beyond the radius: a search up to it alone could refute no claim.
-        let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
-        let (n, m) = claim.nodes;
-        if n != m {
-            search.between(vec![BoundedNodePair::unbounded((n, m))], goal);
-        } else {
-            let n = find_responsible_node(certificates, n);
-            let node = &nodes[n as usize];
-            if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
-                search.within(n, goal);
-            } else {
-                search.between(node.child_pairs().map(BoundedNodePair::unbounded).collect(), goal);
-            }
-        }
-        search.closest()
+        find_critical_pair(search, certificates, claim)
     });
     // Many claims have the same critical pair.
     let mut faces: Vec<Pair> = critical.iter().flatten().copied().collect();
@@ -122,6 +100,48 @@ pub(super) fn measure(
         result.collisions.push(collision);
     }
     result
+}
+
+/// At most `most` numbers below `count`, spread evenly.
+fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(count.div_ceil(most).max(1))
+}
+
+/// The claims of the root and of the pairs of its children, and claims of nodes and stored node pairs spread evenly.
+fn spread_claims(certificates: &Certificates, claims: &Claims<'_>) -> Vec<Claim> {
+    let hierarchy = &certificates.parts().hierarchy;
+    let mut measured = vec![claims.node(0)];
+    measured.extend(claims.root_pairs());
+    let within_buckets = hierarchy.nodes_within_buckets();
+    let with_own_radius: Vec<u32> =
+        (1..hierarchy.nodes().len() as u32).filter(|n| !within_buckets[*n as usize]).collect();
+    measured.extend(spread(with_own_radius.len(), NODES).map(|at| claims.node(with_own_radius[at])));
+    measured.extend(spread(claims.stored_len(), STORED).map(|index| claims.stored(index)));
+    measured
+}
+
+/// The triangle pair whose bound is the smallest below a claim's node or node pair.
+fn find_critical_pair(
+    search: &mut RadiusSearch<'_>,
+    certificates: &Certificates,
+    claim: &Claim,
+) -> Option<Pair> {
+    let parts = certificates.parts();
+    // Beyond the radius: a search up to it alone could refute no claim.
+    let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
+    let (n, m) = claim.nodes;
+    if n != m {
+        search.between(vec![BoundedNodePair::unbounded((n, m))], goal);
+        return search.closest();
+    }
+    let n = find_responsible_node(certificates, n);
+    let node = &parts.hierarchy.nodes()[n as usize];
+    if node.is_leaf() || parts.hierarchy.is_bucket_below_root(n) {
+        search.within(n, goal);
+    } else {
+        search.between(node.child_pairs().map(BoundedNodePair::unbounded).collect(), goal);
+    }
+    search.closest()
 }
 
 /// Follows the radius of n down to the node whose own pairs determine it; ends at a bucket.

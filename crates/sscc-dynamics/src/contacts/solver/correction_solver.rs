@@ -43,6 +43,16 @@ pub(crate) struct CorrectionSolver {
     applied: (Vec<Change>, Vec<f64>),
 }
 
+/// Motion of the two points of a contact.
+struct PointMotion {
+    /// Matrix from impulse to change of velocity.
+    inverse_mass: DMat3,
+    /// Change of the velocity between the points with which their bodies were moved last.
+    applied: DVec3,
+    /// Vector between the points in the current state.
+    now: DVec3,
+}
+
 /// Iterations end when one changes displacements by less than this share of the gap at rest.
 const TOLERANCE: f64 = 1e-3;
 
@@ -87,11 +97,7 @@ impl CorrectionSolver {
             if !contact.is_rigid_constraint() || both.iter().all(|body| body.is_asleep()) {
                 continue;
             }
-            if contact.is_within() {
-                self.add_within(n, contact, both[0], laws);
-            } else {
-                self.add_rigid(n, contact, both, laws);
-            }
+            self.add_rigid(n, contact, both, laws);
         }
     }
 
@@ -132,68 +138,54 @@ impl CorrectionSolver {
         });
     }
 
+    /// Adds the constraint of a rigid contact. The vectors of one within a body are in axes of the body.
     fn add_rigid(&mut self, number: usize, contact: &Contact, both: [&Body; 2], laws: &ContactLaws) {
-        let mut inverse_mass = DMat3::ZERO;
-        let mut applied = DVec3::ZERO;
-        let mut now = [DVec3::ZERO; 2];
-        for (n, sign) in [(0, 1.0), (1, -1.0)] {
-            let (body, modes, arm) = (both[n], &contact.modes[n], contact.arms[n]);
-            let number = contact.bodies[n] as usize;
-            inverse_mass += self.masses[number].inverse_mass_at(arm, modes, &body.step_weights);
-            let (changes, modal) = (&self.applied.0, &self.applied.1);
-            applied += self.velocity(number, arm, modes, changes, modal) * sign;
-            now[n] = body.point(contact.rest[n], modes);
-        }
-        let normal = contact.world_normal;
-        let slip = (now[0] - now[1] - contact.between) / laws.step - applied;
-        let trial = contact.between(both.map(|body| &body.trial)) - contact.between;
-        let approach = -normal.dot(trial) / laws.step;
-        let friction_impulse = contact.friction_impulse;
+        let Contact { bodies, min_gap, gap, normal_impulse, friction_impulse, .. } = *contact;
+        let (normal, arms, bounce, motion) = if contact.is_within() {
+            (contact.normal, [DVec3::ZERO; 2], None, self.motion_within(contact, both[0]))
+        } else {
+            let trial = contact.between(both.map(|body| &body.trial)) - contact.between;
+            let approach = -contact.world_normal.dot(trial) / laws.step;
+            let bounce = laws.bounce(contact.approach(both).min(approach));
+            (contact.world_normal, contact.arms, bounce, self.motion_between(contact, both))
+        };
+        let PointMotion { inverse_mass, applied, now } = motion;
+        let slip = (now - contact.between) / laws.step - applied;
         self.list.push(Correction {
-            points: ContactPoints {
-                bodies: contact.bodies,
-                source: Source::Contact(number as u32),
-                normal,
-                arms: contact.arms,
-            },
+            points: ContactPoints { bodies, source: Source::Contact(number as u32), normal, arms },
             inverse_mass,
             normal_inverse_mass: normal.dot(inverse_mass * normal),
-            target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
+            target: (min_gap - gap) / laws.step - normal.dot(slip),
             slip,
             friction: laws.friction,
-            bounce: laws.bounce(contact.approach(both).min(approach)),
-            normal_impulse: contact.normal_impulse,
+            bounce,
+            normal_impulse,
             friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
             end_impulse: DVec3::ZERO,
         });
     }
 
-    /// Adds the constraint of a contact within a body. Its vectors are in axes of the body.
-    fn add_within(&mut self, number: usize, contact: &Contact, body: &Body, laws: &ContactLaws) {
-        let (modes, normal) = (&contact.modes[0], contact.normal);
-        let inverse_mass = modal_inverse_mass(modes, &body.step_weights);
-        let own = contact.bodies[0] as usize;
-        let applied = displacement(modes, &self.applied.1[self.first_mode[own]..][..modes.len()]);
-        let now = contact.rest[0] - contact.rest[1] + displacement(modes, &body.q);
-        let slip = (now - contact.between) / laws.step - applied;
-        let friction_impulse = contact.friction_impulse;
-        self.list.push(Correction {
-            points: ContactPoints {
-                bodies: contact.bodies,
-                source: Source::Contact(number as u32),
-                normal,
-                arms: [DVec3::ZERO; 2],
-            },
-            inverse_mass,
-            normal_inverse_mass: normal.dot(inverse_mass * normal),
-            target: (contact.min_gap - contact.gap) / laws.step - normal.dot(slip),
-            slip,
-            friction: laws.friction,
-            bounce: None,
-            normal_impulse: contact.normal_impulse,
-            friction_impulse: friction_impulse - normal * normal.dot(friction_impulse),
-            end_impulse: DVec3::ZERO,
-        });
+    /// Returns how the points of a contact of two bodies move.
+    fn motion_between(&self, contact: &Contact, both: [&Body; 2]) -> PointMotion {
+        let (mut inverse_mass, mut applied, mut now) = (DMat3::ZERO, DVec3::ZERO, [DVec3::ZERO; 2]);
+        for (n, sign) in [(0, 1.0), (1, -1.0)] {
+            let (body, modes, arm) = (both[n], &contact.modes[n], contact.arms[n]);
+            let number = contact.bodies[n] as usize;
+            inverse_mass += self.masses[number].inverse_mass_at(arm, modes, &body.step_weights);
+            applied += self.velocity(number, arm, modes, &self.applied.0, &self.applied.1) * sign;
+            now[n] = body.point(contact.rest[n], modes);
+        }
+        PointMotion { inverse_mass, applied, now: now[0] - now[1] }
+    }
+
+    /// Returns how the points of a contact within a body move, in axes of the body.
+    fn motion_within(&self, contact: &Contact, body: &Body) -> PointMotion {
+        let (modes, first) = (&contact.modes[0], self.first_mode[contact.bodies[0] as usize]);
+        PointMotion {
+            inverse_mass: modal_inverse_mass(modes, &body.step_weights),
+            applied: displacement(modes, &self.applied.1[first..][..modes.len()]),
+            now: contact.rest[0] - contact.rest[1] + displacement(modes, &body.q),
+        }
     }
 
     /// Solves the constraints that act on a body of `among`, which must contain whole islands, and moves these bodies.

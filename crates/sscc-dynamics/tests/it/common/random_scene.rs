@@ -1,4 +1,4 @@
-//! Random numbers and scenes of the test `robustness`, and of its long form, the example `robustness` of `sscc-sim`.
+//! Random numbers and scenes of the test `step::energy`, and of its long form, the example `robustness` of `sscc-sim`.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use glam::DVec3;
