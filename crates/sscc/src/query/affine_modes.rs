@@ -140,7 +140,7 @@ impl AffineModes {
         let rounding = (2 * self.combinations.len() + 4) as f64 * f64::EPSILON;
         free.error = right_or!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
         free.map_error = rounding * map_terms * ROUND_UP;
-        free.length = right_or!(free.length * ROUND_UP, LocalAffineResidual, 0.0);
+        free.length *= right_or!(ROUND_UP, LocalAffineResidual, 0.0);
     }
 }
 
@@ -194,7 +194,8 @@ impl Fits {
         let inverse = glam::DMat4::from_cols_array_2d(&products);
         let determinant = inverse.determinant();
         let volume: f64 = (0..4).map(|i| products[i][i]).product();
-        if !(determinant > 1e-9 * volume) {
+        let is_regular = determinant > 1e-9 * volume; // false for not a number
+        if !is_regular {
             return None;
         }
         let inverse = inverse.inverse().to_cols_array_2d();

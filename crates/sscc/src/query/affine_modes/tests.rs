@@ -169,7 +169,7 @@ fn residuals_include_their_rounding() {
                     let mapped: BigRational = (0..3).map(|c| exact(map.col(c)[axis]) * exact(p[c])).sum();
                     moved - mapped - exact(shift[axis])
                 };
-                let square: BigRational = (0..3).map(|axis| of_axis(axis)).map(|x| &x * &x).sum();
+                let square: BigRational = (0..3).map(of_axis).map(|x| &x * &x).sum();
                 most = most.max(square);
             }
             assert!(most <= bound, "case {case}");
