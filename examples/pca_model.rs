@@ -75,7 +75,10 @@ fn run() -> Result<(), Box<dyn Error>> {
     // It is scaled further, into the root's ellipsoid, where one comparison proves it free. This takes nanoseconds.
     if let Some(clamped) = certificates.clamp(q)? {
         let pairs = query.count(&clamped)?;
-        println!("  clamp keeps {:.1} %: {pairs} pairs", 100.0 * query.norm() / answers[i].norm);
+        println!(
+            "  clamp keeps {:.1} %: {pairs} pairs",
+            100.0 * query.statistics().norm / answers[i].statistics.norm
+        );
     }
     Ok(())
 }

@@ -43,7 +43,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         println!("mode 0 moves nothing");
         return Ok(());
     }
-    let largest = model.metric().norm(&far);
+    let largest = model.metric().norm(&far)?;
     let growing = (0..FRAMES).map(|i| swing(&model, &rest, i, largest * i as f64 / FRAMES as f64));
     let mut query = Query::new(&model, &certificates)?;
     check("growing", &mut query, growing)?;
@@ -64,7 +64,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     check("settled", &mut query, small())?;
 
     // Certificates with that pose as centre measure |z| from there.
-    let options = CertifyOptions { center: Some(settled.clone()), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().center(settled.clone());
     let centred = Certificates::compute(&model, &options, &())?;
     println!("certified about the settled pose: free where |z| < {:.3e}", centred.root_radius());
     check("settled", &mut Query::new(&model, &centred)?, small())?;
@@ -82,20 +82,24 @@ fn half_size(model: &ReducedModel) -> f64 {
 
 /// Returns frame i of an oscillation about a pose, at the distance `size` from it in the model's metric. Every mode has
 /// its own frequency.
-fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Vec<f64> {
+fn swing(model: &ReducedModel, about: &[f64], i: usize, size: f64) -> Result<Vec<f64>, sscc::Error> {
     let time = i as f64 / FRAMES as f64;
     let turns = |k: usize| (3.0 + 0.7 * k as f64) * time + 0.13 * (1 + k) as f64;
     let z: Vec<f64> = (0..model.rank()).map(|k| libm::sin(TAU * turns(k)) / (1 + k) as f64).collect();
     let length = z.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let offset = model.metric().unscaled(&z);
-    about.iter().zip(offset).map(|(q, d)| q + d * size / length).collect()
+    let offset = model.metric().unscaled(&z)?;
+    Ok(about.iter().zip(offset).map(|(q, d)| q + d * size / length).collect())
 }
 
 /// Queries every frame, and prints the mean cost.
-fn check(name: &str, query: &mut Query, frames: impl Iterator<Item = Vec<f64>>) -> Result<(), sscc::Error> {
+fn check(
+    name: &str,
+    query: &mut Query,
+    frames: impl Iterator<Item = Result<Vec<f64>, sscc::Error>>,
+) -> Result<(), sscc::Error> {
     let (mut colliding, mut by_root, mut opened, mut boxes, mut triangles) = (0, 0, 0, 0, 0);
     for q in frames {
-        colliding += usize::from(!query.discrete(&q)?.is_empty());
+        colliding += usize::from(!query.discrete(&q?)?.is_empty());
         let cost = query.statistics();
         by_root += usize::from(cost.root_certified);
         opened += cost.opened;

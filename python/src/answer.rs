@@ -28,8 +28,8 @@ pub struct Answer {
 
 impl Answer {
     #[inline]
-    pub fn of(pairs: Vec<Pair>, norm: f64, statistics: Statistics) -> Self {
-        Self { core: sscc::Answer { pairs, norm, statistics }, pairs_array: CachedArray::new() }
+    pub fn of(pairs: Vec<Pair>, statistics: Statistics) -> Self {
+        Self { core: sscc::Answer { pairs, statistics }, pairs_array: CachedArray::new() }
     }
 }
 
@@ -52,7 +52,7 @@ impl Answer {
 
     #[getter]
     fn norm(&self) -> f64 {
-        self.core.norm
+        self.core.statistics.norm
     }
 
     #[getter]
@@ -67,7 +67,7 @@ impl Answer {
 
     #[getter]
     fn proof(&self) -> &'static str {
-        self.core.statistics.proof.name()
+        self.core.statistics.proof.into()
     }
 
     #[getter]
@@ -99,7 +99,7 @@ impl Answer {
 
     fn __repr__(&self) -> String {
         let result = result(self.core.pairs.len(), self.core.statistics.complete);
-        format!("<sscc.Answer: {result}, norm {}>", length(self.core.norm))
+        format!("<sscc.Answer: {result}, norm {}>", length(self.core.statistics.norm))
     }
 }
 
@@ -118,7 +118,7 @@ pub fn pickled<'py>(py: Python<'py>, answer: &sscc::Answer) -> PickledAnswer<'py
     let s = &answer.statistics;
     let proof = PROOFS.iter().position(|proof| *proof == s.proof).unwrap_or_default() as u8;
     let cost = (proof, s.complete, s.opened, s.box_tests, s.triangle_tests);
-    (pair_bytes(py, &answer.pairs), answer.norm, cost)
+    (pair_bytes(py, &answer.pairs), s.norm, cost)
 }
 
 /// Returns pairs as bytes (little-endian).
@@ -152,8 +152,17 @@ pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answ
         return Err(value("the pickled answer is damaged: its proof is not known"));
     };
     let root_certified = proof != Proof::Search;
-    let statistics = Statistics { root_certified, proof, complete, opened, box_tests, triangle_tests };
-    Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, norm: *norm, statistics })
+    let statistics = Statistics {
+        norm: *norm,
+        root_certified,
+        proof,
+        complete,
+        opened,
+        box_tests,
+        triangle_tests,
+        ..Statistics::default()
+    };
+    Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, statistics })
 }
 
 /// Constructor for pickled answers.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
+use sscc::Neighbours;
 
 use crate::errors::{kind, value};
 
@@ -65,6 +66,12 @@ pub fn choice<T: Copy>(
         Some((_, choice)) => Ok(Some(*choice)),
         None => Err(value(format!("{name} is '{}': {} was expected", text.escape_debug(), known()))),
     }
+}
+
+/// The values of the argument `neighbours`, by their names.
+pub fn neighbours_by_name() -> [(&'static str, Neighbours); 3] {
+    [Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded]
+        .map(|rule| (rule.into(), rule))
 }
 
 /// Returns the path in a str or os.PathLike.

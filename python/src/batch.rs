@@ -53,7 +53,7 @@ impl Batch {
 
     #[getter]
     fn norm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.column(py, 2, |answer| answer.norm)
+        self.column(py, 2, |answer| answer.statistics.norm)
     }
 
     #[getter]
@@ -68,7 +68,7 @@ impl Batch {
 
     #[getter]
     fn proof<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.column(py, 9, |answer| fixed(answer.statistics.proof.name()))
+        self.column(py, 9, |answer| fixed(answer.statistics.proof.into()))
     }
 
     #[getter]
@@ -119,7 +119,7 @@ impl Batch {
     fn __getitem__(&self, index: isize) -> PyResult<Answer> {
         let from_start = if index < 0 { index + self.answers.len() as isize } else { index };
         match usize::try_from(from_start).ok().and_then(|index| self.answers.get(index)) {
-            Some(answer) => Ok(Answer::of(answer.pairs.clone(), answer.norm, answer.statistics)),
+            Some(answer) => Ok(Answer::of(answer.pairs.clone(), answer.statistics)),
             None => Err(PyIndexError::new_err(format!("the batch has {} answers", self.answers.len()))),
         }
     }

@@ -46,7 +46,7 @@ impl Certificates {
     #[inline]
     fn is_quick(&self, q: &[f64]) -> bool {
         let core = self.core();
-        q.len() == core.center().len() && core.exceptions().is_empty() && core.norm(q) < core.root_radius()
+        core.exceptions().is_empty() && core.norm(q).is_ok_and(|norm| norm < core.root_radius())
     }
 }
 
@@ -85,7 +85,7 @@ impl Certificates {
         let run = || {
             self.pool.with_query(|query| {
                 let pairs = query.discrete_at_most(&q, limit).map(<[_]>::to_vec)?;
-                Ok(Answer::of(pairs, query.norm(), query.statistics()))
+                Ok(Answer::of(pairs, query.statistics()))
             })
         };
         let found = if self.is_quick(&q) { run() } else { answer(py, run)? };
@@ -110,7 +110,7 @@ impl Certificates {
         let found = answer(py, || {
             self.pool.with_query(|query| {
                 let impacts = query.continuous(&q0, &q1)?.to_vec();
-                Ok(Impacts::of(&impacts, query.norm(), query.statistics()))
+                Ok(Impacts::of(&impacts, query.statistics()))
             })
         })?;
         // The core reports the first end that is not a configuration of the model.
@@ -173,13 +173,13 @@ impl Certificates {
     fn norm(&self, q: &Bound<'_, PyAny>) -> PyResult<f64> {
         let q = vector(q, "q")?;
         self.model.get().loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
-        Ok(self.core().norm(&q))
+        self.core().norm(&q).map_err(|error| refused(&error, "q"))
     }
 
     fn radius(&self, node: &Bound<'_, PyAny>) -> PyResult<f64> {
-        let nodes = self.core().hierarchy().nodes().len();
+        let nodes = self.core().parts().hierarchy.nodes().len();
         let node = count(Some(node), "node", 0..=nodes - 1)?.unwrap_or_default();
-        Ok(self.core().node_radius(node as u32))
+        Ok(self.core().parts().node_radii[node])
     }
 
     fn kinetic(&self, py: Python<'_>) -> PyResult<KineticQuery> {
@@ -209,7 +209,7 @@ impl Certificates {
 
     #[getter]
     fn metric(&self) -> &'static str {
-        self.core().metric().kind().name()
+        self.core().metric().kind().into()
     }
 
     #[getter]
@@ -224,7 +224,7 @@ impl Certificates {
 
     #[getter]
     fn neighbours(&self) -> &'static str {
-        self.core().filter().neighbours.name()
+        self.core().filter().neighbours.into()
     }
 
     #[getter]
@@ -249,7 +249,7 @@ impl Certificates {
 
     #[getter]
     fn nodes(&self) -> usize {
-        self.core().hierarchy().nodes().len()
+        self.core().parts().hierarchy.nodes().len()
     }
 
     #[getter]

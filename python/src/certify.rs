@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use sscc::{CertifyOptions, ContactFilter, Error, Neighbours};
+use sscc::parts::{
+    DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, check_models, is_reach,
+};
+use sscc::{CertifyOptions, ContactFilter, Error};
 
-use crate::arguments::{choice, count, number, switch};
+use crate::arguments::{choice, count, neighbours_by_name, number, switch};
 use crate::arrays::vector;
 use crate::certificates::Certificates;
 use crate::errors::{refused, value};
@@ -42,7 +45,6 @@ enum Scheme {
 impl CertifyArguments<'_, '_> {
     /// Returns the options of the core. An error names the argument.
     pub fn options(&self, loaded: &LoadedModel) -> PyResult<CertifyOptions> {
-        let default = CertifyOptions::default();
         let model = &loaded.model;
         let center = match self.center {
             None => None,
@@ -52,7 +54,7 @@ impl CertifyArguments<'_, '_> {
                 Some(center)
             }
         };
-        let epsilon = number(self.epsilon, "epsilon")?.unwrap_or(default.epsilon);
+        let epsilon = number(self.epsilon, "epsilon")?.unwrap_or(DEFAULT_EPSILON);
         if !(epsilon > 0.0 && epsilon < 1.0) {
             return Err(value(format!("epsilon is {epsilon}: a number between 0 and 1 was expected")));
         }
@@ -67,34 +69,32 @@ impl CertifyArguments<'_, '_> {
         }
         let (budget, local_budget) = match scheme {
             Some(Scheme::Paper) => (0, 0),
-            _ => (budget.unwrap_or(default.budget), local_budget.unwrap_or(default.local_budget)),
+            _ => (budget.unwrap_or(DEFAULT_BUDGET), local_budget.unwrap_or(DEFAULT_LOCAL_BUDGET)),
         };
         let reach = number(self.reach, "reach")?;
         if scheme == Some(Scheme::Paper) && reach.is_some() {
             return Err(value("scheme 'paper' ends radii at the global radius: leave reach out"));
         }
-        let reach = reach.unwrap_or(default.reach);
-        if !CertifyOptions::is_reach(reach) {
+        let reach = reach.unwrap_or(DEFAULT_REACH);
+        if !is_reach(reach) {
             return Err(value(format!("reach is {reach}: a finite number of at least 1 was expected")));
         }
-        let rules = Neighbours::ALL.map(|rule| (rule.name(), rule));
-        let neighbours = choice(self.neighbours, "neighbours", &rules)?.unwrap_or_default();
-        neighbours.check_models().map_err(|error| refused(&error, "neighbours"))?;
+        let neighbours = choice(self.neighbours, "neighbours", &neighbours_by_name())?.unwrap_or_default();
+        check_models(neighbours).map_err(|error| refused(&error, "neighbours"))?;
         let weld = switch(self.weld, "weld")?.unwrap_or(ContactFilter::of(model.mesh()).weld);
-        let filter = ContactFilter::new(neighbours, weld);
+        let filter = ContactFilter::new(neighbours).weld(weld);
         let triangles = model.mesh().faces().len();
-        Ok(CertifyOptions {
-            epsilon,
-            metric: read_metric(model, self.metric)?,
-            center,
-            filter: Some(with_groups(filter, triangles, self.groups, self.ignore_groups)?),
-            ignore_rest: switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false),
-            max_exceptions: count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?,
-            budget,
-            local_budget,
-            reach,
-            threads: threads(self.threads)?,
-        })
+        Ok(CertifyOptions::default()
+            .epsilon(epsilon)
+            .metric(read_metric(model, self.metric)?)
+            .center(center)
+            .filter(with_groups(filter, triangles, self.groups, self.ignore_groups)?)
+            .ignore_rest(switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false))
+            .max_exceptions(count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?)
+            .budget(budget)
+            .local_budget(local_budget)
+            .reach(reach)
+            .threads(threads(self.threads)?))
     }
 }
 

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
-use sscc::{
-    Error, Pair, Penetration, Surface, contact_curves, contact_curves_between, penetration_triangle_triangle,
+use sscc::parts::{
+    Penetration, Surface, contact_curves, contact_curves_between, penetration_triangle_triangle,
 };
+use sscc::{Error, Pair};
 
 use crate::arrays::{frozen, pairs, table};
 use crate::colliding_triangles::CollidingTriangles;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
-use sscc::{Error, FrameAnswer, TriMesh};
+use sscc::parts::GroupTable;
+use sscc::{Answer, Error, TriMesh};
 use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
@@ -47,7 +48,7 @@ impl Detector {
     }
 
     /// Adds the triangles of the pairs at these positions.
-    fn found(&self, frame: FrameAnswer, positions: &[DVec3]) -> FoundFrame {
+    fn found(&self, frame: Answer, positions: &[DVec3]) -> FoundFrame {
         FoundFrame::of(frame, |pairs| Contacts::within((&self.pool.mesh.faces, positions), pairs))
     }
 
@@ -154,7 +155,7 @@ impl Detector {
         };
         self.ask(py, &[&positions], |detector| {
             let pairs = detector.discrete_at_most(&positions.points, limit)?.to_vec();
-            let frame = FrameAnswer { pairs, statistics: detector.statistics() };
+            let frame = Answer { pairs, statistics: detector.statistics() };
             Ok(DetectorAnswer::of(self.found(frame, &positions.points)))
         })
     }
@@ -176,7 +177,7 @@ impl Detector {
         let answers = run_borrowing(py, progress, "checking", |progress| {
             let built = self.pool.built(first, "frames[0]")?;
             let answers = built.first.batch_at_most(&slices, limit, threads, progress);
-            let found = |(frame, x): (FrameAnswer, &&[DVec3])| self.found(frame, x);
+            let found = |(frame, x): (Answer, &&[DVec3])| self.found(frame, x);
             let answers = answers.map(|answers| answers.into_iter().zip(&slices).map(found).collect());
             answers.map_err(|error| {
                 let fault = |(frame, x): (usize, &&[DVec3])| Some((frame, fault(x, built.rest.len())?));
@@ -215,7 +216,7 @@ impl Detector {
         let faces = [self, other].map(|detector| detector.pool.mesh.faces.as_slice());
         self.ask_both(py, &[&x], other, &[&y], |detector, other| {
             let pairs = detector.against(&x.points, other, &y.points)?.to_vec();
-            let frame = FrameAnswer { pairs, statistics: detector.statistics() };
+            let frame = Answer { pairs, statistics: detector.statistics() };
             let [x, y] = [(faces[0], x.points.as_slice()), (faces[1], y.points.as_slice())];
             Ok(DetectorAnswer::of(FoundFrame::of(frame, |pairs| Contacts::between(x, y, pairs))))
         })
@@ -253,7 +254,7 @@ impl Detector {
 
     #[getter]
     fn neighbours(&self) -> &'static str {
-        self.pool.mesh.filter.neighbours.name()
+        self.pool.mesh.filter.neighbours.into()
     }
 
     #[getter]
@@ -272,7 +273,10 @@ impl Detector {
     #[getter]
     fn groups<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
         let groups = self.pool.mesh.filter.groups()?;
-        Some(line::<u32>(py, groups.of_triangles().iter().map(|group| u32::from(*group)).collect()))
+        Some(line::<u32>(
+            py,
+            GroupTable::from(&**groups).of_triangles.iter().map(|group| u32::from(*group)).collect(),
+        ))
     }
 
     #[getter]

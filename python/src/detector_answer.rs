@@ -8,7 +8,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyList};
-use sscc::{DetectorStatistics, FrameAnswer, Impact, Pair, Penetration};
+use sscc::parts::Penetration;
+use sscc::{Answer, Impact, Pair, Statistics};
 use sscc_sim::text::counted;
 
 use crate::answer::{Reduction, pair_bytes, pairs_of_bytes, result};
@@ -27,14 +28,14 @@ pub type PickledAnswer<'py> = (PickledFrame<'py>, Option<PickledContacts<'py>>);
 /// An answer of the core, and the triangles of its pairs.
 #[derive(Clone)]
 pub struct FoundFrame {
-    pub frame: FrameAnswer,
+    pub frame: Answer,
     /// `None` if there are no pairs.
     contacts: Option<Arc<Contacts>>,
 }
 
 impl FoundFrame {
     /// `contacts` copies the triangles of pairs.
-    pub fn of(frame: FrameAnswer, contacts: impl FnOnce(&[Pair]) -> Contacts) -> Self {
+    pub fn of(frame: Answer, contacts: impl FnOnce(&[Pair]) -> Contacts) -> Self {
         let contacts = (!frame.pairs.is_empty()).then(|| Arc::new(contacts(&frame.pairs)));
         Self { frame, contacts }
     }
@@ -169,7 +170,7 @@ impl DetectorAnswer {
 #[pyclass(frozen, module = "sscc", name = "DetectorImpacts")]
 pub struct DetectorImpacts {
     /// The pairs and the cost.
-    frame: FrameAnswer,
+    frame: Answer,
     /// The time of impact of each pair.
     times: Vec<f64>,
     pairs_array: CachedArray,
@@ -177,13 +178,13 @@ pub struct DetectorImpacts {
 }
 
 impl DetectorImpacts {
-    pub fn of(impacts: &[Impact], statistics: DetectorStatistics) -> Self {
+    pub fn of(impacts: &[Impact], statistics: Statistics) -> Self {
         let pairs: Vec<Pair> = impacts.iter().map(|impact| impact.pair).collect();
         let times = impacts.iter().map(|impact| impact.time).collect();
-        Self::from_parts(FrameAnswer { pairs, statistics }, times)
+        Self::from_parts(Answer { pairs, statistics }, times)
     }
 
-    fn from_parts(frame: FrameAnswer, times: Vec<f64>) -> Self {
+    fn from_parts(frame: Answer, times: Vec<f64>) -> Self {
         Self { frame, times, pairs_array: CachedArray::new(), times_array: CachedArray::new() }
     }
 }
@@ -270,12 +271,12 @@ impl DetectorImpacts {
 }
 
 /// Whether two answers are the same but for their cost.
-pub fn is_same(a: &FrameAnswer, b: &FrameAnswer) -> bool {
+pub fn is_same(a: &Answer, b: &Answer) -> bool {
     a.pairs == b.pairs && a.statistics.complete == b.statistics.complete
 }
 
 /// Returns the pickled form of pairs.
-fn pickled<'py>(py: Python<'py>, frame: &FrameAnswer) -> PickledFrame<'py> {
+fn pickled<'py>(py: Python<'py>, frame: &Answer) -> PickledFrame<'py> {
     let s = &frame.statistics;
     let cost = (s.complete, s.opened, s.box_tests, s.triangle_tests, s.tree_cost, s.rebuilds);
     (pair_bytes(py, &frame.pairs), cost)
@@ -285,10 +286,18 @@ fn pickled<'py>(py: Python<'py>, frame: &FrameAnswer) -> PickledFrame<'py> {
 ///
 /// # Errors
 /// If the bytes are not a whole number of pairs.
-fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<FrameAnswer> {
+fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<Answer> {
     let (complete, opened, box_tests, triangle_tests, tree_cost, rebuilds) = *cost;
-    let statistics = DetectorStatistics { complete, opened, box_tests, triangle_tests, tree_cost, rebuilds };
-    Ok(FrameAnswer { pairs: pairs_of_bytes(bytes)?, statistics })
+    let statistics = Statistics {
+        complete,
+        opened,
+        box_tests,
+        triangle_tests,
+        tree_cost,
+        rebuilds,
+        ..Statistics::default()
+    };
+    Ok(Answer { pairs: pairs_of_bytes(bytes)?, statistics })
 }
 
 /// Constructor for pickled answers.

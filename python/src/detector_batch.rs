@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use sscc::FrameAnswer;
+use sscc::Answer;
 use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
@@ -27,7 +27,7 @@ impl DetectorBatch {
         &self,
         py: Python<'py>,
         column: usize,
-        of: impl Fn(&FrameAnswer) -> T,
+        of: impl Fn(&Answer) -> T,
     ) -> PyResult<Bound<'py, PyAny>> {
         cached(py, &self.arrays[column], || {
             let mut items = room(self.frames.len(), "DetectorBatch")?;

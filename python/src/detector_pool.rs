@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 use pyo3::prelude::*;
+use sscc::parts::detector_with_weld_classes;
 use sscc::{ContactFilter, Detector, Error, TriMesh};
 
 use crate::errors::{refused, value};
@@ -75,7 +76,7 @@ pub fn detector(mesh: &TriMesh, options: &DetectorMesh, name: &str) -> PyResult<
             Detector::with_filter(mesh, &options.filter).map_err(|error: Error| refused(&error, "faces"))
         }
         Weld::Classes(classes) if classes.len() == vertices => {
-            let detector = Detector::with_weld_classes(mesh, classes, &options.filter);
+            let detector = detector_with_weld_classes(mesh, classes, &options.filter);
             detector.map_err(|error: Error| refused(&error, "weld"))
         }
         Weld::Classes(classes) => {

@@ -2,6 +2,7 @@
 
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
+use sscc::parts::GroupTable;
 use sscc::{ContactFilter, Pair, TriangleGroups};
 
 use crate::arrays::integers;
@@ -43,19 +44,20 @@ pub fn with_groups(
         }
         _ => Vec::new(),
     };
-    let table = table.ignoring(pairs.as_chunks().0.iter().map(|&[a, b]| (a, b)));
+    let table = table.ignoring(pairs.as_chunks().0.iter().copied());
     Ok(filter.with_groups(table.map_err(|error| refused(&error, ""))?))
 }
 
 /// Returns the pairs of groups that do not count, sorted.
 pub fn ignored_pairs(groups: &TriangleGroups) -> Vec<Pair> {
-    if groups.others_count() {
-        return groups.listed().map(|(g, h)| (g.into(), h.into())).collect();
+    let table = GroupTable::from(groups);
+    if table.others_count {
+        return table.listed.iter().map(|&[g, h]| (g.into(), h.into())).collect();
     }
     // At least half of all pairs do not count, so the list is not much shorter than the search.
-    let all = (0..groups.group_count() as u32).map(|g| g as u16);
-    let pairs = all.clone().flat_map(|g| all.clone().filter(move |h| *h >= g).map(move |h| (g, h)));
-    pairs.filter(|(g, h)| !groups.is_counted(*g, *h)).map(|(g, h)| (g.into(), h.into())).collect()
+    let all = 0..groups.group_count() as u32;
+    let pairs = all.clone().flat_map(|g| (g..all.end).map(move |h| (g, h)));
+    pairs.filter(|(g, h)| table.listed.binary_search(&[*g as u16, *h as u16]).is_err()).collect()
 }
 
 /// Group numbers; the core refuses those that are too large.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use sscc::hierarchy::Node;
+use sscc::parts::Node;
 use sscc_sim::text::counted;
 
 use crate::arrays::line;
@@ -19,8 +19,8 @@ impl Hierarchy {
         Self { pool }
     }
 
-    fn core(&self) -> &sscc::hierarchy::Hierarchy {
-        self.pool.certified.certificates.hierarchy()
+    fn core(&self) -> &sscc::parts::Hierarchy {
+        &self.pool.certified.certificates.parts().hierarchy
     }
 
     fn of_nodes<'py, T: numpy::Element>(

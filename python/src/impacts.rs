@@ -19,10 +19,10 @@ pub struct Impacts {
 }
 
 impl Impacts {
-    pub fn of(impacts: &[Impact], norm: f64, statistics: Statistics) -> Self {
+    pub fn of(impacts: &[Impact], statistics: Statistics) -> Self {
         let pairs: Vec<Pair> = impacts.iter().map(|impact| impact.pair).collect();
         let times = impacts.iter().map(|impact| impact.time).collect();
-        Self::from_parts(sscc::Answer { pairs, norm, statistics }, times)
+        Self::from_parts(sscc::Answer { pairs, statistics }, times)
     }
 
     fn from_parts(answer: sscc::Answer, times: Vec<f64>) -> Self {
@@ -59,7 +59,7 @@ impl Impacts {
 
     #[getter]
     fn norm(&self) -> f64 {
-        self.answer.norm
+        self.answer.statistics.norm
     }
 
     #[getter]
@@ -74,7 +74,7 @@ impl Impacts {
 
     #[getter]
     fn proof(&self) -> &'static str {
-        self.answer.statistics.proof.name()
+        self.answer.statistics.proof.into()
     }
 
     #[getter]

@@ -31,7 +31,7 @@ impl KineticQuery {
         let found = answer(py, || {
             self.kinetic.with_query(|query| {
                 let pairs = query.discrete(&q)?.to_vec();
-                Ok(Answer::of(pairs, query.norm(), query.statistics()))
+                Ok(Answer::of(pairs, query.statistics()))
             })
         })?;
         let found = found.ok_or_else(|| {

@@ -3,6 +3,7 @@
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use sscc::parts::check_metric;
 use sscc::{Metric, MetricKind, ReducedModel};
 
 use crate::arrays::{copied, floats, line, table};
@@ -16,13 +17,13 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
         match name.to_str()? {
             "displacement" => Metric::displacement(model.mesh(), model.modes()),
             "mass" => Metric::mass(model.mesh(), model.modes()),
-            "identity" => Metric::identity(rank),
-            "energy" if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
+            "identity" => Ok(Metric::identity(rank)),
+            "energy" if model.metric().kind() == MetricKind::Energy => Ok(model.metric().clone()),
             "energy" => {
                 return Err(value(format!(
                     "metric: the model's own is '{}', not 'energy': a model with a stiffness has it, such as one \
                      from sscc.modes.linear",
-                    model.metric().kind().name()
+                    model.metric().kind()
                 )));
             }
             other => {
@@ -36,7 +37,7 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
     } else {
         let array = floats(any, "metric")?;
         let entries = &copied(&array, "metric")?;
-        let made = match *array.shape() {
+        match *array.shape() {
             [n] if n == rank => Metric::from_weights(MetricKind::Given, entries),
             [n, m] if (n, m) == (rank, rank) => Metric::from_matrix(MetricKind::Given, rank, entries),
             _ => {
@@ -45,11 +46,10 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
                     "metric has shape {shape:?}: ({rank},) or ({rank}, {rank}) was expected"
                 )));
             }
-        };
-        made.map_err(|error| refused(&error, "metric"))?
+        }
     };
-    made.check(model.mesh(), model.modes()).map_err(|error| refused(&error, "metric"))?;
-    Ok(Some(made))
+    let checked = made.and_then(|made| check_metric(&made, model.mesh(), model.modes()).map(|()| made));
+    Ok(Some(checked.map_err(|error| refused(&error, "metric"))?))
 }
 
 /// Returns the factor S of `|z| = |S q|`: (r) if it is diagonal, else (r, r).

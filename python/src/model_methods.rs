@@ -144,7 +144,7 @@ impl Model {
 
     #[getter]
     fn metric(&self) -> &'static str {
-        self.core().metric().kind().name()
+        self.core().metric().kind().into()
     }
 
     #[getter]
@@ -213,7 +213,13 @@ pub fn _model(
     is_split: bool,
 ) -> PyResult<Model> {
     let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
-    let model = if is_split { model.with_split_vertices() } else { model };
+    let model = if is_split {
+        let (mesh, metric) = (model.mesh().clone().with_split_vertices(), model.metric().clone());
+        ReducedModel::with_metric(mesh, model.modes().clone(), metric)
+            .map_err(|error| refused(&error, "pickled model"))?
+    } else {
+        model
+    };
     Ok(Model::of(LoadedModel { default_q, mode_names, ..LoadedModel::new(model, info) }))
 }
 

@@ -6,9 +6,9 @@ use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use sscc::{ContactFilter, Error, Neighbours, Pair, limits};
+use sscc::{ContactFilter, Error, Pair, limits};
 
-use crate::arguments::choice;
+use crate::arguments::{choice, neighbours_by_name};
 use crate::arrays::{floats, integers};
 use crate::errors::{kind, refused, room, value};
 use crate::model::points;
@@ -110,9 +110,9 @@ pub fn contact_filter(
     ignored: Option<&Bound<'_, PyAny>>,
     faces: usize,
 ) -> PyResult<ContactFilter> {
-    let choices = Neighbours::ALL.map(|choice| (choice.name(), choice));
+    let choices = neighbours_by_name();
     let neighbours = choice(neighbours, "neighbours", &choices)?.unwrap_or_default();
-    let filter = ContactFilter::new(neighbours, matches!(weld, Weld::ByPosition));
+    let filter = ContactFilter::new(neighbours).weld(matches!(weld, Weld::ByPosition));
     let Some(ignored) = ignored else { return Ok(filter) };
     Ok(filter.ignoring(triangle_pairs(ignored, faces)?))
 }

@@ -21,7 +21,7 @@ fn options(
         let model = &pool.certified.loaded.model;
         model.check_coordinates(start).map_err(|error| refused(&error, "start"))?;
     }
-    Ok(ResolveOptions { start, all: switch(all, "all")?.unwrap_or(false) })
+    Ok(ResolveOptions::default().start(start).all(switch(all, "all")?.unwrap_or(false)))
 }
 
 /// Names the argument at fault: the start where it collides, else the configuration.

@@ -102,7 +102,7 @@ pub fn _check_options(model: Option<&Bound<'_, Model>>, keywords: &Bound<'_, PyD
 /// Runs jobs of one model.
 #[pyclass(frozen, module = "sscc._sscc", name = "_ShardWorker")]
 pub struct ShardWorker {
-    core: sscc::ShardWorker,
+    core: sscc::parts::ShardWorker,
 }
 
 #[pymethods]
@@ -111,7 +111,7 @@ impl ShardWorker {
     fn new(py: Python<'_>, model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         let options = options(model, keywords)?;
         let loaded = Arc::clone(&model.get().loaded);
-        let core = answer(py, || sscc::ShardWorker::new(&loaded.model, &options, signals()))?;
+        let core = answer(py, || sscc::parts::ShardWorker::new(&loaded.model, &options, signals()))?;
         Ok(Self { core: core.map_err(|error| refused(&error, ""))? })
     }
 
@@ -169,7 +169,7 @@ pub fn _certify_in_shards(
             })
         };
         let certificates =
-            sscc::Certificates::compute_in_shards(&loaded.model, &options, shards, &mut run_jobs, &share)?;
+            sscc::parts::compute_in_shards(&loaded.model, &options, shards, &mut run_jobs, &share)?;
         Pool::of(CertifiedModel { loaded: Arc::clone(&loaded), certificates })
     })?;
     if let Some(error) = raised {
@@ -200,5 +200,5 @@ pub fn _joined(batches: Vec<Bound<'_, Batch>>) -> Batch {
 /// Returns the version and the hash of the core's source. Results of equal builds may be mixed.
 #[pyfunction]
 pub fn _build() -> &'static str {
-    sscc::BUILD
+    sscc::parts::BUILD
 }

@@ -3,7 +3,7 @@
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
-use sscc::{Sweep, SweepOutcome};
+use sscc::{ModeRange, Sweep, SweepOutcome};
 use sscc_sim::{SweepRange, nearest};
 
 use crate::arguments::count;
@@ -34,7 +34,10 @@ impl<'py> SweepArguments<'_, 'py> {
         let q = self.q.map_or_else(|| Ok(center.to_vec()), |q| vector(q, "q"))?;
         loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
         let ranges = self.ranges(loaded, &q)?;
-        let modes = self.modes(loaded)?.into_iter().map(|mode| (mode, ranges[mode]));
+        let modes = self.modes(loaded)?.into_iter().map(|mode| {
+            let [low, high] = ranges[mode];
+            ModeRange { mode, low, high }
+        });
         let (modes, threads) = (modes.collect::<Vec<_>>(), threads(self.threads)?);
         let swept = run_borrowing(py, progress, "sweeping", |progress| {
             pool.first().sweep_modes(&q, &modes, threads, progress)

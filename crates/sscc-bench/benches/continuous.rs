@@ -47,13 +47,14 @@ fn measure(case: &models::Case, certificates: &Certificates, share: f64) -> Resu
     for _ in 0..TRAJECTORIES {
         let waves: Vec<[f64; 3]> =
             (0..model.rank()).map(|_| [random.normal(), 1.0 + random.uniform(), random.uniform()]).collect();
-        let at = |t: f64| -> Vec<f64> {
+        let at = |t: f64| {
             let wave = |(k, [a, w, phase]): (usize, &[f64; 3])| {
                 a * libm::sin(std::f64::consts::TAU * (w * t + phase)) / (k + 1) as f64
             };
             model.metric().unscaled(&waves.iter().enumerate().map(wave).collect::<Vec<_>>())
         };
-        let steps: Vec<Vec<f64>> = (0..=STEPS).map(|i| at(i as f64 / 60.0)).collect();
+        let steps: Vec<Vec<f64>> =
+            (0..=STEPS).map(|i| at(i as f64 / 60.0)).collect::<std::result::Result<_, sscc::Error>>()?;
         let scale = share / 100.0 / displacement(model, &steps)?;
         let steps: Vec<Vec<f64>> = steps.iter().map(|q| q.iter().map(|x| x * scale).collect()).collect();
         for ends in steps.windows(2) {

@@ -16,7 +16,8 @@ use glam::{DMat3, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
-use sscc::{Detector, Method, Modes, Pair, Query, ReducedModel, Scope, TriMesh, intersect_triangle_triangle};
+use sscc::parts::Scope;
+use sscc::{Detector, Method, Modes, Pair, Query, ReducedModel, TriMesh, intersect_triangle_triangle};
 use sscc_bench::Random;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;

@@ -17,7 +17,7 @@ fn main() -> Result<()> {
         return Ok(());
     };
     let certify = |max_exceptions| {
-        let options = CertifyOptions { max_exceptions: Some(max_exceptions), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().max_exceptions(max_exceptions);
         Certificates::compute(&model, &options, &())
     };
     let (without, with) = (certify(0)?, certify(model.mesh().faces().len())?);
@@ -26,7 +26,7 @@ fn main() -> Result<()> {
         q[0] = x;
         q
     });
-    let nodes = with.hierarchy().nodes().len();
+    let nodes = with.parts().hierarchy.nodes().len();
     println!(
         "root radius: {:e} without, {:e} with {} exceptions; {nodes} nodes",
         without.root_radius(),
@@ -45,7 +45,8 @@ fn main() -> Result<()> {
         for ((query, certificates), row) in queries.iter_mut().zip([&without, &with]).zip(&mut row) {
             row.0 = query.discrete(q)?.to_vec();
             let statistics = query.statistics();
-            let open = certificates.parts().node_radii.iter().filter(|r| **r <= query.norm()).count();
+            let open =
+                certificates.parts().node_radii.iter().filter(|r| **r <= query.statistics().norm).count();
             (row.1, row.2, row.3) = (statistics.proof == Proof::Radius, open, statistics.opened);
         }
         assert!(row[0].0 == row[1].0, "{name}: the answers differ");

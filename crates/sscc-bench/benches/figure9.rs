@@ -39,7 +39,7 @@ fn main() -> Result<()> {
         let model = ReducedModel::new(mesh.clone(), modes)?;
         let root = |metric: Metric| -> Result<f64> {
             let scale = metric.scales()[0];
-            let options = CertifyOptions { metric: Some(metric), ..CertifyOptions::default() };
+            let options = CertifyOptions::default().metric(metric);
             let certificates = Certificates::compute(&model, &options, &())?;
             Ok(1e3 * first * certificates.root_radius() / scale)
         };

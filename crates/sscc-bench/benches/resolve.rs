@@ -28,12 +28,12 @@ fn main() -> Result<()> {
     let Some(folder) = sscc_testing::models("the bench of resolve") else { return Ok(()) };
     let (letter, modes) = (folder.join("vega_A/A.obj"), folder.join("vega_A/A.URendering.float"));
     let letter = sscc_io::load_model(&letter, Some(&modes))?.0;
-    let options = CertifyOptions { budget: 0, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(0).local_budget(0);
     measure("vega_A", &letter, &options, samples)?;
     if let Some((face, _)) = models::face()? {
         let mut open = vec![0.0; face.rank()];
         open[0] = 1.0;
-        measure("ict_face", &face, &CertifyOptions { center: Some(open), ..options }, samples)?;
+        measure("ict_face", &face, &options.center(open), samples)?;
     }
     Ok(())
 }
@@ -49,9 +49,9 @@ fn measure(name: &str, model: &ReducedModel, options: &CertifyOptions, samples: 
         let (mut resolved, mut ratios, mut ray_ratios, mut times) = (0, Vec::new(), Vec::new(), Vec::new());
         for _ in 0..samples {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.normal()).collect();
-            let dir = scope.metric.unscaled(&z);
+            let dir = scope.metric.unscaled(&z)?;
             let at = |t: f64| -> Vec<f64> { scope.center.iter().zip(&dir).map(|(c, d)| c + t * d).collect() };
-            let mut scale = certificates.root_radius() / certificates.norm(&at(1.0));
+            let mut scale = certificates.root_radius() / certificates.norm(&at(1.0))?;
             let mut contact = None;
             while contact.is_none() {
                 contact = query.time_of_impact(&at(0.0), &at(scale))?;
@@ -62,7 +62,7 @@ fn measure(name: &str, model: &ReducedModel, options: &CertifyOptions, samples: 
                 scale *= 1.1;
             }
             let q = at(scale);
-            let stepped_back = certificates.norm(&q) * (1.0 - query.safe_scale(&q)?.min(1.0));
+            let stepped_back = certificates.norm(&q)? * (1.0 - query.safe_scale(&q)?.min(1.0));
             let start = Instant::now();
             let found = query.resolve(&q, &ResolveOptions::default())?;
             times.push(start.elapsed().as_secs_f64() * 1e3);

@@ -36,12 +36,12 @@ fn measure(model: &models::Case, certificates: &Certificates) -> Result<()> {
         let decay = (direction % 2) as i32;
         let z: Vec<f64> =
             (0..model.model.rank()).map(|k| random.normal() / (1.0 + k as f64).powi(decay)).collect();
-        let dir = scope.metric.unscaled(&z);
+        let dir = scope.metric.unscaled(&z)?;
         let at = |t: f64| -> Vec<f64> { scope.center.iter().zip(&dir).map(|(c, d)| c + t * d).collect() };
         let start = Instant::now();
         let scale = query.safe_scale(&at(1.0))?;
         times.push(start.elapsed().as_secs_f64() * 1e3);
-        let root = certificates.root_radius() / query.norm();
+        let root = certificates.root_radius() / query.statistics().norm;
         assert!(scale >= root * (1.0 - 1e-12), "{}: {scale} is below the root's {root}", model.name);
         gains.push(scale / root);
         for share in [1.0 - 1e-12, random.uniform()] {

@@ -2,9 +2,12 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::str::FromStr;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use sscc::CertifyOptions;
+use sscc::parts::is_reach;
+use sscc::{Method, Neighbours};
 
 /// The template of a help page with examples, one command a line. The examples are part of the template because clap
 /// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
@@ -195,7 +198,7 @@ pub struct Options {
     #[arg(long, value_name = "Q", allow_hyphen_values = true)]
     pub center: Option<String>,
     /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
-    #[arg(long, value_enum, value_name = "FILTER")]
+    #[arg(long, value_parser = neighbours(), value_name = "FILTER")]
     pub neighbours: Option<Neighbours>,
     /// Ignore the pairs that collide at rest: they never count
     #[arg(long)]
@@ -251,16 +254,26 @@ pub enum Switch {
     Off,
 }
 
-/// Which pairs of triangles with common vertices count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Neighbours {
-    /// None
-    Exclude,
-    /// Those with exactly one common vertex, where they have another common point
-    IncludeOneVertex,
-    /// Those with one, two or three, where they have another common point than these vertices and the edges between them, and
-    /// doubled faces. For meshes without modes; not with --continuous
-    IncludeFolded,
+/// Parses which pairs of triangles with common vertices count.
+fn neighbours() -> impl TypedValueParser<Value = Neighbours> {
+    named([
+        ("exclude", "None"),
+        ("include-one-vertex", "Those with exactly one common vertex, where they have another common point"),
+        (
+            "include-folded",
+            "Those with one, two or three, where they have another common point than these vertices and the edges between them, \
+             and doubled faces. For meshes without modes; not with --continuous",
+        ),
+    ])
+}
+
+/// Parses a value of the core by its name. Each name has a help text.
+fn named<T, const N: usize>(names: [(&'static str, &'static str); N]) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err = sscc::Error> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names.map(|(name, help)| PossibleValue::new(name).help(help)))
+        .try_map(|name| name.parse::<T>())
 }
 
 /// The number of threads.
@@ -354,7 +367,7 @@ pub struct Check {
     pub continuous: bool,
     /// The method of the search at q; all methods list the same pairs (with --continuous they may differ in pairs that
     /// come within the tolerance without touching) [default: certified]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = method())]
     pub method: Option<Method>,
     /// List one colliding pair of each query (with --continuous: the one with the earliest time of impact)
     #[arg(long, conflicts_with = "limit")]
@@ -470,20 +483,15 @@ pub enum Weights {
     AsStored,
 }
 
-/// Methods of a query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// Certificates; where they fail, a traversal with BD-tree AABBs
-    Certified,
-    /// A traversal with BD-tree AABBs, without certificates
-    #[value(name = "bdtree")]
-    BdTree,
-    /// A refit of all AABBs, then a traversal
-    Traditional,
-    /// As traditional, with normal cones and the contour test
-    NormalCones,
-    /// A test of every triangle pair
-    BruteForce,
+/// Parses a method of a query.
+fn method() -> impl TypedValueParser<Value = Method> {
+    named([
+        ("certified", "Certificates; where they fail, a traversal with BD-tree AABBs"),
+        ("bdtree", "A traversal with BD-tree AABBs, without certificates"),
+        ("traditional", "A refit of all AABBs, then a traversal"),
+        ("normal-cones", "As traditional, with normal cones and the contour test"),
+        ("brute-force", "A test of every triangle pair"),
+    ])
 }
 
 /// `sscc sweep`
@@ -763,7 +771,7 @@ fn parse_epsilon(text: &str) -> Result<f64, String> {
 
 fn parse_reach(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(reach) if CertifyOptions::is_reach(reach) => Ok(reach),
+        Ok(reach) if is_reach(reach) => Ok(reach),
         _ => Err("a finite number of at least 1 was expected".into()),
     }
 }

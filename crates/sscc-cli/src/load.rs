@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Error, Result, ensure};
-use sscc::{Certificates, CertifyOptions, Neighbours, ReducedModel};
+use sscc::parts::check_models;
+use sscc::{Certificates, CertifyOptions, ReducedModel};
 use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
 use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads, read_configuration};
 
@@ -32,7 +33,7 @@ pub fn request(
     typed: &args::Options,
 ) -> Result<CertificateRequest> {
     if let Some(typed) = typed.neighbours {
-        neighbours(typed).check_models()?;
+        check_models(typed)?;
     }
     let center =
         typed.center.as_deref().map(|typed| read_configuration("--center", typed, loaded)).transpose()?;
@@ -42,7 +43,7 @@ pub fn request(
         epsilon: typed.epsilon,
         metric: typed.metric.clone(),
         center,
-        neighbours: typed.neighbours.map(neighbours),
+        neighbours: typed.neighbours,
         weld: typed.weld.map(|weld| weld == args::Switch::On),
         ignore_rest: typed.ignore_rest,
         groups: groups(&typed.groups),
@@ -56,15 +57,6 @@ pub fn request(
         reach: typed.reach,
         threads: Some(threads(&typed.threads)),
     })
-}
-
-/// Returns the value of `--neighbours`.
-pub fn neighbours(typed: args::Neighbours) -> Neighbours {
-    match typed {
-        args::Neighbours::Exclude => Neighbours::Exclude,
-        args::Neighbours::IncludeOneVertex => Neighbours::IncludeOneVertex,
-        args::Neighbours::IncludeFolded => Neighbours::IncludeFolded,
-    }
 }
 
 /// Returns the pairs of groups of `--ignore-groups`, `--only-groups` and `--group-by`.
@@ -90,7 +82,7 @@ pub fn certificates_now(
 ) -> Result<Certificates> {
     let mut options = request(loaded, files, typed)?.options(&loaded.model)?;
     if (typed.scheme, typed.budget, typed.local_budget, typed.reach) == (None, None, None, None) {
-        (options.budget, options.local_budget) = (0, 0);
+        options = options.budget(0).local_budget(0);
     }
     note("no --certificates given: computing them first (sscc certify keeps them in a file)");
     certify(&loaded.model, &files.path, &options)

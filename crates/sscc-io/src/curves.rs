@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use sscc::{ContactCurve, ContactCurves};
+use sscc::parts::{ContactCurve, ContactCurves};
 
 use crate::{IoError, write_whole};
 
@@ -125,7 +125,7 @@ fn ply(found: &ContactCurves) -> Vec<u8> {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use sscc::contact_curves;
+    use sscc::parts::contact_curves;
 
     /// A tetrahedron that pierces a large triangle: a closed curve of three segments; and two triangles that cross at an
     /// open curve of one segment, far away.

@@ -8,7 +8,8 @@
 //! already modes. Only the linear fields need a second, small basis (12 numbers each), which starts with the rigid motions.
 
 use glam::DVec3;
-use sscc::{Modes, TriMesh, vertex_areas};
+use sscc::parts::vertex_areas;
+use sscc::{Modes, TriMesh};
 
 use crate::ModesError;
 use crate::orthonormal_basis::OrthonormalBasis;

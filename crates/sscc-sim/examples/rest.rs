@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use glam::DVec3;
-use sscc::{Aabb, PosedShape, Query};
+use sscc::Query;
+use sscc::parts::{Aabb, PosedShape};
 use sscc_dynamics::{Phase, Start, World};
 use sscc_sim::{Cache, PreparedScene, models_folder, read_scene};
 

@@ -136,6 +136,7 @@ impl GroupRules {
         }
         let table = |(named, pairs): (&NamedGroups, Vec<(u32, u32)>)| {
             let table = named.to_table()?;
+            let pairs = pairs.into_iter().map(<[u32; 2]>::from);
             Ok(if self.only.is_empty() { table.ignoring(pairs) } else { table.only(pairs) }?)
         };
         all.iter().zip(pairs).map(table).collect()

@@ -135,15 +135,14 @@ mod tests {
              common vertices"
         );
         let groups = TriangleGroups::new(&[0, 0, 1]).unwrap().between_only();
-        let filter =
-            ContactFilter::new(Neighbours::IncludeOneVertex, false).ignoring([(0, 2)]).with_groups(groups);
+        let filter = ContactFilter::new(Neighbours::IncludeOneVertex).ignoring([(0, 2)]).with_groups(groups);
         let all = LeftOut::of(&filter).and_between_nodes();
         assert_eq!(
             all.to_string(),
             "1 ignored pair, pairs of different nodes, pairs of groups that do not count and pairs with a common edge"
         );
         assert_eq!((all.ignored(), default.ignored()), (1, 0));
-        let folded = LeftOut::of(&ContactFilter::new(Neighbours::IncludeFolded, false));
+        let folded = LeftOut::of(&ContactFilter::new(Neighbours::IncludeFolded));
         assert_eq!(free_sentence(FreeProof::Tests, "", &folded), "free: proven");
         let several = LeftOut::of(&ignoring(1000))
             .and_between_files()

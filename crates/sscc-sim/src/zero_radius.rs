@@ -1,6 +1,9 @@
 //! The reason why certificates have a root radius of 0.
 
-use sscc::{Certificates, CertifyOptions, Error, Progress, Query, ReducedModel};
+use sscc::parts::default_exceptions;
+use sscc::{Certificates, Error, Progress, Query, ReducedModel};
+
+use crate::CertificateRequest;
 
 /// Maximum number of triangles in a note.
 const MAX_LISTED: usize = 8;
@@ -30,7 +33,7 @@ impl ZeroRadius {
     pub fn find(
         model: &ReducedModel,
         certificates: &Certificates,
-        options: &CertifyOptions,
+        request: &CertificateRequest,
         progress: &dyn Progress,
     ) -> Result<Option<Self>, Error> {
         if certificates.root_radius() > 0.0 {
@@ -43,11 +46,11 @@ impl ZeroRadius {
         if others.is_empty() {
             return Ok(Some(Self::TooClose { triangles: smallest_zero_node(certificates) }));
         }
-        let default = CertifyOptions::default_exceptions(model.mesh().faces().len());
-        let max_exceptions = options.max_exceptions.unwrap_or(default);
+        let default = default_exceptions(model.mesh().faces().len());
+        let max_exceptions = request.max_exceptions.unwrap_or(default);
         let at_rest = query.discrete(&vec![0.0; model.rank()])?;
         let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
-        let can_ignore_rest = !options.ignore_rest && left <= max_exceptions;
+        let can_ignore_rest = !request.ignore_rest && left <= max_exceptions;
         Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
     }
 
@@ -78,14 +81,14 @@ impl ZeroRadius {
 /// Returns the triangles of the smallest node with radius 0. Nodes within a bucket are skipped, because they repeat the
 /// bucket's radius.
 fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
-    let hierarchy = certificates.hierarchy();
+    let hierarchy = &certificates.parts().hierarchy;
     let nodes = hierarchy.nodes();
     let mut is_own = vec![true; nodes.len()];
     for (n, node) in nodes.iter().enumerate() {
         let has_own_children = is_own[n] && (n == 0 || !node.fits_in_bucket());
         node.children().for_each(|child| is_own[child as usize] = has_own_children);
     }
-    let has_zero_radius = |n: &usize| is_own[*n] && certificates.node_radius(*n as u32) <= 0.0;
+    let has_zero_radius = |n: &usize| is_own[*n] && certificates.parts().node_radii[*n] <= 0.0;
     let smallest = (0..nodes.len()).filter(has_zero_radius).min_by_key(|n| nodes[*n].triangle_count);
     let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
     triangles.sort_unstable();

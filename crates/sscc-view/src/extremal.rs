@@ -28,8 +28,8 @@ pub fn extremal(certificates: &Certificates) -> Vec<Extremal> {
         let mut unit = vec![0.0; center.len()];
         unit[k] = 1.0;
         let mut q = center.to_vec();
-        q[k] += sign * SHRINK * radius / certificates.metric().norm(&unit);
-        Extremal { name: format!("mode {k} {}", if sign > 0.0 { "+" } else { "-" }), q }
+        q[k] += sign * SHRINK * radius / certificates.metric().norm(&unit).ok()?;
+        Some(Extremal { name: format!("mode {k} {}", if sign > 0.0 { "+" } else { "-" }), q })
     };
-    (0..center.len().min(MAX_MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).collect()
+    (0..center.len().min(MAX_MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).flatten().collect()
 }

@@ -28,12 +28,7 @@ pub fn metric_comparison(model: &ReducedModel, unit: &str, progress: &dyn Progre
         let first = ReducedModel::new(model.mesh().clone(), Modes::new(count, modes)?)?;
         let root = |metric: Metric| -> Result<[f64; 2], Error> {
             let scale = metric.scales()[0];
-            let options = CertifyOptions {
-                metric: Some(metric),
-                budget: 0,
-                local_budget: 0,
-                ..CertifyOptions::default()
-            };
+            let options = CertifyOptions::default().metric(metric).budget(0).local_budget(0);
             let certificates = Certificates::compute(&first, &options, progress)?;
             Ok([count as f64, farthest * certificates.root_radius() / scale])
         };

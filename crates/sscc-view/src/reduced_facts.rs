@@ -70,7 +70,7 @@ impl ReducedFacts {
         Self {
             rank: model.rank(),
             frequencies: details.frequencies,
-            limits: (0..model.rank()).map(|k| model.weight_limit(k)).collect(),
+            limits: model.weight_limits(),
             ranges: SweepRange::of_modes(&details.mode_names, details.deviations.as_deref())
                 .ends(model, center),
             mode_names: Some(details.mode_names).filter(|names| !names.is_empty()),
@@ -80,10 +80,10 @@ impl ReducedFacts {
             root_radius: certificates.root_radius(),
             global_radius: certificates.global_radius(),
             resolved_up_to: Some(certificates.parts().pair_tree.limit()).filter(|limit| *limit > 0.0),
-            metric: metric.kind().name(),
+            metric: metric.kind().into(),
             exceptions: certificates.exceptions().len(),
             free: FreeSentences::new(certificates),
-            nodes: certificates.hierarchy().nodes().len(),
+            nodes: certificates.parts().hierarchy.nodes().len(),
             levels: levels(certificates),
             extremal: extremal(certificates),
         }

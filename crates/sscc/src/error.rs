@@ -164,6 +164,16 @@ pub enum Error {
         /// The upper end.
         high: f64,
     },
+    /// A text that names no value.
+    #[error("'{name}' is no {what}: use one of {names}")]
+    Name {
+        /// What it should name.
+        what: &'static str,
+        /// The text.
+        name: String,
+        /// The names of all values.
+        names: String,
+    },
     /// Too many collisions to list.
     #[error(
         "more than {most} pairs of triangles collide at rest or at the centre: repair the mesh, or choose another centre"

@@ -33,7 +33,7 @@
 //! # }
 //! ```
 //!
-//! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`hierarchy::Hierarchy`] and
+//! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`parts::Hierarchy`] and
 //! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and no query, detector or
 //! body has a lifetime: keep them where they are used. This crate reads no files, knows no clock and prints nothing. Positions are vectors of
 //! [`glam`], which it re-exports.
@@ -85,11 +85,11 @@
 //! | Which triangles collide at q, without certificates? | [`Query::without_certificates`], for models that change often |
 //! | Which triangles collide at q, by another method? | [`Query::with_method`], [`Method`], for comparison |
 //! | Do the certificates hold under attack, and how tight are they? | [`audit()`] |
-//! | Do shapes in the world collide with each other? | [`PosedShape`], [`SweptShape`] |
+//! | Do shapes in the world collide with each other? | [`parts::PosedShape`], [`parts::SweptShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
-//! | Which points do two triangles have in common? | [`intersection_triangle_triangle`] |
-//! | What is the smallest translation that parts two triangles? | [`penetration_triangle_triangle`] |
-//! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`contact_curves`], [`contact_curves_between`] |
+//! | Which points do two triangles have in common? | [`parts::intersection_triangle_triangle`] |
+//! | What is the smallest translation that parts two triangles? | [`parts::penetration_triangle_triangle`] |
+//! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`parts::contact_curves`], [`parts::contact_curves_between`] |
 //! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
 //! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh. Above it a
@@ -133,10 +133,10 @@
 //!
 //! let plain = CertifyOptions::default();
 //! assert!(collide(&plain, 0.0)?); // they touch in the corner
-//! let welded = CertifyOptions { filter: Some(ContactFilter::new(Neighbours::Exclude, true)), ..plain };
+//! let welded = plain.filter(ContactFilter::new(Neighbours::Exclude).weld(true));
 //! assert!(!collide(&welded, 0.0)? && !collide(&welded, 1.0)?); // neighbours never count
-//! let one_vertex = ContactFilter::new(Neighbours::IncludeOneVertex, true);
-//! let strict = CertifyOptions { filter: Some(one_vertex), ..welded };
+//! let one_vertex = ContactFilter::new(Neighbours::IncludeOneVertex).weld(true);
+//! let strict = welded.filter(one_vertex);
 //! assert!(!collide(&strict, 0.0)? && collide(&strict, 1.0)?); // folded, they meet beside the corner
 //! # Ok(())
 //! # }
@@ -179,13 +179,13 @@
 //! // A model with two modes, which occur together more often than against each other.
 //! let inverse_covariance = [2.0, -1.0, -1.0, 2.0];
 //! let metric = Metric::from_matrix(MetricKind::Given, 2, &inverse_covariance)?;
-//! let options = CertifyOptions { metric: Some(metric), ..CertifyOptions::default() };
+//! let options = CertifyOptions::default().metric(metric);
 //! let certificates = Certificates::compute(&model, &options, &())?;
 //! let mut query = Query::new(&model, &certificates)?;
 //! query.discrete(&[0.5, 0.5])?;
-//! let together = query.norm();
+//! let together = query.statistics().norm;
 //! query.discrete(&[0.5, -0.5])?;
-//! assert!(together < query.norm());
+//! assert!(together < query.statistics().norm);
 //! # Ok(())
 //! # }
 //! ```
@@ -205,7 +205,7 @@
 //! # let model = ReducedModel::new(mesh, modes)?;
 //! // The two triangles of the first example, far apart: beyond the root's radius about the rest pose.
 //! let q = [-2.0];
-//! let options = CertifyOptions { center: Some(vec![-1.0]), ..CertifyOptions::default() };
+//! let options = CertifyOptions::default().center(vec![-1.0]);
 //! for (options, proof) in [(CertifyOptions::default(), Proof::Local), (options, Proof::Radius)] {
 //!     let certificates = Certificates::compute(&model, &options, &())?;
 //!     let mut query = Query::new(&model, &certificates)?;
@@ -259,16 +259,20 @@
 //!
 //! | section | where |
 //! | --- | --- |
-//! | 3, hierarchy | [`hierarchy`] |
+//! | 3, hierarchy | `hierarchy/` |
 //! | 3 and 4, Algorithm 1 | `query/certified_traversal.rs`, for the pair tree `query/pair_tree_traversal.rs`; BD-tree AABBs in `detect/bd_tree.rs` |
 //! | 5.1, two triangles | `bounds/pair_refiner.rs`, `bounds/separating_direction.rs`, `bounds/affine_bound.rs` |
 //! | 5.2, nodes and precomputation | `bounds/node_pair.rs`, `certificates/build/` |
 //! | 6, scaling | [`Metric`] |
 //! | 7, continuous queries | `query/continuous.rs`, `geometry/ccd/` |
-//! | 7, collisions between objects | [`PosedShape`] |
+//! | 7, collisions between objects | `posed/` |
 
 #[macro_use]
 mod mutants;
+#[macro_use]
+mod names;
+#[macro_use]
+mod setters;
 
 mod audit;
 mod bounds;
@@ -279,11 +283,12 @@ mod detect;
 mod error;
 mod filter;
 mod geometry;
-pub mod hierarchy;
+mod hierarchy;
 pub mod limits;
 mod min_heap;
 mod model;
 mod parallel;
+pub mod parts;
 mod posed;
 mod progress;
 mod query;
@@ -294,27 +299,14 @@ mod vectors;
 
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use cancel_token::CancelToken;
-pub use certificates::{
-    BUILD, CertificateParts, Certificates, CertifyOptions, Digest, LocalBounds, LocalCertificates, PairTree,
-    RunJobs, Scope, ShardWorker,
-};
-pub use curves::{
-    ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,
-    contact_curves_between,
-};
-pub use detect::{Detector, DetectorStatistics, FrameAnswer, Impact};
+pub use certificates::{Certificates, CertifyOptions};
+pub use detect::{Answer, Detector, Impact, Proof, Statistics};
 pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
-pub use geometry::{
-    Aabb, Feature, Intersection, IntersectionPoint, MovingTriangle, Penetration, impact_edge_edge,
-    impact_triangle_triangle, impact_vertex_face, intersect_shared_edge_pair, intersect_shared_vertex_pair,
-    intersect_triangle_triangle, intersection_triangle_triangle, orient2d, penetration_triangle_triangle,
-};
+pub use geometry::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
 pub use glam;
-pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position, vertex_areas};
-pub use posed::{Pose, PosedShape, SweptShape};
+pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position};
 pub use progress::Progress;
 pub use query::{
-    Answer, FreeSamples, KineticQuery, Method, Proof, ProvenShares, Query, ResolveOptions, Resolved,
-    Statistics, Sweep, SweepOutcome,
+    FreeSamples, KineticQuery, Method, ModeRange, Query, ResolveOptions, Resolved, Sweep, SweepOutcome,
 };

@@ -11,7 +11,7 @@ pub const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// Smallest magnitude of the largest entry of the scaled modes `U S^-1` of a metric: 2^-200. The largest is
 /// [`LARGEST`].
-pub const SMALLEST: f64 = f64::from_bits((1023 - 200) << 52);
+pub(crate) const SMALLEST: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// Whether all three coordinates are finite and at most [`LARGEST`] in magnitude.
 pub fn contains(x: DVec3) -> bool {

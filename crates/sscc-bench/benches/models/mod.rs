@@ -29,9 +29,8 @@ pub fn all() -> Result<Vec<Case>> {
     cases.insert(0, Case::new("vega_A", load_model(&letter, Some(&modes))?.0));
     cases.push(polynomial("bunny", read_mesh(&folder.join("bunny_14964_closed.obj"))?)?);
     if let Some((model, _)) = face()? {
-        let mut case = Case::new("ict_face, rest ignored", model);
-        case.options.ignore_rest = true;
-        cases.push(case);
+        let case = Case::new("ict_face, rest ignored", model);
+        cases.push(Case { options: case.options.ignore_rest(true), ..case });
     }
     cases.push(polynomial("dragon", read_mesh(&folder.join("dragon_77202_closed.ply"))?)?);
     Ok(cases)

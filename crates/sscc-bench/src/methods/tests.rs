@@ -21,7 +21,7 @@ fn sheet((m, n): (u32, u32), at: impl Fn(f64, f64) -> DVec3) -> TriMesh {
 }
 
 fn certify(model: &ReducedModel) -> Certificates {
-    let options = CertifyOptions { budget: 0, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(0).local_budget(0);
     Certificates::compute(model, &options, &()).unwrap()
 }
 

@@ -7,7 +7,10 @@ use crate::random::Random;
 const SEED: u64 = 7;
 
 /// Returns random directions in q-space: `z_i = N(0,1) / i`, mode i counted from 1, in the model's metric.
-pub fn directions(model: &ReducedModel, count: usize) -> Vec<Vec<f64>> {
+///
+/// # Errors
+/// None in practice.
+pub fn directions(model: &ReducedModel, count: usize) -> Result<Vec<Vec<f64>>, sscc::Error> {
     let mut random = Random(SEED);
     let mut direction = || {
         let z: Vec<f64> = (0..model.rank()).map(|k| random.normal() / (1.0 + k as f64)).collect();

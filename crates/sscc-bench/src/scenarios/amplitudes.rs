@@ -19,7 +19,7 @@ pub fn measure(
     setup: &Setup<'_>,
     samples: usize,
 ) -> Result<Vec<Record>, Error> {
-    let unit = unit_displacements(&model.model, &directions(&model.model, samples));
+    let unit = unit_displacements(&model.model, &directions(&model.model, samples)?);
     let record = |share: f64| {
         setup.begin_measuring();
         let comparison = compare(model, &displacement_steps(&unit, share), None, Kinds::Both, setup.watch)?;

@@ -48,7 +48,7 @@ impl GrowthSize {
         let [rings, around] = SPRING_RINGS.map(|default| default * self.halves / 2);
         let recipe = Recipe::new(self.name, Shape::Spring { rings, around }, ModesSpec::Linear(self.rank));
         let model = setup.certified_model(&recipe)?;
-        let unit = unit_displacements(&model.model, &directions(&model.model, samples));
+        let unit = unit_displacements(&model.model, &directions(&model.model, samples)?);
         setup.begin_measuring();
         let comparison =
             compare(&model, &displacement_steps(&unit, SHARE), None, Kinds::Discrete, setup.watch)?;

@@ -25,7 +25,7 @@ pub fn measure(
     samples: usize,
 ) -> Result<Vec<Record>, Error> {
     let norm = |q: &[f64]| model.full.certificates.norm(q);
-    let unit = unit_motion(&Oscillators::of(model), norm, samples);
+    let unit = unit_motion(&Oscillators::of(model), norm, samples)?;
     let record = |times_root: f64| {
         setup.begin_measuring();
         let factor = times_root * model.full.certificates.root_radius();
@@ -41,12 +41,16 @@ pub fn measure(
 }
 
 /// Returns so many states of the motion, scaled so that the largest norm of them is 1.
-fn unit_motion(oscillators: &Oscillators, norm: impl Fn(&[f64]) -> f64, samples: usize) -> Vec<Vec<f64>> {
+fn unit_motion(
+    oscillators: &Oscillators,
+    norm: impl Fn(&[f64]) -> Result<f64, sscc::Error>,
+    samples: usize,
+) -> Result<Vec<Vec<f64>>, sscc::Error> {
     let amplitudes = oscillators.amplitudes_of_equal_speed();
     let at = |i: usize| oscillators.at(&amplitudes, PERIODS * i as f64 / samples as f64);
     let states: Vec<Vec<f64>> = (0..samples).map(at).collect();
-    let largest = states.iter().map(|q| norm(q)).fold(0.0, f64::max);
-    states.iter().map(|q| scaled(q, 1.0 / largest)).collect()
+    let largest = states.iter().try_fold(0.0_f64, |largest, q| Ok(largest.max(norm(q)?)))?;
+    Ok(states.iter().map(|q| scaled(q, 1.0 / largest)).collect())
 }
 
 #[cfg(test)]
@@ -59,7 +63,7 @@ mod tests {
         let frequencies = [3.0, 7.5, 20.0];
         let norm =
             |q: &[f64]| q.iter().zip([1.0, 4.0, 9.0]).map(|(x, weight)| weight * x * x).sum::<f64>().sqrt();
-        let states = unit_motion(&Oscillators::new(frequencies.to_vec()), norm, 20_000);
+        let states = unit_motion(&Oscillators::new(frequencies.to_vec()), |q| Ok(norm(q)), 20_000).unwrap();
         let largest = states.iter().map(|q| norm(q)).fold(0.0, f64::max);
         assert!((largest - 1.0).abs() < 1e-12, "{largest}");
         for (q, next) in states[..1000].iter().zip(&states[2000..]) {

@@ -1,6 +1,7 @@
 //! Scenario `norms`: the cost of queries over `|z|`, and what proves the shape free there.
 
-use sscc::{ProvenShares, Query};
+use sscc::Query;
+use sscc::parts::ProvenShares;
 use sscc_sim::CertifiedModel;
 
 use super::displacement::displacement_steps;
@@ -22,8 +23,11 @@ pub fn measure(
     samples: usize,
 ) -> Result<Vec<Record>, Error> {
     let certificates = &model.full.certificates;
-    let unit = |q: &Vec<f64>| scaled(q, certificates.root_radius() / certificates.norm(q));
-    let units: Vec<Vec<f64>> = directions(&model.model, samples).iter().map(unit).collect();
+    let unit = |q: &Vec<f64>| -> Result<Vec<f64>, sscc::Error> {
+        Ok(scaled(q, certificates.root_radius() / certificates.norm(q)?))
+    };
+    let units: Vec<Vec<f64>> =
+        directions(&model.model, samples)?.iter().map(unit).collect::<Result<_, _>>()?;
     let record = |times_root: f64| {
         setup.begin_measuring();
         let steps = displacement_steps(&units, 100.0 * times_root);
@@ -34,7 +38,7 @@ pub fn measure(
         for (q, collides) in states.zip(&comparison.colliding) {
             largest = largest.max(largest_displacement(&model.model, &q));
             if !collides {
-                shares.push(query.proven_shares(&q)?);
+                shares.push(ProvenShares::of(&mut query, &q)?);
             }
         }
         let share = 100.0 * largest / half_diagonal(&model.model);

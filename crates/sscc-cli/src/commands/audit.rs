@@ -24,11 +24,10 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let certificates = load::request(&loaded, &args.model, &args.options)?.read(&args.certificates, model)?;
-    let options = AuditOptions {
-        samples: args.samples as usize,
-        seed: args.seed,
-        threads: Some(load::threads(&args.options.threads)),
-    };
+    let options = AuditOptions::default()
+        .samples(args.samples as usize)
+        .seed(args.seed)
+        .threads(load::threads(&args.options.threads));
     let audited = sscc::audit(model, &certificates, &options, &Bar::new("attacking"));
     interrupt::check()?;
     let found = audited.with_context(|| args.certificates.display().to_string())?;

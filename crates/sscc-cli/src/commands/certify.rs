@@ -45,7 +45,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     }
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
-    let options = load::request(&loaded, &args.model, &args.options)?.options(model)?;
+    let request = load::request(&loaded, &args.model, &args.options)?;
+    let options = request.options(model)?;
     let start = Instant::now();
     let certificates = load::certify(model, &args.model.path, &options)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -66,7 +67,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         triangles: model.mesh().faces().len(),
         vertices: model.mesh().rest_positions().len(),
         rank: model.rank(),
-        nodes: certificates.hierarchy().nodes().len(),
+        nodes: certificates.parts().hierarchy.nodes().len(),
         pairs: certificates.parts().root_pair_radii.len() + tree.len(),
         seconds,
         threads: load::threads(&args.options.threads),
@@ -76,12 +77,12 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
     };
-    let zero_radius = ZeroRadius::find(model, &certificates, &options, interrupt::token())?;
+    let zero_radius = ZeroRadius::find(model, &certificates, &request, interrupt::token())?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
     } else {
-        let metric = certificates.metric().kind().name();
+        let metric: &str = certificates.metric().kind().into();
         let promise = promise(&certificates, zero_radius.as_ref());
         for line in report.lines(metric, &promise, tree.limit(), &args.output) {
             out.line(line)?;

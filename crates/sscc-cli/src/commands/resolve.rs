@@ -33,7 +33,7 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
         Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, model)?,
         None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
-    let options = ResolveOptions { start, all: args.all };
+    let options = ResolveOptions::default().start(start).all(args.all);
     let threads = load::threads(&args.options.threads);
     let found = resolve_rows(model, &certificates, &rows, &options, threads, &Bar::new("resolving"));
     interrupt::check()?;

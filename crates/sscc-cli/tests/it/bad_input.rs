@@ -291,8 +291,8 @@ fn forged_certificates() {
     assert_eq!(sscc(folder, &certify).code, Some(0));
     let mut parts = sscc_io::read_certificates(&folder.join("one.sscc.safetensors")).unwrap().parts().clone();
     let (model, _) = sscc_io::read_model(&folder.join(STRIPS)).unwrap();
-    parts.digest = sscc::Digest::of(&model, &parts.scope);
-    let forged = sscc::Certificates::from_parts(parts).unwrap();
+    parts.digest = sscc::parts::Digest::of(&model, &parts.scope);
+    let forged = sscc::Certificates::try_from(parts).unwrap();
     sscc_io::write_certificates(&folder.join("forged.sscc.safetensors"), &forged).unwrap();
     let args = ["check", STRIPS, "--certificates", "forged.sscc.safetensors", "--q=0,0"];
     refused(folder, &args, &["forged.sscc.safetensors: "]);

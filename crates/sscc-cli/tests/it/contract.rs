@@ -305,7 +305,7 @@ fn audit_refutes_radii_that_are_too_large() {
     double(&mut parts.node_radii);
     double(&mut parts.root_pair_radii);
     parts.global_radius *= 2.0;
-    sscc_io::write_certificates(&path, &sscc::Certificates::from_parts(parts).unwrap()).unwrap();
+    sscc_io::write_certificates(&path, &sscc::Certificates::try_from(parts).unwrap()).unwrap();
     let run = sscc(folder.path(), &["audit", MODEL, "--certificates", CERTIFICATES, "--samples", "200"]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.stdout.starts_with("VIOLATION: ") && run.stdout.contains("do not use these certificates"));
@@ -514,7 +514,7 @@ fn closed_pipes_change_neither_files_nor_exit_codes() {
         let mut parts = sscc_io::read_certificates(&folder.join(CERTIFICATES)).unwrap().parts().clone();
         parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 2.0);
         parts.global_radius *= 2.0;
-        sscc::Certificates::from_parts(parts).unwrap()
+        sscc::Certificates::try_from(parts).unwrap()
     };
     sscc_io::write_certificates(&folder.join("too_large.sscc.safetensors"), &too_large).unwrap();
     for (args, code) in [

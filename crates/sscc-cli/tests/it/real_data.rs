@@ -53,7 +53,7 @@ fn vega_letter_audit() {
     let Some(folder) = models("vega_letter_audit") else { return };
     let (model, _) = cases(&folder.join("vega_A/A_selfcollision_cases.json"));
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-    let options = AuditOptions { samples: 2000, ..AuditOptions::default() };
+    let options = AuditOptions::default().samples(2000);
     let report = audit(&model, &certificates, &options, &()).unwrap();
     assert_eq!((report.samples, report.violations), (2000, vec![]));
     assert!(report.root_tightness.unwrap() >= 0.9, "{:?}", report.root_tightness);
@@ -137,7 +137,7 @@ fn face_with_exceptions() {
     let Some(Face { model, cases, with_exceptions: with }) = face_of("face_with_exceptions") else { return };
     let rest = &cases[0].pairs;
     // Loose radii suffice for the pairs.
-    let options = CertifyOptions { ignore_rest: true, epsilon: 0.9, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().ignore_rest(true).epsilon(0.9);
     let ignoring = Certificates::compute(model, &options, &()).unwrap();
     assert_eq!((with.exceptions(), ignoring.filter().ignored()), (&rest[..], &rest[..]));
     assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);
@@ -148,8 +148,8 @@ fn face_with_exceptions() {
     let mut jaw = vec![0.0; model.rank()];
     jaw[0] = 0.1;
     assert!(query.discrete(&jaw).unwrap().is_empty());
-    let nodes = with.hierarchy().nodes();
-    let open: Vec<bool> = with.parts().node_radii.iter().map(|r| *r <= query.norm()).collect();
+    let nodes = with.parts().hierarchy.nodes();
+    let open: Vec<bool> = with.parts().node_radii.iter().map(|r| *r <= query.statistics().norm).collect();
     // Counted by triangles, since nodes within a bucket repeat its radius, and lips and eyelids are in many buckets.
     let leaves = || (0..nodes.len()).filter(|n| nodes[*n].children().is_empty());
     let open: u32 = leaves().filter(|n| open[*n]).map(|n| nodes[n].triangle_count).sum();

@@ -1,7 +1,8 @@
 //! Body: state, integrators and self-collision detection.
 
 use glam::{DMat3, DQuat, DVec3};
-use sscc::{Aabb, Impact, KineticQuery, Method, Pair, Pose, PosedShape, Query, SweptShape};
+use sscc::parts::{Aabb, Pose, PosedShape, SweptShape};
+use sscc::{Impact, KineticQuery, Method, Pair, Query};
 
 use super::change::Change;
 use super::displacement::displacement;
@@ -337,7 +338,7 @@ impl Body {
     /// Whether the certificate of the root holds at q.
     pub(crate) fn is_root_certified(&self) -> bool {
         let certificates = self.shape.certificates();
-        certificates.norm(&self.q) < certificates.root_radius()
+        certificates.norm(&self.q).is_ok_and(|norm| norm < certificates.root_radius())
     }
 
     /// Finds the impacts of the body with itself in the motion from the beginning of the step to the current state. A body
@@ -364,7 +365,7 @@ impl Body {
     }
 
     /// Updates the posed shape to the body's pose and q. Returns its AABB in the world.
-    pub(crate) fn place(&mut self) -> Result<sscc::Aabb, DynamicsError> {
+    pub(crate) fn place(&mut self) -> Result<Aabb, DynamicsError> {
         let pose = self.pose();
         Ok(self.posed.place(&self.q, &pose)?)
     }
@@ -415,7 +416,8 @@ impl Body {
     /// Updates for how long all points of the body have stayed within a distance.
     pub(crate) fn measure_rest(&mut self, step: f64, distance: f64) {
         let Self { shape, rigid, q, posed, rest, .. } = self;
-        rest.update(shape, rigid, q, (step, distance), |change| posed.displacement_bound(change));
+        let bend_bound = |change: &[f64]| posed.displacement_bound(change).unwrap_or(f64::INFINITY);
+        rest.update(shape, rigid, q, (step, distance), bend_bound);
     }
 
     /// Makes the current state the beginning of the step.
@@ -472,7 +474,7 @@ impl Body {
             Some(swept) => swept,
             none => none.insert(Box::new(SweptShape::new(&self.posed)?)),
         };
-        Ok(swept.place((&self.start.q, &t0), (&self.q, &t1))?)
+        Ok(swept.place([&self.start.q, &self.q], [&t0, &t1])?)
     }
 
     /// Evaluates the nonlinear forces at a q to which the body was moved. They give its elastic energy, and the acceleration with

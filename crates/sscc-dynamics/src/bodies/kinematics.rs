@@ -1,7 +1,7 @@
 //! Motion state of a body at one time: where it is, how it is deformed, and its velocities.
 
 use glam::{DMat3, DVec3};
-use sscc::Pose;
+use sscc::parts::Pose;
 
 use super::displacement::displacement;
 use crate::{RigidMotion, Shape};

@@ -13,7 +13,7 @@ use crate::DynamicsError;
 /// When q has a wrong length or a number that is not finite.
 pub(crate) fn constrain_to_root(body: &mut Body) -> Result<(), DynamicsError> {
     let certificates = body.shape.certificates();
-    if certificates.norm(&body.q) < certificates.root_radius() {
+    if certificates.norm(&body.q)? < certificates.root_radius() {
         return Ok(());
     }
     let Some(clamped) = certificates.clamp(&body.q)? else { return Ok(()) };

@@ -2,7 +2,8 @@
 //! pairs.
 
 use rayon::prelude::*;
-use sscc::{Aabb, Impact, Pair, SweptShape};
+use sscc::parts::{Aabb, SweptShape};
+use sscc::{Impact, Pair};
 
 use super::sweep_and_prune::SweepAndPrune;
 use crate::bodies::body_set::BodySet;

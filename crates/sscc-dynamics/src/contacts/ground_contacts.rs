@@ -2,7 +2,7 @@
 //! again only when it can have come within the skin.
 
 use glam::DVec3;
-use sscc::Aabb;
+use sscc::parts::Aabb;
 
 use super::ground_point::GroundPoint;
 use crate::bodies::displacement::displacement;

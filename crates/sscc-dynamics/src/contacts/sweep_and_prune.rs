@@ -1,6 +1,6 @@
 //! Sweep and prune: pairs of bodies whose AABBs overlap.
 
-use sscc::Aabb;
+use sscc::parts::Aabb;
 
 /// Finds overlapping AABBs. The order along x is kept from one search to the next, in which it is nearly the same.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,8 @@
 //! Sound of vibrating modes (paper, section 7: clattering): a bank of resonators that contact impulses excite.
 
 use glam::DVec3;
-use sscc::{Modes, TriMesh, vertex_areas};
+use sscc::parts::vertex_areas;
+use sscc::{Modes, TriMesh};
 
 use crate::{Damping, DynamicsError, Impulse, LinearOscillator};
 

@@ -1,5 +1,6 @@
 //! Groups of triangles in certificate files: the optional tensors `groups` and `group_pairs`.
 
+use sscc::parts::GroupTable;
 use sscc::{ContactFilter, TriangleGroups};
 
 use super::{ANY, Container, ContainerWriter};
@@ -22,10 +23,11 @@ pub(super) const VERSION: u32 = 5;
 /// Writes the groups of a filter, if it has any.
 pub(super) fn write(writer: &mut ContainerWriter, filter: &ContactFilter) {
     let Some(groups) = filter.groups() else { return };
-    let of_triangles: Vec<u32> = groups.of_triangles().iter().map(|group| u32::from(*group)).collect();
-    let pairs: Vec<u32> = groups.listed().flat_map(|(g, h)| [u32::from(g), u32::from(h)]).collect();
+    let table = GroupTable::from(&**groups);
+    let of_triangles: Vec<u32> = table.of_triangles.iter().map(|group| u32::from(*group)).collect();
+    let pairs: Vec<u32> = table.listed.as_flattened().iter().map(|group| u32::from(*group)).collect();
     writer
-        .text(PAIRS, if groups.others_count() { IGNORED } else { COUNTED })
+        .text(PAIRS, if table.others_count { IGNORED } else { COUNTED })
         .u32(GROUPS, &[of_triangles.len()], &of_triangles)
         .u32(PAIRS, &[pairs.len() / 2, 2], &pairs);
 }
@@ -41,13 +43,13 @@ pub(super) fn read(file: &Container<'_>, filter: ContactFilter) -> Result<Contac
     let (of_triangles, pairs) = (file.u32(GROUPS)?.shaped(&[ANY])?, file.u32(PAIRS)?.shaped(&[ANY, 2])?);
     let groups = TriangleGroups::new(&of_triangles.values);
     let groups = groups.map_err(|error| of_triangles.refused(error.to_string()))?;
-    let listed = || pairs.values.as_chunks().0.iter().map(|&[g, h]| (g, h));
-    if !listed().is_sorted_by(|a, b| a < b) || listed().any(|(g, h)| g > h) {
+    let listed: &[[u32; 2]] = pairs.values.as_chunks().0;
+    if !listed.is_sorted_by(|a, b| a < b) || listed.iter().any(|[g, h]| g > h) {
         return Err(pairs.refused("pairs are not in order"));
     }
     let groups = match file.text(PAIRS)? {
-        IGNORED => groups.ignoring(listed()),
-        COUNTED => groups.only(listed()),
+        IGNORED => groups.ignoring(listed.iter().copied()),
+        COUNTED => groups.only(listed.iter().copied()),
         other => {
             let cause = format!("{} is not known in this version of the format", quoted(other));
             return Err(FormatError::new(Place::Key(PAIRS.into()), cause));

@@ -49,11 +49,8 @@
 
 use std::path::Path;
 
-use sscc::hierarchy::{Hierarchy, Node};
-use sscc::{
-    CertificateParts, Certificates, ContactFilter, Digest, LocalCertificates, Neighbours, Pair, PairTree,
-    Scope,
-};
+use sscc::parts::{CertificateParts, Digest, Hierarchy, LocalCertificates, Node, PairTree, Scope};
+use sscc::{Certificates, ContactFilter, Neighbours, Pair};
 
 use super::{
     ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_groups, local_certificates, metric,
@@ -142,7 +139,7 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     local_certificates::write(&mut writer, &parts.local);
     writer
         .text("scheme", scheme(tree, &parts.local))
-        .text("neighbours", scope.filter.neighbours.name())
+        .text("neighbours", scope.filter.neighbours.into())
         .text("weld", if scope.filter.weld { WELD } else { NO_WELD })
         .u8("model_digest", &[32], &parts.digest.0)
         .u32("nodes", &[nodes.len(), 4], &columns)
@@ -189,7 +186,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         other => return Err(unknown("scheme", other)),
     }
     let neighbours = file.text("neighbours")?;
-    let neighbours = Neighbours::from_name(neighbours).ok_or_else(|| unknown("neighbours", neighbours))?;
+    let neighbours = neighbours.parse::<Neighbours>().map_err(|_| unknown("neighbours", neighbours))?;
     let weld = match file.text("weld")? {
         WELD => true,
         NO_WELD => false,
@@ -204,7 +201,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     let scope = Scope {
         metric,
         center: center.values,
-        filter: certificate_groups::read(&file, ContactFilter::new(neighbours, weld).ignoring(ignored))?,
+        filter: certificate_groups::read(&file, ContactFilter::new(neighbours).weld(weld).ignoring(ignored))?,
         exceptions: read_pairs(&file, "exceptions")?,
     };
     let one = |name| file.f64(name)?.shaped(&[1]);
@@ -229,7 +226,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
     })?;
     let digest = file.u8("model_digest")?.shaped(&[32])?.values;
     let digest = Digest(digest.try_into().unwrap_or_default());
-    Ok(Certificates::from_parts(CertificateParts {
+    Ok(Certificates::try_from(CertificateParts {
         digest,
         scope: scope.into(),
         hierarchy: hierarchy.into(),
@@ -254,7 +251,7 @@ fn read_pairs(file: &Container<'_>, name: &str) -> Result<Vec<Pair>, FormatError
     }
 }
 
-/// Reads the pair tree. [`Certificates::from_parts`] checks that it fits the hierarchy.
+/// Reads the pair tree. [`CertificateParts`] checks that it fits the hierarchy.
 fn read_pair_tree(file: &Container<'_>) -> Result<PairTree, FormatError> {
     if file.version() < 4 {
         return Ok(PairTree::default());

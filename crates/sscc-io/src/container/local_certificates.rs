@@ -1,6 +1,6 @@
 //! Local certificates in certificate files: optional tensors, whose names begin with `local_`.
 
-use sscc::{LocalBounds, LocalCertificates};
+use sscc::parts::{LocalBounds, LocalCertificates};
 
 use super::{ANY, Container, ContainerWriter};
 use crate::{FormatError, Place};
@@ -60,7 +60,7 @@ pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
         .f32(LIST_RATIOS, &[local.list_ratios.len()], &local.list_ratios);
 }
 
-/// Reads local certificates; none from a file without. [`sscc::Certificates::from_parts`] checks that they fit the hierarchy.
+/// Reads local certificates; none from a file without. [`sscc::Certificates::try_from`] checks that they fit the hierarchy.
 pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatError> {
     let names = file.names();
     let Some(name) = names.into_iter().find(|name| TENSORS.contains(&name.as_str())) else {

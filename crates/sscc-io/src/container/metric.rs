@@ -12,7 +12,7 @@ pub(super) const FACTOR: &str = "metric_factor";
 /// Adds a metric, with the name of its kind as the text `metric`.
 pub(super) fn write(writer: &mut ContainerWriter, metric: &Metric) {
     let rank = metric.rank();
-    writer.text("metric", metric.kind().name());
+    writer.text("metric", metric.kind().into());
     match metric.dense_factor() {
         Some(factor) => writer.f64(FACTOR, &[rank, rank], factor),
         None => writer.f64(SCALES, &[rank], &metric.scales()),
@@ -22,7 +22,7 @@ pub(super) fn write(writer: &mut ContainerWriter, metric: &Metric) {
 /// Reads a metric for `rank` modes; [`ANY`](super::ANY) matches any number.
 pub(super) fn read(file: &Container<'_>, rank: usize) -> Result<Metric, FormatError> {
     let name = file.text("metric")?;
-    let kind = MetricKind::from_name(name).ok_or_else(|| {
+    let kind = name.parse::<MetricKind>().map_err(|_| {
         FormatError::new(Place::Key("metric".into()), format!("unknown metric {}", quoted(name)))
     })?;
     if !file.names().iter().any(|name| name == FACTOR) {

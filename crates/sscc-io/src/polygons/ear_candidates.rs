@@ -1,7 +1,7 @@
 //! The corners of a polygon that may be in an ear, in a grid.
 
 use glam::DVec2;
-use sscc::orient2d;
+use sscc::parts::orient2d;
 
 use super::work::{TooIntricate, Work};
 

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use glam::DVec2;
-use sscc::orient2d;
+use sscc::parts::orient2d;
 
 use super::ear_candidates::EarCandidates;
 use super::work::{TooIntricate, Work};

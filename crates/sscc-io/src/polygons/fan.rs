@@ -1,7 +1,7 @@
 //! Whether the fan around the first corner triangulates a polygon.
 
 use glam::DVec2;
-use sscc::orient2d;
+use sscc::parts::orient2d;
 
 /// Whether the fan around the first corner covers the polygon, and no point of the plane twice, apart from borders.
 ///

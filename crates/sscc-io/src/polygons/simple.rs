@@ -1,7 +1,7 @@
 //! Whether a polygon touches or crosses itself.
 
 use glam::DVec2;
-use sscc::orient2d;
+use sscc::parts::orient2d;
 
 use super::work::{TooIntricate, Work};
 

@@ -6,9 +6,10 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
+use sscc::parts::Scope;
 use sscc::{
     Certificates, CertifyOptions, ContactFilter, Detector, Method, Neighbours, Pair, Query, ReducedModel,
-    Scope, TriMesh,
+    TriMesh,
 };
 use sscc_io::{LoadOptions, load_mesh, load_model_with, write_npy};
 
@@ -103,10 +104,10 @@ fn detectors_and_certificates_weld_what_a_format_splits() {
         assert_eq!(of_model(&model), [expected, expected], "{file}");
         // Options override it.
         for (weld, expected) in [(false, &UNWELDED[..]), (true, &WELDED)] {
-            let filter = ContactFilter::new(Neighbours::Exclude, weld);
+            let filter = ContactFilter::new(Neighbours::Exclude).weld(weld);
             let mut detector = Detector::with_filter(&mesh, &filter).unwrap();
             assert_eq!(detector.discrete(mesh.rest_positions()).unwrap(), expected, "{file} {weld}");
-            let options = CertifyOptions { filter: Some(filter), ..CertifyOptions::default() };
+            let options = CertifyOptions::default().filter(filter);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             assert_eq!((certificates.exceptions(), certificates.filter().weld), (expected, weld), "{file}");
         }

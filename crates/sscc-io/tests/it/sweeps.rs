@@ -1,6 +1,6 @@
 //! Sweeps of real blendshapes, against exact queries at many weights.
 
-use sscc::{Certificates, CertifyOptions, KineticQuery, Query, ReducedModel, Sweep, SweepOutcome};
+use sscc::{Certificates, CertifyOptions, KineticQuery, ModeRange, Query, ReducedModel, Sweep, SweepOutcome};
 use sscc_io::{LoadOptions, load_model, load_model_with};
 use sscc_testing::{cases, models};
 
@@ -39,7 +39,7 @@ fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &
 }
 
 fn certify(model: &ReducedModel, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
-    let options = CertifyOptions { ignore_rest, center, budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().ignore_rest(ignore_rest).center(center).budget(0);
     Certificates::compute(model, &options, &()).unwrap()
 }
 
@@ -57,8 +57,8 @@ fn morph_targets_of_gltf_files() {
         let certificates = certify(model, true, None);
         let query = Query::new(model, &certificates).unwrap();
         let q = vec![0.0; model.rank()];
-        for (range, hits) in [([0.0, 1.0], false), ([-3.0, 3.0], true)] {
-            let ranges: Vec<_> = (0..model.rank()).map(|mode| (mode, range)).collect();
+        for ([low, high], hits) in [([0.0, 1.0], false), ([-3.0, 3.0], true)] {
+            let ranges: Vec<_> = (0..model.rank()).map(|mode| ModeRange { mode, low, high }).collect();
             let sweeps = query.sweep_modes(&q, &ranges, None, &()).unwrap();
             assert_eq!(sweeps.len(), if hits { 2 } else { 1 } * model.rank());
             check(model, &certificates, &q, &sweeps, cases(10_000).max(4000) / 20);
@@ -73,7 +73,7 @@ fn expressions_of_a_face() {
     let modes = folder.join("ict_face/ict_face_expressions30.U.float");
     let (model, _) = load_model(&path, Some(&modes)).unwrap();
     let count = cases(32).min(30);
-    let ranges: Vec<_> = (0..count).map(|mode| (mode, [0.0, 1.0])).collect();
+    let ranges: Vec<_> = (0..count).map(|mode| ModeRange { mode, low: 0.0, high: 1.0 }).collect();
     let weights = cases(10_000) / 25;
     // With the pairs of closed lips and lids ignored.
     let rest = vec![0.0; 30];

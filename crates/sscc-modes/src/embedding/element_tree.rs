@@ -1,7 +1,7 @@
 //! Hierarchy of AABBs over the elements of a solid, for the nearest element to a point.
 
 use glam::DVec3;
-use sscc::Aabb;
+use sscc::parts::Aabb;
 use sscc_solid::Solid;
 
 use super::{cube, simplex};

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use sscc::{ContactFilter, Method, Modes, Neighbours, Progress, Query, ReducedModel, Scope, TriMesh};
+use sscc::parts::Scope;
+use sscc::{ContactFilter, Method, Modes, Neighbours, Progress, Query, ReducedModel, TriMesh};
 
 use crate::ModesError;
 
@@ -107,7 +108,7 @@ pub(super) fn check_rest(mesh: &TriMesh, is_split: bool, progress: &dyn Progress
     // A model needs a mode; any mode is valid at q = 0.
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1.0)?;
     let model = ReducedModel::new(mesh.clone(), modes)?;
-    let filter = ContactFilter::new(Neighbours::Exclude, is_split);
+    let filter = ContactFilter::new(Neighbours::Exclude).weld(is_split);
     let scope = Scope { filter, ..Scope::of(&model) };
     let mut query = Query::without_certificates(&model, scope, Method::Traditional)?;
     query = query.cancelled_by(progress.cancel_token().cloned());

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use sscc::{Method, Modes, Query, ReducedModel, Scope, TriMesh, intersect_triangle_triangle};
+use sscc::parts::Scope;
+use sscc::{Method, Modes, Query, ReducedModel, TriMesh, intersect_triangle_triangle};
 use sscc_modes::shapes;
 
 static HARE: LazyLock<TriMesh> = LazyLock::new(shapes::hare);

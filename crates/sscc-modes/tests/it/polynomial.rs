@@ -2,7 +2,8 @@
 
 use crate::common::{Random, bumpy, cube, moved, plane, sphere};
 use glam::DVec3;
-use sscc::{Error, Modes, TriMesh, vertex_areas};
+use sscc::parts::vertex_areas;
+use sscc::{Error, Modes, TriMesh};
 use sscc_modes::{ModesError, polynomial_modes, shapes::spring};
 
 /// `sum_v area_v f(v) . g(v)`

@@ -129,7 +129,8 @@ fn self_intersections(mesh: &TriMesh) -> (usize, usize) {
     for (at, &i) in order.iter().enumerate() {
         for &j in order[at + 1..].iter().take_while(|j| boxes[**j].0.z <= boxes[i].1.z) {
             let is_disjoint = boxes[i].0.cmpgt(boxes[j].1).any() || boxes[j].0.cmpgt(boxes[i].1).any();
-            if !is_disjoint && !mesh.are_adjacent(i as u32, j as u32) {
+            let are_adjacent = mesh.faces()[i].iter().any(|v| mesh.faces()[j].contains(v));
+            if !is_disjoint && !are_adjacent {
                 tested += 1;
                 let meet = edges_meet(faces[i], faces[j]) || edges_meet(faces[j], faces[i]);
                 intersecting += usize::from(meet);

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use sscc::{CertifyOptions, ContactFilter, Neighbours, ReducedModel, Scope};
+use sscc::parts::{DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, Scope, is_reach};
+use sscc::{CertifyOptions, ContactFilter, Metric, Neighbours, ReducedModel};
 
 use super::metric::metric;
 use crate::error::{At, Result};
@@ -59,18 +60,17 @@ impl CertificateRequest {
     /// # Errors
     /// When a file cannot be read or does not fit the model, or two options contradict each other.
     pub fn options(&self, model: &ReducedModel) -> Result<CertifyOptions> {
-        Ok(CertifyOptions {
-            epsilon: self.epsilon.unwrap_or(CertifyOptions::default().epsilon),
-            metric: self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?,
-            center: self.center.clone(),
-            filter: Some(self.filter(model)?),
-            ignore_rest: self.ignore_rest,
-            max_exceptions: self.max_exceptions,
-            budget: self.budget()?.unwrap_or(CertifyOptions::DEFAULT_BUDGET),
-            local_budget: self.local_budget()?.unwrap_or(CertifyOptions::DEFAULT_LOCAL_BUDGET),
-            reach: self.reach()?.unwrap_or(CertifyOptions::DEFAULT_REACH),
-            threads: Some(self.threads.unwrap_or_else(available_threads)),
-        })
+        Ok(CertifyOptions::default()
+            .epsilon(self.epsilon.unwrap_or(DEFAULT_EPSILON))
+            .metric(self.metric(model)?)
+            .center(self.center.clone())
+            .filter(self.filter(model)?)
+            .ignore_rest(self.ignore_rest)
+            .max_exceptions(self.max_exceptions)
+            .budget(self.budget()?.unwrap_or(DEFAULT_BUDGET))
+            .local_budget(self.local_budget()?.unwrap_or(DEFAULT_LOCAL_BUDGET))
+            .reach(self.reach()?.unwrap_or(DEFAULT_REACH))
+            .threads(self.threads.unwrap_or_else(available_threads)))
     }
 
     /// Returns the scope of a query without certificates.
@@ -78,25 +78,32 @@ impl CertificateRequest {
     /// # Errors
     /// As [`CertificateRequest::options`].
     pub fn scope(&self, model: &ReducedModel) -> Result<Scope> {
-        let CertifyOptions { metric, center, filter, .. } = self.options(model)?;
-        let default = Scope::of(model);
-        let mut filter = filter.unwrap_or(default.filter);
+        let (metric, mut filter) = (self.metric(model)?, self.filter(model)?);
+        // Contradictions of other options are refused here, too.
+        self.budget()?;
+        self.local_budget()?;
+        self.reach()?;
         if self.ignore_rest {
             filter = filter.ignoring_rest(model).in_file(&self.model)?;
         }
         Ok(Scope {
-            metric: metric.unwrap_or(default.metric),
-            center: center.unwrap_or(default.center),
+            metric: metric.unwrap_or_else(|| model.metric().clone()),
+            center: self.center.clone().unwrap_or_else(|| vec![0.0; model.rank()]),
             filter,
             exceptions: Vec::new(),
         })
+    }
+
+    /// Returns the metric, if it is stated.
+    pub(super) fn metric(&self, model: &ReducedModel) -> Result<Option<Metric>> {
+        self.metric.as_deref().map(|typed| metric(model, typed)).transpose()
     }
 
     /// Returns the contact filter; but `ignore_rest` is not part of it.
     fn filter(&self, model: &ReducedModel) -> Result<ContactFilter> {
         let default = ContactFilter::of(model.mesh());
         let weld = self.weld.unwrap_or(default.weld);
-        let filter = ContactFilter::new(self.neighbours.unwrap_or(default.neighbours), weld);
+        let filter = ContactFilter::new(self.neighbours.unwrap_or(default.neighbours)).weld(weld);
         let triangles = model.mesh().faces().len();
         Ok(match self.groups.of_model(&self.model, self.mesh_name.as_deref(), triangles)? {
             Some(groups) => filter.with_groups(groups),
@@ -111,7 +118,7 @@ impl CertificateRequest {
             (Some(Scheme::Paper), Some(_)) => {
                 Err(SimError::refused("--scheme paper", "it stores no pair tree: leave --budget out"))
             }
-            (Some(Scheme::Full), None) => Ok(Some(CertifyOptions::DEFAULT_BUDGET)),
+            (Some(Scheme::Full), None) => Ok(Some(DEFAULT_BUDGET)),
             (_, budget) => Ok(budget),
         }
     }
@@ -137,7 +144,7 @@ impl CertificateRequest {
             ));
         }
         match self.reach {
-            Some(reach) if !CertifyOptions::is_reach(reach) => {
+            Some(reach) if !is_reach(reach) => {
                 Err(SimError::refused("--reach", format!("{reach} is not a finite number of at least 1")))
             }
             reach => Ok(reach),

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sscc::{CertificateParts, Certificates, CertifyOptions, ContactFilter, ReducedModel};
+use sscc::parts::{CertificateParts, DEFAULT_BUDGET, check_filter, is_within_reach};
+use sscc::{Certificates, ContactFilter, ReducedModel};
 use sscc_io::read_certificates;
 
 use super::certificate_request::{CertificateRequest, Scheme};
-use super::metric::metric;
 use crate::SimError;
 use crate::error::{At, Result};
 
@@ -28,8 +28,8 @@ impl CertificateRequest {
 
     fn check_filter(&self, certificates: &Certificates, model: &ReducedModel, path: &Path) -> Result<()> {
         let known = certificates.filter();
-        let typed =
-            ContactFilter::new(self.neighbours.unwrap_or(known.neighbours), self.weld.unwrap_or(known.weld));
+        let typed = ContactFilter::new(self.neighbours.unwrap_or(known.neighbours))
+            .weld(self.weld.unwrap_or(known.weld));
         let typed = typed.ignoring(known.ignored().iter().copied());
         let triangles = model.mesh().faces().len();
         let groups = self.groups.of_model(&self.model, self.mesh_name.as_deref(), triangles)?.map(Arc::new);
@@ -37,7 +37,7 @@ impl CertificateRequest {
             Some(groups) => typed.with_groups(Arc::clone(groups)),
             None => typed,
         };
-        certificates.check_filter(&typed).in_file(path)
+        check_filter(certificates, &typed).in_file(path)
     }
 
     /// Returns the first other contradiction: the cause of the refusal.
@@ -48,18 +48,19 @@ impl CertificateRequest {
         }
         let known = certificates.metric();
         let form = (known.scales(), known.dense_factor());
-        let metric = self.metric.as_deref().map(|typed| metric(model, typed)).transpose()?;
+        let metric = self.metric(model)?;
         if metric.is_some_and(|typed| (typed.scales(), typed.dense_factor()) != form) {
             return Ok(Some(format!(
                 "certified with another metric ({}) than --metric; leave the flag out, or certify anew",
-                known.kind().name()
+                known.kind()
             )));
         }
         if self.center.as_deref().is_some_and(|typed| typed != certificates.center()) {
             let cause = "certified about another centre than --center; leave the flag out, or certify anew";
             return Ok(Some(cause.into()));
         }
-        let (tree, triangles) = (&certificates.parts().pair_tree, certificates.hierarchy().order().len());
+        let (tree, triangles) =
+            (&certificates.parts().pair_tree, certificates.parts().hierarchy.order().len());
         self.budget()?;
         let has_tree = tree.limit() > 0.0;
         let is_full = has_tree || !certificates.parts().local.nodes.is_empty();
@@ -88,7 +89,7 @@ impl CertificateRequest {
                         .into(),
                 ));
             }
-            if !certificates.is_within_reach(model, reach) {
+            if !is_within_reach(certificates, model, reach) {
                 return Ok(Some(format!(
                     "its radii reach farther than --reach {reach} allows; leave the flag out, or certify anew"
                 )));
@@ -114,8 +115,7 @@ impl CertificateRequest {
         CertificateParts { hierarchy, pair_tree, local, .. }: &CertificateParts,
     ) -> bool {
         let bytes = |budget: usize| budget.saturating_mul(hierarchy.order().len());
-        let left =
-            bytes(self.budget.unwrap_or(CertifyOptions::DEFAULT_BUDGET)).saturating_sub(pair_tree.bytes());
+        let left = bytes(self.budget.unwrap_or(DEFAULT_BUDGET)).saturating_sub(pair_tree.bytes());
         self.local_budget.is_none_or(|budget| {
             local.nodes.is_empty()
                 || budget > 0 && local.budgeted_bytes() <= bytes(budget).saturating_add(left)

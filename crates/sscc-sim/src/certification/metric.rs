@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use sscc::parts::check_metric;
 use sscc::{Metric, MetricKind, ReducedModel};
 use sscc_io::read_matrix;
 
@@ -12,12 +13,12 @@ use crate::error::{At, Result};
 /// or a dense matrix.
 pub(super) fn metric(model: &ReducedModel, typed: &Path) -> Result<Metric> {
     let metric = match typed.to_str() {
-        Some("displacement") => Metric::displacement(model.mesh(), model.modes()),
-        Some("mass") => Metric::mass(model.mesh(), model.modes()),
+        Some("displacement") => Metric::displacement(model.mesh(), model.modes())?,
+        Some("mass") => Metric::mass(model.mesh(), model.modes())?,
         Some("identity") => Metric::identity(model.rank()),
         Some("energy") if model.metric().kind() == MetricKind::Energy => model.metric().clone(),
         Some("energy") => {
-            let own = model.metric().kind().name();
+            let own = model.metric().kind();
             let cause = format!(
                 "the model's own metric is {own}, not energy; make a model with its stiffness by sscc modes --kind linear \
                  or nonlinear, or give a file"
@@ -27,7 +28,7 @@ pub(super) fn metric(model: &ReducedModel, typed: &Path) -> Result<Metric> {
         _ => from_file(model, typed)?,
     };
     // Checked here, because later errors cannot name the flag.
-    metric.check(model.mesh(), model.modes()).at(|| format!("--metric {}", typed.display()))?;
+    check_metric(&metric, model.mesh(), model.modes()).at(|| format!("--metric {}", typed.display()))?;
     Ok(metric)
 }
 

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::{ContactCurves, Impact, Pair, Penetration, Proof, TriMesh};
+use sscc::parts::{ContactCurves, Penetration};
+use sscc::{Impact, Pair, Proof, TriMesh};
 
 use crate::LeftOut;
 

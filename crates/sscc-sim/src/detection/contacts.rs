@@ -2,10 +2,11 @@
 
 use std::cmp::Ordering;
 
-use sscc::{
-    ContactCurves, Error, Pair, Penetration, Surface, contact_curves, contact_curves_between,
+use sscc::parts::{
+    ContactCurves, Penetration, Surface, contact_curves, contact_curves_between,
     penetration_triangle_triangle,
 };
+use sscc::{Error, Pair};
 
 /// What discrete queries compute of the contacts of their pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::TriMesh;
+use sscc::parts::check_continuous;
 
 use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
@@ -164,7 +165,7 @@ fn answer<'a>(
 
 fn check_request(request: &Detection) -> Result<()> {
     if request.is_continuous {
-        request.neighbours.check_continuous()?;
+        check_continuous(request.neighbours)?;
     }
     let needs_one = match (&request.motion, &request.against) {
         (_, Some(other)) => Some(other.mesh.as_path()),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
+use sscc::parts::detector_with_weld_classes;
 use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
 use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError};
@@ -100,7 +101,7 @@ impl<'w> MovingMesh<'w> {
         };
         let filter = filter(request, weld, groups);
         let make = |filter: &ContactFilter| match &classes {
-            Some(classes) => Detector::with_weld_classes(&mesh, classes.numbers(), filter),
+            Some(classes) => detector_with_weld_classes(&mesh, classes.numbers(), filter),
             None => Detector::with_filter(&mesh, filter),
         };
         let (detector, left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
@@ -150,7 +151,7 @@ impl<'w> MovingMesh<'w> {
             let mesh = TriMesh::new(node.rest_positions().to_vec(), node.faces().to_vec()).in_file(file)?;
             let is_welded = request.weld.unwrap_or(true);
             let make = |filter: &ContactFilter| match is_welded {
-                true => Detector::with_weld_classes(&mesh, node.weld_classes(), filter),
+                true => detector_with_weld_classes(&mesh, node.weld_classes(), filter),
                 false => Detector::with_filter(&mesh, filter),
             };
             let filter = filter(request, is_welded, groups);
@@ -244,7 +245,7 @@ impl Evaluation {
 }
 
 fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {
-    let filter = ContactFilter::new(request.neighbours, weld);
+    let filter = ContactFilter::new(request.neighbours).weld(weld);
     match groups {
         Some(groups) => filter.with_groups(groups),
         None => filter,

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use sscc::{Answer, CancelToken, Impact, Pair, Progress, Query, ReducedModel, Statistics, Surface};
+use sscc::parts::{Scope, Surface};
+use sscc::{Answer, CancelToken, Impact, Pair, Progress, Query, ReducedModel, Statistics};
 use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
@@ -53,7 +54,8 @@ pub fn check_rows<E: From<SimError>>(
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
     let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
     let (mut next, mut block, mut most_pairs) = (0, 1, 1);
-    let (left_out, exceptions) = (LeftOut::of(&query.scope().filter), query.scope().exceptions.len());
+    let scope = Scope::of_query(query);
+    let (left_out, exceptions) = (LeftOut::of(&scope.filter), scope.exceptions.len());
     // Rows before this one are answered one by one.
     let mut single = 0;
     while next < queries {
@@ -96,7 +98,7 @@ pub fn check_rows<E: From<SimError>>(
                 curves: contacts.curves.as_ref(),
                 is_complete: found.is_complete,
                 microseconds,
-                norm: Some(found.norm),
+                norm: Some(found.statistics.norm),
                 root_certified: Some(found.statistics.root_certified),
                 proof: Some(found.statistics.proof),
                 exceptions,
@@ -148,7 +150,6 @@ struct Found<'a> {
     pairs: Cow<'a, [Pair]>,
     times: Option<Vec<f64>>,
     is_complete: bool,
-    norm: f64,
     statistics: Statistics,
 }
 
@@ -159,18 +160,16 @@ impl Answers {
             pairs,
             times,
             is_complete: query.statistics().complete,
-            norm: query.norm(),
             statistics: query.statistics(),
         };
         match self {
             Self::One => of_query(Cow::Borrowed(query.pairs()), None),
             Self::Batch(answers) => {
-                let Answer { pairs, norm, statistics } = &answers[number];
+                let Answer { pairs, statistics } = &answers[number];
                 Found {
                     pairs: Cow::Borrowed(pairs),
                     times: None,
                     is_complete: statistics.complete,
-                    norm: *norm,
                     statistics: *statistics,
                 }
             }

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use sscc::{Detector, DetectorStatistics, Impact, Pair, Surface};
+use sscc::parts::Surface;
+use sscc::{Detector, Impact, Pair, Statistics};
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
@@ -35,7 +36,7 @@ pub(super) struct QueryResult {
     pub contacts: Contacts,
     pub is_complete: bool,
     pub microseconds: f64,
-    pub statistics: DetectorStatistics,
+    pub statistics: Statistics,
     /// Positions of the mesh and of the other one, at the start and the end; empty unless the request asks for them.
     pub positions: Vec<[Vec<DVec3>; 2]>,
 }

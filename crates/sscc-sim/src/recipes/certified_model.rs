@@ -1,6 +1,7 @@
 //! Models with certificates: computed once, then read from the cache.
 
-use sscc::{CertifyOptions, Modes, ReducedModel};
+use sscc::parts::DEFAULT_BUDGET;
+use sscc::{Modes, ReducedModel};
 use sscc_io::{ModelInfo, read_model, write_model};
 use sscc_solid::{Elasticity, MassData};
 
@@ -41,7 +42,7 @@ impl CertifiedModel {
             Some(given) => (given.model.clone(), given.elasticity.clone(), given.mass.clone()),
             None => recipe_modes(loaded, *modes, cache, watch)?,
         };
-        let (metric, budget) = (recipe.metric(&model)?, CertifyOptions::DEFAULT_BUDGET);
+        let (metric, budget) = (recipe.metric(&model)?, DEFAULT_BUDGET);
         let full = TimedCertificates::get(cache, name, &model, &metric, &loaded.source, budget, watch)?;
         let (source, note) = (loaded.source.clone(), loaded.note.clone());
         Ok(Self { name: name.clone(), source, note, model, elasticity, mass, full, paper: None })
@@ -60,7 +61,7 @@ impl CertifiedModel {
     /// Whether the root's radius alone proves the shape free.
     pub fn is_root_certified(&self, q: &[f64]) -> bool {
         let certificates = &self.full.certificates;
-        certificates.metric().norm(q) < certificates.root_radius()
+        certificates.metric().norm(q).is_ok_and(|norm| norm < certificates.root_radius())
     }
 }
 

@@ -33,7 +33,7 @@ impl Key {
 
     /// Adds a model with all inputs of its certificates.
     pub fn model(self, model: &ReducedModel) -> Self {
-        let digest = sscc::Digest::of(model, &sscc::Scope::of(model));
+        let digest = sscc::parts::Digest::of(model, &sscc::parts::Scope::of(model));
         self.text(&format!("{digest:?}"))
     }
 }

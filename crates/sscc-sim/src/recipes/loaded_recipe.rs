@@ -185,6 +185,6 @@ mod tests {
         let amplitudes = vec![0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
         let metric = Recipe { amplitudes: Some(amplitudes.clone()), ..plain }.metric(&model).unwrap();
         assert_eq!(metric.kind(), MetricKind::Given);
-        assert!((metric.norm(&amplitudes) - 6.0_f64.sqrt()).abs() < 1e-12);
+        assert!((metric.norm(&amplitudes).unwrap() - 6.0_f64.sqrt()).abs() < 1e-12);
     }
 }

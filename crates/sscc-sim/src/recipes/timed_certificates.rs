@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use sscc::parts::DEFAULT_LOCAL_BUDGET;
 use sscc::{Certificates, CertifyOptions, Metric, ReducedModel};
 use sscc_io::{read_certificates, read_whole, write_certificates, write_whole};
 
@@ -65,14 +66,12 @@ impl TimedCertificates {
         watch: &dyn Watch,
     ) -> Result<Self, SimError> {
         let (metric, threads) = (Some(metric.clone()), available_threads());
-        let options = CertifyOptions {
-            metric,
-            budget,
-            local_budget: local_budget(budget),
-            ignore_rest: true,
-            threads: Some(threads),
-            ..CertifyOptions::default()
-        };
+        let options = CertifyOptions::default()
+            .metric(metric)
+            .budget(budget)
+            .local_budget(local_budget(budget))
+            .ignore_rest(true)
+            .threads(threads);
         watch.begin(Stage::Certificates);
         let peak = PeakMemory::start();
         let start = Instant::now();
@@ -107,5 +106,5 @@ impl TimedCertificates {
 
 /// The budget of local certificates beside this one of the pair tree.
 fn local_budget(budget: usize) -> usize {
-    if budget == 0 { 0 } else { CertifyOptions::DEFAULT_LOCAL_BUDGET }
+    if budget == 0 { 0 } else { DEFAULT_LOCAL_BUDGET }
 }

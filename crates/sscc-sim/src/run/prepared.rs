@@ -85,7 +85,9 @@ impl PreparedScene {
         hasher.update(self.program.as_bytes()).update(scene.digest.as_bytes());
         for model in &self.models {
             let certified = &model.certified;
-            hasher.update(&sscc::Digest::of(&certified.model, &sscc::Scope::of(&certified.model)).0);
+            hasher.update(
+                &sscc::parts::Digest::of(&certified.model, &sscc::parts::Scope::of(&certified.model)).0,
+            );
             add_forces(&mut hasher, certified);
         }
         *hasher.finalize().as_bytes()

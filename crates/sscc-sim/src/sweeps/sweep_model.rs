@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sscc::{Certificates, Pair, Progress, Query, ReducedModel};
+use sscc::{Certificates, ModeRange, Pair, Progress, Query, ReducedModel};
 use sscc_io::gltf::PlacedMesh;
 use sscc_io::{IoError, LoadedModel, write_ply_pose};
 
@@ -62,7 +62,8 @@ pub fn sweep_model(
     progress: &dyn Progress,
 ) -> Result<Vec<SweepRow>> {
     let (q, ranges) = request.prepare(loaded, certificates.center())?;
-    let ranges: Vec<_> = ranges.into_iter().enumerate().collect();
+    let ranges = ranges.into_iter().enumerate();
+    let ranges: Vec<ModeRange> = ranges.map(|(mode, [low, high])| ModeRange { mode, low, high }).collect();
     let query = Query::new(&loaded.model, certificates)?;
     let sweeps = query.sweep_modes(&q, &ranges, request.threads, progress)?;
     let rows: Vec<SweepRow> =

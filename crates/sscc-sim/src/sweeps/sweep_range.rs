@@ -60,10 +60,8 @@ impl SweepRange {
 
     /// Returns the range of each weight, for sweeps that start at q.
     pub fn ends(&self, model: &ReducedModel, q: &[f64]) -> Vec<[f64; 2]> {
-        let half_diagonal = |k: usize| {
-            let limit = model.weight_limit(k);
-            [q[k] - limit, q[k] + limit]
-        };
+        let limits = model.weight_limits();
+        let half_diagonal = |k: usize| [q[k] - limits[k], q[k] + limits[k]];
         let range = |k: usize| match self {
             Self::Given(range) => *range,
             Self::Targets => [0.0, 1.0],

@@ -72,7 +72,7 @@ pub(super) fn check(
     let CheckRequest { q, serial, nodes } = request;
     let (found, microseconds) = timed(|| query.discrete_at_most(q, MAX_PAIRS).map(|_| ()));
     found?;
-    let (pairs, statistics, norm) = (query.pairs(), query.statistics(), query.norm());
+    let (pairs, statistics, norm) = (query.pairs(), query.statistics(), query.statistics().norm);
     let mut triangles: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
     triangles.sort_unstable();
     triangles.dedup();
@@ -87,7 +87,7 @@ pub(super) fn check(
         triangles,
         microseconds,
         root_certified: statistics.root_certified,
-        proof: statistics.proof.name(),
+        proof: statistics.proof.into(),
         opened: statistics.opened,
         box_tests: statistics.box_tests,
         triangle_tests: statistics.triangle_tests,

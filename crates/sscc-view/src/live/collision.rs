@@ -146,7 +146,7 @@ mod tests {
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
         // Radii that reach farther would leave nothing to search.
-        let options = CertifyOptions { reach: 1.0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().reach(1.0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let checks = Arc::new(AtomicU32::new(0));
         let [before, until] = [(); 2].map(|()| Arc::clone(&checks));

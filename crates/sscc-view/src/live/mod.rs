@@ -75,7 +75,7 @@ impl Live {
         mut arrays: Arrays,
         cancel: Option<CancelToken>,
     ) -> Result<Self, ViewError> {
-        arrays.add_u32(ORDER, certificates.hierarchy().order().iter().copied());
+        arrays.add_u32(ORDER, certificates.parts().hierarchy.order().iter().copied());
         let query = Query::new(model, certificates)?.cancelled_by(cancel.clone());
         let long = Mutex::new(Long { certified: query.clone(), traditional: None });
         let [checks, sweeps] = [query.clone(), query].map(Mutex::new);

@@ -47,7 +47,7 @@ pub struct BoxesAnswer {
 
 /// Returns the hierarchy.
 pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
-    let hierarchy = certificates.hierarchy();
+    let hierarchy = &certificates.parts().hierarchy;
     let nodes = hierarchy.nodes();
     let (mut parent, mut level) = (vec![-1; nodes.len()], vec![0; nodes.len()]);
     for (n, node) in nodes.iter().enumerate() {
@@ -67,11 +67,11 @@ pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
 
 /// Returns the nodes that a query at this `|z|` opens. A traversal ends at buckets.
 pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
-    let nodes = certificates.hierarchy().nodes();
+    let nodes = certificates.parts().hierarchy.nodes();
     let (mut opened, mut culled) = (Vec::new(), Vec::new());
     let mut waiting = vec![0];
     while let Some(n) = waiting.pop() {
-        if norm < certificates.node_radius(n) {
+        if norm < certificates.parts().node_radii[n as usize] {
             culled.push(n);
         } else {
             opened.push(n);
@@ -90,7 +90,7 @@ pub(super) fn boxes(
     certificates: &Certificates,
     BoxesRequest { q, level }: &BoxesRequest,
 ) -> Result<BoxesAnswer, ViewError> {
-    let hierarchy = certificates.hierarchy();
+    let hierarchy = &certificates.parts().hierarchy;
     let levels = hierarchy.levels();
     let missing = || {
         ViewError::Request(format!("there is no level {level}: the hierarchy has {} levels", levels.len()))

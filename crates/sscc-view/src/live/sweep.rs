@@ -1,7 +1,7 @@
 //! The sweep of one mode: a row of the column of first collisions.
 
 use serde::{Deserialize, Serialize};
-use sscc::{Pair, Query, Sweep, SweepOutcome};
+use sscc::{ModeRange, Pair, Query, Sweep, SweepOutcome};
 
 use super::cancellation::Cancellation;
 use super::check::MAX_LISTED_PAIRS;
@@ -58,7 +58,8 @@ pub(super) fn sweep(
     SweepRequest { q, mode, range }: &SweepRequest,
     cancellation: &Cancellation,
 ) -> Result<Vec<SweepAnswer>, ViewError> {
-    let sweeps = query.sweep_modes(q, &[(*mode, *range)], None, cancellation);
+    let [low, high] = *range;
+    let sweeps = query.sweep_modes(q, &[ModeRange { mode: *mode, low, high }], None, cancellation);
     let sweeps = sweeps.map_err(|error| cancellation.explain(error))?;
     Ok(sweeps.into_iter().map(SweepAnswer::from).collect())
 }

@@ -1,7 +1,8 @@
 //! The curves in which the pairs of a frame intersect, as segments.
 
 use glam::DVec3;
-use sscc::{Error, Intersection, Pair, Surface, contact_curves, contact_curves_between};
+use sscc::parts::{Intersection, Surface, contact_curves, contact_curves_between};
+use sscc::{Error, Pair};
 
 /// Calls `take` with both ends of each segment: those of the curves, and the outlines of coplanar contacts. Pairs that
 /// have no common point at these positions, as between two frames, have none.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::{Surface, TriMesh};
+use sscc::TriMesh;
+use sscc::parts::Surface;
 use sscc_sim::text::{counted, grouped, one_line};
 use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
 

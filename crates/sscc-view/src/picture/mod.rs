@@ -55,7 +55,7 @@ impl Picture {
         let along = |k: usize, z: f64| -> Result<View, ViewError> {
             let mut scaled = vec![0.0; model.rank()];
             scaled[k] = z;
-            let offset = certificates.metric().unscaled(&scaled);
+            let offset = certificates.metric().unscaled(&scaled)?;
             let q: Vec<f64> = certificates.center().iter().zip(offset).map(|(c, x)| c + x).collect();
             let caption = match is_dense {
                 true => format!("z{k} = {}", short(z)),

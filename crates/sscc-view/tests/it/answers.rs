@@ -1,7 +1,7 @@
 //! Answers of a live page equal those of the core.
 
 use serde_json::{Value, json};
-use sscc::{Method, Proof, Query};
+use sscc::{Method, ModeRange, Proof, Query};
 use sscc_view::{Arrays, ModelDetails, ModelScene};
 
 use crate::common::{Client, scene, strips, with_server};
@@ -32,13 +32,17 @@ fn answers_are_those_of_the_query() {
             );
             assert_eq!(
                 (&answer["norm"], &answer["root_certified"], &answer["proof"]),
-                (&json!(query.norm()), &json!(statistics.root_certified), &json!(statistics.proof.name()))
+                (
+                    &json!(query.statistics().norm),
+                    &json!(statistics.root_certified),
+                    &json!(statistics.proof.to_string())
+                )
             );
             assert_eq!(
                 (&answer["opened"], &answer["box_tests"], &answer["triangle_tests"]),
                 (&json!(statistics.opened), &json!(statistics.box_tests), &json!(statistics.triangle_tests))
             );
-            assert_eq!(answer["root_share"], json!(query.norm() / certificates.root_radius()));
+            assert_eq!(answer["root_share"], json!(query.statistics().norm / certificates.root_radius()));
             let mut triangles: Vec<u32> = pairs.iter().flat_map(|(i, j)| [*i, *j]).collect();
             triangles.sort_unstable();
             triangles.dedup();
@@ -102,7 +106,9 @@ fn sweeps_of_modes_are_those_of_the_core() {
             let reply = client.post("/api/sweep", &request);
             assert_eq!(reply.status, 200, "{reply:?}");
             let answer = reply.json();
-            let sweeps = query.sweep_modes(&q, &[(mode, range)], None, &()).unwrap();
+            let sweeps = query
+                .sweep_modes(&q, &[ModeRange { mode, low: range[0], high: range[1] }], None, &())
+                .unwrap();
             assert_eq!(answer.as_array().unwrap().len(), sweeps.len());
             for ((answer, sweep), hit) in answer.as_array().unwrap().iter().zip(&sweeps).zip(hits) {
                 assert_eq!((&answer["from"], &answer["to"]), (&json!(sweep.from), &json!(sweep.to)));
@@ -127,8 +133,8 @@ fn sliders_of_named_modes_are_weights_from_0_to_1() {
         serde_json::to_value(&scene).unwrap()["ranges"].clone()
     };
     assert_eq!(ranges(&["jaw", "lip", "brow"]), json!([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]));
-    let limits = [0, 1, 2].map(|k| model.weight_limit(k));
-    assert_eq!(ranges(&[]), json!(limits.map(|limit| [-limit, limit])));
+    let limits = model.weight_limits();
+    assert_eq!(ranges(&[]), json!(limits.iter().map(|limit| [-limit, *limit]).collect::<Vec<_>>()));
 }
 
 #[test]
@@ -136,7 +142,7 @@ fn the_hierarchy_and_its_aabbs_are_those_of_the_core() {
     let (model, certificates) = strips();
     with_server(|client| {
         let nodes = client.get("/api/nodes").json();
-        let all = certificates.hierarchy().nodes();
+        let all = certificates.parts().hierarchy.nodes();
         assert_eq!(nodes["radius"].as_array().unwrap().len(), all.len());
         assert_eq!((&nodes["parent"][0], &nodes["level"][0]), (&json!(-1), &json!(0)));
         for (n, node) in all.iter().enumerate() {
@@ -147,7 +153,7 @@ fn the_hierarchy_and_its_aabbs_are_those_of_the_core() {
         }
         let order = client.get("/api/array/order").body;
         let order: Vec<u32> = order.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
-        assert_eq!(order, certificates.hierarchy().order());
+        assert_eq!(order, certificates.parts().hierarchy.order());
 
         let q = [0.5, 1.0, 0.0];
         let boxes = client.post("/api/boxes", &json!({"q": q, "level": 0}).to_string()).json();

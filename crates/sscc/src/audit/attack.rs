@@ -176,7 +176,7 @@ impl Attack<'_> {
                 let q = &self.collisions[random.below(self.collisions.len())].q;
                 let noise = if sample.is_multiple_of(4) { 0.0 } else { 0.1 * random.uniform() };
                 let size = noise * scope.norm(q) / (rank as f64).sqrt();
-                let shift = scope.metric.unscaled(&random.normals(rank));
+                let shift = scope.metric.unscale(&random.normals(rank));
                 q.iter().zip(&scope.center).zip(shift).map(|((x, c), d)| x - c + size * d).collect()
             }
             (None, 2) if sample % 8 == 2 => {
@@ -187,10 +187,10 @@ impl Attack<'_> {
             _ => {
                 let weight = |k: usize| 1.0 / (1.0 + k as f64).powi(decay as i32);
                 let z = random.normals(rank);
-                scope.metric.unscaled(&z.iter().enumerate().map(|(k, z)| weight(k) * z).collect::<Vec<_>>())
+                scope.metric.unscale(&z.iter().enumerate().map(|(k, z)| weight(k) * z).collect::<Vec<_>>())
             }
         };
-        let norm = scope.metric.norm(&offset);
+        let norm = scope.metric.length(&offset);
         // Three in four as close as the rounding of norms allows, the others anywhere inside.
         let share = if random.below(4) > 0 { 1.0 - 1e-13 } else { random.uniform() };
         // An infinite radius is attacked at any size that keeps positions in range.

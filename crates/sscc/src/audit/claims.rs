@@ -4,9 +4,10 @@
 use std::fmt;
 
 use super::random::Random;
+use crate::Pair;
+use crate::certificates::CertificateParts;
 use crate::certificates::{StoredPair, sibling_pairs};
 use crate::hierarchy::NodePair;
-use crate::{CertificateParts, Pair};
 
 /// The claim that no pair of triangles between two nodes, or within one where both are the same, collides below the
 /// radius.

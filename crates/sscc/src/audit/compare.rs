@@ -5,7 +5,8 @@ use super::claims::Claims;
 use super::minimum_search::MinimumSearch;
 use super::options::AuditOptions;
 use super::random::Random;
-use crate::{Certificates, Error, Impact, Method, Pair, PairTree, Progress, Query, ReducedModel};
+use crate::certificates::PairTree;
+use crate::{Certificates, Error, Impact, Method, Pair, Progress, Query, ReducedModel};
 
 /// Brute force is quadratic: up to this many triangles it runs for every sample, beyond for three of them.
 const BRUTE_FORCE_TRIANGLES: usize = 2000;
@@ -46,7 +47,7 @@ impl Comparison<'_> {
         let mut brute_force = query(Method::BruteForce)?;
         let mut parts = certificates.parts().clone();
         parts.pair_tree = PairTree::default();
-        let without_tree = Certificates::from_parts(parts)?;
+        let without_tree = Certificates::try_from(parts)?;
         let mut nodes_alone = Query::with_method(model, &without_tree, Method::Certified)?;
         let is_small = model.mesh().faces().len() <= BRUTE_FORCE_TRIANGLES;
         let mut violations = Vec::new();

@@ -110,7 +110,7 @@ impl LocalAttack<'_> {
         let mut holds = |scale: f64| {
             certified.local_claims(index, [&at(scale)]).is_ok_and(|claims| claims.contains(&claim))
         };
-        let norm = parts.scope.metric.norm(&ray);
+        let norm = parts.scope.metric.length(&ray);
         // From the cap of radii on, or closer to the centre where the certificate does not hold there.
         let radius = if parts.global_radius.is_finite() { parts.global_radius } else { 1.0 };
         let first = radius / norm;
@@ -153,9 +153,9 @@ impl LocalAttack<'_> {
         let ray = ray.unwrap_or_else(|| {
             let z = random.normals(scope.center.len());
             let weight = |k: usize| (1.0 + k as f64).powi(-decay);
-            scope.metric.unscaled(&z.iter().enumerate().map(|(k, z)| weight(k) * z).collect::<Vec<_>>())
+            scope.metric.unscale(&z.iter().enumerate().map(|(k, z)| weight(k) * z).collect::<Vec<_>>())
         });
-        let norm = scope.metric.norm(&ray);
+        let norm = scope.metric.length(&ray);
         (norm > 0.0 && norm.is_finite()).then_some(ray)
     }
 }

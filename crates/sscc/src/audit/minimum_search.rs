@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::point_pairs::{GRID, PointPairs, Weights, grid};
 use super::random::Random;
+use crate::certificates::Scope;
 use crate::filter::PairFilter;
 use crate::model::ScaledModel;
-use crate::{Pair, ReducedModel, Scope};
+use crate::{Pair, ReducedModel};
 
 /// A configuration at which two points of two triangles meet, up to rounding.
 ///
@@ -73,7 +74,7 @@ impl MinimumSearch<'_> {
         let simplices = self.filter.simplex_pairs(faces.0, faces.1).next()?;
         let z = PointPairs { scaled: self.scaled, simplices }.solution(Weights::random(random));
         let moves = z.iter().any(|z| *z != 0.0);
-        moves.then(|| self.scope.metric.unscaled(&z[..self.model.rank()]))
+        moves.then(|| self.scope.metric.unscale(&z[..self.model.rank()]))
     }
 
     fn search_simplices(

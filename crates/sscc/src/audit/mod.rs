@@ -50,6 +50,23 @@ pub struct AuditReport {
 
 /// Attacks the certificates of a model.
 ///
+/// ```
+/// # use glam::DVec3;
+/// use sscc::{AuditOptions, Certificates, CertifyOptions, Modes, ReducedModel, TriMesh, audit};
+///
+/// # fn main() -> Result<(), sscc::Error> {
+/// # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+/// # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
+/// # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
+/// # let model = ReducedModel::new(mesh, modes)?;
+/// # let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+/// let options = AuditOptions::default().samples(100);
+/// let report = audit(&model, &certificates, &options, &())?;
+/// assert!(report.samples > 0 && report.violations.is_empty());
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// When the certificates are of another model, or `progress` cancels.
 pub fn audit(

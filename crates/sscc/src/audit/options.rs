@@ -1,18 +1,27 @@
 //! The options of an audit.
 
-/// How many attacks an audit makes, and which.
+/// How many attacks an audit makes, and which. Each method sets one option: `AuditOptions::default().samples(100)`.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct AuditOptions {
-    /// Number of configurations q.
-    pub samples: usize,
-    /// Seed of the pseudo-random numbers: the same seed gives the same attacks.
-    pub seed: u64,
-    /// Number of threads; none: all cores. The report is the same for any number.
-    pub threads: Option<usize>,
+    pub(super) samples: usize,
+    pub(super) seed: u64,
+    pub(super) threads: Option<usize>,
 }
 
 impl Default for AuditOptions {
     fn default() -> Self {
         Self { samples: 10_000, seed: 1, threads: None }
+    }
+}
+
+impl AuditOptions {
+    setters! {
+        /// Number of configurations q. 10,000 by default.
+        samples: usize,
+        /// Seed of the pseudo-random numbers: the same seed gives the same attacks. 1 by default.
+        seed: u64,
+        /// Number of threads; none: all cores. The report is the same for any number.
+        threads: impl Into<Option<usize>>,
     }
 }

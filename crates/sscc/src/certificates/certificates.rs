@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{Digest, LocalCertificates, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
-use crate::{ContactFilter, Metric, Pair};
+use crate::{ContactFilter, Error, Metric, Pair};
 
 /// The proof of which parts of a model are free of collisions near the centre: a hierarchy with a radius for each node
 /// and for pairs of nodes.
@@ -35,7 +35,7 @@ pub struct CertificateParts {
     /// anything.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
-    /// bucket ([`Node::fits_in_bucket`](crate::hierarchy::Node::fits_in_bucket)) has the bucket's radius.
+    /// bucket ([`Node::fits_in_bucket`](crate::parts::Node::fits_in_bucket)) has the bucket's radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,
@@ -59,7 +59,7 @@ impl Certificates {
     }
 
     /// The hierarchy over the triangles.
-    pub fn hierarchy(&self) -> &Hierarchy {
+    pub(crate) fn hierarchy(&self) -> &Hierarchy {
         &self.0.hierarchy
     }
 
@@ -96,7 +96,7 @@ impl Certificates {
     }
 
     /// `R_n` of a node.
-    pub fn node_radius(&self, node: u32) -> f64 {
+    pub(crate) fn node_radius(&self, node: u32) -> f64 {
         self.0.node_radii[node as usize]
     }
 
@@ -107,9 +107,10 @@ impl Certificates {
 
     /// `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
     ///
-    /// # Panics
+    /// # Errors
     /// When the length of q is not the number of modes.
-    pub fn norm(&self, q: &[f64]) -> f64 {
-        self.0.scope.norm(q)
+    pub fn norm(&self, q: &[f64]) -> Result<f64, Error> {
+        self.0.scope.metric.check_len(q)?;
+        Ok(self.0.scope.norm(q))
     }
 }

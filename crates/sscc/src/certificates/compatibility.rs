@@ -29,35 +29,31 @@ impl Certificates {
         scope.filter.check_model(triangles)?;
         model.check_coordinates(self.center()).map(|_| ())
     }
+}
 
-    /// Refuses a contact filter under which other pairs count than those that were certified.
-    ///
-    /// # Errors
-    /// When neighbours, weld, ignored pairs or groups differ.
-    pub fn check_filter(&self, filter: &ContactFilter) -> Result<(), Error> {
-        let certified = self.filter();
-        let what = if certified.neighbours != filter.neighbours {
-            let [certified, requested] = [certified, filter].map(|filter| filter.neighbours.name());
-            format!("they have neighbours = {certified}, but {requested} was requested")
-        } else if certified.weld != filter.weld {
-            format!("they were computed with{} welding", if certified.weld { "" } else { "out" })
-        } else if certified.ignored() != filter.ignored() {
-            let [certified, requested] = [certified, filter].map(|filter| filter.ignored().len());
-            format!("their {certified} ignored pairs differ from the {requested} requested ones")
-        } else if certified.groups() != filter.groups() {
-            match (certified.groups(), filter.groups()) {
-                (None, _) => "they were computed without groups of triangles".to_owned(),
-                (_, None) => {
-                    "they leave out pairs of groups of triangles, which were not requested".to_owned()
-                }
-                _ => {
-                    "their groups of triangles, or which pairs of them count, differ from the requested ones"
-                        .to_owned()
-                }
-            }
-        } else {
-            return Ok(());
-        };
-        Err(Error::OtherPairs { what })
-    }
+/// Refuses a contact filter under which other pairs count than those that were certified.
+///
+/// # Errors
+/// When neighbours, weld, ignored pairs or groups differ.
+pub fn check_filter(certificates: &Certificates, filter: &ContactFilter) -> Result<(), Error> {
+    let certified = certificates.filter();
+    let what = if certified.neighbours != filter.neighbours {
+        let [certified, requested] = [certified, filter].map(|filter| filter.neighbours);
+        format!("they have neighbours = {certified}, but {requested} was requested")
+    } else if certified.weld != filter.weld {
+        format!("they were computed with{} welding", if certified.weld { "" } else { "out" })
+    } else if certified.ignored() != filter.ignored() {
+        let [certified, requested] = [certified, filter].map(|filter| filter.ignored().len());
+        format!("their {certified} ignored pairs differ from the {requested} requested ones")
+    } else if certified.groups() != filter.groups() {
+        match (certified.groups(), filter.groups()) {
+            (None, _) => "they were computed without groups of triangles".to_owned(),
+            (_, None) => "they leave out pairs of groups of triangles, which were not requested".to_owned(),
+            _ => "their groups of triangles, or which pairs of them count, differ from the requested ones"
+                .to_owned(),
+        }
+    } else {
+        return Ok(());
+    };
+    Err(Error::OtherPairs { what })
 }

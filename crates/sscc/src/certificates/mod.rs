@@ -20,15 +20,20 @@ mod test_models;
 mod tests;
 mod validation;
 
+pub use build::is_within_reach;
 pub(crate) use build::{
     BoundedNodePair, NodeGroups, Precision, RadiusSearch, RadiusSearchContext, SearchGoal, coarse_cap,
 };
 pub use certificates::{CertificateParts, Certificates};
+pub use compatibility::check_filter;
 pub use digest::Digest;
 pub(crate) use local::{EllipsoidBlocks, FactorScales, GRADIENT, MOST_MODES, PatchModel, gradient_len};
 pub use local::{LocalBounds, LocalCertificates};
-pub use options::CertifyOptions;
+pub use options::{
+    CertifyOptions, DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, default_exceptions,
+    is_reach,
+};
 pub use pair_tree::PairTree;
 pub(crate) use pair_tree::{StoredPair, sibling_pairs};
-pub use remote::{BUILD, RunJobs, ShardWorker};
+pub use remote::{BUILD, RunJobs, ShardWorker, compute_in_shards};
 pub use scope::Scope;

@@ -2,91 +2,108 @@
 
 use crate::{ContactFilter, Metric};
 
-/// How certificates are computed.
+/// How certificates are computed. Each method sets one option: `CertifyOptions::default().budget(0).threads(2)`.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct CertifyOptions {
-    /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
-    /// radius that may be as small. The tolerance of other radii depends on their kind:
-    ///
-    /// - the smallest radii of buckets and of pairs of buckets: tolerance `min(epsilon, 0.03)`, as far as a limited number of
-    ///   subdivisions and triangle pairs suffices;
-    /// - other pairs of buckets that the rounds before the outer one bound: `max(epsilon, 0.25)`, as far as no subdivision is
-    ///   needed;
-    /// - pairs of buckets that the outer round adds, up to 1.5 times the limit before it: lower bounds without a tolerance;
-    /// - radii of nodes that are searched on their own: `max(epsilon, 0.4)`.
-    ///
-    /// A radius at the cap, or one whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1: 0.1.
-    pub epsilon: f64,
-    /// The metric; none: the model's default.
-    pub metric: Option<Metric>,
-    /// The configuration from which radii are measured (r entries); none: q = 0, the rest pose.
-    pub center: Option<Vec<f64>>,
-    /// Which pairs of triangles count; none: the default of the model's mesh ([`ContactFilter::of`]).
-    pub filter: Option<ContactFilter>,
-    /// Whether the contact filter also ignores the pairs that collide at rest (q = 0): queries never list them.
-    pub ignore_rest: bool,
-    /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
-    /// in every query. If more pairs collide there, none of them is an exception, and the radius of each node that
-    /// contains one is 0. None: [`CertifyOptions::default_exceptions`].
-    pub max_exceptions: Option<usize>,
-    /// Memory for the pair tree ([`PairTree`](crate::PairTree)), in bytes for each triangle of the mesh; a node pair
-    /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
-    /// ([`PairTree::limit`](crate::PairTree::limit)): queries with `|z|` below that do not open two nodes only because
-    /// their AABBs touch, unless the tree has nearly all pairs and all are reached. The rounds before the outer one may use a quarter of the budget, and search the radii of their pairs;
-    /// pairs of the outer round mostly have the bound of the two nodes alone. 0: no tree, which is the paper's scheme of one
-    /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
-    /// since the tree takes most of the time.
-    pub budget: usize,
-    /// Memory for local certificates ([`LocalCertificates`](crate::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
-    /// pair tree leaves of its own. Nodes that few modes move come first, of those the largest. There are none where they cover less than 0.6 of
-    /// all triangles. 0: none; they take about as long as the radii, which suits
-    /// certificates that serve a few queries only.
-    pub local_budget: usize,
-    /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
-    /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an
-    /// eighth of the budget. That takes longer than local certificates, which prove most of what is there, so the default is 1. Radii of
-    /// nodes are capped at the radius up to which the tree was built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
-    /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.
-    pub reach: f64,
-    /// Number of threads; none: all cores. The result is the same for any number.
-    pub threads: Option<usize>,
+    pub(crate) epsilon: f64,
+    pub(crate) metric: Option<Metric>,
+    pub(crate) center: Option<Vec<f64>>,
+    pub(crate) filter: Option<ContactFilter>,
+    pub(crate) ignore_rest: bool,
+    pub(crate) max_exceptions: Option<usize>,
+    pub(crate) budget: usize,
+    pub(crate) local_budget: usize,
+    pub(crate) reach: f64,
+    pub(crate) threads: Option<usize>,
 }
 
 impl Default for CertifyOptions {
     fn default() -> Self {
         Self {
-            epsilon: 0.1,
+            epsilon: DEFAULT_EPSILON,
             metric: None,
             center: None,
             filter: None,
             ignore_rest: false,
             max_exceptions: None,
-            budget: Self::DEFAULT_BUDGET,
-            local_budget: Self::DEFAULT_LOCAL_BUDGET,
-            reach: Self::DEFAULT_REACH,
+            budget: DEFAULT_BUDGET,
+            local_budget: DEFAULT_LOCAL_BUDGET,
+            reach: DEFAULT_REACH,
             threads: None,
         }
     }
 }
 
 impl CertifyOptions {
-    /// The default of [`CertifyOptions::budget`], in bytes for each triangle.
-    pub const DEFAULT_BUDGET: usize = 64;
-
-    /// The default of [`CertifyOptions::local_budget`], in bytes for each triangle.
-    pub const DEFAULT_LOCAL_BUDGET: usize = 64;
-
-    /// The default of [`CertifyOptions::reach`].
-    pub const DEFAULT_REACH: f64 = 1.0;
-
-    /// Whether a number can be a [`CertifyOptions::reach`]: finite and at least 1.
-    pub fn is_reach(reach: f64) -> bool {
-        (1.0..f64::INFINITY).contains(&reach)
+    setters! {
+        /// Relative tolerance, in (0, 1). The root's radius is at least `1 - epsilon` times the exact one, and so is every
+        /// radius that may be as small. The tolerance of other radii depends on their kind:
+        ///
+        /// - the smallest radii of buckets and of pairs of buckets: tolerance `min(epsilon, 0.03)`, as far as a limited number of
+        ///   subdivisions and triangle pairs suffices;
+        /// - other pairs of buckets that the rounds before the outer one bound: `max(epsilon, 0.25)`, as far as no subdivision is
+        ///   needed;
+        /// - pairs of buckets that the outer round adds, up to 1.5 times the limit before it: lower bounds without a tolerance;
+        /// - radii of nodes that are searched on their own: `max(epsilon, 0.4)`.
+        ///
+        /// A radius at the cap, or one whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1, and default: 0.1.
+        epsilon: f64,
+        /// The metric; none: the model's default.
+        metric: impl Into<Option<Metric>>,
+        /// The configuration from which radii are measured (r entries); none: q = 0, the rest pose.
+        center: impl Into<Option<Vec<f64>>>,
+        /// Which pairs of triangles count; none: the default of the model's mesh ([`ContactFilter::of`]).
+        filter: impl Into<Option<ContactFilter>>,
+        /// Whether the contact filter also ignores the pairs that collide at rest (q = 0): queries never list them.
+        ignore_rest: bool,
+        /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
+        /// in every query. If more pairs collide there, none of them is an exception, and the radius of each node that
+        /// contains one is 0. None: half the number of the triangles, because testing more in every query costs as much as
+        /// radii can save.
+        max_exceptions: impl Into<Option<usize>>,
+        /// Memory for the pair tree ([`PairTree`](crate::parts::PairTree)), in bytes for each triangle of the mesh; a node pair
+        /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
+        /// ([`PairTree::limit`](crate::parts::PairTree::limit)): queries with `|z|` below that do not open two nodes only because
+        /// their AABBs touch, unless the tree has nearly all pairs and all are reached. The rounds before the outer one may use a quarter of the budget, and search the radii of their pairs;
+        /// pairs of the outer round mostly have the bound of the two nodes alone. 0: no tree, which is the paper's scheme of one
+        /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
+        /// since the tree takes most of the time. 64 by default.
+        budget: usize,
+        /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
+        /// pair tree leaves of its own. Nodes that few modes move come first, of those the largest. There are none where they cover less than 0.6 of
+        /// all triangles. 0: none; they take about as long as the radii, which suits
+        /// certificates that serve a few queries only. 64 by default.
+        local_budget: usize,
+        /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
+        /// radius, or before it where its budget is used up; beyond `R_global` the rounds before the outer one may use an
+        /// eighth of the budget. That takes longer than local certificates, which prove most of what is there, so the default is 1. Radii of
+        /// nodes are capped at the radius up to which the tree was built, but not below `R_global` ([`Certificates::global_radius`](crate::Certificates::global_radius)). Where the budget
+        /// ends below `R_global`, the certificates are the same for any reach. Without a tree all radii end at `R_global`.
+        reach: f64,
+        /// Number of threads; none: all cores. The result is the same for any number.
+        threads: impl Into<Option<usize>>,
     }
+}
 
-    /// The default of [`CertifyOptions::max_exceptions`] for a mesh: half the number of its triangles. Testing more in
-    /// every query costs as much as radii can save.
-    pub fn default_exceptions(triangles: usize) -> usize {
-        triangles.div_ceil(2)
-    }
+/// The default of [`CertifyOptions::epsilon`].
+pub const DEFAULT_EPSILON: f64 = 0.1;
+
+/// The default of [`CertifyOptions::budget`], in bytes for each triangle.
+pub const DEFAULT_BUDGET: usize = 64;
+
+/// The default of [`CertifyOptions::local_budget`], in bytes for each triangle.
+pub const DEFAULT_LOCAL_BUDGET: usize = 64;
+
+/// The default of [`CertifyOptions::reach`].
+pub const DEFAULT_REACH: f64 = 1.0;
+
+/// Whether a number can be a [`CertifyOptions::reach`]: finite and at least 1.
+pub fn is_reach(reach: f64) -> bool {
+    (1.0..f64::INFINITY).contains(&reach)
+}
+
+/// The default of [`CertifyOptions::max_exceptions`] for a mesh of that many triangles.
+pub fn default_exceptions(triangles: usize) -> usize {
+    triangles.div_ceil(2)
 }

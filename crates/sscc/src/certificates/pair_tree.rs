@@ -117,7 +117,7 @@ impl PairTree {
     }
 
     /// A tree from its parts, as read from a file: radii and links as [`PairTree::entries`] gives them. Whether they are
-    /// a tree over the hierarchy is checked by [`Certificates::from_parts`](crate::Certificates::from_parts).
+    /// a tree over the hierarchy is checked by [`CertificateParts`](crate::parts::CertificateParts).
     pub fn from_parts(limit: f64, starts: Vec<u32>, entries: impl IntoIterator<Item = (f32, u32)>) -> Self {
         let entries = entries.into_iter().map(|(radius, link)| PairEntry { radius, link }).collect();
         Self { limit, starts, entries }

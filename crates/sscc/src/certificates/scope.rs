@@ -6,7 +6,7 @@ use crate::{ContactFilter, Metric, Pair, ReducedModel};
 /// triangles count.
 ///
 /// For another scope the same radii would be a wrong proof. So the scope is hashed into the
-/// [`Digest`](crate::Digest), stored with the certificates, and queries take it from them.
+/// [`Digest`](crate::parts::Digest), stored with the certificates, and queries take it from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scope {
     /// The metric in which radii are measured.
@@ -33,14 +33,14 @@ impl Scope {
     /// `|S (q - center)|`, rounded up.
     pub(crate) fn norm(&self, q: &[f64]) -> f64 {
         if self.center.iter().all(|x| *x == 0.0) {
-            return self.metric.norm(q);
+            return self.metric.length(q);
         }
         self.metric.norm_from(q, &self.center, &mut vec![0.0; q.len()])
     }
 
     /// The q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
     pub(crate) fn at(&self, z: &[f64], size: f64) -> Vec<f64> {
-        let offset = self.metric.unscaled(z);
+        let offset = self.metric.unscale(z);
         self.center.iter().zip(offset).map(|(c, d)| c + size * d).collect()
     }
 }

@@ -5,14 +5,14 @@ use sscc_testing::{cases, threshold};
 
 use super::StoredPair;
 use super::test_models::ring;
+use crate::certificates::PairTree;
+use crate::certificates::Scope;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::rounding::to_f32_down;
-use crate::{
-    Certificates, CertifyOptions, Method, Metric, Modes, Pair, PairTree, Query, ReducedModel, Scope, TriMesh,
-};
+use crate::{Certificates, CertifyOptions, Method, Metric, Modes, Pair, Query, ReducedModel, TriMesh};
 
 fn certify(model: &ReducedModel, budget: usize) -> Certificates {
-    Certificates::compute(model, &CertifyOptions { budget, ..Default::default() }, &()).unwrap()
+    Certificates::compute(model, &CertifyOptions::default().budget(budget), &()).unwrap()
 }
 
 /// All triangle pairs that the tree does not certify at this norm: those within a bucket, and those between two nodes with
@@ -58,7 +58,7 @@ fn below_the_limit_whatever_collides_is_open() {
     {
         let model = ring(quads, 3 + case % 3, 0.3 + case as f64);
         let certificates = certify(&model, budget);
-        assert_eq!(Certificates::from_parts(certificates.parts().clone()).err(), None);
+        assert_eq!(Certificates::try_from(certificates.parts().clone()).err(), None);
         let (hierarchy, tree) = (certificates.hierarchy(), &certificates.parts().pair_tree);
         lowered += usize::from(0.0 < tree.limit() && tree.limit() < certificates.global_radius());
         let mut brute = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
@@ -68,8 +68,8 @@ fn below_the_limit_whatever_collides_is_open() {
             // Just below the limit, and well below.
             let share = if i % 2 == 0 { 0.999_999 } else { 0.3 + 0.1 * (i % 7) as f64 };
             let z: Vec<f64> = z.iter().map(|z| z / length * tree.limit() * share).collect();
-            let q = model.metric().unscaled(&z);
-            let norm = certificates.norm(&q);
+            let q = model.metric().unscale(&z);
+            let norm = certificates.norm(&q).unwrap();
             assert!(norm <= tree.limit());
             if norm == tree.limit() {
                 continue;
@@ -101,8 +101,8 @@ fn no_node_is_free_where_two_of_its_triangles_collide() {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             let share = (1 + i % 12) as f64 / 12.0 * certificates.global_radius() / length;
-            let q = model.metric().unscaled(&z.iter().map(|z| z * share).collect::<Vec<_>>());
-            let norm = certificates.norm(&q);
+            let q = model.metric().unscale(&z.iter().map(|z| z * share).collect::<Vec<_>>());
+            let norm = certificates.norm(&q).unwrap();
             *(if norm < limit { &mut below } else { &mut above }) += 1;
             let mut pairs: Vec<[u32; 2]> =
                 brute.discrete(&q).unwrap().iter().map(|(a, b)| [*a, *b]).collect();
@@ -177,7 +177,7 @@ fn any_number_of_threads_builds_the_same_tree() {
     for (quads, budget) in [(240, 64), (240, 4), (900, 3)].into_iter().take(cases(3)) {
         let model = ring(quads, 4, 0.9);
         let on = |threads| {
-            let options = CertifyOptions { budget, threads: Some(threads), ..Default::default() };
+            let options = CertifyOptions::default().budget(budget).threads(threads);
             Certificates::compute(&model, &options, &()).unwrap().parts().clone()
         };
         let one = on(1);

@@ -6,12 +6,12 @@
 use super::{CertificateParts, Certificates};
 use crate::Error;
 
-impl Certificates {
-    /// Certificates from their parts, as read from a file whose integrity has been checked.
-    ///
-    /// # Errors
-    /// When the parts do not fit together.
-    pub fn from_parts(parts: CertificateParts) -> Result<Self, Error> {
+/// Certificates from their parts, as read from a file whose integrity has been checked. Parts that do not fit together are
+/// refused.
+impl TryFrom<CertificateParts> for Certificates {
+    type Error = Error;
+
+    fn try_from(parts: CertificateParts) -> Result<Self, Error> {
         check_scope(&parts).and_then(|()| check_radii(&parts)).map_err(|cause| damaged(cause.to_owned()))?;
         if let Err(cause) = parts.pair_tree.pairs(&parts.hierarchy) {
             return Err(damaged(format!("pair tree: {cause}")));

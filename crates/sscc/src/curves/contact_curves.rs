@@ -43,7 +43,7 @@ pub struct ContactCurve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// The position (model unit), rounded; see
-    /// [`intersection_triangle_triangle`](crate::intersection_triangle_triangle).
+    /// [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub position: DVec3,
     /// The two features on which the exact point lies. Of two meshes, the first one's first; of one mesh, in ascending
     /// order.
@@ -67,7 +67,7 @@ pub struct CurvePoint {
 ///
 /// ```
 /// use glam::DVec3;
-/// use sscc::contact_curves;
+/// use sscc::parts::contact_curves;
 ///
 /// // Two triangles, each of which has a corner below the other.
 /// let faces = [[0, 1, 2], [3, 4, 5]];

@@ -10,12 +10,12 @@ use crate::geometry::{Intersection, TriangleContact};
 pub struct PairContact {
     /// The numbers of the two triangles, in the order given.
     pub pair: Pair,
-    /// The common points, as by [`intersection_triangle_triangle`](crate::intersection_triangle_triangle).
+    /// The common points, as by [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub intersection: Intersection,
     /// Unit normals of both triangles, to which their corners turn counterclockwise; 0 for a degenerate one.
     pub normals: [DVec3; 2],
     /// The penetration depth (model unit): the length of the smallest translation after which the two only touch; see
-    /// [`penetration_triangle_triangle`](crate::penetration_triangle_triangle).
+    /// [`penetration_triangle_triangle`](crate::parts::penetration_triangle_triangle).
     pub depth: f64,
     /// The direction of this translation for the second triangle, a unit vector; the opposite one for the first.
     pub direction: DVec3,

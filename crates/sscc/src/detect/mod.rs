@@ -10,6 +10,7 @@
 
 pub(crate) mod aabb8;
 mod adjacency_masks;
+pub(crate) mod answer;
 mod bd_tree;
 pub(crate) mod broad_phase;
 mod brute_force;
@@ -37,6 +38,7 @@ mod traversal;
 pub(crate) mod vertex_motion;
 mod vertex_store;
 
+pub use answer::{Answer, Proof, Statistics};
 pub(crate) use colliding_pairs::colliding_pairs;
-pub use detector::{Detector, DetectorStatistics, FrameAnswer};
+pub use detector::{Detector, detector_with_weld_classes};
 pub use narrow_phase::Impact;

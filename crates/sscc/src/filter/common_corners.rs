@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::{intersect_shared_edge_pair, intersect_shared_vertex_pair, intersect_triangle_triangle};
+use crate::geometry::{intersect_shared_edge_pair, intersect_shared_vertex_pair};
+use crate::intersect_triangle_triangle;
 
 /// The corners of a triangle, and their vertex classes.
 #[derive(Clone, Copy)]

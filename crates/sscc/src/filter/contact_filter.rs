@@ -25,43 +25,30 @@ pub enum Neighbours {
     IncludeFolded,
 }
 
-impl Neighbours {
-    /// All values.
-    pub const ALL: [Self; 3] = [Self::Exclude, Self::IncludeOneVertex, Self::IncludeFolded];
+names! { Neighbours, "rule for neighbours":
+    Exclude = "exclude",
+    IncludeOneVertex = "include-one-vertex",
+    IncludeFolded = "include-folded",
+}
 
-    /// The name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exclude => "exclude",
-            Self::IncludeOneVertex => "include-one-vertex",
-            Self::IncludeFolded => "include-folded",
-        }
-    }
+/// Refuses [`Neighbours::IncludeFolded`] for certificates and queries of models.
+///
+/// # Errors
+/// [`Error::FoldedNeighbours`].
+pub fn check_models(neighbours: Neighbours) -> Result<(), Error> {
+    check_not_folded(neighbours, "certificates and queries of models")
+}
 
-    /// The value of that name; none for any other name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|neighbours| neighbours.name() == name)
-    }
+/// Refuses [`Neighbours::IncludeFolded`] for continuous queries.
+///
+/// # Errors
+/// [`Error::FoldedNeighbours`].
+pub fn check_continuous(neighbours: Neighbours) -> Result<(), Error> {
+    check_not_folded(neighbours, "continuous queries")
+}
 
-    /// Refuses [`Neighbours::IncludeFolded`] for certificates and queries of models.
-    ///
-    /// # Errors
-    /// [`Error::FoldedNeighbours`].
-    pub fn check_models(self) -> Result<(), Error> {
-        self.check_not_folded("certificates and queries of models")
-    }
-
-    /// Refuses [`Neighbours::IncludeFolded`] for continuous queries.
-    ///
-    /// # Errors
-    /// [`Error::FoldedNeighbours`].
-    pub fn check_continuous(self) -> Result<(), Error> {
-        self.check_not_folded("continuous queries")
-    }
-
-    fn check_not_folded(self, queries: &'static str) -> Result<(), Error> {
-        if self == Self::IncludeFolded { Err(Error::FoldedNeighbours { queries }) } else { Ok(()) }
-    }
+fn check_not_folded(neighbours: Neighbours, queries: &'static str) -> Result<(), Error> {
+    if neighbours == Neighbours::IncludeFolded { Err(Error::FoldedNeighbours { queries }) } else { Ok(()) }
 }
 
 /// Which pairs of triangles count as collisions when they have a point in common. By default: all that share no vertex.
@@ -82,12 +69,17 @@ impl ContactFilter {
     /// The default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes from a
     /// format that splits them ([`TriMesh::has_split_vertices`]).
     pub fn of(mesh: &TriMesh) -> Self {
-        Self::new(Neighbours::default(), mesh.has_split_vertices())
+        Self::default().weld(mesh.has_split_vertices())
     }
 
-    /// A filter that ignores no pair and has no groups.
-    pub fn new(neighbours: Neighbours, weld: bool) -> Self {
-        Self { neighbours, weld, ignored: Vec::new(), groups: None }
+    /// A filter that welds nothing, ignores no pair and has no groups.
+    pub fn new(neighbours: Neighbours) -> Self {
+        Self { neighbours, ..Self::default() }
+    }
+
+    setters! {
+        /// Sets [`ContactFilter::weld`](#structfield.weld).
+        weld: bool,
     }
 
     /// The same filter, which also ignores these pairs (in any order).
@@ -121,7 +113,7 @@ impl ContactFilter {
     /// Refuses groups of another mesh, and folded neighbours, which no certificate and no continuous query can decide.
     pub(crate) fn check_model(&self, triangles: usize) -> Result<(), Error> {
         self.check_groups(triangles)?;
-        self.neighbours.check_models()
+        check_models(self.neighbours)
     }
 
     /// Refuses groups of another mesh.

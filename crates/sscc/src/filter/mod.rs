@@ -8,8 +8,8 @@ mod simplex_pairs;
 mod triangle_groups;
 mod weld;
 
-pub use contact_filter::{ContactFilter, Neighbours, Pair};
+pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, check_models};
 pub(crate) use pair_filter::{PairFilter, Relation};
 pub(crate) use simplex_pairs::SimplexPair;
-pub use triangle_groups::TriangleGroups;
+pub use triangle_groups::{GroupTable, TriangleGroups};
 pub(crate) use weld::{weld_classes, weld_classes_of_positions};

@@ -8,7 +8,8 @@ use super::TriangleGroups;
 use super::common_corners::{ClassedCorners, intersect_beyond_common_corners};
 use super::contact_filter::{ContactFilter, Neighbours, Pair};
 use super::weld::weld_classes;
-use crate::{ReducedModel, intersect_shared_vertex_pair, intersect_triangle_triangle};
+use crate::geometry::intersect_shared_vertex_pair;
+use crate::{ReducedModel, intersect_triangle_triangle};
 
 /// The relation of two triangles under a contact filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use crate::Error;
 ///
 /// # fn main() -> Result<(), sscc::Error> {
 /// // Two triangles of a body, one of a shirt, one of its buttons.
-/// let groups = TriangleGroups::new(&[0, 0, 1, 2])?.ignoring([(0, 0), (1, 2)])?;
+/// let groups = TriangleGroups::new(&[0, 0, 1, 2])?.ignoring([[0, 0], [1, 2]])?;
 /// assert!(!groups.is_pair_counted(0, 1) && groups.is_pair_counted(0, 2) && !groups.is_pair_counted(2, 3));
 /// # Ok(())
 /// # }
@@ -24,6 +24,24 @@ pub struct TriangleGroups {
     /// most half of all pairs are listed.
     starts: Vec<usize>,
     partners: Vec<u16>,
+}
+
+/// The contents of [`TriangleGroups`], for writing files.
+#[derive(Clone, Debug)]
+pub struct GroupTable<'a> {
+    /// The group of each triangle.
+    pub of_triangles: &'a [u16],
+    /// Whether pairs of groups count that are not listed.
+    pub others_count: bool,
+    /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
+    pub listed: Vec<[u16; 2]>,
+}
+
+impl<'a> From<&'a TriangleGroups> for GroupTable<'a> {
+    fn from(groups: &'a TriangleGroups) -> Self {
+        let listed = groups.listed().map(|(g, h)| [g, h]).collect();
+        Self { of_triangles: groups.of_triangles(), others_count: groups.others_count(), listed }
+    }
 }
 
 impl TriangleGroups {
@@ -55,11 +73,11 @@ impl TriangleGroups {
         self.without(&within)
     }
 
-    /// The same groups, of which these pairs do not count either (in any order; `(a, a)`: triangles within group a).
+    /// The same groups, of which these pairs do not count either (in any order; `[a, a]`: triangles within group a).
     ///
     /// # Errors
     /// When a group has a larger number than those of all triangles.
-    pub fn ignoring(self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Self, Error> {
+    pub fn ignoring(self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Self, Error> {
         let pairs = self.check(pairs)?;
         Ok(self.without(&pairs))
     }
@@ -68,13 +86,13 @@ impl TriangleGroups {
     ///
     /// # Errors
     /// As [`TriangleGroups::ignoring`].
-    pub fn only(self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Self, Error> {
+    pub fn only(self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Self, Error> {
         let pairs = self.check(pairs)?;
         Ok(self.with_table(false, pairs))
     }
 
     /// The group of each triangle.
-    pub fn of_triangles(&self) -> &[u16] {
+    pub(crate) fn of_triangles(&self) -> &[u16] {
         &self.of_triangle
     }
 
@@ -83,13 +101,13 @@ impl TriangleGroups {
         self.starts.len() - 1
     }
 
-    /// Whether pairs of groups count that are not [listed](TriangleGroups::listed).
-    pub fn others_count(&self) -> bool {
+    /// Whether pairs of groups count that are not listed.
+    pub(crate) fn others_count(&self) -> bool {
         self.others_count
     }
 
     /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
-    pub fn listed(&self) -> impl Iterator<Item = (u16, u16)> {
+    pub(crate) fn listed(&self) -> impl Iterator<Item = (u16, u16)> {
         let row = |g: usize| &self.partners[self.starts[g]..self.starts[g + 1]];
         (0..self.group_count())
             .flat_map(move |g| row(g).iter().filter(move |h| **h as usize >= g).map(move |h| (g as u16, *h)))
@@ -97,7 +115,7 @@ impl TriangleGroups {
 
     /// Whether triangles of these two groups count.
     #[inline]
-    pub fn is_counted(&self, g: u16, h: u16) -> bool {
+    pub(crate) fn is_counted(&self, g: u16, h: u16) -> bool {
         let [start, end] = [0, 1].map(|next| self.starts[g as usize + next]);
         self.partners[start..end].binary_search(&h).is_ok() != self.others_count
     }
@@ -114,9 +132,9 @@ impl TriangleGroups {
     }
 
     /// The pairs in 16 bits, the lower number first.
-    fn check(&self, pairs: impl IntoIterator<Item = (u32, u32)>) -> Result<Vec<(u16, u16)>, Error> {
+    fn check(&self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Vec<(u16, u16)>, Error> {
         let count = self.group_count();
-        let checked = pairs.into_iter().map(|(a, b)| match a.max(b) {
+        let checked = pairs.into_iter().map(|[a, b]| match a.max(b) {
             largest if largest as usize >= count => {
                 let known = match count {
                     0 => "there are no triangles".to_owned(),

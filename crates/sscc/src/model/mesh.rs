@@ -81,13 +81,6 @@ impl TriMesh {
         &self.faces
     }
 
-    /// Whether two faces share a vertex index. Whether such pairs count as collisions, and which vertices are welded, is
-    /// up to a [`ContactFilter`](crate::ContactFilter).
-    pub fn are_adjacent(&self, a: u32, b: u32) -> bool {
-        let (corners_a, corners_b) = (self.faces[a as usize], self.faces[b as usize]);
-        corners_a.iter().any(|i| corners_b.contains(i))
-    }
-
     /// The vertices that at least one face uses, in ascending order.
     pub fn used_vertices(&self) -> Vec<u32> {
         let mut used = vec![false; self.rest_positions.len()];

@@ -13,7 +13,7 @@ mod weight_limit;
 
 pub use mesh::TriMesh;
 pub(crate) use metric::check_scaled_modes;
-pub use metric::{Metric, MetricKind, vertex_areas};
+pub use metric::{Metric, MetricKind, check_metric, vertex_areas};
 pub use modes::{Modes, deformed_position};
 pub use reduced_model::ReducedModel;
 pub(crate) use rounding_bound::{RoundingAlong, RoundingBound, scale_direction};

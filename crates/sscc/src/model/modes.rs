@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Error, limits};
+use crate::{Error, TriMesh, limits};
 
 /// Deformation modes `U` (3V x r): the displacement of each vertex for a unit of each reduced
 /// coordinate (model unit per unit of q). Any rank r >= 1; modes may vanish, repeat or depend on each other.
@@ -61,6 +61,13 @@ impl Modes {
     /// The r displacements of one vertex, mode 0 first.
     pub fn of_vertex(&self, vertex: u32) -> &[DVec3] {
         &self.displacements[vertex as usize * self.rank..][..self.rank]
+    }
+
+    /// # Errors
+    /// When the mesh has another number of vertices.
+    pub(crate) fn check_mesh(&self, mesh: &TriMesh) -> Result<(), Error> {
+        let (modes, mesh) = (self.vertices(), mesh.rest_positions().len());
+        if modes == mesh { Ok(()) } else { Err(Error::VertexCount { modes, mesh }) }
     }
 
     /// All displacements in vertex-major order: `[vertex * rank + mode]`.

@@ -29,7 +29,7 @@ impl ReducedModel {
     /// # Errors
     /// When the modes are for another number of vertices, or out of the range in which the proofs hold.
     pub fn new(mesh: TriMesh, modes: Modes) -> Result<Self, Error> {
-        let metric = Metric::displacement(&mesh, &modes);
+        let metric = Metric::displacement(&mesh, &modes)?;
         Self::with_metric(mesh, modes, metric)
     }
 
@@ -38,10 +38,7 @@ impl ReducedModel {
     /// # Errors
     /// As [`ReducedModel::new`], and when the metric has another rank than the modes.
     pub fn with_metric(mesh: TriMesh, modes: Modes, metric: Metric) -> Result<Self, Error> {
-        let vertices = mesh.rest_positions().len();
-        if modes.vertices() != vertices {
-            return Err(Error::VertexCount { modes: modes.vertices(), mesh: vertices });
-        }
+        modes.check_mesh(&mesh)?;
         check_scaled_modes(&mesh, &modes, &metric)?;
         let rest_reach = mesh.rest_positions().iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         let mut mode_reach = vec![0.0_f64; modes.rank()];
@@ -55,14 +52,6 @@ impl ReducedModel {
     /// The mesh at rest.
     pub fn mesh(&self) -> &TriMesh {
         &self.0.mesh
-    }
-
-    /// The same model, whose vertices are split along seams ([`TriMesh::with_split_vertices`]).
-    #[must_use]
-    pub fn with_split_vertices(mut self) -> Self {
-        let contents = Arc::make_mut(&mut self.0);
-        contents.mesh = contents.mesh.clone().with_split_vertices();
-        self
     }
 
     /// The deformation modes.

@@ -61,8 +61,9 @@ mod tests {
     use glam::{DMat3, DQuat};
 
     use super::*;
+    use crate::posed::Pose;
     use crate::test_models::Random;
-    use crate::{Certificates, CertifyOptions, Modes, Pose, ReducedModel, TriMesh};
+    use crate::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
 
     /// Planes through vertices, and a little above them.
     #[test]
@@ -75,7 +76,7 @@ mod tests {
         let modes = (0..302 * 5).map(|_| random.vector() * 0.2).collect();
         let mesh = TriMesh::new(positions, faces).unwrap();
         let model = ReducedModel::new(mesh, Modes::new(5, modes).unwrap()).unwrap();
-        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut shape = PosedShape::new(&model, &certificates).unwrap();
         let mut partly = 0;

@@ -50,17 +50,18 @@ impl<const E: usize> PosedMotion<E> {
         &mut self,
         model: &ReducedModel,
         layout: &Layout,
-        places: [(&[f64], &Pose); E],
+        q: [&[f64]; E],
+        pose: [&Pose; E],
     ) -> Result<Aabb, Error> {
         let (mut all, mut all_own) = (0.0_f64, 0.0_f64);
-        for (q, pose) in places {
+        for (q, pose) in q.into_iter().zip(pose) {
             let own = model.check_coordinates(q)?;
             (all, all_own) = (all.max(pose.check_reach(own)?), all_own.max(own));
         }
         (self.reach, self.own_reach, self.margin) = (all, all_own, 0.0);
-        for (end, (q, pose)) in places.into_iter().enumerate() {
-            self.q[end].copy_from_slice(q);
-            self.pose[end] = *pose;
+        for end in 0..E {
+            self.q[end].copy_from_slice(q[end]);
+            self.pose[end] = *pose[end];
         }
         let rounding = self.rounding();
         let whole = |end: usize| {
@@ -168,8 +169,8 @@ mod tests {
                 (q, Pose { rotation, translation: random.vector() * 2.0 })
             };
             let ends = [place(), place()];
-            let places = ends.each_ref().map(|(q, pose)| (&q[..], pose));
-            let whole = motion.place(&model, layout, places).unwrap();
+            let (q, pose) = (ends.each_ref().map(|(q, _)| &q[..]), ends.each_ref().map(|(_, pose)| pose));
+            let whole = motion.place(&model, layout, q, pose).unwrap();
             motion.around =
                 Aabb { lower: whole.lower - 3.0 * f64::from(case as u32 % 5), upper: whole.upper };
             volumes.begin(&hierarchy, &motion);

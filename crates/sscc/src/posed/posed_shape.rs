@@ -65,7 +65,7 @@ impl PosedShape {
         let context = Context::new(model, hierarchy, &ContactFilter::default(), &[], Some(Needs::LAZY));
         let volumes = NodeVolumes::new(&context.layout, true);
         let mut motion = PosedMotion::new(model)?;
-        let whole = motion.place(model, &context.layout, [(&vec![0.0; model.rank()], &Pose::default())])?;
+        let whole = motion.place(model, &context.layout, [&vec![0.0; model.rank()]], [&Pose::default()])?;
         Ok(Self {
             model: model.clone(),
             context,
@@ -88,7 +88,7 @@ impl PosedShape {
             return Ok(self.whole);
         }
         self.is_current = false;
-        self.whole = self.motion.place(&self.model, &self.volumes.layout, [(q, pose)])?;
+        self.whole = self.motion.place(&self.model, &self.volumes.layout, [q], [pose])?;
         Ok(self.whole)
     }
 
@@ -115,12 +115,12 @@ impl PosedShape {
     /// An upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite or NaN
     /// where q is. It costs O(r) for each 64 triangles.
     ///
-    /// # Panics
-    /// When q has fewer numbers than there are modes.
-    pub fn displacement_bound(&self, q: &[f64]) -> f64 {
+    /// # Errors
+    /// When the length of q is not the number of modes.
+    pub fn displacement_bound(&self, q: &[f64]) -> Result<f64, Error> {
+        self.model.metric().check_len(q)?;
         let layout = &self.context.layout;
-        let bound = layout.bd_tree.displacement_bound(layout.buckets.nodes(), &q[..self.model.rank()]);
-        bound * (1.0 + 1e-9)
+        Ok(layout.bd_tree.displacement_bound(layout.buckets.nodes(), q) * (1.0 + 1e-9))
     }
 
     /// The corners of a triangle in the world, bit for bit those of all answers.
@@ -174,10 +174,9 @@ mod tests {
     fn pairs_are_those_of_all_triangles() {
         let state = &mut 7;
         let models = [model(400, state), model(150, state), model(40, state), model(9, state)];
-        let certificates = models.each_ref().map(|model| {
-            Certificates::compute(model, &CertifyOptions { budget: 0, ..CertifyOptions::default() }, &())
-                .unwrap()
-        });
+        let certificates = models
+            .each_ref()
+            .map(|model| Certificates::compute(model, &CertifyOptions::default().budget(0), &()).unwrap());
         let mut shapes: Vec<PosedShape> =
             models.iter().zip(&certificates).map(|(m, c)| PosedShape::new(m, c).unwrap()).collect();
         let (mut found, mut empty) = (0, 0);
@@ -279,7 +278,7 @@ mod tests {
         let models = [model(300, state), model(120, state)];
         let mut alone = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
         let mut shapes = models.each_ref().map(|model| {
-            let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+            let options = CertifyOptions::default().budget(0);
             PosedShape::new(model, &Certificates::compute(model, &options, &()).unwrap()).unwrap()
         });
         let mut found = 0;
@@ -304,12 +303,12 @@ mod tests {
         let state = &mut 9;
         for triangles in [3, 40, 300] {
             let model = model(triangles, state);
-            let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+            let options = CertifyOptions::default().budget(0);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let shape = PosedShape::new(&model, &certificates).unwrap();
             for _ in 0..20 {
                 let q = [random(state), random(state)];
-                let bound = shape.displacement_bound(&q);
+                let bound = shape.displacement_bound(&q).unwrap();
                 let displacement = |v: u32| {
                     let rest = model.mesh().rest_positions()[v as usize];
                     (model.position(v, &q) - rest).length()
@@ -317,7 +316,7 @@ mod tests {
                 let most = (0..3 * triangles as u32).map(displacement).fold(0.0, f64::max);
                 assert!(most <= bound && bound < 3.0 * most, "{most} {bound}");
             }
-            assert!(shape.displacement_bound(&[f64::NAN, 0.0]).is_nan());
+            assert!(shape.displacement_bound(&[f64::NAN, 0.0]).unwrap().is_nan());
         }
     }
 

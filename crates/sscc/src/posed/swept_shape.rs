@@ -63,9 +63,9 @@ impl SweptShape {
     ///
     /// # Errors
     /// When a q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
-    pub fn place(&mut self, t0: (&[f64], &Pose), t1: (&[f64], &Pose)) -> Result<Aabb, Error> {
+    pub fn place(&mut self, q: [&[f64]; 2], pose: [&Pose; 2]) -> Result<Aabb, Error> {
         self.is_current = false;
-        self.whole = self.motion.place(&self.model, &self.volumes.layout, [t0, t1])?;
+        self.whole = self.motion.place(&self.model, &self.volumes.layout, q, pose)?;
         Ok(self.whole)
     }
 
@@ -160,7 +160,7 @@ mod tests {
     fn impacts_are_those_of_all_triangles() {
         let state = &mut 11;
         let models = [model(200, state), model(90, state)];
-        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(0);
         let certificates =
             models.each_ref().map(|model| Certificates::compute(model, &options, &()).unwrap());
         let mut shapes: Vec<SweptShape> = models
@@ -179,7 +179,7 @@ mod tests {
                     ([random(state), random(state)], Pose { rotation, translation })
                 };
                 let [(q, t0), (r, t1)] = [end(1.0), end(1.1)];
-                let Aabb { lower, upper } = shape.place((&q, &t0), (&r, &t1)).unwrap();
+                let Aabb { lower, upper } = shape.place([&q, &r], [&t0, &t1]).unwrap();
                 for t in 0..shape.model.mesh().faces().len() as u32 {
                     let corners = shape.corners(t);
                     assert!(

@@ -1,5 +1,8 @@
 //! Normal cones without the contour test, as the paper's section 7 compares with them. For benches alone: **queries may miss
 //! collisions**.
+//!
+//! It is here, hidden from the documentation, because it is one line of a query's broad phase. In the crate of the benches it would
+//! need the traversal, the layout and the narrow phase to be public.
 
 use super::method::Method;
 use super::query::Query;

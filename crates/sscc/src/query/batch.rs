@@ -6,23 +6,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::query::Query;
-use super::statistics::Statistics;
+use crate::detect::answer::{Answer, Statistics};
 use crate::parallel::{map, map_with, on_threads};
-use crate::{Error, Pair, Progress};
+use crate::{Error, Progress};
 
 /// Progress is reported once for this many q, which costs the cheapest queries nothing.
 const REPORT_INTERVAL: usize = 64;
-
-/// The answer for one q of a batch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
-    /// All colliding pairs, sorted.
-    pub pairs: Vec<Pair>,
-    /// [`Query::norm`]
-    pub norm: f64,
-    /// The cost of this q.
-    pub statistics: Statistics,
-}
 
 impl Query {
     /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
@@ -85,7 +74,8 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
             if is_free && index.is_multiple_of(REPORT_INTERVAL) {
                 self.report(REPORT_INTERVAL);
             }
-            let free = || Answer { pairs: Vec::new(), norm, statistics: Statistics::PROVEN_FREE };
+            let free =
+                || Answer { pairs: Vec::new(), statistics: Statistics { norm, ..Statistics::PROVEN_FREE } };
             Ok(is_free.then(free))
         };
         let answers: Vec<Result<Option<Answer>, Error>> =
@@ -110,7 +100,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
             let of_others = lock(&idle).pop();
             let mut query = of_others.unwrap_or_else(first);
             let pairs = query.discrete_at_most(q.as_ref(), self.limit)?.to_vec();
-            *answer = Some(Answer { pairs, norm: query.norm(), statistics: query.statistics() });
+            *answer = Some(Answer { pairs, statistics: query.statistics() });
             lock(&idle).push(query);
             self.report(1);
             Ok(())

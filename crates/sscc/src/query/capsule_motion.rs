@@ -138,10 +138,11 @@ impl VertexMotion<2> for CapsuleMotion<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificates::Scope;
     use crate::detect::layout::Needs;
     use crate::detect::node_volumes::NodeVolumes;
     use crate::test_models::{Random, strips};
-    use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh};
+    use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
     /// Vertices stay where the capsule says, about any point of its segment, also for the direction that moves them farthest; and
     /// some nearly leave.
@@ -176,7 +177,7 @@ mod tests {
                     let most = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
                     for sign in [-1.0, 1.0] {
                         let z: Vec<f64> = rows.iter().map(|a| sign * a[axis] / most * radius).collect();
-                        let d = scope.metric.unscaled(&z);
+                        let d = scope.metric.unscale(&z);
                         let q: Vec<f64> =
                             (0..rank).map(|k| start[k] + t * (end[k] - start[k]) + d[k]).collect();
                         if model.check_coordinates(&q).unwrap() > reach {
@@ -259,7 +260,7 @@ mod tests {
                         let most = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
                         for (sign, t) in [(-1.0, 0.0), (1.0, 0.4), (-1.0, 0.7), (1.0, 1.0)] {
                             let z: Vec<f64> = rows.iter().map(|a| sign * a[axis] / most * radius).collect();
-                            let d = scope.metric.unscaled(&z);
+                            let d = scope.metric.unscale(&z);
                             let q: Vec<f64> =
                                 (0..rank).map(|k| start[k] + t * (end[k] - start[k]) + d[k]).collect();
                             let x = model.position(v, &q);

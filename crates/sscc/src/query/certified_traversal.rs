@@ -6,7 +6,7 @@
 
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
-use crate::CertificateParts;
+use crate::certificates::CertificateParts;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn loose_boxes_are_refitted_before_they_cost_much() {
         let model = square();
-        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
@@ -108,7 +108,12 @@ mod tests {
                 let mut narrow = DiscreteHits::default();
                 let mut search = broad.search(&context.detect, &motion, &mut narrow, usize::MAX);
                 if is_certified {
-                    traverse_certified(&mut search, None, certificates.parts(), certificates.norm(&q));
+                    traverse_certified(
+                        &mut search,
+                        None,
+                        certificates.parts(),
+                        certificates.norm(&q).unwrap(),
+                    );
                 } else {
                     search.traverse((0, 0));
                 }

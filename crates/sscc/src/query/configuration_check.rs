@@ -34,7 +34,7 @@ impl ConfigurationCheck {
         let norm = if q.len() != scope.center.len() {
             f64::INFINITY
         } else if self.offset.is_empty() {
-            scope.metric.norm(q)
+            scope.metric.length(q)
         } else {
             scope.metric.norm_from(q, &scope.center, &mut self.offset)
         };

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::local_tables::LocalTables;
 use super::method::Method;
 use super::pair_hulls::PairHulls;
-use crate::certificates::{FactorScales, PatchModel};
+use crate::certificates::{CertificateParts, FactorScales, PairTree, PatchModel, Scope};
 use crate::detect::context::Context;
 use crate::detect::normal_cones::NormalCones;
 use crate::hierarchy::Hierarchy;
-use crate::{CertificateParts, Certificates, PairTree, ReducedModel, Scope};
+use crate::{Certificates, ReducedModel};
 
 /// The detector's context, and which certificates hold at a norm.
 #[derive(Clone)]
@@ -159,7 +159,7 @@ fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{LOCAL_SHARE, all_reached_norm, norm_at};
-    use crate::PairTree;
+    use crate::certificates::PairTree;
 
     #[test]
     fn the_share_of_radii_is_reached_there() {

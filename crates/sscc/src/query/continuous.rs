@@ -2,7 +2,7 @@
 
 use super::configuration_search::SweptSearch;
 use super::query::Query;
-use super::statistics::Statistics;
+use crate::detect::answer::Statistics;
 use crate::{Error, Impact};
 
 impl Query {
@@ -17,8 +17,28 @@ impl Query {
     /// them meets the other, which they must do to have another point in common.
     ///
     /// A certificate holds during the motion if it holds at start and end: its region is convex, and a radius contains the
-    /// rounding bound at the radius itself, which covers positions between two rounded ones. So [`Query::norm`] is the
+    /// rounding bound at the radius itself, which covers positions between two rounded ones. So [`Statistics::norm`] is the
     /// larger one of start and end.
+    ///
+    /// ```
+    /// # use glam::DVec3;
+    /// use sscc::{Certificates, CertifyOptions, Modes, Query, ReducedModel, TriMesh};
+    ///
+    /// # fn main() -> Result<(), sscc::Error> {
+    /// # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    /// # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
+    /// # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
+    /// # let model = ReducedModel::new(mesh, modes)?;
+    /// # let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+    /// // The second of two triangles, one unit apart, falls through the first.
+    /// let mut query = Query::new(&model, &certificates)?;
+    /// assert!(query.discrete(&[2.0])?.is_empty()); // it has passed
+    /// let impacts = query.continuous(&[0.0], &[2.0])?;
+    /// assert_eq!((impacts.len(), impacts[0].pair), (1, (0, 1)));
+    /// assert!((impacts[0].time - 0.5).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// As [`Query::discrete`], for start and end.

@@ -42,7 +42,8 @@ impl Query {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Modes, ReducedModel, Scope, TriMesh};
+    use crate::certificates::Scope;
+    use crate::{Modes, ReducedModel, TriMesh};
     use glam::DVec3;
 
     /// A crumpled strip, of which nearly everything meets.

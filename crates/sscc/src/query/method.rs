@@ -20,6 +20,14 @@ pub enum Method {
     BruteForce,
 }
 
+names! { Method, "method":
+    Certified = "certified",
+    BdTree = "bdtree",
+    Traditional = "traditional",
+    NormalCones = "normal-cones",
+    BruteForce = "brute-force",
+}
+
 impl Method {
     /// The parts of the layout that the method needs; none for brute force.
     pub(super) fn needs(self) -> Option<Needs> {

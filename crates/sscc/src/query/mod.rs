@@ -31,15 +31,12 @@ mod region_rates;
 mod resolve;
 mod safe_scale;
 mod smallest_stretch;
-mod statistics;
 mod sweep;
 mod valid_ball;
 
-pub use batch::Answer;
 pub use kinetic::KineticQuery;
 pub use method::Method;
 pub use proven_shares::ProvenShares;
 pub use query::Query;
 pub use resolve::{FreeSamples, ResolveOptions, Resolved};
-pub use statistics::{Proof, Statistics};
-pub use sweep::{Sweep, SweepOutcome};
+pub use sweep::{ModeRange, Sweep, SweepOutcome};

@@ -4,12 +4,13 @@
 //! centre are opened without a test of hulls: only the time of queries depends on that.
 
 use super::hulls::{MovedHulls, NodeHulls};
+use crate::ReducedModel;
+use crate::certificates::PairTree;
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::parallel;
-use crate::{PairTree, ReducedModel};
 use glam::Vec3;
 
 /// The hulls of nodes, and a direction for each entry of the pair tree.
@@ -124,7 +125,7 @@ mod tests {
                 )
                 .unwrap()
             });
-            let options = CertifyOptions { center, metric, ..CertifyOptions::default() };
+            let options = CertifyOptions::default().center(center).metric(metric);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let scope = Arc::clone(&certificates.parts().scope);
             let mut query = Query::new(&model, &certificates).unwrap();

@@ -8,7 +8,7 @@ use super::hulls::MovedHulls;
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
 use super::pair_hulls::PairHulls;
-use crate::CertificateParts;
+use crate::certificates::CertificateParts;
 use crate::certificates::StoredPair;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Search;
@@ -171,15 +171,14 @@ mod tests {
     #[test]
     fn loose_boxes_are_refitted_before_all_node_pairs_are_opened() {
         let model = square();
-        let options =
-            CertifyOptions { budget: 1 << 12, local_budget: 0, reach: 16.0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(1 << 12).local_budget(0).reach(16.0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let tree = &certificates.parts().pair_tree;
         let query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
         let context = &query.context.detect;
         for q in [[10.0, 10.0], [10.0, 9.8]] {
-            let norm = certificates.norm(&q);
+            let norm = certificates.norm(&q).unwrap();
             assert!(norm < tree.limit() && tree.entries().all(|(radius, _)| f64::from(radius) < norm));
             let motion = DeformedMotion::new([&q[..]], model.check_coordinates(&q).unwrap());
             let [tight, found] = [false, true].map(|is_certified| {

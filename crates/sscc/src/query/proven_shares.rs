@@ -18,15 +18,15 @@ pub struct ProvenShares {
     pub search: f64,
 }
 
-impl Query {
-    /// The share of the triangles that each kind of proof covers at q, each patch with itself. Pairs of patches have proofs of their own,
-    /// which are not counted. It takes no longer than a query, and allocates.
+impl ProvenShares {
+    /// The share of the triangles that each kind of proof of a query covers at q, each patch with itself. Pairs of patches have
+    /// proofs of their own, which are not counted. It takes no longer than a query, and allocates.
     ///
     /// # Errors
     /// As [`Query::discrete`].
-    pub fn proven_shares(&mut self, q: &[f64]) -> Result<ProvenShares, Error> {
-        let configuration = self.measure(q)?;
-        let context = &self.context;
+    pub fn of(query: &mut Query, q: &[f64]) -> Result<Self, Error> {
+        let configuration = query.measure(q)?;
+        let context = &query.context;
         let Some(parts) = context.used_certificates() else {
             return Ok(ProvenShares { search: 1.0, ..ProvenShares::default() });
         };

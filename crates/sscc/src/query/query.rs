@@ -8,11 +8,13 @@ use super::configuration_check::ConfigurationCheck;
 use super::configuration_search::{DiscreteSearch, SweptSearch};
 use super::context::QueryContext;
 use super::method::Method;
-use super::statistics::Statistics;
+use crate::certificates::CertificateParts;
+use crate::certificates::Scope;
+use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::{AabbHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
-use crate::{CancelToken, CertificateParts, Certificates, Error, Pair, ReducedModel, Scope};
+use crate::{CancelToken, Certificates, Error, Pair, ReducedModel};
 
 /// Answers self-collision queries for one model. It owns its memory, so that repeated queries allocate nothing (brute force
 /// and the rare exact signs of extreme numbers aside), and shares model and certificates. One query serves one thread; clone it
@@ -182,17 +184,19 @@ impl Query {
 
     /// The cost of the last query.
     pub fn statistics(&self) -> Statistics {
-        self.statistics
+        Statistics { norm: self.norm, ..self.statistics }
     }
 
     /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
     /// continuous query the larger one of start and end.
-    pub fn norm(&self) -> f64 {
+    pub(crate) fn norm(&self) -> f64 {
         self.norm
     }
+}
 
-    /// Metric and centre of [`Query::norm`], and which pairs count.
-    pub fn scope(&self) -> &Scope {
-        &self.context.scope
+impl Scope {
+    /// The scope of a query: metric and centre of its norms ([`Statistics::norm`]), and which pairs count.
+    pub fn of_query(query: &Query) -> &Self {
+        &query.context.scope
     }
 }

@@ -8,11 +8,12 @@ use glam::DVec3;
 use super::local_scales::LocalScales;
 use super::query::Query;
 use crate::bounds::{ConfigurationLine, MovingAabb};
+use crate::certificates::PairTree;
 use crate::certificates::StoredPair;
 use crate::geometry::Aabb;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::min_heap::MinHeapEntry;
-use crate::{Certificates, Error, Pair, PairTree};
+use crate::{Certificates, Error, Pair};
 
 impl Query {
     /// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for certificates
@@ -152,7 +153,7 @@ impl Query {
         all
     }
 
-    /// The scale at which a radius is reached; [`Query::norm`] is that of scale 1.
+    /// The scale at which a radius is reached; `Query::norm` is that of scale 1.
     fn scale(&self, radius: f64) -> f64 {
         let scale = radius / self.norm;
         if radius > 0.0 && scale >= f64::MIN_POSITIVE {

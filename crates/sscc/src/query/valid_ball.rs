@@ -57,7 +57,7 @@ mod tests {
     fn no_q_in_the_ball_reaches_farther() {
         for center in [vec![0.0; 3], vec![1e-3, -2e-5, 1e-7]] {
             let model = model(vec![1.0, 1e3, 3e6]);
-            let options = CertifyOptions { center: Some(center.clone()), ..CertifyOptions::default() };
+            let options = CertifyOptions::default().center(center.clone());
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let query = Query::new(&model, &certificates).unwrap();
             let valid_ball = ValidBall::new(&query.context);
@@ -67,7 +67,7 @@ mod tests {
                 let z: Vec<f64> = (0..3).map(|k| (f64::from(i) * (k as f64 + 1.3)).sin()).collect();
                 let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
                 let z: Vec<f64> = z.iter().map(|z| z / length * valid_ball.radius).collect();
-                let d = model.metric().unscaled(&z);
+                let d = model.metric().unscale(&z);
                 let q: Vec<f64> = center.iter().zip(d).map(|(c, d)| c + d).collect();
                 largest = largest.max(model.reach(&q));
             }

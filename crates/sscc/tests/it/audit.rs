@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use sscc::{
-    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, PairTree, audit,
-};
+use sscc::parts::{CertificateParts, PairTree};
+use sscc::{AuditOptions, Certificates, CertifyOptions, ContactFilter, Error, audit};
 use sscc_testing::{cases, threshold};
 
 use crate::common::pair_trees::{START, edited};
@@ -17,9 +16,9 @@ fn lies_of_every_scope_are_found() {
     let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
     for seed in 0..cases(220) {
         let model = random_model(50_000 + seed);
-        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.2);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
-        let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
+        let asked = AuditOptions::default().samples(600).threads(1);
         let report = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
         honest += 1;
@@ -28,7 +27,7 @@ fn lies_of_every_scope_are_found() {
         }
         let mut parts = certificates.parts().clone();
         parts.node_radii.iter_mut().chain(&mut parts.root_pair_radii).for_each(|r| *r *= 1.5);
-        let forged = Certificates::from_parts(parts).unwrap();
+        let forged = Certificates::try_from(parts).unwrap();
         lies += 1;
         if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
             missed.push(seed);
@@ -42,7 +41,7 @@ fn lies_of_every_scope_are_found() {
 /// Exceptions that are dropped, added to what is ignored, or out of range.
 #[test]
 fn forged_exceptions_are_refused_or_found() {
-    let options = CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(16).epsilon(0.9).threads(1);
     let mut found = 0;
     for seed in 0..80 {
         let model = random_model(seed);
@@ -51,24 +50,24 @@ fn forged_exceptions_are_refused_or_found() {
             continue;
         }
         let good = certificates.parts();
-        let digest = |parts: &sscc::CertificateParts| sscc::Digest::of(&model, &parts.scope);
+        let digest = |parts: &sscc::parts::CertificateParts| sscc::parts::Digest::of(&model, &parts.scope);
         let mut both = good.clone();
         Arc::make_mut(&mut both.scope).filter =
             ContactFilter::default().ignoring(good.scope.exceptions.clone());
-        assert!(matches!(Certificates::from_parts(both), Err(Error::Certificates(_))));
+        assert!(matches!(Certificates::try_from(both), Err(Error::Certificates(_))));
         let mut outside = good.clone();
         Arc::make_mut(&mut outside.scope).exceptions = vec![(0, u32::MAX)];
         outside.digest = digest(&outside);
-        assert!(Certificates::from_parts(outside).unwrap().check_model(&model).is_err());
+        assert!(Certificates::try_from(outside).unwrap().check_model(&model).is_err());
         let mut dropped = good.clone();
         Arc::make_mut(&mut dropped.scope).exceptions.clear();
         dropped.digest = digest(&dropped);
-        let dropped = Certificates::from_parts(dropped).unwrap();
-        let asked = AuditOptions { samples: 400, ..AuditOptions::default() };
+        let dropped = Certificates::try_from(dropped).unwrap();
+        let asked = AuditOptions::default().samples(400);
         found += usize::from(!audit(&model, &dropped, &asked, &()).unwrap().violations.is_empty());
         let mut nowhere = good.clone();
         Arc::make_mut(&mut nowhere.scope).center[0] = f64::NAN;
-        assert!(matches!(Certificates::from_parts(nowhere), Err(Error::Certificates(_))));
+        assert!(matches!(Certificates::try_from(nowhere), Err(Error::Certificates(_))));
     }
     assert!(found > 1, "{found}");
 }
@@ -80,9 +79,9 @@ fn lies_of_the_pair_tree_are_found() {
     let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);
     for seed in 0..cases(150) {
         let model = random_model(60_000 + seed);
-        let options = CertifyOptions { epsilon: 0.2, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.2);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
-        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        let asked = AuditOptions::default().samples(200).threads(1);
         let tree = &certificates.parts().pair_tree;
         let of_leaves = tree.entries().enumerate().filter(|(_, (_, link))| link & START == 0);
         let Some((first, (least, _))) = of_leaves.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { continue };
@@ -97,7 +96,7 @@ fn lies_of_the_pair_tree_are_found() {
         let is_lie = [true, f64::from(least) < 0.4 * tree.limit()];
         for (kind, pair_tree) in [longer, shorter].into_iter().enumerate().filter(|(kind, _)| is_lie[*kind]) {
             let forged = CertificateParts { pair_tree, ..certificates.parts().clone() };
-            let forged = Certificates::from_parts(forged).unwrap();
+            let forged = Certificates::try_from(forged).unwrap();
             lies[kind] += 1;
             if audit(&model, &forged, &asked, &()).unwrap().violations.is_empty() {
                 missed[kind].push(seed);
@@ -116,7 +115,7 @@ fn an_empty_tree_that_claims_too_much_is_found() {
     let (mut lies, mut found) = (0, 0);
     for seed in 0..cases(40) {
         let model = random_model(61_000 + seed);
-        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.5);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let parts = certificates.parts();
         if parts.pair_tree.is_empty() {
@@ -124,8 +123,8 @@ fn an_empty_tree_that_claims_too_much_is_found() {
         }
         let starts = vec![u32::MAX; parts.hierarchy.nodes().len()];
         let pair_tree = PairTree::from_parts(2.0 * parts.global_radius, starts, []);
-        let forged = Certificates::from_parts(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
-        let asked = AuditOptions { samples: 200, threads: Some(1), ..AuditOptions::default() };
+        let forged = Certificates::try_from(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
+        let asked = AuditOptions::default().samples(200).threads(1);
         // Where radii may be far from the truth a lie may be none.
         let honest = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(honest.violations, Vec::<String>::new(), "model {seed}");

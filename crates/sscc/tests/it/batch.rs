@@ -41,7 +41,7 @@ fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
 fn one_by_one(query: &mut Query, batch: &[Vec<f64>], limit: usize) -> Vec<Option<Answer>> {
     let answer = |q: &Vec<f64>| {
         let pairs = query.discrete_at_most(q, limit).ok()?.to_vec();
-        Some(Answer { pairs, norm: query.norm(), statistics: query.statistics() })
+        Some(Answer { pairs, statistics: query.statistics() })
     };
     batch.iter().map(answer).collect()
 }

@@ -6,10 +6,8 @@ use std::path::Path;
 
 use glam::DVec3;
 use num_traits::ToPrimitive;
-use sscc::{
-    Detector, Impact, MovingTriangle, Pair, TriMesh, impact_edge_edge, impact_triangle_triangle,
-    impact_vertex_face,
-};
+use sscc::parts::{impact_edge_edge, impact_vertex_face};
+use sscc::{Detector, Impact, MovingTriangle, Pair, TriMesh, impact_triangle_triangle};
 use sscc_testing::{distance, first_contact, models};
 
 /// Shares of the size of the two.

@@ -3,14 +3,16 @@
 use std::sync::{Arc, LazyLock};
 
 use glam::DVec3;
-use sscc::hierarchy::{Hierarchy, Node};
+use sscc::parts::{CertificateParts, Hierarchy, Node, PairTree, Scope};
 use sscc::{
-    CertificateParts, Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Neighbours,
-    PairTree, Query, ReducedModel, Scope, TriMesh,
+    Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Neighbours, Query, ReducedModel,
+    TriMesh,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, after, at, critical_z, random_model, random_options};
+use crate::common::{
+    Random, RandomOptions, after, are_adjacent, at, critical_z, random_choices, random_model, random_options,
+};
 
 /// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
 #[test]
@@ -27,13 +29,13 @@ fn scaled_modes_that_vanish_promise_nothing() {
     let refused = ReducedModel::with_metric(mesh.clone(), modes.clone(), metric.clone());
     assert!(matches!(refused, Err(Error::MetricRange { .. })));
     let model = ReducedModel::new(mesh, modes).unwrap();
-    let options = CertifyOptions { metric: Some(metric), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().metric(metric);
     assert!(matches!(Certificates::compute(&model, &options, &()), Err(Error::MetricRange { .. })));
 }
 
 /// Certificates with the default epsilon, or with a loose one where that takes too long.
 fn certify(model: &ReducedModel, options: &CertifyOptions) -> Option<Certificates> {
-    let options = |epsilon| CertifyOptions { epsilon, threads: Some(1), ..options.clone() };
+    let options = |epsilon| options.clone().epsilon(epsilon).threads(1);
     Certificates::compute(model, &options(0.1), &after(401))
         .or_else(|_| Certificates::compute(model, &options(0.9), &after(401)))
         .or_else(|_| Certificates::compute(model, &options(0.999), &after(401)))
@@ -91,7 +93,7 @@ fn just_inside(scope: &Scope, z: &[f64], radius: f64) -> Option<Vec<f64>> {
         let scaled: Vec<f64> = z.iter().map(|x| x / norm * radius * (1.0 - less)).collect();
         let q = at(scope, &scaled);
         let offset: Vec<f64> = q.iter().zip(&scope.center).map(|(q, c)| q - c).collect();
-        (scope.metric.norm(&offset) < radius).then_some(q)
+        (scope.metric.norm(&offset).unwrap() < radius).then_some(q)
     })
 }
 
@@ -110,7 +112,7 @@ fn certified_implies_free() {
     for seed in 0..proven {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 1_000_000);
-        let options = CertifyOptions { budget: budget(seed), ..random_options(seed, &model) };
+        let options = random_options(seed, &model).budget(budget(seed));
         let Some(certificates) = certify(&model, &options) else {
             skipped += 1;
             continue;
@@ -119,7 +121,7 @@ fn certified_implies_free() {
         let scope = &parts.scope;
         count_scope(scope, &model, &mut scopes);
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
-        let hierarchy = certificates.hierarchy();
+        let hierarchy = &certificates.parts().hierarchy;
         let nodes = hierarchy.nodes();
         // Sets of pairs (a node with itself, or two nodes) and their radii.
         let mut claims: Vec<(usize, usize, f64)> =
@@ -190,11 +192,10 @@ fn all_methods_find_the_same_pairs() {
     for seed in PROVEN..PROVEN + compared {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 2_000_000);
-        let mut options = random_options(seed, &model);
+        let RandomOptions { options, mut filter, ignore_rest } = random_choices(seed, &model);
         let one_vertex = !seed.is_multiple_of(10);
-        options.budget = budget(seed);
-        options.filter.as_mut().unwrap().neighbours =
-            if one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
+        filter.neighbours = if one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
+        let options = options.budget(budget(seed)).filter(filter);
         let Some(certificates) = certify(&model, &options) else {
             skipped += 1;
             continue;
@@ -231,7 +232,7 @@ fn all_methods_find_the_same_pairs() {
                 continue;
             };
             assert!(expected.is_sorted() && expected.iter().all(|(i, j)| i < j), "model {seed}");
-            neighbours += expected.iter().filter(|(i, j)| model.mesh().are_adjacent(*i, *j)).count();
+            neighbours += expected.iter().filter(|(i, j)| are_adjacent(model.mesh(), *i, *j)).count();
             for (i, method) in methods.iter_mut().enumerate() {
                 let found = pairs(method, &q);
                 assert_eq!(
@@ -249,7 +250,7 @@ fn all_methods_find_the_same_pairs() {
                 partial += usize::from(!complete);
                 assert_eq!(method.first(&q).unwrap().is_some(), !expected.is_empty());
             }
-            if sample == 0 && !options.ignore_rest && scope.center.iter().all(|x| *x == 0.0) {
+            if sample == 0 && !ignore_rest && scope.center.iter().all(|x| *x == 0.0) {
                 assert_eq!(certificates.rest_collisions(), expected.len() as u64, "model {seed}");
             }
             asked.push((q, expected));
@@ -277,7 +278,7 @@ fn hierarchy_of_another_size_is_refused() {
     parts.hierarchy = Hierarchy::from_parts(vec![leaf], vec![0], 1).unwrap().into();
     parts.node_radii = vec![0.0];
     parts.root_pair_radii = vec![];
-    if let Ok(certificates) = Certificates::from_parts(parts) {
+    if let Ok(certificates) = Certificates::try_from(parts) {
         assert!(Query::new(model, &certificates).is_err());
     }
 }
@@ -287,7 +288,7 @@ fn hierarchy_of_another_size_is_refused() {
 fn root_radius_above_a_pair_is_refused() {
     let mut parts = MIDDLING.1.parts().clone();
     parts.root_pair_radii[0] = 0.0;
-    assert!(Certificates::from_parts(parts).is_err());
+    assert!(Certificates::try_from(parts).is_err());
 }
 
 #[test]
@@ -295,7 +296,7 @@ fn the_number_of_threads_changes_no_bit() {
     for seed in 0..cases(15) {
         let model = random_model(seed);
         let all = [1, 2, 3].map(|threads| {
-            let options = CertifyOptions { threads: Some(threads), ..random_options(seed, &model) };
+            let options = random_options(seed, &model).threads(threads);
             certify(&model, &options)?;
             let parts = Certificates::compute(&model, &options, &()).unwrap().parts().clone();
             let radii = parts.node_radii.iter().chain(&parts.root_pair_radii).chain([&parts.global_radius]);
@@ -326,7 +327,10 @@ fn answers_follow_the_order_of_the_sum() {
         for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
             let mut query = Query::with_method(model, &certificates, method).unwrap();
             assert_eq!(!query.discrete(q).unwrap().is_empty(), expected, "{method:?} at {q:?}");
-            assert!(!expected || query.norm() >= certificates.root_radius(), "certified a collision");
+            assert!(
+                !expected || query.statistics().norm >= certificates.root_radius(),
+                "certified a collision"
+            );
         }
     };
     // (1 + half) + half stays 1, 1 + (half + half) reaches the sheet.
@@ -399,11 +403,11 @@ fn bad_coordinates_are_errors_for_every_method() {
 #[test]
 fn damaged_parts_are_refused() {
     let good = MIDDLING.1.parts().clone();
-    assert!(Certificates::from_parts(good.clone()).is_ok());
+    assert!(Certificates::try_from(good.clone()).is_ok());
     let refused = |damage: &dyn Fn(&mut CertificateParts)| {
         let mut parts = good.clone();
         damage(&mut parts);
-        matches!(Certificates::from_parts(parts), Err(Error::Certificates(_)))
+        matches!(Certificates::try_from(parts), Err(Error::Certificates(_)))
     };
     assert!(refused(&|p| p.node_radii.truncate(1)));
     assert!(refused(&|p| p.node_radii.push(1.0)));
@@ -458,7 +462,7 @@ fn one_leaf_is_a_tree() {
     assert!(Hierarchy::from_parts(vec![leaf(65)], (0..65).collect(), 65).is_err());
     assert!(triangles <= 64);
     let hierarchy = Hierarchy::from_parts(vec![leaf(triangles)], (0..triangles as u32).collect(), triangles);
-    let flat = Certificates::from_parts(CertificateParts {
+    let flat = Certificates::try_from(CertificateParts {
         hierarchy: hierarchy.unwrap().into(),
         node_radii: vec![certificates.root_radius()],
         root_pair_radii: vec![],

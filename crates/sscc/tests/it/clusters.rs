@@ -1,7 +1,8 @@
 //! Models of several clusters: what is skipped must never count, whatever the rule, the size and the odd cases.
 
 use glam::DVec3;
-use sscc::{ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope, TriMesh};
+use sscc::parts::Scope;
+use sscc::{ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, TriMesh};
 use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, Soup, random_mesh};
@@ -70,7 +71,7 @@ fn large_models_agree_with_brute_force() {
             Query::without_certificates(&model, scope, method).unwrap()
         };
         let one_vertex = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
-        let mut filter = ContactFilter::new(one_vertex, seed % 4 == 0);
+        let mut filter = ContactFilter::new(one_vertex).weld(seed % 4 == 0);
         if seed % 3 == 0 {
             let q = vec![0.0; model.rank()];
             let rest = of(&filter, Method::BruteForce).discrete(&q).unwrap().to_vec();
@@ -87,7 +88,8 @@ fn large_models_agree_with_brute_force() {
             }
             compared += 1;
             hits += expected.len();
-            neighbours += expected.iter().filter(|(i, j)| model.mesh().are_adjacent(*i, *j)).count();
+            neighbours +=
+                expected.iter().filter(|(i, j)| crate::common::are_adjacent(model.mesh(), *i, *j)).count();
         }
     }
     assert!(

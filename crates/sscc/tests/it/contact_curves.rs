@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
-use sscc::{
-    Aabb, ContactCurves, Error, Intersection, MeshFeature, Pair, Surface, contact_curves,
-    contact_curves_between, intersect_triangle_triangle,
+use sscc::parts::{
+    Aabb, ContactCurves, Intersection, MeshFeature, Surface, contact_curves, contact_curves_between,
 };
+use sscc::{Error, Pair, intersect_triangle_triangle};
 use sscc_testing::cases;
 
 use crate::common::{Random, Soup, random_mesh};

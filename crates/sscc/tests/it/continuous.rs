@@ -1,16 +1,17 @@
 //! Continuous queries against brute force, against discrete queries on the way, and against what is known.
 
 use glam::DVec3;
+use sscc::parts::Scope;
 use sscc::{
     Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Pair, Query, ReducedModel,
-    Scope, TriMesh, impact_triangle_triangle,
+    TriMesh, impact_triangle_triangle,
 };
 use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, after, at, random_model, random_options};
 
 fn certify(model: &ReducedModel, options: CertifyOptions) -> Option<Certificates> {
-    let options = CertifyOptions { epsilon: 0.5, ..options };
+    let options = options.epsilon(0.5);
     Certificates::compute(model, &options, &after(601)).ok()
 }
 
@@ -133,7 +134,10 @@ fn times_of_simple_motions() {
         let impacts = query.continuous(&[0.0], &[4.0]).unwrap();
         assert_eq!(pairs(impacts), [(0, 1)]);
         assert!(near(impacts[0].time, 0.25), "{impacts:?}");
-        assert_eq!(query.norm(), query.scope().metric.norm(&[4.0]));
+        assert_eq!(
+            query.statistics().norm,
+            sscc::parts::Scope::of_query(&query).metric.norm(&[4.0]).unwrap()
+        );
         assert!(near(query.time_of_impact(&[3.0], &[-1.0]).unwrap().unwrap(), 0.5));
         // They touch at an end, or all the time.
         assert!(near(query.time_of_impact(&[0.0], &[1.0]).unwrap().unwrap(), 1.0));

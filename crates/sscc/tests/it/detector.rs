@@ -1,8 +1,9 @@
 //! The detector for given positions, against brute force and against queries by modes.
 
 use glam::{DVec3, Vec3Swizzles};
+use sscc::parts::{Scope, detector_with_weld_classes};
 use sscc::{
-    ContactFilter, Detector, Error, Impact, Method, Neighbours, Pair, Query, Scope, TriMesh,
+    ContactFilter, Detector, Error, Impact, Method, Neighbours, Pair, Query, TriMesh,
     intersect_triangle_triangle,
 };
 use sscc_testing::cases;
@@ -117,7 +118,7 @@ fn answers_are_those_of_queries() {
         let model = random_model(case as u64);
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2];
         let ignored = [(0, 2), (1, 3)].into_iter().filter(|_| case % 5 == 0);
-        let filter = ContactFilter::new(neighbours, false).ignoring(ignored);
+        let filter = ContactFilter::new(neighbours).ignoring(ignored);
         let scope = Scope { filter: filter.clone(), ..Scope::of(&model) };
         let mut query = Query::without_certificates(&model, scope, Method::BruteForce).unwrap();
         let mut detector = Detector::with_filter(model.mesh(), &filter).unwrap();
@@ -230,12 +231,12 @@ fn welded_vertices_are_one_for_adjacency() {
     let rest = vec![a, b, c, b, d, c];
     let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
     assert_eq!(Detector::new(&mesh).discrete(&rest).unwrap(), [(0, 1)]);
-    let welded = ContactFilter::new(Neighbours::Exclude, true);
+    let welded = ContactFilter::new(Neighbours::Exclude).weld(true);
     assert_eq!(Detector::with_filter(&mesh, &welded).unwrap().discrete(&rest).unwrap(), []);
     let classes = [0, 1, 2, 1, 4, 5];
-    let mut detector = Detector::with_weld_classes(&mesh, &classes, &ContactFilter::default()).unwrap();
+    let mut detector = detector_with_weld_classes(&mesh, &classes, &ContactFilter::default()).unwrap();
     assert_eq!(detector.discrete(&rest).unwrap(), []);
-    let wrong = Detector::with_weld_classes(&mesh, &classes[1..], &ContactFilter::default());
+    let wrong = detector_with_weld_classes(&mesh, &classes[1..], &ContactFilter::default());
     assert!(matches!(wrong, Err(Error::PositionCount { found: 5, vertices: 6 })));
 }
 
@@ -243,11 +244,11 @@ fn welded_vertices_are_one_for_adjacency() {
 #[test]
 fn welded_vertices_can_move_apart() {
     let at = DVec3::new;
-    let filter = ContactFilter::new(Neighbours::IncludeOneVertex, false);
+    let filter = ContactFilter::new(Neighbours::IncludeOneVertex);
     let faces = vec![[0, 1, 2], [3, 4, 5]];
     let detector = |x: &[DVec3]| {
         let mesh = TriMesh::new(x.to_vec(), faces.clone()).unwrap();
-        Detector::with_weld_classes(&mesh, &[u32::MAX, 1, 2, u32::MAX, 4, 5], &filter).unwrap()
+        detector_with_weld_classes(&mesh, &[u32::MAX, 1, 2, u32::MAX, 4, 5], &filter).unwrap()
     };
     let a = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0)];
     // The second triangle goes through the first; the edge opposite to its welded corner does not.
@@ -315,8 +316,8 @@ fn wrong_positions_are_refused() {
 fn one_vertex_at_two_positions_is_no_edge() {
     let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO, DVec3::X, DVec3::Z];
     let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
-    let filter = ContactFilter::new(Neighbours::IncludeOneVertex, true);
-    let mut detector = Detector::with_weld_classes(&mesh, &[7, 7, 1, 7, 7, 2], &filter).unwrap();
+    let filter = ContactFilter::new(Neighbours::IncludeOneVertex).weld(true);
+    let mut detector = detector_with_weld_classes(&mesh, &[7, 7, 1, 7, 7, 2], &filter).unwrap();
     let mut answers = |x: &[DVec3]| {
         let pairs = detector.discrete(x).unwrap().to_vec();
         let impacts = detector.continuous(x, x).unwrap();

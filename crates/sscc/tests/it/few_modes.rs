@@ -1,9 +1,10 @@
 //! Models of which few modes move each vertex, as those of a skin: twelve modes for each bone.
 
 use glam::{DMat3, DVec3};
+use sscc::parts::{Aabb, Pose, PosedShape, SweptShape};
 use sscc::{
-    Aabb, Certificates, CertifyOptions, Detector, KineticQuery, Method, Modes, Pair, Pose, PosedShape, Query,
-    ReducedModel, ResolveOptions, SweptShape, TriMesh, intersect_triangle_triangle,
+    Certificates, CertifyOptions, Detector, KineticQuery, Method, Modes, Pair, Query, ReducedModel,
+    ResolveOptions, TriMesh, intersect_triangle_triangle,
 };
 use sscc_testing::Numbers;
 
@@ -153,8 +154,8 @@ fn posed_shapes_meet_where_their_triangles_do() {
         }
         assert_eq!(pairs, expected, "case {case}");
         // A motion that ends there meets at least these pairs.
-        moving.place((&q, &Pose { translation: DVec3::Z * -9.0, ..here }), (&q, &here)).unwrap();
-        resting.place((&r, &there), (&r, &there)).unwrap();
+        moving.place([&q, &q], [&Pose { translation: DVec3::Z * -9.0, ..here }, &here]).unwrap();
+        resting.place([&r, &r], [&there, &there]).unwrap();
         impacts.clear();
         moving.impacts(&mut resting, Aabb::default(), &mut impacts);
         for pair in &pairs {

@@ -4,9 +4,10 @@
 use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
+use sscc::parts::{Scope, intersect_shared_edge_pair};
 use sscc::{
-    Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, Neighbours, Pair, Query, Scope,
-    TriMesh, intersect_shared_edge_pair, intersect_triangle_triangle,
+    Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, Neighbours, Pair, Query, TriMesh,
+    intersect_triangle_triangle,
 };
 use sscc_testing::{cases, threshold};
 
@@ -101,7 +102,7 @@ fn oracle(faces: [[u32; 3]; 2], corners: [[DVec3; 3]; 2]) -> bool {
 }
 
 fn folded() -> ContactFilter {
-    ContactFilter::new(Neighbours::IncludeFolded, false)
+    ContactFilter::new(Neighbours::IncludeFolded)
 }
 
 /// The answer for a mesh of two triangles.
@@ -187,7 +188,7 @@ fn folded_pairs_are_those_of_exact_fractions() {
                 *corner = split_x.len() as u32 - 1;
             }
         }
-        let welded = ContactFilter::new(Neighbours::IncludeFolded, true);
+        let welded = ContactFilter::new(Neighbours::IncludeFolded).weld(true);
         let first = |v: u32| x.iter().position(|y| *y == x[v as usize]).unwrap() as u32;
         let classes = faces.map(|face| face.map(first));
         let is_shared = classes[1].iter().any(|v| classes[0].contains(v));
@@ -201,7 +202,7 @@ fn folded_pairs_are_those_of_exact_fractions() {
         counts[common][usize::from(expected)] += 1;
         if common < 2 {
             // One common vertex: as the older rule has it.
-            let one = ContactFilter::new(Neighbours::IncludeOneVertex, false);
+            let one = ContactFilter::new(Neighbours::IncludeOneVertex);
             let is_repeated = faces.iter().any(|f| f[0] == f[1] || f[1] == f[2] || f[2] == f[0]);
             assert!(is_repeated || listed(faces, &x, &one) == expected, "case {case}: {faces:?} {corners:?}");
         }
@@ -273,7 +274,7 @@ fn detectors_list_all_folded_pairs() {
             let answers = detector.batch(&[&x, &x], None, &()).unwrap();
             assert!(answers.iter().all(|answer| answer.pairs == expected), "case {case} frame {frame}");
             assert_eq!(detector.discrete_at_most(&x, 1).unwrap().len(), expected.len().min(1));
-            let is_shared = |(a, b): &&Pair| mesh.are_adjacent(*a, *b);
+            let is_shared = |(a, b): &&Pair| crate::common::are_adjacent(&mesh, *a, *b);
             shared += expected.iter().filter(is_shared).count();
             apart += expected.len() - expected.iter().filter(is_shared).count();
             // What is ignored, or of groups that do not count, is left out as ever.
@@ -292,7 +293,7 @@ fn a_triangle_folded_onto_its_neighbour_is_found() {
     let x = [at(0.0, 0.0, 0.0), at(2.0, 0.0, 0.0), at(0.0, 2.0, 0.0), at(0.5, 0.5, 0.0), at(2.0, 2.0, 0.0)];
     let mesh = TriMesh::new(x.to_vec(), vec![[0, 1, 2], [1, 0, 3], [2, 1, 4], [2, 0, 1]]).unwrap();
     let pairs = |neighbours| {
-        let filter = ContactFilter::new(neighbours, false);
+        let filter = ContactFilter::new(neighbours);
         Detector::with_filter(&mesh, &filter).unwrap().discrete(&x).unwrap().to_vec()
     };
     assert_eq!(pairs(Neighbours::Exclude), []);
@@ -318,7 +319,7 @@ fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
         );
         assert!(message.ends_with("use include-one-vertex"), "{message}");
     };
-    let options = CertifyOptions { filter: Some(folded()), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().filter(folded());
     refused(Certificates::compute(&model, &options, &()).unwrap_err());
     let scope = || Scope { filter: folded(), ..Scope::of(&model) };
     for method in [Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce] {
@@ -327,8 +328,8 @@ fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
     refused(folded().ignoring_rest(&model).unwrap_err());
     let mut forged = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap().parts().clone();
     forged.scope = scope().into();
-    forged.digest = sscc::Digest::of(&model, &forged.scope);
-    let forged = Certificates::from_parts(forged).unwrap();
+    forged.digest = sscc::parts::Digest::of(&model, &forged.scope);
+    let forged = Certificates::try_from(forged).unwrap();
     refused(Query::new(&model, &forged).err().unwrap());
     let rest = model.mesh().rest_positions();
     let mut detector = Detector::with_filter(model.mesh(), &folded()).unwrap();
@@ -349,7 +350,7 @@ fn adjacency_does_not_change_with_positions() {
         [at(-1.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0), at(0.0, -1.0, 1.0), at(-2.0, -1.0, 1.0)];
     let answers = |faces: [[u32; 3]; 2], neighbours, x: &[DVec3]| {
         let mesh = TriMesh::new(rest.to_vec(), faces.to_vec()).unwrap();
-        let mut detector = Detector::with_filter(&mesh, &ContactFilter::new(neighbours, true)).unwrap();
+        let mut detector = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(true)).unwrap();
         let discrete = !detector.discrete(x).unwrap().is_empty();
         let is_swept = neighbours != Neighbours::IncludeFolded;
         let swept = is_swept && !detector.continuous(x, x).unwrap().is_empty();

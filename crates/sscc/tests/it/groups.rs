@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use sscc::parts::{DEFAULT_EPSILON, Scope, check_filter};
 use sscc::{
     AuditOptions, Certificates, CertifyOptions, ContactFilter, Detector, Error, KineticQuery, Method, Modes,
-    Pair, Query, ReducedModel, Scope, TriMesh, TriangleGroups, audit,
+    Pair, Query, ReducedModel, TriMesh, TriangleGroups, audit,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, at, random_model, random_options, winding_strip};
+use crate::common::{Random, RandomOptions, at, random_choices, random_model, winding_strip};
 
 /// Groups that are runs of triangles, so that some nodes have one group, or any triangles; with a random table.
 fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
@@ -20,7 +21,7 @@ fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
     let of_triangle: Vec<u32> = (0..triangles).map(|t| of(t, random) as u32).collect();
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let count = groups.group_count();
-    let mut pair = || (random.below(count) as u32, random.below(count) as u32);
+    let mut pair = || [random.below(count) as u32, random.below(count) as u32];
     let pairs = [pair(), pair(), pair()];
     match random.below(4) {
         0 => groups.between_only(),
@@ -31,33 +32,32 @@ fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
 }
 
 /// A model and options with groups, by number.
-fn sample(seed: u64) -> (ReducedModel, CertifyOptions, TriangleGroups) {
+fn sample(seed: u64) -> (ReducedModel, RandomOptions, TriangleGroups) {
     let random = &mut Random::new(seed + 40_000_000);
     let model = if seed.is_multiple_of(4) { winding_strip(random, seed) } else { random_model(seed) };
     let groups = random_groups(random, model.mesh().faces().len());
-    let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
-    (model, options, groups)
+    let choices = random_choices(seed, &model);
+    (model, choices, groups)
 }
 
-fn with_groups(options: &CertifyOptions, groups: &TriangleGroups) -> CertifyOptions {
-    let filter = options.filter.clone().map(|filter| filter.with_groups(groups.clone()));
-    CertifyOptions { filter, ..options.clone() }
+fn with_groups(options: &CertifyOptions, filter: &ContactFilter, groups: &TriangleGroups) -> CertifyOptions {
+    options.clone().filter(filter.clone().with_groups(groups.clone()))
 }
 
 #[test]
 fn all_methods_list_the_pairs_that_count() {
     let (mut compared, mut hits, mut left_out, mut impacts) = (0, 0, 0, 0);
     for seed in 0..cases(160) {
-        let (model, options, groups) = sample(seed);
+        let (model, RandomOptions { options, filter, .. }, groups) = sample(seed);
         let random = &mut Random::new(seed + 41_000_000);
-        let certificates = Certificates::compute(&model, &with_groups(&options, &groups), &()).unwrap();
+        let options = with_groups(&options.epsilon(0.5), &filter, &groups);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let scope = certificates.parts().scope.clone();
         let ignored = scope.filter.ignored().to_vec();
         let is_counted =
             |(a, b): Pair| groups.is_pair_counted(a, b) && ignored.binary_search(&(a, b)).is_err();
         // The oracle knows neither groups nor ignored pairs.
-        let plain =
-            Scope { filter: options.filter.clone().unwrap(), exceptions: Vec::new(), ..Scope::clone(&scope) };
+        let plain = Scope { filter, exceptions: Vec::new(), ..Scope::clone(&scope) };
         let mut oracle = Query::without_certificates(&model, plain, Method::BruteForce).unwrap();
         let methods =
             [Method::Certified, Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce];
@@ -122,18 +122,17 @@ fn all_methods_list_the_pairs_that_count() {
 fn pairs_that_do_not_count_limit_no_radius() {
     let (mut larger, mut compared) = (0, 0);
     for seed in 0..cases(80) {
-        let (model, options, groups) = sample(seed);
-        let options = CertifyOptions { epsilon: 0.1, ignore_rest: false, ..options };
+        let (model, RandomOptions { options, filter, .. }, groups) = sample(seed);
+        let options = options.ignore_rest(false);
         let certify = |options: &CertifyOptions| Certificates::compute(&model, options, &()).unwrap();
         let plain = certify(&options);
-        let grouped = certify(&with_groups(&options, &groups));
+        let grouped = certify(&with_groups(&options, &filter, &groups));
         let count = model.mesh().faces().len() as u32;
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
         let one_by_one: Vec<Pair> = pairs.filter(|&(a, b)| !groups.is_pair_counted(a, b)).collect();
-        let filter = options.filter.clone().map(|filter| filter.ignoring(one_by_one));
-        let ignoring = certify(&CertifyOptions { filter, ..options.clone() });
+        let ignoring = certify(&options.filter(filter.ignoring(one_by_one)));
         assert_eq!(grouped.exceptions(), ignoring.exceptions(), "model {seed}");
-        let smallest = (1.0 - options.epsilon) * (1.0 - 1e-9);
+        let smallest = (1.0 - DEFAULT_EPSILON) * (1.0 - 1e-9);
         let [a, b, c] = [&plain, &grouped, &ignoring].map(Certificates::root_radius);
         assert!(b >= a * smallest && b >= c * smallest && c >= b * smallest, "model {seed}: {a} {b} {c}");
         larger += usize::from(b > a);
@@ -175,22 +174,18 @@ fn parts_that_cross_each_other_can_be_left_out() {
     let (model, of_triangle) = crossing_sheets();
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let certify = |groups: TriangleGroups| {
-        let options = CertifyOptions {
-            filter: Some(ContactFilter::default().with_groups(groups)),
-            max_exceptions: Some(0),
-            ..CertifyOptions::default()
-        };
+        let options =
+            CertifyOptions::default().filter(ContactFilter::default().with_groups(groups)).max_exceptions(0);
         Certificates::compute(&model, &options, &()).unwrap()
     };
     assert_eq!(certify(groups.clone()).root_radius(), 0.0);
     // The highest point of the two is at 0.06.
-    let without = certify(groups.clone().ignoring([(1, 0)]).unwrap());
+    let without = certify(groups.clone().ignoring([[1, 0]]).unwrap());
     assert!((4.4..4.94).contains(&without.root_radius()), "{}", without.root_radius());
     assert_eq!(without.rest_collisions(), 0);
-    let only = certify(groups.clone().only([(0, 0)]).unwrap());
+    let only = certify(groups.clone().only([[0, 0]]).unwrap());
     assert_eq!(only.root_radius(), only.global_radius());
-    let report =
-        audit(&model, &without, &AuditOptions { samples: 200, ..AuditOptions::default() }, &()).unwrap();
+    let report = audit(&model, &without, &AuditOptions::default().samples(200), &()).unwrap();
     assert_eq!(report.violations, [""; 0]);
     let mut query = Query::new(&model, &without).unwrap();
     let scale = query.safe_scale(&[10.0]).unwrap();
@@ -210,23 +205,17 @@ fn other_groups_are_refused() {
     let (model, of_triangle) = crossing_sheets();
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let filter = |groups: TriangleGroups| ContactFilter::default().with_groups(groups);
-    let options = |filter| CertifyOptions {
-        filter: Some(filter),
-        max_exceptions: Some(0),
-        budget: 0,
-        epsilon: 0.9,
-        ..CertifyOptions::default()
-    };
+    let options = |filter| CertifyOptions::default().filter(filter).max_exceptions(0).budget(0).epsilon(0.9);
     let certify = |filter| Certificates::compute(&model, &options(filter), &());
     let used = filter(groups.clone().between_only());
     let certificates = certify(used.clone()).unwrap();
-    certificates.check_filter(&used).unwrap();
-    certificates.check_filter(&filter(groups.clone().ignoring([(2, 2), (1, 1), (0, 0)]).unwrap())).unwrap();
+    check_filter(&certificates, &used).unwrap();
+    check_filter(&certificates, &filter(groups.clone().ignoring([[2, 2], [1, 1], [0, 0]]).unwrap())).unwrap();
     let message = |certificates: &Certificates, filter: &ContactFilter| {
-        certificates.check_filter(filter).unwrap_err().to_string()
+        check_filter(certificates, filter).unwrap_err().to_string()
     };
     assert!(message(&certificates, &ContactFilter::default()).contains("which were not requested"));
-    let other = filter(groups.clone().ignoring([(0, 1)]).unwrap());
+    let other = filter(groups.clone().ignoring([[0, 1]]).unwrap());
     assert!(message(&certificates, &other).contains("differ from the requested ones"));
     // All pairs of groups count: that is the default.
     let plain = certify(filter(groups.clone())).unwrap();
@@ -240,7 +229,7 @@ fn other_groups_are_refused() {
     for forged in [ContactFilter::default(), other, moved] {
         let mut parts = certificates.parts().clone();
         Arc::make_mut(&mut parts.scope).filter = forged;
-        let forged = Certificates::from_parts(parts).unwrap();
+        let forged = Certificates::try_from(parts).unwrap();
         assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
     }
     // Groups of another mesh.
@@ -260,11 +249,11 @@ fn other_groups_are_refused() {
     refused.into_iter().for_each(|error| assert_eq!(error.unwrap().to_string(), expected));
     let mut parts = certificates.parts().clone();
     Arc::make_mut(&mut parts.scope).filter = short;
-    let damaged = Certificates::from_parts(parts).unwrap_err().to_string();
+    let damaged = Certificates::try_from(parts).unwrap_err().to_string();
     assert!(damaged.contains("the number of group numbers is not the number of triangles"), "{damaged}");
     let mut parts = certificates.parts().clone();
     Arc::make_mut(&mut parts.scope).exceptions = vec![(0, 5)];
-    let damaged = Certificates::from_parts(parts).unwrap_err().to_string();
+    let damaged = Certificates::try_from(parts).unwrap_err().to_string();
     assert!(damaged.contains("a pair is an exception, but its groups do not count"), "{damaged}");
     let shared: Arc<TriangleGroups> = Arc::new(groups.between_only());
     assert_eq!(ContactFilter::default().with_groups(shared), used);

@@ -20,8 +20,8 @@ fn moving(size: i32) -> impl Strategy<Value = MovingTriangle> {
     (corners(size), corners(size), 0..8).prop_map(|(t0, t1, kind)| match kind {
         0 => MovingTriangle { t0, t1: t0 },
         1 => MovingTriangle { t0, t1: t0.map(|p| p + t1[0]) },
-        2 => MovingTriangle::vertex(t0[0], t1[0]),
-        3 => MovingTriangle::edge([t0[0], t0[1]], [t1[0], t1[1]]),
+        2 => MovingTriangle { t0: [t0[0]; 3], t1: [t1[0]; 3] },
+        3 => MovingTriangle { t0: [t0[0], t0[1], t0[1]], t1: [t1[0], t1[1], t1[1]] },
         4 => MovingTriangle { t0, t1: [t1[0]; 3] },
         5 => {
             let flat = |p: DVec3| DVec3::new(p.x, p.y, 0.0);
@@ -68,7 +68,7 @@ fn exact_times_are_right() {
     let still = MovingTriangle { t0: face, t1: face };
     let falling = |from: f64, to: f64| {
         let at = |z: f64| DVec3::new(1.0, 1.0, z);
-        MovingTriangle::vertex(at(from), at(to))
+        MovingTriangle { t0: [at(from); 3], t1: [at(to); 3] }
     };
     let time =
         |from, to| first_contact(&still, &falling(from, to)).map(|root| root.lower().to_f64().unwrap());

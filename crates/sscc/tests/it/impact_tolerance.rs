@@ -165,7 +165,7 @@ fn what_touches_at_the_end_is_listed() {
         let still = MovingTriangle { t0: face, t1: face };
         let foot = face[0] * 0.5 + face[1] * 0.25 + face[2] * 0.25;
         let normal = (face[1] - face[0]).cross(face[2] - face[0]);
-        let falling = MovingTriangle::vertex(foot + normal + coarse() * 0.01, foot);
+        let falling = MovingTriangle { t0: [foot + normal + coarse() * 0.01; 3], t1: [foot; 3] };
         let found = impact_triangle_triangle(&still, &falling, Impact::TOLERANCE);
         assert!(found.is_some(), "case {case}: {face:?}");
     }

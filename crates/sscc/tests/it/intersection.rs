@@ -4,10 +4,8 @@
 use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
-use sscc::{
-    Aabb, Feature, Intersection, IntersectionPoint, intersect_triangle_triangle,
-    intersection_triangle_triangle,
-};
+use sscc::intersect_triangle_triangle;
+use sscc::parts::{Aabb, Feature, Intersection, IntersectionPoint, intersection_triangle_triangle};
 
 use crate::common::Random;
 use crate::common::exact::{Vector, between, clip, cross, dot, exact, is_zero, minus, number};

@@ -67,7 +67,7 @@ fn compare(model: &ReducedModel, certificates: &Certificates, path: &[Vec<f64>],
             Ok(expected) => {
                 assert_eq!(kinetic.discrete(&q).unwrap(), expected, "step {step}");
                 full.discrete(&q).unwrap();
-                assert_eq!(kinetic.norm(), full.norm());
+                assert_eq!(kinetic.statistics().norm, full.statistics().norm);
                 assert_eq!(kinetic.pairs(), expected);
                 assert!(kinetic.statistics().complete);
                 counts.steps += 1;
@@ -88,8 +88,7 @@ fn small_models_of_every_kind() {
     let mut counts = Counts::default();
     for seed in 0..cases(120) {
         let model = random_model(seed);
-        let mut options = random_options(seed, &model);
-        options.budget = 1 << 14;
+        let options = random_options(seed, &model).budget(1 << 14);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let random = &mut Random::new(seed + 400_000);
         let limit = certificates.parts().pair_tree.limit();
@@ -139,7 +138,7 @@ fn coil(random: &mut Random, seed: u64) -> ReducedModel {
     let modes = Modes::new(rank, p.iter().flat_map(|x| bend(*x)).collect()).unwrap();
     let mesh = TriMesh::new(p, faces).unwrap();
     let metric = match seed % 4 {
-        0 => Metric::displacement(&mesh, &modes),
+        0 => Metric::displacement(&mesh, &modes).unwrap(),
         1 => Metric::identity(rank),
         _ => {
             let entry = |i: usize, j: usize| match i.cmp(&j) {
@@ -162,18 +161,18 @@ fn coils_of_several_clusters() {
         let random = &mut Random::new(seed + 600_000);
         let model = coil(random, seed);
         let rank = model.rank();
-        let options = CertifyOptions {
-            epsilon: 0.5,
-            center: (seed % 5 == 1).then(|| (0..rank).map(|_| random.signed() * 0.05).collect()),
-            filter: Some(ContactFilter::new(
-                [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2],
-                seed % 3 == 0 && seed % 2 == 0,
-            )),
-            budget: [1 << 12, 64][usize::from(seed % 7 == 3)],
+        let options = CertifyOptions::default()
+            .epsilon(0.5)
+            .center((seed % 5 == 1).then(|| (0..rank).map(|_| random.signed() * 0.05).collect()))
+            .filter(
+                ContactFilter::new(
+                    [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2],
+                )
+                .weld(seed % 3 == 0 && seed % 2 == 0),
+            )
+            .budget([1 << 12, 64][usize::from(seed % 7 == 3)])
             // The limit, which sets the size of the motion, stays near contact.
-            reach: 1.0,
-            ..CertifyOptions::default()
-        };
+            .reach(1.0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let limit = certificates.parts().pair_tree.limit();
         let size = 0.8 * limit * random.power(-0.5, 0.2) / (rank as f64).sqrt();

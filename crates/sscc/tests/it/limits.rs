@@ -3,12 +3,15 @@
 
 use glam::{DMat3, DVec3};
 use num_traits::ToPrimitive;
+use sscc::parts::{
+    Aabb, Intersection, Pose, PosedShape, Scope, SweptShape, contact_curves, impact_edge_edge,
+    impact_vertex_face, intersect_shared_vertex_pair, intersection_triangle_triangle,
+    penetration_triangle_triangle,
+};
 use sscc::{
-    Aabb, AuditOptions, Certificates, CertifyOptions, ContactFilter, Detector, Impact, Intersection,
-    KineticQuery, Method, Modes, MovingTriangle, Neighbours, Pose, PosedShape, Query, ReducedModel,
-    ResolveOptions, Scope, SweptShape, TriMesh, audit, contact_curves, impact_edge_edge,
-    impact_triangle_triangle, impact_vertex_face, intersect_shared_vertex_pair, intersect_triangle_triangle,
-    intersection_triangle_triangle, limits, penetration_triangle_triangle,
+    AuditOptions, Certificates, CertifyOptions, ContactFilter, Detector, Impact, KineticQuery, Method, Modes,
+    MovingTriangle, Neighbours, Query, ReducedModel, ResolveOptions, TriMesh, audit,
+    impact_triangle_triangle, intersect_triangle_triangle, limits,
 };
 use sscc_testing::{cases, distance, first_contact, threshold};
 
@@ -168,15 +171,11 @@ fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
     let (mut colliding, mut impacts) = (0, 0);
     for case in 0..6 {
         let models = [1.0, limits::LARGEST].map(|scale| model(scale, &mut Random::new(case)));
-        let options = CertifyOptions {
-            filter: Some(ContactFilter::new(Neighbours::IncludeOneVertex, false)),
-            ..CertifyOptions::default()
-        };
+        let options = CertifyOptions::default().filter(ContactFilter::new(Neighbours::IncludeOneVertex));
         let certificates =
             models.each_ref().map(|model| Certificates::compute(model, &options, &()).unwrap());
         for (model, certificates) in models.iter().zip(&certificates) {
-            let report =
-                audit(model, certificates, &AuditOptions { samples: 200, ..AuditOptions::default() }, &());
+            let report = audit(model, certificates, &AuditOptions::default().samples(200), &());
             assert!(report.is_ok());
         }
         let random = &mut Random::new(case + 100);
@@ -257,7 +256,7 @@ fn posed_shapes_at_the_limit_have_the_answers_of_smaller_ones() {
                 let (q, r) = ([random.signed(), random.signed()], [random.signed(), random.signed()]);
                 let (from, to) = (pose(random), pose(random));
                 shape.place(&q, &from).unwrap();
-                swept.place((&q, &from), (&r, &to)).unwrap();
+                swept.place([&q, &r], [&from, &to]).unwrap();
             }
             let around = Aabb { lower: DVec3::splat(-scale), upper: DVec3::splat(scale) };
             let ([x, y], [v, w]) = (&mut shapes, &mut swept);

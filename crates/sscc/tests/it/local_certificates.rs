@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use sscc::parts::{CertificateParts, PairTree, ProvenShares};
 use sscc::{
-    AuditOptions, CertificateParts, Certificates, CertifyOptions, ContactFilter, KineticQuery, Method,
-    Metric, MetricKind, Modes, Neighbours, PairTree, Proof, Query, ReducedModel, TriMesh, TriangleGroups,
-    audit,
+    AuditOptions, Certificates, CertifyOptions, ContactFilter, KineticQuery, Method, Metric, MetricKind,
+    Modes, Neighbours, Proof, Query, ReducedModel, TriMesh, TriangleGroups, audit,
 };
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
 
@@ -18,7 +18,7 @@ fn model_of(shape: &FlexibleShape) -> ReducedModel {
 }
 
 fn options_of(model: &ReducedModel, seed: u64, random: &mut Numbers) -> CertifyOptions {
-    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
     let rank = model.rank();
     let metric = (seed.is_multiple_of(2) && rank < 40).then(|| {
         let entry = |i: usize, j: usize| scales[i] * scales[j] * if i == j { 1.0 } else { 0.2 / rank as f64 };
@@ -30,32 +30,30 @@ fn options_of(model: &ReducedModel, seed: u64, random: &mut Numbers) -> CertifyO
         scales.iter().map(|scale| size * random.signed() / scale).collect()
     });
     let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
-    let mut filter = ContactFilter::new(neighbours, seed % 5 < 3);
+    let mut filter = ContactFilter::new(neighbours).weld(seed % 5 < 3);
     if seed % 6 == 5 {
         let triangles = model.mesh().faces().len() as u32;
         let groups =
             TriangleGroups::new(&(0..triangles).map(|t| 2 * t / triangles).collect::<Vec<_>>()).unwrap();
-        filter = filter.with_groups(groups.ignoring([(0, 0)]).unwrap());
+        filter = filter.with_groups(groups.ignoring([[0, 0]]).unwrap());
     }
-    CertifyOptions {
-        metric,
-        center,
-        filter: Some(filter),
-        ignore_rest: seed % 4 == 3,
-        budget: 512,
-        local_budget: 1 << 20,
-        epsilon: 0.9,
-        reach: 1.0,
-        threads: Some(1),
-        ..CertifyOptions::default()
-    }
+    CertifyOptions::default()
+        .metric(metric)
+        .center(center)
+        .filter(filter)
+        .ignore_rest(seed % 4 == 3)
+        .budget(512)
+        .local_budget(1 << 20)
+        .epsilon(0.9)
+        .reach(1.0)
+        .threads(1)
 }
 
 /// The same certificates with no radius above 0, so that local certificates alone prove nodes.
 fn without_radii(certificates: &Certificates) -> Certificates {
     let parts = certificates.parts();
     let (nodes, pairs) = (parts.node_radii.len(), parts.root_pair_radii.len());
-    Certificates::from_parts(CertificateParts {
+    Certificates::try_from(CertificateParts {
         node_radii: vec![0.0; nodes],
         root_pair_radii: vec![0.0; pairs],
         pair_tree: PairTree::default(),
@@ -66,7 +64,7 @@ fn without_radii(certificates: &Certificates) -> Certificates {
 
 fn without_local(certificates: &Certificates) -> Certificates {
     let parts = certificates.parts().clone();
-    Certificates::from_parts(CertificateParts { local: Arc::default(), ..parts }).unwrap()
+    Certificates::try_from(CertificateParts { local: Arc::default(), ..parts }).unwrap()
 }
 
 /// How often local certificates decided.
@@ -148,7 +146,7 @@ fn compare(
 }
 
 fn random_ray(model: &ReducedModel, shape: Option<&FlexibleShape>, random: &mut Numbers) -> Vec<f64> {
-    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
     let (decay, few) = (random.below(3) as i32, random.below(3) == 0);
     let mut entry = |(k, scale): (usize, &f64)| {
         let weight = if few && random.below(4) > 0 { 0.0 } else { (1.0 + k as f64).powi(-decay) };
@@ -192,8 +190,7 @@ fn answers_of_odd_models_are_those_of_brute_force() {
     for seed in 0..cases(800_u64) {
         let random = &mut Numbers(seed + 7000);
         let model = random_model(70_000 + seed);
-        let options =
-            CertifyOptions { epsilon: 0.9, local_budget: 1 << 20, budget: 0, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.9).local_budget(1 << 20).budget(0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let rays = (0..3).map(|_| random_ray(&model, None, random));
         compare(&model, &certificates, rays, &format!("model {seed}"), &mut seen);
@@ -228,12 +225,10 @@ fn shapes_that_turn_within_q_are_proven() {
             faces.dedup_by_key(|face| corners(face));
             shape.faces = faces;
             let model = model_of(&shape);
-            let options = CertifyOptions {
-                filter: Some(ContactFilter::new(Neighbours::Exclude, true)),
-                budget: 0,
-                local_budget: 1 << 16,
-                ..CertifyOptions::default()
-            };
+            let options = CertifyOptions::default()
+                .filter(ContactFilter::new(Neighbours::Exclude).weld(true))
+                .budget(0)
+                .local_budget(1 << 16);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             if !certificates.exceptions().is_empty() {
                 continue;
@@ -269,12 +264,8 @@ fn local_certificates_shorten_no_safe_scale() {
         let kind = Shape::ALL[seed as usize % Shape::ALL.len()];
         let shape = FlexibleShape::new(seed + 700, kind, [2, 5, 12][seed as usize / 7 % 3]);
         let model = model_of(&shape);
-        let certificates = Certificates::compute(
-            &model,
-            &CertifyOptions { reach: 4.0, ..options_of(&model, seed, random) },
-            &(),
-        )
-        .unwrap();
+        let certificates =
+            Certificates::compute(&model, &options_of(&model, seed, random).reach(4.0), &()).unwrap();
         // Without radii of nodes the search rests on local certificates alone, up to the cap that both keep.
         let alone = without_radii(&certificates);
         let none = without_local(&alone);
@@ -309,7 +300,7 @@ fn safe_scales_end_where_the_way_collides() {
     let (p, faces) = two_sheets(12);
     let modes = p.iter().map(|p| DVec3::Z * (1.0 - 2.0 * p.z)).collect();
     let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), Modes::new(1, modes).unwrap()).unwrap();
-    let options = CertifyOptions { reach: 16.0, local_budget: 1 << 20, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().reach(16.0).local_budget(1 << 20);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let alone = without_radii(&certificates);
     for certificates in [&certificates, &alone] {
@@ -338,10 +329,10 @@ fn shares_are_those_of_what_is_proven() {
         for share in [1e-4, 1e-3, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0] {
             let ray = random_ray(&model, Some(&shape), random);
             let q: Vec<f64> = certificates.center().iter().zip(&ray).map(|(c, d)| c + share * d).collect();
-            let shares = query.proven_shares(&q).unwrap();
+            let shares = ProvenShares::of(&mut query, &q).unwrap();
             let all = [shares.radius, shares.local, shares.search];
             assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{kind:?} {seed}: {shares:?}");
-            assert_eq!(plain.proven_shares(&q).unwrap().search, 1.0);
+            assert_eq!(ProvenShares::of(&mut plain, &q).unwrap().search, 1.0);
             query.discrete(&q).unwrap();
             match query.statistics().proof {
                 Proof::Radius => assert_eq!(all, [1.0, 0.0, 0.0], "{kind:?} {seed}"),
@@ -350,7 +341,7 @@ fn shares_are_those_of_what_is_proven() {
             }
             seen.iter_mut().zip(all).for_each(|(seen, share)| *seen += usize::from(share > 0.0));
         }
-        assert!(query.proven_shares(&[f64::NAN]).is_err());
+        assert!(ProvenShares::of(&mut query, &[f64::NAN]).is_err());
     }
     assert!(seen.iter().all(|seen| *seen > threshold(20)), "{seen:?}");
 }
@@ -365,7 +356,7 @@ fn parts_that_stand_still_are_certified() {
     let mesh = TriMesh::new((0..(n + 1) * (n + 1)).map(point).collect(), faces.collect()).unwrap();
     let modes = Modes::from_matrix(169, 1, |row, _| if row == 2 { 1.0 } else { 0.0 }).unwrap();
     let model = ReducedModel::new(mesh, modes).unwrap();
-    let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().local_budget(1 << 20);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let local = &certificates.parts().local;
     let still = local.mode_starts.windows(2).filter(|range| range[0] == range[1]).count();
@@ -384,7 +375,7 @@ fn audits_find_local_certificates_that_claim_too_much() {
         let model = model_of(&shape);
         let options = options_of(&model, seed, random);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
-        let asked = AuditOptions { samples: 600, threads: Some(1), ..AuditOptions::default() };
+        let asked = AuditOptions::default().samples(600).threads(1);
         let report = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(report.violations, Vec::<String>::new(), "{kind:?} {seed}");
         local_samples += report.local_samples;
@@ -392,7 +383,7 @@ fn audits_find_local_certificates_that_claim_too_much() {
         let mut parts = certificates.parts().clone();
         Arc::make_mut(&mut parts.local).bounds.iter_mut().for_each(|bounds| bounds.ratio *= 0.1);
         Arc::make_mut(&mut parts.local).list_ratios.iter_mut().for_each(|ratio| *ratio *= 0.1);
-        let forged = Certificates::from_parts(parts).unwrap();
+        let forged = Certificates::try_from(parts).unwrap();
         lies += 1;
         let report = audit(&model, &forged, &asked, &()).unwrap();
         found += usize::from(report.violations.iter().any(|line| line.contains("local certificate")));
@@ -424,7 +415,7 @@ fn kinetic_answers_are_those_of_brute_force() {
     let modes =
         Modes::from_matrix(vertices, 1, |row, _| if row / 3 >= lower && row % 3 == 2 { -1.0 } else { 0.0 });
     let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes.unwrap()).unwrap();
-    let options = CertifyOptions { budget: 0, local_budget: 1 << 20, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(0).local_budget(1 << 20);
     let certificates = without_radii(&Certificates::compute(&model, &options, &()).unwrap());
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
     let mut certified = Query::new(&model, &certificates).unwrap();
@@ -454,7 +445,7 @@ fn exceptions_do_not_spoil_the_root() {
     let turn = |row: usize, k: usize| -> f64 { if row % 3 == k / 3 { p[row / 3][k % 3] } else { 0.0 } };
     let modes = Modes::from_matrix(p.len(), 9, turn).unwrap();
     let model = ReducedModel::new(TriMesh::new(p.clone(), faces).unwrap(), modes).unwrap();
-    let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().local_budget(1 << 20);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     assert!(!certificates.exceptions().is_empty());
     let (sin, cos) = 1.2_f64.sin_cos();
@@ -483,7 +474,7 @@ fn heights_that_become_lengths_are_no_proof() {
         of_axis * height(row as u32 / 3)
     };
     let model = ReducedModel::new(mesh, Modes::from_matrix(81, 1, press).unwrap()).unwrap();
-    let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().local_budget(1 << 20);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let flat = certificates.parts().local.bounds.iter().filter(|bounds| bounds.flatness < 1.0).count();
     assert!(flat > 0);
@@ -547,7 +538,7 @@ fn shapes_that_turn_by_all_handles_are_proven_and_no_contact_is_missed() {
 
 fn turn_and_bend(center: Option<Vec<f64>>) {
     let (model, random, is_at_rest) = (coil_with_handles(), &mut Random::new(77), center.is_none());
-    let options = CertifyOptions { center, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().center(center);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();

@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use sscc::{Method, Modes, Query, ReducedModel, Scope, Sweep, SweepOutcome, TriMesh};
+use sscc::parts::Scope;
+use sscc::{Method, Modes, Query, ReducedModel, Sweep, SweepOutcome, TriMesh};
 
 use crate::sweep::check;
 

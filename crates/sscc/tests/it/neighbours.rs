@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
+use sscc::parts::{Scope, check_filter, intersect_shared_vertex_pair};
 use sscc::{
     Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours, Query, ReducedModel,
-    Scope, TriMesh, intersect_shared_vertex_pair, intersect_triangle_triangle,
+    TriMesh, intersect_triangle_triangle,
 };
 use sscc_testing::{cases, threshold};
 
@@ -75,10 +74,7 @@ fn shared_vertex_pairs_are_found_on_request() {
     let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     let model = ReducedModel::new(mesh, Modes::from_matrix(5, 1, lowered).unwrap()).unwrap();
     let certify = |neighbours| {
-        let options = CertifyOptions {
-            filter: Some(ContactFilter::new(neighbours, false)),
-            ..CertifyOptions::default()
-        };
+        let options = CertifyOptions::default().filter(ContactFilter::new(neighbours));
         Certificates::compute(&model, &options, &()).unwrap()
     };
     let (excluding, including) = (certify(Neighbours::Exclude), certify(Neighbours::IncludeOneVertex));
@@ -96,18 +92,18 @@ fn shared_vertex_pairs_are_found_on_request() {
             assert_eq!(!with.discrete(&[q]).unwrap().is_empty(), collides, "{method:?} {q}");
         }
     }
-    let asked = ContactFilter::new(Neighbours::IncludeOneVertex, false);
-    let error = excluding.check_filter(&asked).unwrap_err();
+    let asked = ContactFilter::new(Neighbours::IncludeOneVertex);
+    let error = check_filter(&excluding, &asked).unwrap_err();
     assert!(matches!(error, Error::OtherPairs { .. }), "{error}");
     assert!(
         error.to_string().contains("neighbours = exclude, but include-one-vertex was requested"),
         "{error}"
     );
-    including.check_filter(&asked).unwrap();
+    check_filter(&including, &asked).unwrap();
     // A forged rule changes the digest.
     let mut parts = excluding.parts().clone();
     Arc::make_mut(&mut parts.scope).filter = asked;
-    let forged = Certificates::from_parts(parts).unwrap();
+    let forged = Certificates::try_from(parts).unwrap();
     assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
 }
 
@@ -135,7 +131,8 @@ fn welding_undoes_splitting() {
         let modes = Modes::new(modes.rank(), u).unwrap();
         let split = ReducedModel::with_metric(split, modes, whole.metric().clone()).unwrap();
         for neighbours in [Neighbours::Exclude, Neighbours::IncludeOneVertex] {
-            let scope = |weld| Scope { filter: ContactFilter::new(neighbours, weld), ..Scope::of(&whole) };
+            let scope =
+                |weld| Scope { filter: ContactFilter::new(neighbours).weld(weld), ..Scope::of(&whole) };
             let query = |model, weld| Query::without_certificates(model, scope(weld), Method::Traditional);
             // The whole one may have equal vertices of its own.
             let (mut a, mut b) = (query(&whole, true).unwrap(), query(&split, true).unwrap());
@@ -163,24 +160,24 @@ fn rest_collisions_can_be_ignored() {
     let mut seen = 0;
     for seed in 0..cases(200) {
         let model = random_model(seed);
-        let options = CertifyOptions { epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().epsilon(0.9).threads(1);
         let mut plain = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
         let rest = plain.discrete(&vec![0.0; model.rank()]).unwrap().to_vec();
         if rest.is_empty() || model.rank() < 3 {
             continue;
         }
         seen += 1;
-        let options = CertifyOptions { ignore_rest: true, ..options };
+        let options = options.ignore_rest(true);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         assert_eq!((certificates.filter().ignored(), certificates.exceptions()), (&rest[..], &[][..]));
         let filter = ContactFilter::default().ignoring_rest(&model).unwrap();
         assert_eq!(certificates.filter(), &filter);
-        assert!(certificates.check_filter(&ContactFilter::default()).is_err());
+        assert!(check_filter(&certificates, &ContactFilter::default()).is_err());
         let mut query = Query::new(&model, &certificates).unwrap();
         let random = &mut Random::new(seed);
         for _ in 0..5 {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 1.0)).collect();
-            let q = certificates.metric().unscaled(&z);
+            let q = certificates.metric().unscaled(&z).unwrap();
             let Ok(all) = plain.discrete(&q) else { continue };
             let mut expected = all.to_vec();
             expected.retain(|pair| !rest.contains(pair));
@@ -195,6 +192,17 @@ fn ignored_pairs_are_a_sorted_set() {
     let filter = ContactFilter::default().ignoring([(5, 2), (1, 7), (2, 5), (0, 3)]);
     assert_eq!(filter.ignored(), [(0, 3), (1, 7), (2, 5)]);
     assert_eq!(filter.clone().ignoring([]), filter);
-    let by_name: BTreeMap<_, _> = Neighbours::ALL.map(|n| (n.name(), n)).into();
-    assert!(by_name.iter().all(|(name, n)| Neighbours::from_name(name) == Some(*n)));
+}
+
+#[test]
+fn values_are_read_by_their_names() {
+    for value in [Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded] {
+        assert_eq!(value.to_string().parse(), Ok(value));
+    }
+    let error = "some".parse::<Neighbours>().unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "'some' is no rule for neighbours: use one of exclude, include-one-vertex, include-folded"
+    );
+    assert_eq!(format!("{:>8}", Method::BdTree), "  bdtree");
 }

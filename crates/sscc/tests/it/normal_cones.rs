@@ -3,13 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
+use sscc::parts::Scope;
 use sscc::{
-    Certificates, CertifyOptions, ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, Scope,
-    TriMesh,
+    Certificates, CertifyOptions, ContactFilter, Method, Modes, Neighbours, Query, ReducedModel, TriMesh,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, Soup, random_model, random_options};
+use crate::common::{Random, Soup, random_choices, random_model};
 
 /// A sheet over `[0, 1]^2`, mapped.
 fn sheet((m, n): (u32, u32), map: impl Fn(f64, f64) -> DVec3) -> Soup {
@@ -118,7 +118,7 @@ fn cones_with_contours_find_what_brute_force_finds() {
         let soup = surface(random, kind);
         let model = bent(random, soup);
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 6 % 2];
-        let filter = ContactFilter::new(neighbours, seed / 12 % 2 == 0);
+        let filter = ContactFilter::new(neighbours).weld(seed / 12 % 2 == 0);
         let [mut oracle, mut plain, mut exact] =
             [Method::BruteForce, Method::Traditional, Method::NormalCones]
                 .map(|method| of(&model, filter.clone(), method));
@@ -141,14 +141,14 @@ fn small_models_of_every_kind_agree() {
     let mut fewer = 0;
     for seed in 0..cases(400) {
         let model = random_model(seed);
-        let filter = random_options(seed, &model).filter.unwrap();
+        let filter = random_choices(seed, &model).filter;
         let [mut oracle, mut plain, mut exact] =
             [Method::BruteForce, Method::Traditional, Method::NormalCones]
                 .map(|method| of(&model, filter.clone(), method));
         let random = &mut Random::new(seed + 90_000);
         for size in [0.0, 0.01, 0.3, 2.0] {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * size).collect();
-            let q = model.metric().unscaled(&z);
+            let q = model.metric().unscaled(&z).unwrap();
             let Ok(expected) = oracle.discrete(&q) else { continue };
             assert_eq!(exact.discrete(&q).unwrap(), expected, "model {seed}, {size}");
             plain.discrete(&q).unwrap();
@@ -230,7 +230,7 @@ fn noise_takes_cones_away_and_leaves_radii() {
     let mut random = Random::new(4);
     let models = [tube(|_| 0.25), tube(|_| 0.25 + 0.05 * random.signed())];
     let [(radius, culled), (rough_radius, rough_culled)] = models.map(|model| {
-        let options = CertifyOptions { budget: 0, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let [traditional, cones] = [Method::Traditional, Method::NormalCones].map(|method| {
             let mut query = Query::with_method(&model, &certificates, method).unwrap();

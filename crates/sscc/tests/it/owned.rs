@@ -4,9 +4,9 @@ use std::fmt::Debug;
 use std::thread;
 
 use glam::DVec3;
+use sscc::parts::{PosedShape, Scope, SweptShape};
 use sscc::{
-    Answer, Certificates, CertifyOptions, ContactFilter, Detector, KineticQuery, Pair, PosedShape, Query,
-    ReducedModel, Scope, SweptShape,
+    Answer, Certificates, CertifyOptions, ContactFilter, Detector, KineticQuery, Pair, Query, ReducedModel,
 };
 
 use crate::common::{Random, random_model};
@@ -84,8 +84,7 @@ fn public_types_are_owned() {
     is_owned::<Answer>();
     is_owned::<sscc::AuditReport>();
     is_owned::<sscc::CancelToken>();
-    is_owned::<sscc::ContactCurves>();
-    is_owned::<sscc::DetectorStatistics>();
+    is_owned::<sscc::parts::ContactCurves>();
     is_owned::<sscc::Error>();
     is_owned::<sscc::FreeSamples>();
     is_owned::<sscc::Impact>();
@@ -96,5 +95,5 @@ fn public_types_are_owned() {
     is_owned::<sscc::Sweep>();
     is_owned::<sscc::TriMesh>();
     is_owned::<sscc::TriangleGroups>();
-    is_owned::<sscc::hierarchy::Hierarchy>();
+    is_owned::<sscc::parts::Hierarchy>();
 }

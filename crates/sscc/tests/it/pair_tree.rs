@@ -1,10 +1,8 @@
 //! The certified pair tree: what it may be read as, and what it must not.
 
 use glam::DVec3;
-use sscc::{
-    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Query, ReducedModel,
-    TriMesh,
-};
+use sscc::parts::{CertificateParts, PairTree};
+use sscc::{Certificates, CertifyOptions, Error, Method, Modes, Query, ReducedModel, TriMesh};
 
 use crate::common::pair_trees::{LAST, START, edited};
 
@@ -28,12 +26,12 @@ fn strips() -> ReducedModel {
 }
 
 fn certificates(model: &ReducedModel) -> Certificates {
-    let options = CertifyOptions { budget: 16, threads: Some(1), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(16).threads(1);
     Certificates::compute(model, &options, &()).unwrap()
 }
 
 fn with_tree(certificates: &Certificates, pair_tree: PairTree) -> Result<Certificates, Error> {
-    Certificates::from_parts(CertificateParts { pair_tree, ..certificates.parts().clone() })
+    Certificates::try_from(CertificateParts { pair_tree, ..certificates.parts().clone() })
 }
 
 /// A radius and its link.
@@ -58,7 +56,7 @@ fn what_is_apart_at_rest_is_stored() {
         let expected = oracle.discrete(&q).unwrap();
         assert_eq!(expected.is_empty(), q[0] != 1.0);
         assert_eq!(ask(&model, &good, &q), expected);
-        assert!(oracle.norm() < tree.limit());
+        assert!(oracle.statistics().norm < tree.limit());
     }
     // Without any of its pairs the tree would say that they never meet: it is what is read.
     let all: Vec<usize> = (0..tree.len()).collect();
@@ -75,10 +73,10 @@ fn absence_means_nothing_at_the_limit() {
     let q = [1.0, 0.0];
     let mut oracle = Query::with_method(&model, &good, Method::BruteForce).unwrap();
     let expected = oracle.discrete(&q).unwrap().to_vec();
-    let norm = oracle.norm();
+    let norm = oracle.statistics().norm;
     assert!(!expected.is_empty());
     let nothing_below = |limit: f64| {
-        let starts = vec![u32::MAX; good.hierarchy().nodes().len()];
+        let starts = vec![u32::MAX; good.parts().hierarchy.nodes().len()];
         with_tree(&good, PairTree::from_parts(limit, starts, [])).unwrap()
     };
     for limit in [norm, norm.next_down()] {
@@ -95,8 +93,8 @@ fn a_radius_reached_is_no_certificate() {
     let tree = &good.parts().pair_tree;
     let q = [1.0, 0.0];
     let expected = ask(&model, &good, &q);
-    let norm = good.norm(&q) as f32;
-    assert!(f64::from(norm) <= good.norm(&q) && f64::from(norm.next_up()) > good.norm(&q));
+    let norm = good.norm(&q).unwrap() as f32;
+    assert!(f64::from(norm) <= good.norm(&q).unwrap() && f64::from(norm.next_up()) > good.norm(&q).unwrap());
     let all_at = |radius: f32| edited(tree, tree.limit(), &[], |_, _| radius);
     assert_eq!(ask(&model, &with_tree(&good, all_at(norm)).unwrap(), &q), expected);
     assert!(ask(&model, &with_tree(&good, all_at(norm.next_up())).unwrap(), &q).is_empty());
@@ -107,11 +105,10 @@ fn a_radius_reached_is_no_certificate() {
 fn a_parent_bounded_better_than_its_children_pushes_its_radius_down() {
     for seed in 0..40 {
         let model = crate::common::random_model(seed);
-        let options =
-            CertifyOptions { budget: 16, epsilon: 0.9, threads: Some(1), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(16).epsilon(0.9).threads(1);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(301)) else { continue };
         // Refused otherwise.
-        assert!(Certificates::from_parts(certificates.parts().clone()).is_ok(), "model {seed}");
+        assert!(Certificates::try_from(certificates.parts().clone()).is_ok(), "model {seed}");
     }
 }
 
@@ -121,7 +118,7 @@ fn the_budget_bounds_the_pairs() {
     let triangles = model.mesh().faces().len();
     let mut last = (0, 0.0);
     for budget in [0, 8, 64, 4096] {
-        let options = CertifyOptions { budget, threads: Some(1), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(budget).threads(1);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let tree = &certificates.parts().pair_tree;
         assert!(tree.bytes() <= budget * triangles && tree.bytes() == 8 * tree.len());
@@ -157,7 +154,7 @@ fn damaged_trees_are_refused() {
     assert_eq!(of_starts(&|s| s.clear()), "pair tree: the number of starts is not the number of nodes");
     assert_eq!(of_starts(&|s| s[0] = 1), "pair tree: lists of siblings are out of order");
     assert!(of_starts(&|s| s[0] = u32::MAX).starts_with("pair tree: "));
-    let leaf = good.hierarchy().nodes().iter().position(|node| node.is_leaf()).unwrap();
+    let leaf = good.parts().hierarchy.nodes().iter().position(|node| node.is_leaf()).unwrap();
     assert!(of_starts(&|s| s[leaf] = 0).starts_with("pair tree: "));
     let with = |change: &dyn Fn(&mut Vec<Entry>)| {
         let mut entries = entries.clone();

@@ -1,9 +1,10 @@
 //! Queries by the certified pair tree against brute force: what it leaves out must never count.
 
 use glam::DVec3;
+use sscc::parts::{CertificateParts, PairTree};
 use sscc::{
-    CertificateParts, Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours,
-    PairTree, Query, ReducedModel, TriMesh,
+    Certificates, CertifyOptions, ContactFilter, Error, Method, Modes, Neighbours, Query, ReducedModel,
+    TriMesh,
 };
 use sscc_testing::cases;
 
@@ -22,12 +23,10 @@ fn traversal_agrees_with_brute_force() {
         let random = &mut Random::new(seed + 500);
         let model = winding_strip(random, seed);
         let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize % 2];
-        let options = CertifyOptions {
-            epsilon: 0.5,
-            filter: Some(ContactFilter::new(neighbours, seed.is_multiple_of(3))),
-            budget: [512, 40, 4][seed as usize / 2 % 3],
-            ..CertifyOptions::default()
-        };
+        let options = CertifyOptions::default()
+            .epsilon(0.5)
+            .filter(ContactFilter::new(neighbours).weld(seed.is_multiple_of(3)))
+            .budget([512, 40, 4][seed as usize / 2 % 3]);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         with_exceptions += usize::from(!certificates.exceptions().is_empty());
         let tree = &certificates.parts().pair_tree;
@@ -37,7 +36,7 @@ fn traversal_agrees_with_brute_force() {
         let radii: Vec<f64> = tree.entries().map(|(radius, _)| f64::from(radius)).collect();
         for case in 0..12 {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed()).collect();
-            let unit = certificates.norm(&model.metric().unscaled(&z));
+            let unit = certificates.norm(&model.metric().unscaled(&z).unwrap()).unwrap();
             let goal = match case {
                 0 => tree.limit() * (1.0 - 1e-12),
                 1 => tree.limit() * (1.0 + 1e-12),
@@ -45,13 +44,13 @@ fn traversal_agrees_with_brute_force() {
                 3..6 if !radii.is_empty() => radii[random.below(radii.len())] * (1.0 + 1e-12),
                 _ => tree.limit().max(certificates.root_radius()) * random.uniform(),
             };
-            let q = scaled(&model.metric().unscaled(&z), goal / unit);
+            let q = scaled(&model.metric().unscaled(&z).unwrap(), goal / unit);
             let expected = oracle.discrete(&q).unwrap().to_vec();
             assert_eq!(certified.discrete(&q).unwrap(), expected, "model {seed}, case {case}");
             assert_eq!(traditional.discrete(&q).unwrap(), expected, "model {seed}, case {case}");
-            let walked = certified.norm() < tree.limit() && !certified.statistics().root_certified;
+            let walked = certified.statistics().norm < tree.limit() && !certified.statistics().root_certified;
             below += usize::from(walked);
-            beyond += usize::from(certified.norm() >= tree.limit());
+            beyond += usize::from(certified.statistics().norm >= tree.limit());
             hits += if walked { expected.len() } else { 0 };
             for limit in [1, 3, expected.len().max(1)] {
                 let some = certified.discrete_at_most(&q, limit).unwrap();
@@ -102,7 +101,7 @@ fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool
     };
     let mut node_radii = vec![radius; parts.node_radii.len()];
     node_radii[0] = 0.0;
-    Certificates::from_parts(CertificateParts {
+    Certificates::try_from(CertificateParts {
         node_radii,
         root_pair_radii: vec![0.0; parts.root_pair_radii.len()],
         pair_tree,
@@ -115,11 +114,11 @@ fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool
 #[test]
 fn norms_equal_to_a_radius_are_not_certified() {
     let model = sheets();
-    let options = CertifyOptions { budget: 1 << 16, epsilon: 0.5, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(1 << 16).epsilon(0.5);
     let computed = Certificates::compute(&model, &options, &()).unwrap();
     // A q at which the sheets collide, whose norm is a number in single precision.
     let near = 1.25_f64.to_bits() - 64;
-    let norm = |q: f64| computed.norm(&[q]);
+    let norm = |q: f64| computed.norm(&[q]).unwrap();
     let single = |q: &f64| f64::from(norm(*q) as f32) == norm(*q);
     let q = (0..128).map(|i| f64::from_bits(near + i)).find(single).unwrap();
     let norm = norm(q);

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
-use sscc::{intersect_triangle_triangle, limits, penetration_triangle_triangle};
+use sscc::parts::penetration_triangle_triangle;
+use sscc::{intersect_triangle_triangle, limits};
 use sscc_testing::{cases, threshold};
 
 use crate::common::Random;

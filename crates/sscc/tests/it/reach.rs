@@ -1,20 +1,19 @@
 //! Radii beyond the paper's global radius: they are proofs, they end where the reach says, and a budget that ends before them
 //! does not depend on the reach.
 
-use sscc::{
-    Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Query, ReducedModel, Scope,
-};
+use sscc::parts::{Scope, is_within_reach};
+use sscc::{Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Query, ReducedModel};
 use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, winding_strip};
 
 fn certify(model: &ReducedModel, options: &CertifyOptions, reach: f64) -> Certificates {
-    Certificates::compute(model, &CertifyOptions { reach, ..options.clone() }, &()).unwrap()
+    Certificates::compute(model, &options.clone().reach(reach), &()).unwrap()
 }
 
 /// The global radius of the paper.
 fn global_radius(model: &ReducedModel, options: &CertifyOptions) -> f64 {
-    certify(model, &CertifyOptions { budget: 0, epsilon: 0.9, ..options.clone() }, 1.0).global_radius()
+    certify(model, &options.clone().budget(0).epsilon(0.9), 1.0).global_radius()
 }
 
 /// The same shape with modes that hardly move one side of it: radii of nodes there are beyond the global radius.
@@ -31,15 +30,15 @@ fn stiff_on_one_side(model: &ReducedModel) -> ReducedModel {
 fn options(seed: u64, model: &ReducedModel, random: &mut Random) -> CertifyOptions {
     let (mesh, modes, rank) = (model.mesh(), model.modes(), model.rank());
     let metric = match seed % 4 {
-        0 => Metric::displacement(mesh, modes),
-        1 => Metric::mass(mesh, modes),
+        0 => Metric::displacement(mesh, modes).unwrap(),
+        1 => Metric::mass(mesh, modes).unwrap(),
         2 => {
-            let scales = Metric::displacement(mesh, modes).scales();
+            let scales = Metric::displacement(mesh, modes).unwrap().scales();
             let scales = scales.iter().map(|scale| scale * random.power(-0.5, 0.5)).collect();
             Metric::from_scales(MetricKind::Given, scales).unwrap()
         }
         _ => {
-            let scales = Metric::displacement(mesh, modes).scales();
+            let scales = Metric::displacement(mesh, modes).unwrap().scales();
             let entry = |i: usize, j: usize| scales[i] * scales[j] * if i == j { 1.0 } else { 0.3 };
             let matrix: Vec<f64> = (0..rank * rank).map(|e| entry(e / rank, e % rank)).collect();
             Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
@@ -50,7 +49,7 @@ fn options(seed: u64, model: &ReducedModel, random: &mut Random) -> CertifyOptio
         scales.iter().map(|scale| 0.02 * random.signed() / scale).collect()
     });
     let budget = if seed % 5 == 4 { 2 } else { 1 << 12 };
-    CertifyOptions { epsilon: 0.5, metric: Some(metric), center, budget, ..CertifyOptions::default() }
+    CertifyOptions::default().epsilon(0.5).metric(metric).center(center).budget(budget)
 }
 
 /// The q in a random direction whose norm is just below a radius; none where rounding leaves no room.
@@ -61,7 +60,7 @@ fn just_inside(scope: &Scope, rank: usize, radius: f64, random: &mut Random) -> 
         let z: Vec<f64> = z.iter().map(|z| z / length * radius * (1.0 - less)).collect();
         let q = at(scope, &z);
         let offset: Vec<f64> = q.iter().zip(&scope.center).map(|(q, center)| q - center).collect();
-        let norm = scope.metric.norm(&offset);
+        let norm = scope.metric.norm(&offset).unwrap();
         (norm < radius).then_some((q, norm))
     })
 }
@@ -76,9 +75,13 @@ fn radii_beyond_the_global_radius_are_sound() {
         let options = options(seed, &model, random);
         let (global, reach) = (global_radius(&model, &options), random.power(0.1, 1.2));
         let certificates = certify(&model, &options, reach);
-        let (parts, hierarchy) = (certificates.parts(), certificates.hierarchy());
+        let (parts, hierarchy) = (certificates.parts(), &certificates.parts().hierarchy);
         let (scope, tree) = (&parts.scope, &parts.pair_tree);
-        let kinds = [tree.limit() > global, scope.metric.dense_factor().is_some(), options.center.is_some()];
+        let kinds = [
+            tree.limit() > global,
+            scope.metric.dense_factor().is_some(),
+            scope.center.iter().any(|c| *c != 0.0),
+        ];
         scopes.iter_mut().zip(kinds).for_each(|(count, is)| *count += u32::from(is));
         let entries = tree.entries().map(|(radius, _)| f64::from(radius));
         let mut radii: Vec<f64> = entries.chain(parts.node_radii.iter().copied()).collect();
@@ -117,9 +120,9 @@ fn radii_end_where_the_reach_says() {
     for seed in 0..cases(24_u64) {
         let random = &mut Random::new(seed + 8_000_000);
         let model = winding_strip(random, seed);
-        let options = CertifyOptions { budget: 1 << 12, ..options(seed, &model, random) };
+        let options = options(seed, &model, random).budget(1 << 12);
         let global = global_radius(&model, &options);
-        let without_tree = certify(&model, &CertifyOptions { budget: 0, ..options.clone() }, 8.0);
+        let without_tree = certify(&model, &options.clone().budget(0), 8.0);
         assert_eq!(without_tree.global_radius(), global);
         for reach in [1.0, 1.5, 8.0] {
             let certificates = certify(&model, &options, reach);
@@ -127,8 +130,8 @@ fn radii_end_where_the_reach_says() {
             assert!(global <= cap && cap <= reach * global, "model {seed}");
             assert!(parts.pair_tree.limit() <= cap);
             assert!(parts.node_radii.iter().chain(&parts.root_pair_radii).all(|radius| *radius <= cap));
-            assert!(certificates.is_within_reach(&model, reach));
-            assert_eq!(certificates.is_within_reach(&model, 1.0), cap == global);
+            assert!(is_within_reach(&certificates, &model, reach));
+            assert_eq!(is_within_reach(&certificates, &model, 1.0), cap == global);
             farther += usize::from(cap > global);
             // A budget that is never used up: up to the reach, rounded down to single precision.
             at_the_end += usize::from(cap > reach * global * (1.0 - 1e-6));
@@ -146,8 +149,8 @@ fn a_budget_that_ends_early_does_not_depend_on_the_reach() {
         let model = winding_strip(random, seed);
         let options = options(seed, &model, random);
         for budget in [1, 2, 6, 24] {
-            let [paper, near, far] = [1.0, 1.3, 16.0]
-                .map(|reach| certify(&model, &CertifyOptions { budget, ..options.clone() }, reach));
+            let [paper, near, far] =
+                [1.0, 1.3, 16.0].map(|reach| certify(&model, &options.clone().budget(budget), reach));
             let limits = [&paper, &near, &far].map(|c| c.parts().pair_tree.limit());
             if limits[0] < paper.global_radius() {
                 assert!(paper == near && paper == far, "model {seed}, budget {budget}: {limits:?}");
@@ -165,7 +168,7 @@ fn a_budget_that_ends_early_does_not_depend_on_the_reach() {
 fn a_reach_out_of_range_is_refused() {
     let model = winding_strip(&mut Random::new(1), 1);
     for reach in [0.999, 0.0, -2.0, f64::NAN, f64::INFINITY] {
-        let options = CertifyOptions { reach, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().reach(reach);
         let error = Certificates::compute(&model, &options, &()).unwrap_err();
         assert!(matches!(error, Error::Option { name: "reach", .. }), "{error}");
     }

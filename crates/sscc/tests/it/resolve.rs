@@ -15,7 +15,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
     for seed in 0..cases(240) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 5_000_000);
-        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.5);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else {
             continue;
         };
@@ -23,7 +23,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
         let mut query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let all = seed % 3 == 0;
-        let options = ResolveOptions { start: None, all };
+        let options = ResolveOptions::default().all(all);
         let counts = |pair: &Pair| all || scope.exceptions.binary_search(pair).is_err();
         for _ in 0..2 {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 1.0)).collect();
@@ -44,13 +44,13 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
                 continue;
             }
             let way: Vec<f64> = free.iter().zip(&q).map(|(a, b)| a - b).collect();
-            let distance = scope.metric.norm(&way);
+            let distance = scope.metric.norm(&way).unwrap();
             assert!((found.change - distance).abs() <= 1e-9 * distance, "model {seed}");
             assert!(found.change <= found.safe_scale_change, "model {seed}: {found:?}");
             // Stepping back by the safe scale leaves no less.
             if scope.exceptions.is_empty() {
                 let scale = query.safe_scale(&q).unwrap().min(1.0);
-                let left = (1.0 - scale) * certificates.norm(&q);
+                let left = (1.0 - scale) * certificates.norm(&q).unwrap();
                 assert!(found.safe_scale_change <= left * (1.0 + 1e-6), "model {seed}: {found:?} {left}");
             }
             resolved += 1;
@@ -84,7 +84,7 @@ fn a_walk_slides_along_an_obstacle() {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     let resolve = |query: &mut Query, q: [f64; 2], start: Option<Vec<f64>>| {
-        query.resolve(&q, &ResolveOptions { start, all: false }).unwrap()
+        query.resolve(&q, &ResolveOptions::default().start(start).all(false)).unwrap()
     };
     // The ray ends at (1, 0.4); the tip stays above the plate, and reaches the shift.
     let found = resolve(&mut query, [2.5, 1.0], None);
@@ -107,7 +107,7 @@ fn invalid_input_is_refused() {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     let mut resolve = |q: &[f64], start: Option<Vec<f64>>| {
-        query.resolve(q, &ResolveOptions { start, all: false }).map(|_| ()).unwrap_err()
+        query.resolve(q, &ResolveOptions::default().start(start).all(false)).map(|_| ()).unwrap_err()
     };
     assert!(matches!(resolve(&[1.0], None), Error::CoordinatesLength { found: 1, rank: 2 }));
     assert!(matches!(resolve(&[1.0, f64::NAN], None), Error::CoordinatesValue { index: 1, .. }));
@@ -127,23 +127,23 @@ fn invalid_input_is_refused() {
 #[test]
 fn exceptions_are_left_unless_all_count() {
     let model = spike();
-    let options = CertifyOptions { center: Some(vec![2.0, 0.0]), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().center(vec![2.0, 0.0]);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     assert_eq!(certificates.exceptions(), [(0, 1)]);
     let mut query = Query::new(&model, &certificates).unwrap();
     let q = [2.5, 0.5];
     let found = query.resolve(&q, &ResolveOptions::default()).unwrap();
     assert_eq!((found.q.as_deref(), found.change), (Some(&q[..]), 0.0));
-    let all = ResolveOptions { all: true, ..ResolveOptions::default() };
+    let all = ResolveOptions::default().all(true);
     let found = query.resolve(&q, &all).unwrap();
     assert!(!found.is_resolved() && found.change.is_infinite(), "{found:?}");
     // The centre collides, but q is free.
     assert!(query.resolve(&[0.5, 0.5], &all).unwrap().is_resolved());
-    let from_above = ResolveOptions { start: Some(vec![0.0, 0.0]), all: true };
+    let from_above = ResolveOptions::default().start(vec![0.0, 0.0]).all(true);
     let found = query.resolve(&q, &from_above).unwrap();
     assert!(query.discrete(&found.q.unwrap()).unwrap().is_empty());
     // Where nothing is left out, a centre that collides is no start, either.
-    let options = CertifyOptions { max_exceptions: Some(0), ..options };
+    let options = options.max_exceptions(0);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     assert!(!query.resolve(&q, &ResolveOptions::default()).unwrap().is_resolved());

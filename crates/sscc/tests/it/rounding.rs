@@ -2,9 +2,10 @@
 //! norms that equal a radius.
 
 use glam::DVec3;
+use sscc::parts::Scope;
 use sscc::{
     Certificates, CertifyOptions, KineticQuery, Method, Metric, MetricKind, Modes, Query, ReducedModel,
-    Scope, TriMesh,
+    TriMesh,
 };
 
 use crate::common::Random;
@@ -33,7 +34,7 @@ fn stacked(times: u32, heights: [f64; 2], modes: &[[f64; 2]], metric: Option<Met
 /// The same certificates with and without a pair tree.
 fn certify(model: &ReducedModel, center: Option<Vec<f64>>) -> [Certificates; 2] {
     [0, 1 << 10].map(|budget| {
-        let options = CertifyOptions { budget, center: center.clone(), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(budget).center(center.clone());
         Certificates::compute(model, &options, &()).unwrap()
     })
 }
@@ -112,7 +113,7 @@ fn dense_metrics_bound_cancellation() {
         let certificates = certify(&model, None);
         for exponent in 0..60 {
             let z = 2.0_f64.powi(exponent) / large;
-            let (collides, proven) = ask(&model, &certificates, &metric.unscaled(&[0.0, 0.0, z]));
+            let (collides, proven) = ask(&model, &certificates, &metric.unscaled(&[0.0, 0.0, z]).unwrap());
             certified += usize::from(proven);
             colliding += usize::from(collides);
         }
@@ -131,7 +132,7 @@ fn kinetic_margins_know_that_positions_far_from_rest_are_rounded() {
         let unit = far.next_up() - far;
         let model = stacked(4, [0.0, 0.0], &[[0.0, 1.0], [1.0, 1.0]], Some(Metric::identity(2)));
         // At rest they touch, and further up they are apart again: certificates about a place nearby.
-        let options = CertifyOptions { center: Some(vec![1e3 * unit, 0.0]), ..CertifyOptions::default() };
+        let options = CertifyOptions::default().center(vec![1e3 * unit, 0.0]);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
         let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
@@ -153,13 +154,12 @@ fn a_radius_of_nothing_proves_nothing_at_the_centre() {
     for modes in [[0.0, 1.0], [1.0, 1.0]] {
         let model = stacked(40, [0.0, 0.0], &[modes], None);
         for budget in [0, 16, 1 << 12] {
-            let options =
-                CertifyOptions { max_exceptions: Some(0), budget, epsilon: 0.5, ..CertifyOptions::default() };
+            let options = CertifyOptions::default().max_exceptions(0).budget(budget).epsilon(0.5);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             assert!(certificates.root_radius() == 0.0 && certificates.exceptions().is_empty());
             let mut query = Query::new(&model, &certificates).unwrap();
             assert_eq!(query.discrete(&[0.0]).unwrap().len(), 40, "{modes:?} {budget}");
-            assert!(query.norm() == 0.0 && !query.statistics().root_certified);
+            assert!(query.statistics().norm == 0.0 && !query.statistics().root_certified);
             assert_eq!(query.continuous(&[0.0], &[0.0]).unwrap().len(), 40);
         }
     }

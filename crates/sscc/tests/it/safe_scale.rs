@@ -1,10 +1,8 @@
 //! How far one can go: safe scales and the root's ellipsoid.
 
 use glam::DVec3;
-use sscc::{
-    CertificateParts, Certificates, CertifyOptions, Error, Method, Modes, PairTree, Query, ReducedModel,
-    Scope, TriMesh,
-};
+use sscc::parts::{CertificateParts, PairTree, Scope};
+use sscc::{Certificates, CertifyOptions, Error, Method, Modes, Query, ReducedModel, TriMesh};
 use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, after, at, random_model, random_options, winding_strip};
@@ -15,7 +13,7 @@ fn the_way_to_a_safe_scale_is_free() {
     for seed in 0..cases(400) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 7_000_000);
-        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.5);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let scope = &certificates.parts().scope;
         let mut query = Query::new(&model, &certificates).unwrap();
@@ -28,7 +26,7 @@ fn the_way_to_a_safe_scale_is_free() {
                 |t: f64| -> Vec<f64> { scope.center.iter().zip(&q).map(|(c, q)| c + t * (q - c)).collect() };
             assert!(scale >= 0.0, "model {seed}: {scale}");
             tried += 1;
-            let root = certificates.root_radius() / query.norm();
+            let root = certificates.root_radius() / query.statistics().norm;
             if scope.exceptions.is_empty() {
                 assert!(scale >= root * (1.0 - 1e-12), "model {seed}: {scale} {root}");
                 larger += usize::from(scale > 1.01 * root);
@@ -66,13 +64,13 @@ fn the_pair_tree_shortens_no_scale() {
     for seed in 0..cases(40) {
         let random = &mut Random::new(seed + 9_000_000);
         let model = winding_strip(random, seed);
-        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.5);
         let full = Certificates::compute(&model, &options, &()).unwrap();
         if full.parts().pair_tree.is_empty() {
             continue;
         }
         let parts = CertificateParts { pair_tree: PairTree::default(), ..full.parts().clone() };
-        let paper = Certificates::from_parts(parts).unwrap();
+        let paper = Certificates::try_from(parts).unwrap();
         let mut queries = [&paper, &full].map(|certificates| Query::new(&model, certificates).unwrap());
         for _ in 0..5 {
             let z: Vec<f64> = (0..model.rank()).map(|_| random.signed() * random.power(-2.0, 2.0)).collect();
@@ -95,7 +93,7 @@ fn scales_of_simple_shapes() {
     let lowered = |row: usize, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     let model = ReducedModel::new(mesh, Modes::from_matrix(6, 1, lowered).unwrap()).unwrap();
     let within = |reach| {
-        let options = CertifyOptions { reach, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().reach(reach);
         Certificates::compute(&model, &options, &()).unwrap()
     };
     let certificates = within(1.0);
@@ -128,7 +126,7 @@ fn clamping_ends_inside_the_root_ellipsoid() {
     for seed in 0..cases(150) {
         let model = random_model(seed);
         let random = &mut Random::new(seed + 8_000_000);
-        let options = CertifyOptions { epsilon: 0.9, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.9);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(151)) else { continue };
         let scope = &certificates.parts().scope;
         let mut query = Query::new(&model, &certificates).unwrap();

@@ -1,9 +1,10 @@
 //! Sweeps of single weights, against brute force at many weights.
 
 use glam::DVec3;
+use sscc::parts::Scope;
 use sscc::{
-    Certificates, CertifyOptions, Error, Impact, Method, Modes, MovingTriangle, Query, ReducedModel, Scope,
-    Sweep, SweepOutcome, TriMesh,
+    Certificates, CertifyOptions, Error, Impact, Method, ModeRange, Modes, MovingTriangle, Query,
+    ReducedModel, Sweep, SweepOutcome, TriMesh,
 };
 use sscc_testing::{cases, distance, threshold};
 
@@ -79,7 +80,7 @@ fn brute_force_finds_nothing_below_first_free() {
     for seed in 0..cases(200) {
         let model = random_model(seed + 40_000);
         let random = &mut Random::new(seed + 9_100_000);
-        let options = CertifyOptions { epsilon: 0.5, ..random_options(seed, &model) };
+        let options = random_options(seed, &model).epsilon(0.5);
         let limit = after(151);
         let Ok(certificates) = Certificates::compute(&model, &options, &limit) else { continue };
         let scope: &Scope = &certificates.parts().scope;
@@ -90,9 +91,9 @@ fn brute_force_finds_nothing_below_first_free() {
         let query = Query::new(&model, &certificates).unwrap();
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let mode = random.below(model.rank());
-        let size = model.weight_limit(mode) * random.power(-0.7, 0.5);
-        let range = [q[mode] - size, q[mode] + size];
-        let Ok(sweeps) = query.sweep_modes(&q, &[(mode, range)], Some(1), &()) else { continue };
+        let size = model.weight_limits()[mode] * random.power(-0.7, 0.5);
+        let range = ModeRange { mode, low: q[mode] - size, high: q[mode] + size };
+        let Ok(sweeps) = query.sweep_modes(&q, &[range], Some(1), &()) else { continue };
         for sweep in &sweeps {
             check(sweep, &model, &q, &mut oracle, weights);
             weighed += 1;
@@ -219,14 +220,14 @@ fn modes_are_swept_both_ways_from_their_weights() {
     let query = Query::new(&model, &certificates).unwrap();
     let rank = model.rank();
     let q = vec![0.01; rank];
-    let ranges: Vec<(usize, [f64; 2])> = (0..rank).map(|k| (k, [-1.0, 2.0])).collect();
+    let ranges: Vec<ModeRange> = (0..rank).map(|mode| ModeRange { mode, low: -1.0, high: 2.0 }).collect();
     let sweeps = query.sweep_modes(&q, &ranges, None, &()).unwrap();
     assert_eq!(sweeps, query.sweep_modes(&q, &ranges, Some(1), &()).unwrap());
     let ways: Vec<(usize, f64, f64)> = sweeps.iter().map(|s| (s.mode, s.from, s.to)).collect();
     let expected: Vec<_> = (0..rank).flat_map(|k| [(k, 0.01, 2.0), (k, 0.01, -1.0)]).collect();
     assert_eq!(ways, expected);
-    let ends = |range: [f64; 2]| -> Vec<(f64, f64)> {
-        let found = query.sweep_modes(&q, &[(0, range)], None, &()).unwrap();
+    let ends = |[low, high]: [f64; 2]| -> Vec<(f64, f64)> {
+        let found = query.sweep_modes(&q, &[ModeRange { mode: 0, low, high }], None, &()).unwrap();
         found.iter().map(|s| (s.from, s.to)).collect()
     };
     assert_eq!(ends([0.01, 0.5]), [(0.01, 0.5)]);
@@ -234,11 +235,11 @@ fn modes_are_swept_both_ways_from_their_weights() {
     assert_eq!(ends([0.1, 0.5]), [(0.1, 0.5)]);
     assert_eq!(ends([-0.5, -0.1]), [(-0.1, -0.5)]);
 
-    for range in [[1.0, 1.0], [1.0, 0.0], [f64::NAN, 1.0], [0.0, f64::INFINITY], [f64::MIN, f64::MAX]] {
-        let refused = query.sweep_modes(&q, &[(0, range)], None, &());
+    for [low, high] in [[1.0, 1.0], [1.0, 0.0], [f64::NAN, 1.0], [0.0, f64::INFINITY], [f64::MIN, f64::MAX]] {
+        let refused = query.sweep_modes(&q, &[ModeRange { mode: 0, low, high }], None, &());
         assert!(matches!(refused, Err(Error::SweepRange { mode: 0, .. })), "{refused:?}");
     }
-    let refused = query.sweep_modes(&q, &[(rank, [0.0, 1.0])], None, &());
+    let refused = query.sweep_modes(&q, &[ModeRange { mode: rank, low: 0.0, high: 1.0 }], None, &());
     assert_eq!(refused, Err(Error::ModeIndex { mode: rank, rank }));
     assert!(matches!(query.sweep_modes(&[], &ranges, None, &()), Err(Error::CoordinatesLength { .. })));
     let mut single = query.clone();
@@ -251,6 +252,6 @@ fn modes_are_swept_both_ways_from_their_weights() {
 #[test]
 fn the_limit_of_a_weight_is_half_the_diagonal() {
     let model = two_triangles(2.0, DVec3::ONE, |v| if v < 3 { DVec3::ZERO } else { DVec3::Y * 3.0 });
-    assert!((model.weight_limit(0) - 6.0_f64.sqrt() / 6.0).abs() < 1e-15);
-    assert!(two_triangles(2.0, DVec3::ONE, |_| DVec3::ZERO).weight_limit(0) == 1.0);
+    assert!((model.weight_limits()[0] - 6.0_f64.sqrt() / 6.0).abs() < 1e-15);
+    assert!(two_triangles(2.0, DVec3::ONE, |_| DVec3::ZERO).weight_limits() == [1.0]);
 }

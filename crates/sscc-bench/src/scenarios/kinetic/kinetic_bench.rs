@@ -141,7 +141,8 @@ impl<'a> KineticBench<'a> {
             motion.full += seconds(|| states.iter().try_for_each(|q| full.discrete(q).map(drop)))?;
             if let [a, b, ..] = &states[..] {
                 let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
-                motion.step += certificates.metric().norm(&difference) / certificates.norm(a) / blocks as f64;
+                motion.step +=
+                    certificates.metric().norm(&difference)? / certificates.norm(a)? / blocks as f64;
             }
             motion.states.extend(states);
             self.setup.watch.report(block + 1, blocks);

@@ -35,7 +35,7 @@ impl Vibration {
     /// # Errors
     /// When `progress` cancels.
     pub fn new(model: &CertifiedModel, progress: &dyn Progress) -> Result<Self, Error> {
-        let dir = directions(&model.model, 1).remove(0);
+        let dir = directions(&model.model, 1)?.remove(0);
         let oscillators = Oscillators::of(model);
         let unit: Vec<Vec<f64>> =
             (0..STATES).map(|i| oscillators.at(&dir, i as f64 / STATES_PER_PERIOD as f64)).collect();

@@ -73,7 +73,7 @@ impl<'a> Answer<'a> {
                 .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
-            proof: found.proof.map(Proof::name),
+            proof: found.proof.map(Proof::into),
             exceptions: found.exceptions,
             ignored: found.left_out.ignored(),
             listed_left_out: (found.left_out.ignored() > 0).then(|| found.left_out.to_string()),

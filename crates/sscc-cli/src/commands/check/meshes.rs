@@ -145,7 +145,7 @@ fn request(args: &Check) -> Detection {
         mesh_name: args.model.mesh_name.clone(),
         motion: frames.or(animated.map(MeshMotion::Animation)).unwrap_or(MeshMotion::Rest),
         against: motion.against.as_deref().map(other),
-        neighbours: options.neighbours.map(load::neighbours).unwrap_or_default(),
+        neighbours: options.neighbours.unwrap_or_default(),
         weld: options.weld.map(|weld| weld == Switch::On),
         ignore_rest: options.ignore_rest,
         groups: load::groups(&options.groups),

@@ -8,11 +8,12 @@ mod soup_hint;
 mod text;
 
 use anyhow::{Context, Result, bail, ensure};
+use sscc::parts::Scope;
 use sscc::{Certificates, Method, Query};
 use sscc_io::{LoadedModel, Rows, read_rows};
 use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_configuration};
 
-use crate::args::{self, At, Check};
+use crate::args::{At, Check};
 use crate::outcome::Outcome;
 use crate::progress::Bar;
 use crate::{interrupt, load};
@@ -30,7 +31,7 @@ fn check_model(args: &Check) -> Result<bool> {
     if let Some(second) = args.meshes.first() {
         bail!("{}: --q and --trajectory take one model: leave it out", second.display());
     }
-    let typed_method = args.method.unwrap_or(args::Method::Certified);
+    let method = args.method.unwrap_or(Method::Certified);
     let loaded = load::model(&args.model)?;
     let rows = coordinates(&args.at, &loaded)?;
     let model = &loaded.model;
@@ -42,12 +43,11 @@ fn check_model(args: &Check) -> Result<bool> {
     let request = load::request(&loaded, &args.model, &args.options)?;
     let certificates = match &args.certificates {
         Some(path) => Some(request.read(path, model)?),
-        None if typed_method == args::Method::Certified => {
+        None if method == Method::Certified => {
             Some(load::certificates_now(&loaded, &args.model, &args.options)?)
         }
         None => None,
     };
-    let method = method(typed_method);
     let query = match &certificates {
         Some(certificates) => Query::with_method(model, certificates, method)?,
         None => Query::without_certificates(model, request.scope(model)?, method)?,
@@ -61,7 +61,7 @@ fn check_model(args: &Check) -> Result<bool> {
     printer.needs_last = args.curves.is_some();
     let mut hint = SoupHint::default();
     // Models of some files are welded without a flag, and a user who has decided needs no hint.
-    let is_welded = request.weld.is_some() || query.scope().filter.weld;
+    let is_welded = request.weld.is_some() || Scope::of_query(&query).filter.weld;
     let take = |found: &DetectionAnswer<'_>| {
         if !is_welded {
             hint.add(found);
@@ -89,16 +89,6 @@ fn check_model(args: &Check) -> Result<bool> {
     let colliding = printer.finish()?;
     hint.print(&args.model.path);
     Ok(colliding)
-}
-
-fn method(typed: args::Method) -> Method {
-    match typed {
-        args::Method::Certified => Method::Certified,
-        args::Method::BdTree => Method::BdTree,
-        args::Method::Traditional => Method::Traditional,
-        args::Method::NormalCones => Method::NormalCones,
-        args::Method::BruteForce => Method::BruteForce,
-    }
 }
 
 /// Returns every configuration. All are validated before the first query.

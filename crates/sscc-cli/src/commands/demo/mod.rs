@@ -35,7 +35,7 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
 
     let threads = load::threads(&Threads { threads: None });
     let start = Instant::now();
-    let options = CertifyOptions { threads: Some(threads), ..CertifyOptions::default() };
+    let options = CertifyOptions::default().threads(threads);
     let certificates = load::certify(model, Path::new("the embedded spring"), &options)?;
     let seconds = [modes_seconds, start.elapsed().as_secs_f64()];
 

@@ -59,11 +59,11 @@ impl CertificatesInfo {
         Self {
             digest: hexadecimal(parts.digest),
             scheme: if tree.limit() > 0.0 || !parts.local.nodes.is_empty() { "full" } else { "paper" },
-            neighbours: parts.scope.filter.neighbours.name(),
+            neighbours: parts.scope.filter.neighbours.into(),
             weld: parts.scope.filter.weld,
             triangles: parts.hierarchy.order().len(),
             rank: parts.scope.metric.rank(),
-            metric: parts.scope.metric.kind().name(),
+            metric: parts.scope.metric.kind().into(),
             metric_form: form(&parts.scope.metric),
             metric_scales: parts.scope.metric.scales(),
             epsilon: parts.epsilon,

@@ -1,7 +1,8 @@
 //! The contents of a model file.
 
 use serde::Serialize;
-use sscc::{Digest, ReducedModel, Scope};
+use sscc::ReducedModel;
+use sscc::parts::{Digest, Scope};
 use sscc_io::ModelInfo;
 use sscc_modes::natural_frequencies;
 use sscc_solid::Elasticity;
@@ -49,7 +50,7 @@ impl Model {
         Self {
             surface: Surface::of(model.mesh()),
             rank: model.rank(),
-            metric: model.metric().kind().name(),
+            metric: model.metric().kind().into(),
             metric_form: form(model.metric()),
             metric_scales: model.metric().scales(),
             nonlinear: info

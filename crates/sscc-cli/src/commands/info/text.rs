@@ -1,6 +1,7 @@
 //! Text that several kinds of files share.
 
-use sscc::{Digest, Metric};
+use sscc::Metric;
+use sscc::parts::Digest;
 
 /// 32 bytes as hexadecimal digits.
 pub fn hexadecimal(digest: Digest) -> String {

@@ -64,7 +64,7 @@ fn compare_metrics(loaded: &LoadedModel, path: &Path) -> Result<Plot> {
             "--compare-metrics: {}: the model's own metric is {} ({form}), not a diagonal energy metric; make a model \
              with its stiffness by sscc modes --kind linear or nonlinear",
             path.display(),
-            metric.kind().name()
+            metric.kind()
         );
     }
     let plot = metric_comparison(&loaded.model, &loaded.info.units, &Bar::new("certifying"));

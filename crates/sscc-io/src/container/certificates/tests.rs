@@ -39,21 +39,19 @@ fn fold(x: f64) -> f64 {
 /// All options of a scope, in one file.
 #[test]
 fn every_scope_round_trips() {
-    let options = CertifyOptions {
-        metric: Some(
+    let options = CertifyOptions::default()
+        .metric(
             Metric::from_factor(MetricKind::Given, 3, vec![1.0, 0.5, 0.0, 0.0, 2.0, 0.25, 0.0, 0.0, 1.0])
                 .unwrap(),
-        ),
-        center: Some(vec![0.5, -0.25, 1.0]),
-        filter: Some(ContactFilter::new(Neighbours::IncludeOneVertex, true)),
-        budget: 16,
-        ..CertifyOptions::default()
-    };
+        )
+        .center(vec![0.5, -0.25, 1.0])
+        .filter(ContactFilter::new(Neighbours::IncludeOneVertex).weld(true))
+        .budget(16);
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let mut parts = certificates.parts().clone();
     Arc::make_mut(&mut parts.scope).filter = parts.scope.filter.clone().ignoring([(3, 1), (7, 9)]);
     Arc::make_mut(&mut parts.scope).exceptions = vec![(0, 5), (2, 3)];
-    let changed = Certificates::from_parts(parts).unwrap();
+    let changed = Certificates::try_from(parts).unwrap();
     for certificates in [certificates, changed] {
         let bytes = certificates_to_bytes(&certificates).unwrap();
         let read = certificates_from_bytes(&bytes).unwrap();
@@ -67,8 +65,7 @@ fn grouped(table: impl Fn(TriangleGroups) -> TriangleGroups) -> Certificates {
     let model = model();
     let of_triangle: Vec<u32> = (0..model.mesh().faces().len() as u32).map(|t| t / 6).collect();
     let filter = ContactFilter::default().with_groups(table(TriangleGroups::new(&of_triangle).unwrap()));
-    let options =
-        CertifyOptions { filter: Some(filter), budget: 16, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().filter(filter).budget(16).local_budget(0);
     Certificates::compute(&model, &options, &()).unwrap()
 }
 
@@ -76,8 +73,8 @@ fn grouped(table: impl Fn(TriangleGroups) -> TriangleGroups) -> Certificates {
 fn groups_round_trip() {
     let tables: [fn(TriangleGroups) -> TriangleGroups; 3] = [
         TriangleGroups::between_only,
-        |groups| groups.ignoring([(0, 2), (3, 3)]).unwrap(),
-        |groups| groups.only([(1, 3)]).unwrap(),
+        |groups| groups.ignoring([[0, 2], [3, 3]]).unwrap(),
+        |groups| groups.only([[1, 3]]).unwrap(),
     ];
     for table in tables {
         let certificates = grouped(table);
@@ -90,7 +87,7 @@ fn groups_round_trip() {
         assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
     }
     // Without groups the file is one of the version before.
-    let plain = CertifyOptions { budget: 16, local_budget: 0, ..CertifyOptions::default() };
+    let plain = CertifyOptions::default().budget(16).local_budget(0);
     let plain = certificates_to_bytes(&Certificates::compute(&model(), &plain, &()).unwrap()).unwrap();
     assert_eq!(Container::parse(&plain, CERTIFICATES).unwrap().version(), 4);
     assert_eq!(certificates_to_bytes(&grouped(|groups| groups)).unwrap(), plain);
@@ -98,7 +95,7 @@ fn groups_round_trip() {
 
 #[test]
 fn damaged_groups_are_rejected() {
-    let bytes = certificates_to_bytes(&grouped(|groups| groups.only([(1, 3)]).unwrap())).unwrap();
+    let bytes = certificates_to_bytes(&grouped(|groups| groups.only([[1, 3]]).unwrap())).unwrap();
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
     let message = |version: u32, change: &dyn Fn(&mut ContainerWriter)| {
         let mut writer = ContainerWriter::new(super::super::Kind { version, ..CERTIFICATES });
@@ -135,7 +132,7 @@ fn damaged_groups_are_rejected() {
 
 fn certificates() -> Certificates {
     static ONCE: LazyLock<Certificates> = LazyLock::new(|| {
-        let options = CertifyOptions { budget: 16, local_budget: 512, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(16).local_budget(512);
         Certificates::compute(&model(), &options, &()).unwrap()
     });
     ONCE.clone()
@@ -194,8 +191,7 @@ fn older(
     absent: &[&str],
     change: impl Fn(&mut ContainerWriter),
 ) -> Result<Certificates, FormatError> {
-    let options =
-        CertifyOptions { max_exceptions: Some(0), budget: 0, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().max_exceptions(0).budget(0).local_budget(0);
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
@@ -239,14 +235,14 @@ fn version_2_is_read() {
 /// Pair trees of version 3 include pairs within buckets.
 #[test]
 fn version_3_is_read_without_its_pair_tree() {
-    let options = CertifyOptions { budget: 512, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(512).local_budget(0);
     let certificates = Certificates::compute(&strip(900), &options, &()).unwrap();
     assert!(!certificates.parts().pair_tree.is_empty());
     let bytes = certificates_to_bytes(&certificates).unwrap();
     let mut writer = ContainerWriter::new(super::super::Kind { version: 3, ..CERTIFICATES });
     copy(&Container::parse(&bytes, CERTIFICATES).unwrap(), &mut writer, &[]);
     let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
-    assert_eq!(read.parts().pair_tree, sscc::PairTree::default());
+    assert_eq!(read.parts().pair_tree, sscc::parts::PairTree::default());
     assert_eq!(read.parts().node_radii, certificates.parts().node_radii);
 }
 
@@ -300,7 +296,7 @@ fn unknown_values_and_tensors_are_rejected() {
 
 #[test]
 fn inconsistent_parts_are_rejected() {
-    let nodes = certificates().hierarchy().nodes().len();
+    let nodes = certificates().parts().hierarchy.nodes().len();
     let order = |values: Vec<u32>| with("order", |w| _ = w.u32("order", &[values.len()], &values));
     assert!(order((0..21).collect()).contains("hierarchy: "));
     assert!(order(vec![0; 22]).contains("hierarchy: a triangle is listed twice"));
@@ -330,7 +326,7 @@ fn the_scheme_agrees_with_the_pair_tree() {
     for (budget, local_budget, scheme) in
         [(0, 0, "paper"), (0, 64, "full"), (16, 0, "full"), (16, 64, "full")]
     {
-        let options = CertifyOptions { budget, local_budget, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(budget).local_budget(local_budget);
         let bytes = certificates_to_bytes(&Certificates::compute(&model(), &options, &()).unwrap()).unwrap();
         let file = Container::parse(&bytes, CERTIFICATES).unwrap();
         assert_eq!(file.text("scheme").unwrap(), scheme, "{budget} {local_budget}");
@@ -343,7 +339,7 @@ fn the_scheme_agrees_with_the_pair_tree() {
 #[test]
 fn damaged_pair_trees_are_rejected_or_harmless() {
     let model = strip(900);
-    let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(512);
     let good = Certificates::compute(&model, &options, &()).unwrap();
     let tree = &good.parts().pair_tree;
     let (radii, links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();

@@ -30,7 +30,7 @@ fn stacked(corners: &[DVec3], faces: &[[u32; 3]], heights: [f64; 2], modes: &[[f
 /// No bound is larger than the norm of a q at which the computed positions touch: at two heights, two triangles, and
 /// two squares as nodes (so even that nothing of their affine fit is rounded).
 fn check(heights: [f64; 2], modes: &[[f64; 2]], q: &[f64]) {
-    let norm = Metric::identity(q.len()).norm(q);
+    let norm = Metric::identity(q.len()).length(q);
     let triangle = stacked(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]], heights, modes);
     let at = |faces: usize| triangle.mesh().faces()[faces].map(|v| triangle.position(v, q));
     assert!(intersect_triangle_triangle(&at(0), &at(1)), "{heights:?} {q:?}");

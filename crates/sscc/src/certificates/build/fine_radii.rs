@@ -115,7 +115,7 @@ mod tests {
         let (mut all, mut close) = (0, 0);
         for case in 0..4 {
             let model = ring(160 + 40 * case, 3 + case % 3, 0.9 + case as f64);
-            let options = CertifyOptions { budget: 512, ..CertifyOptions::default() };
+            let options = CertifyOptions::default().budget(512);
             let certificates = Certificates::compute(&model, &options, &()).unwrap();
             let preparation = Preparation::new(&model, &options, &()).unwrap();
             let (tree, hierarchy) = (&certificates.parts().pair_tree, certificates.hierarchy());

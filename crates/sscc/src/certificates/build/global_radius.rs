@@ -8,13 +8,11 @@ use crate::geometry::Aabb;
 use crate::model::rounding::to_f32_down;
 use crate::{Certificates, Metric, ReducedModel};
 
-impl Certificates {
-    /// Whether no radius is farther than [`CertifyOptions::reach`](crate::CertifyOptions::reach) allows. The model must be
-    /// that of the certificates.
-    pub fn is_within_reach(&self, model: &ReducedModel, reach: f64) -> bool {
-        let global_radius = global_radius(model, self.metric(), self.center());
-        self.global_radius() <= farthest_radius(global_radius, reach)
-    }
+/// Whether no radius is farther than [`CertifyOptions::reach`](crate::CertifyOptions::reach) allows. The model must be that
+/// of the certificates.
+pub fn is_within_reach(certificates: &Certificates, model: &ReducedModel, reach: f64) -> bool {
+    let global_radius = global_radius(model, certificates.metric(), certificates.center());
+    certificates.global_radius() <= farthest_radius(global_radius, reach)
 }
 
 /// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the box at the

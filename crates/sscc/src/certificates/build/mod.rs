@@ -28,6 +28,7 @@ mod task;
 pub(crate) use bvtt::{BvttPair, PairState};
 pub(crate) use certify::CertifiedRadii;
 pub(crate) use executor::{AddedPairLimit, Executor, Stage};
+pub use global_radius::is_within_reach;
 pub(crate) use node_groups::NodeGroups;
 pub(crate) use preparation::Preparation;
 pub(crate) use radius_bound::{BoundedNodePair, RadiusBound};

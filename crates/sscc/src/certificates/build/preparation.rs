@@ -9,7 +9,7 @@ use super::radius_search::RadiusSearch;
 use super::radius_search_context::RadiusSearchContext;
 use crate::bounds::NodePairBounds;
 use crate::certificates::local::compute_local_certificates;
-use crate::certificates::{CertifyOptions, Digest, LocalCertificates, Scope};
+use crate::certificates::{CertifyOptions, Digest, LocalCertificates, Scope, default_exceptions, is_reach};
 use crate::detect::colliding_pairs;
 use crate::filter::PairFilter;
 use crate::hierarchy::{Hierarchy, NodePair};
@@ -47,7 +47,7 @@ impl Preparation {
         if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
             return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
         }
-        if !CertifyOptions::is_reach(options.reach) {
+        if !is_reach(options.reach) {
             return Err(Error::Option {
                 name: "reach",
                 value: options.reach,
@@ -79,8 +79,7 @@ impl Preparation {
             filter = filter.ignoring(at_rest);
         }
         let triangles = model.mesh().faces().len();
-        let max_exceptions =
-            options.max_exceptions.unwrap_or_else(|| CertifyOptions::default_exceptions(triangles));
+        let max_exceptions = options.max_exceptions.unwrap_or_else(|| default_exceptions(triangles));
         let exceptions = exceptions(at_center, &filter, max_exceptions);
         let scope = Scope { metric, center, filter, exceptions };
         let (digest, nodes) =

@@ -1,4 +1,4 @@
-//! `Certificates::compute_in_shards`, and the executor that sends tasks as jobs to other processes.
+//! `compute_in_shards`, and the executor that sends tasks as jobs to other processes.
 
 use super::job::JobWriter;
 use super::job_result::{JobResult, ResultLayout};
@@ -8,33 +8,30 @@ use crate::certificates::{Certificates, CertifyOptions};
 use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
-/// Has jobs run, each by [`ShardWorker::run`](crate::ShardWorker::run) in some process; gives the results in the order
+/// Has jobs run, each by [`ShardWorker::run`](super::ShardWorker::run) in some process; gives the results in the order
 /// of the jobs.
 pub type RunJobs<'a> = dyn FnMut(Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Error> + 'a;
 
-impl Certificates {
-    /// As [`Certificates::compute`], by workers: `run` has the jobs of each stage run, at most `shards` of them. Every
-    /// number of shards gives the same certificates. A few times as many shards as workers keep all of them busy to the
-    /// end.
-    ///
-    /// # Errors
-    /// As `compute`; what `run` returns; [`Error::Shard`] for a result that is not the job's.
-    pub fn compute_in_shards(
-        model: &ReducedModel,
-        options: &CertifyOptions,
-        shards: usize,
-        run: &mut RunJobs<'_>,
-        progress: &dyn Progress,
-    ) -> Result<Self, Error> {
-        if shards == 0 {
-            return Err(Error::Option { name: "shards", value: 0.0, wanted: "at least 1" });
-        }
-        let preparation = on_threads(options.threads, || Preparation::new(model, options, progress))?;
-        let key = Key::of(&preparation);
-        let mut executor = RemoteExecutor { preparation: &preparation, key, shards, run, progress };
-        let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
-        Ok(on_threads(options.threads, || radii.into_certificates(model, options, preparation)))
+/// As [`Certificates::compute`], by workers: `run` has the jobs of each stage run, at most `shards` of them. Every number of
+/// shards gives the same certificates. A few times as many shards as workers keep all of them busy to the end.
+///
+/// # Errors
+/// As `compute`; what `run` returns; [`Error::Shard`] for a result that is not the job's.
+pub fn compute_in_shards(
+    model: &ReducedModel,
+    options: &CertifyOptions,
+    shards: usize,
+    run: &mut RunJobs<'_>,
+    progress: &dyn Progress,
+) -> Result<Certificates, Error> {
+    if shards == 0 {
+        return Err(Error::Option { name: "shards", value: 0.0, wanted: "at least 1" });
     }
+    let preparation = on_threads(options.threads, || Preparation::new(model, options, progress))?;
+    let key = Key::of(&preparation);
+    let mut executor = RemoteExecutor { preparation: &preparation, key, shards, run, progress };
+    let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
+    Ok(on_threads(options.threads, || radii.into_certificates(model, options, preparation)))
 }
 
 /// Writes the tasks of a stage as jobs, has them run, and reads their results.

@@ -1,6 +1,6 @@
 //! Certificates of one large model computed by many processes, byte for byte as by one.
 //!
-//! `Certificates::compute_in_shards` writes the tasks of each stage as jobs; the caller has each run by a [`ShardWorker`]
+//! [`compute_in_shards`] writes the tasks of each stage as jobs; the caller has each run by a [`ShardWorker`]
 //! in any process that has the same model and options. Jobs and results are sealed: one that was damaged, or is of another
 //! model, other options or another build, is refused.
 
@@ -13,6 +13,6 @@ mod seal;
 mod tests;
 mod worker;
 
-pub use executor::RunJobs;
+pub use executor::{RunJobs, compute_in_shards};
 pub use seal::BUILD;
 pub use worker::ShardWorker;

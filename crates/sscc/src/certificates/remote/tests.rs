@@ -15,7 +15,7 @@ use crate::{
 fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Result<Certificates, Error> {
     let worker = ShardWorker::new(model, options, &()).unwrap();
     let mut run = |jobs: Vec<Vec<u8>>| jobs.iter().map(|job| worker.run(job, &())).collect();
-    Certificates::compute_in_shards(model, options, shards, &mut run, &())
+    compute_in_shards(model, options, shards, &mut run, &())
 }
 
 /// All jobs of a model, and their results.
@@ -27,7 +27,7 @@ fn jobs(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Vec<(V
         all.extend(jobs.into_iter().zip(results.clone()));
         Ok(results)
     };
-    Certificates::compute_in_shards(model, options, shards, &mut run, &()).unwrap();
+    compute_in_shards(model, options, shards, &mut run, &()).unwrap();
     all
 }
 
@@ -37,14 +37,12 @@ fn any_number_of_shards_gives_the_same_certificates() {
     let center = Some(vec![0.01, -0.02, 0.0, 0.01]);
     for (case, options) in [
         CertifyOptions::default(),
-        CertifyOptions { budget: 0, ..Default::default() },
-        CertifyOptions { budget: 400, local_budget: 64, epsilon: 0.03, ..Default::default() },
-        CertifyOptions {
-            budget: 4,
-            center,
-            filter: Some(ContactFilter::new(Default::default(), true)),
-            ..Default::default()
-        },
+        CertifyOptions::default().budget(0),
+        CertifyOptions::default().budget(400).local_budget(64).epsilon(0.03),
+        CertifyOptions::default()
+            .budget(4)
+            .center(center)
+            .filter(ContactFilter::new(Default::default()).weld(true)),
     ]
     .into_iter()
     .enumerate()
@@ -75,7 +73,7 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     let options = CertifyOptions::default();
     let refusal = |worker: &ShardWorker| {
         let mut run = |jobs: Vec<Vec<u8>>| jobs.iter().map(|job| worker.run(job, &())).collect();
-        Certificates::compute_in_shards(&model, &options, 4, &mut run, &()).unwrap_err().to_string()
+        compute_in_shards(&model, &options, 4, &mut run, &()).unwrap_err().to_string()
     };
     let mut scales = model.metric().scales();
     scales[0] *= 2.0;
@@ -84,8 +82,8 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     for (model, options) in [
         (ring(200, 3, 0.901), options.clone()),
         (ring(202, 3, 0.9), options.clone()),
-        (ring(200, 3, 0.9), CertifyOptions { epsilon: 0.11, ..options.clone() }),
-        (ring(200, 3, 0.9), CertifyOptions { metric, ..options.clone() }),
+        (ring(200, 3, 0.9), options.clone().epsilon(0.11)),
+        (ring(200, 3, 0.9), options.clone().metric(metric)),
     ] {
         let worker = ShardWorker::new(&model, &options, &()).unwrap();
         assert!(refusal(&worker).contains("a job belongs to another model"), "{}", refusal(&worker));
@@ -93,12 +91,12 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     // Results of the right model that are swapped.
     let worker = ShardWorker::new(&model, &options, &()).unwrap();
     let mut swapped = |jobs: Vec<Vec<u8>>| jobs.iter().rev().map(|job| worker.run(job, &())).collect();
-    let error = Certificates::compute_in_shards(&model, &options, 4, &mut swapped, &()).unwrap_err();
+    let error = compute_in_shards(&model, &options, 4, &mut swapped, &()).unwrap_err();
     assert_eq!(error.to_string(), "shards: a result is of another job");
     let mut fewer = |_: Vec<Vec<u8>>| Ok(Vec::new());
-    let error = Certificates::compute_in_shards(&model, &options, 4, &mut fewer, &()).unwrap_err();
+    let error = compute_in_shards(&model, &options, 4, &mut fewer, &()).unwrap_err();
     assert_eq!(error.to_string(), "shards: 0 results were returned for 4 jobs");
-    let error = Certificates::compute_in_shards(&model, &options, 0, &mut fewer, &()).unwrap_err();
+    let error = compute_in_shards(&model, &options, 0, &mut fewer, &()).unwrap_err();
     assert_eq!(error.to_string(), "shards is 0: it must be at least 1");
 }
 

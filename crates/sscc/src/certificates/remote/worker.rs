@@ -16,7 +16,7 @@ pub struct ShardWorker {
 
 impl ShardWorker {
     /// Prepares what all jobs need. Model and options are those given to
-    /// [`Certificates::compute_in_shards`](crate::Certificates::compute_in_shards); budget and number of threads may
+    /// [`compute_in_shards`](super::compute_in_shards); budget and number of threads may
     /// differ.
     ///
     /// # Errors

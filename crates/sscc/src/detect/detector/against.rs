@@ -11,6 +11,23 @@ impl Detector {
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
     /// common, sorted. Every pair counts: contact filters do not apply between meshes.
     ///
+    /// ```
+    /// use sscc::glam::DVec3;
+    /// use sscc::{Detector, TriMesh};
+    ///
+    /// # fn main() -> Result<(), sscc::Error> {
+    /// // A triangle, and another one whose corner pierces it.
+    /// let mesh = |corners: [DVec3; 3]| TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
+    /// let plate = mesh([DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0])?;
+    /// let needle = mesh([DVec3::new(1.0, 1.0, -0.5), DVec3::new(1.0, 1.0, 2.0), DVec3::new(2.0, 1.0, 2.0)])?;
+    /// let (mut x, mut y) = (Detector::new(&plate), Detector::new(&needle));
+    /// assert_eq!(x.against(plate.rest_positions(), &mut y, needle.rest_positions())?, [(0, 0)]);
+    /// let lifted: Vec<DVec3> = needle.rest_positions().iter().map(|p| *p + DVec3::Z).collect();
+    /// assert!(x.against(plate.rest_positions(), &mut y, &lifted)?.is_empty());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
     /// # Errors
     /// As [`Detector::discrete`], for both.
     pub fn against(
@@ -25,7 +42,7 @@ impl Detector {
     }
 
     /// At most `limit` pairs of [`Detector::against`], sorted; which ones is not fixed. Where the limit stopped the search,
-    /// [`DetectorStatistics::complete`](crate::DetectorStatistics::complete) is false.
+    /// [`Statistics::complete`](crate::Statistics::complete) is false.
     ///
     /// # Errors
     /// As [`Detector::discrete`], for both.
@@ -42,7 +59,7 @@ impl Detector {
         other.begin_discrete(&motions[1], other_positions, Refit::Nodes);
         let contexts = [&self.context, &other.context];
         let result = self.discrete.find_between(&mut other.discrete, contexts, &motions, limit);
-        self.statistics.set(&mut self.discrete, result.is_ok());
+        self.statistics.set_search(&mut self.discrete, result.is_ok());
         result?;
         self.discrete.narrow.0.list.sort_unstable();
         Ok(&self.discrete.narrow.0.list)
@@ -65,7 +82,7 @@ impl Detector {
         other.begin_swept(&motions[1], y_t0, Refit::Nodes);
         let contexts = [&self.context, &other.context];
         let result = self.swept.find_between(&mut other.swept, contexts, &motions, Self::MAX_PAIRS);
-        self.statistics.set(&mut self.swept, result.is_ok());
+        self.statistics.set_search(&mut self.swept, result.is_ok());
         result?;
         self.check_complete()?;
         self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);

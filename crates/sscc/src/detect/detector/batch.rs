@@ -3,19 +3,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::detector::Detector;
-use super::statistics::DetectorStatistics;
+use crate::detect::answer::Answer;
 use crate::parallel::{map_with, on_threads};
 use crate::{Error, Pair, Progress};
 use glam::DVec3;
-
-/// The answer for one frame of a batch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameAnswer {
-    /// All colliding pairs, sorted.
-    pub pairs: Vec<Pair>,
-    /// The cost of this frame.
-    pub statistics: DetectorStatistics,
-}
 
 impl Detector {
     /// Answers every frame as [`Detector::discrete`] would, in the order given: the same pairs for any number of threads
@@ -28,7 +19,7 @@ impl Detector {
         frames: &[X],
         threads: Option<usize>,
         progress: &dyn Progress,
-    ) -> Result<Vec<FrameAnswer>, Error> {
+    ) -> Result<Vec<Answer>, Error> {
         self.answer_all(frames, threads, progress, |detector, x| detector.discrete(x).map(<[Pair]>::to_vec))
     }
 
@@ -42,7 +33,7 @@ impl Detector {
         limit: usize,
         threads: Option<usize>,
         progress: &dyn Progress,
-    ) -> Result<Vec<FrameAnswer>, Error> {
+    ) -> Result<Vec<Answer>, Error> {
         let at_most =
             |detector: &mut Detector, x: &[DVec3]| detector.discrete_at_most(x, limit).map(<[Pair]>::to_vec);
         self.answer_all(frames, threads, progress, at_most)
@@ -55,7 +46,7 @@ impl Detector {
         threads: Option<usize>,
         progress: &dyn Progress,
         find: impl Fn(&mut Detector, &[DVec3]) -> Result<Vec<Pair>, Error> + Sync,
-    ) -> Result<Vec<FrameAnswer>, Error> {
+    ) -> Result<Vec<Answer>, Error> {
         let done = AtomicUsize::new(0);
         let detector = || self.clone().cancelled_by(progress.cancel_token().cloned());
         let answer = |detector: &mut Detector, positions: &X| {
@@ -64,9 +55,9 @@ impl Detector {
             }
             let pairs = find(detector, positions.as_ref())?;
             progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, frames.len());
-            Ok(FrameAnswer { pairs, statistics: detector.statistics() })
+            Ok(Answer { pairs, statistics: detector.statistics() })
         };
-        let answers: Vec<Result<FrameAnswer, Error>> =
+        let answers: Vec<Result<Answer, Error>> =
             on_threads(threads, || map_with(frames, usize::MAX, detector, answer));
         answers.into_iter().collect()
     }

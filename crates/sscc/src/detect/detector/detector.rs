@@ -8,11 +8,11 @@ use glam::DVec3;
 
 use super::detector_search::{DetectorSearch, Refit};
 use super::given_motion::GivenMotion;
-use super::statistics::DetectorStatistics;
+use crate::detect::answer::Statistics;
 use crate::detect::context::Context;
 use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
-use crate::filter::{PairFilter, weld_classes_of_positions};
+use crate::filter::{PairFilter, check_continuous, weld_classes_of_positions};
 use crate::hierarchy::Hierarchy;
 use crate::{CancelToken, ContactFilter, Error, Impact, Pair, TriMesh, limits};
 
@@ -49,7 +49,7 @@ pub struct Detector {
     vertex_count: usize,
     pub(super) discrete: DetectorSearch<1, DiscreteHits>,
     pub(super) swept: DetectorSearch<2, SweptHits>,
-    pub(super) statistics: DetectorStatistics,
+    pub(super) statistics: Statistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,
 }
@@ -82,21 +82,6 @@ impl Detector {
         Ok(Self::welded(mesh, filter))
     }
 
-    /// A detector whose vertices are welded by the given classes: vertices with the same number are one vertex for adjacency,
-    /// as in skinned meshes, where equal rest positions may move apart.
-    ///
-    /// # Errors
-    /// When there are not as many classes as vertices, or the filter's groups are of another mesh.
-    pub fn with_weld_classes(mesh: &TriMesh, classes: &[u32], filter: &ContactFilter) -> Result<Self, Error> {
-        check_count(classes.len(), mesh.rest_positions().len())?;
-        filter.check_groups(mesh.faces().len())?;
-        // Class numbers are numbers of vertices, which bounds the memory of tables by class.
-        let mut first = HashMap::new();
-        let vertices = classes.iter().enumerate();
-        let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
-        Ok(Self::build(mesh, Some(&classes), filter))
-    }
-
     fn welded(mesh: &TriMesh, filter: &ContactFilter) -> Self {
         let classes = filter.weld.then(|| weld_classes_of_positions(mesh.rest_positions()));
         Self::build(mesh, classes.as_deref(), filter)
@@ -119,7 +104,7 @@ impl Detector {
             vertex_count: positions.len(),
             discrete: DetectorSearch::default(),
             swept: DetectorSearch::default(),
-            statistics: DetectorStatistics::default(),
+            statistics: Statistics::default(),
             is_used: false,
         }
     }
@@ -148,7 +133,7 @@ impl Detector {
     }
 
     /// At most `limit` colliding pairs, sorted; which ones is not fixed. Where the limit stopped the search,
-    /// [`DetectorStatistics::complete`] is false: there may be more.
+    /// [`Statistics::complete`] is false: there may be more.
     ///
     /// # Errors
     /// As [`Detector::discrete`].
@@ -157,7 +142,7 @@ impl Detector {
         self.mask_adjacent();
         self.begin_discrete(&motion, positions, Refit::All);
         let result = self.discrete.find(&self.context, &motion, limit);
-        self.statistics.set(&mut self.discrete, result.is_ok());
+        self.statistics.set_search(&mut self.discrete, result.is_ok());
         result?;
         self.discrete.narrow.0.list.sort_unstable();
         Ok(&self.discrete.narrow.0.list)
@@ -185,12 +170,12 @@ impl Detector {
     /// # Errors
     /// As [`Detector::discrete`], for both; when the filter has [`Neighbours::IncludeFolded`](crate::Neighbours).
     pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
-        self.context.filter.neighbours().check_continuous()?;
+        check_continuous(self.context.filter.neighbours())?;
         let motion = self.check([x_t0, x_t1])?;
         self.mask_adjacent();
         self.begin_swept(&motion, x_t0, Refit::All);
         let result = self.swept.find(&self.context, &motion, Self::MAX_PAIRS);
-        self.statistics.set(&mut self.swept, result.is_ok());
+        self.statistics.set_search(&mut self.swept, result.is_ok());
         result?;
         self.check_complete()?;
         self.swept.narrow.0.list.sort_unstable_by_key(|impact| impact.pair);
@@ -198,13 +183,8 @@ impl Detector {
     }
 
     /// The cost of the last answer.
-    pub fn statistics(&self) -> DetectorStatistics {
+    pub fn statistics(&self) -> Statistics {
         self.statistics
-    }
-
-    /// The number of vertices of the mesh, which all positions must have.
-    pub fn vertex_count(&self) -> usize {
-        self.vertex_count
     }
 
     /// Forgets the last answer and checks positions.
@@ -268,6 +248,25 @@ impl Detector {
         self.is_used = false;
         self.statistics.rebuilds += 1;
     }
+}
+
+/// A detector whose vertices are welded by the given classes: vertices with the same number are one vertex for adjacency,
+/// as in skinned meshes, where equal rest positions may move apart.
+///
+/// # Errors
+/// When there are not as many classes as vertices, or the filter's groups are of another mesh.
+pub fn detector_with_weld_classes(
+    mesh: &TriMesh,
+    classes: &[u32],
+    filter: &ContactFilter,
+) -> Result<Detector, Error> {
+    check_count(classes.len(), mesh.rest_positions().len())?;
+    filter.check_groups(mesh.faces().len())?;
+    // Class numbers are numbers of vertices, which bounds the memory of tables by class.
+    let mut first = HashMap::new();
+    let vertices = classes.iter().enumerate();
+    let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
+    Ok(Detector::build(mesh, Some(&classes), filter))
 }
 
 /// # Errors

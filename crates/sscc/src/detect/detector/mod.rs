@@ -8,6 +8,4 @@ mod detector_search;
 mod given_motion;
 mod statistics;
 
-pub use batch::FrameAnswer;
-pub use detector::Detector;
-pub use statistics::DetectorStatistics;
+pub use detector::{Detector, detector_with_weld_classes};

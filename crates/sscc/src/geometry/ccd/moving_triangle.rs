@@ -16,12 +16,12 @@ pub struct MovingTriangle {
 
 impl MovingTriangle {
     /// A moving vertex.
-    pub fn vertex(v_t0: DVec3, v_t1: DVec3) -> Self {
+    pub(crate) fn vertex(v_t0: DVec3, v_t1: DVec3) -> Self {
         Self { t0: [v_t0; 3], t1: [v_t1; 3] }
     }
 
     /// A moving edge, by its two ends.
-    pub fn edge(e_t0: [DVec3; 2], e_t1: [DVec3; 2]) -> Self {
+    pub(crate) fn edge(e_t0: [DVec3; 2], e_t1: [DVec3; 2]) -> Self {
         let corners = |[p, q]: [DVec3; 2]| [p, q, q];
         Self { t0: corners(e_t0), t1: corners(e_t1) }
     }

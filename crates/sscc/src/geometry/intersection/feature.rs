@@ -27,7 +27,7 @@ impl Feature {
 /// A corner of the set of common points of two triangles: a common point of one feature of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntersectionPoint {
-    /// The point (model unit), rounded; see [`intersection_triangle_triangle`](crate::intersection_triangle_triangle).
+    /// The point (model unit), rounded; see [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub position: DVec3,
     /// The feature of each triangle on which the exact point lies. It is the only common point of the two.
     pub features: [Feature; 2],

@@ -39,7 +39,7 @@ pub struct Penetration {
 /// The penetration depth of two closed triangles: the length and direction of the smallest translation after which they
 /// only touch, so that any longer one parts them. None if they are disjoint.
 ///
-/// Conditions as for [`intersection_triangle_triangle`](crate::intersection_triangle_triangle). Exactly 0 where the
+/// Conditions as for [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle). Exactly 0 where the
 /// triangles touch without crossing: where they are in one plane or on one line, and where all common points are on the
 /// boundary of one of them. Otherwise positive (at least the smallest denormal number), and too large by at most a few units in the last place and `2^-48` times
 /// the largest difference of coordinates of a corner of each. Where several directions are as good (up to rounding), the
@@ -49,7 +49,7 @@ pub struct Penetration {
 ///
 /// ```
 /// use glam::DVec3;
-/// use sscc::penetration_triangle_triangle;
+/// use sscc::parts::penetration_triangle_triangle;
 ///
 /// // The corner of b is 0.25 below a.
 /// let a = [DVec3::ZERO, DVec3::X * 4.0, DVec3::Y * 4.0];

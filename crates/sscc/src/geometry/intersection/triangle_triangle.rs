@@ -37,7 +37,7 @@ use crate::limits;
 ///
 /// ```
 /// use glam::DVec3;
-/// use sscc::{Feature, Intersection, intersection_triangle_triangle};
+/// use sscc::parts::{Feature, Intersection, intersection_triangle_triangle};
 ///
 /// let a = [DVec3::ZERO, DVec3::X, DVec3::Y];
 /// let b = [DVec3::new(0.25, 0.25, -1.0), DVec3::new(0.25, 0.25, 1.0), DVec3::new(2.0, 0.25, 1.0)];

@@ -4,24 +4,32 @@ use glam::DVec3;
 
 use super::kind::MetricKind;
 use super::metric::Metric;
-use crate::{Modes, TriMesh};
+use crate::{Error, Modes, TriMesh};
 
 impl Metric {
     /// Each mode by its largest displacement of a vertex that some face uses. A mode that moves nothing
     /// gets the smallest scale of the others, or 1.
-    pub fn displacement(mesh: &TriMesh, modes: &Modes) -> Self {
+    ///
+    /// # Errors
+    /// When the modes are for another number of vertices.
+    pub fn displacement(mesh: &TriMesh, modes: &Modes) -> Result<Self, Error> {
+        modes.check_mesh(mesh)?;
         let mut scales = vec![0.0_f64; modes.rank()];
         for i in mesh.used_vertices() {
             for (scale, u) in scales.iter_mut().zip(modes.of_vertex(i)) {
                 *scale = scale.max(length(*u));
             }
         }
-        Self::diagonal(MetricKind::Displacement, fill_zeros(scales))
+        Ok(Self::diagonal(MetricKind::Displacement, fill_zeros(scales)))
     }
 
     /// Each mode by the surface it moves: `sqrt(sum_i area_i |U_i|^2)`, with [`vertex_areas`]. A mode that moves
     /// nothing gets the smallest scale of the others, or 1.
-    pub fn mass(mesh: &TriMesh, modes: &Modes) -> Self {
+    ///
+    /// # Errors
+    /// When the modes are for another number of vertices.
+    pub fn mass(mesh: &TriMesh, modes: &Modes) -> Result<Self, Error> {
+        modes.check_mesh(mesh)?;
         let areas = vertex_areas(mesh);
         let mut squares = vec![0.0_f64; modes.rank()];
         for i in mesh.used_vertices() {
@@ -30,7 +38,7 @@ impl Metric {
                 *square += areas[i as usize] * moved * moved;
             }
         }
-        Self::diagonal(MetricKind::Mass, fill_zeros(squares.into_iter().map(f64::sqrt).collect()))
+        Ok(Self::diagonal(MetricKind::Mass, fill_zeros(squares.into_iter().map(f64::sqrt).collect())))
     }
 }
 

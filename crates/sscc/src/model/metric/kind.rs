@@ -15,22 +15,10 @@ pub enum MetricKind {
     Given,
 }
 
-impl MetricKind {
-    /// The name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Identity => "identity",
-            Self::Displacement => "displacement",
-            Self::Mass => "mass",
-            Self::Energy => "energy",
-            Self::Given => "given",
-        }
-    }
-
-    /// The kind of that name; none for any other name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Identity, Self::Displacement, Self::Mass, Self::Energy, Self::Given]
-            .into_iter()
-            .find(|kind| kind.name() == name)
-    }
+names! { MetricKind, "kind of metric":
+    Identity = "identity",
+    Displacement = "displacement",
+    Mass = "mass",
+    Energy = "energy",
+    Given = "given",
 }

@@ -109,7 +109,16 @@ impl Metric {
     }
 
     /// `q = S^-1 z`, rounded to nearest.
-    pub fn unscaled(&self, z: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// When z has not one entry for each mode.
+    pub fn unscaled(&self, z: &[f64]) -> Result<Vec<f64>, Error> {
+        self.check_len(z)?;
+        Ok(self.unscale(z))
+    }
+
+    /// The same for a z known to have an entry for each mode.
+    pub(crate) fn unscale(&self, z: &[f64]) -> Vec<f64> {
         match &self.factor {
             Factor::Diagonal(scales) => z.iter().zip(scales).map(|(z, s)| z / s).collect(),
             Factor::Triangular(factor) => factor.solve(z),

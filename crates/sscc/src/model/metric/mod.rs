@@ -11,4 +11,5 @@ mod triangular;
 pub use defaults::vertex_areas;
 pub use kind::MetricKind;
 pub use metric::Metric;
+pub use scaled_modes_check::check_metric;
 pub(crate) use scaled_modes_check::check_scaled_modes;

@@ -3,6 +3,7 @@
 //! Squares overflow or underflow where entries are extreme; only there is the largest entry divided out first.
 
 use super::metric::{Factor, Metric};
+use crate::Error;
 
 /// Where the largest number lies in this range, squares do not overflow, and their underflow is negligible: the largest
 /// square is at least 1e-280, and the others lose at most r 2^-1074.
@@ -15,21 +16,34 @@ impl Metric {
     /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is NaN. (For
     /// radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
     ///
-    /// # Panics
+    /// # Errors
     /// When q has not one entry for each mode.
-    pub fn norm(&self, q: &[f64]) -> f64 {
-        assert_eq!(q.len(), self.rank(), "one number for each mode");
+    pub fn norm(&self, q: &[f64]) -> Result<f64, Error> {
+        self.check_len(q)?;
+        Ok(self.length(q))
+    }
+
+    /// The same for a q known to have an entry for each mode.
+    pub(crate) fn length(&self, q: &[f64]) -> f64 {
+        debug_assert_eq!(q.len(), self.rank(), "one number for each mode");
         match &self.factor {
             Factor::Diagonal(scales) => diagonal_norm(scales, q),
             Factor::Triangular(factor) => norm_of(|| factor.products_up(q), q.len()),
         }
     }
 
+    /// # Errors
+    /// When there is not one number for each mode.
+    pub(crate) fn check_len(&self, q: &[f64]) -> Result<(), Error> {
+        let (found, rank) = (q.len(), self.rank());
+        if found == rank { Ok(()) } else { Err(Error::CoordinatesLength { found, rank }) }
+    }
+
     /// `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once,
     /// relative to itself; the 16 units in the last place of [`up`] cover that.
     pub(crate) fn norm_from(&self, q: &[f64], center: &[f64], offset: &mut [f64]) -> f64 {
         offset.iter_mut().zip(q).zip(center).for_each(|((d, q), c)| *d = q - c);
-        self.norm(offset)
+        self.length(offset)
     }
 }
 
@@ -91,18 +105,18 @@ mod tests {
         let metric = Metric::from_scales(MetricKind::Given, vec![1e6, 1.0, 1e-6]).unwrap();
         // 1e6 * 3e-6 = 3, 4, 0
         let exact = 5.0;
-        let norm = metric.norm(&[3e-6, 4.0, 0.0]);
+        let norm = metric.length(&[3e-6, 4.0, 0.0]);
         assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
         assert_eq!(metric.norm_from(&[3e-6, 9.0, 1.0], &[0.0, 5.0, 1.0], &mut [0.0; 3]), norm);
         // S = [1 2; 0 4]: z = (3, 4) at q = (1, 1).
         let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 2.0, 0.0, 4.0]).unwrap();
-        let norm = dense.norm(&[1.0, 1.0]);
+        let norm = dense.length(&[1.0, 1.0]);
         assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
         // Products that cancel are covered: the exact sum is 2^-52.
         let tiny = 2.0_f64.powi(-40);
         let factor = vec![1.0, 1.0, 0.0, tiny];
         let dense = Metric::from_factor(MetricKind::Given, 2, factor).unwrap();
-        assert!(dense.norm(&[1.0 + f64::EPSILON, -1.0]) >= f64::EPSILON);
+        assert!(dense.length(&[1.0 + f64::EPSILON, -1.0]) >= f64::EPSILON);
     }
 
     /// Fixed pseudo-random numbers in [-1, 1).
@@ -153,7 +167,7 @@ mod tests {
                 .map(|i| (i..rank).map(|j| exact(factor[i * rank + j]) * exact(q[j])).sum::<BigRational>())
                 .map(|row| &row * &row)
                 .sum();
-            let norm = exact(metric.norm(&q));
+            let norm = exact(metric.length(&q));
             cancelled += usize::from(is_cancelling);
             assert!(&norm * &norm >= square, "case {case}: {q:?}");
             assert!(is_cancelling || &norm * &norm <= square * &larger * &larger, "case {case}: {q:?}");
@@ -166,13 +180,13 @@ mod tests {
         let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 0.0, 0.0, 1.0]).unwrap();
         for metric in [Metric::identity(2), dense] {
             for x in [1e-170, 5e-324, 1e-308, 1e170, 1e300] {
-                let norm = metric.norm(&[x, 0.0]);
+                let norm = metric.length(&[x, 0.0]);
                 assert!(norm >= x && norm <= 2.0 * x.max(f64::MIN_POSITIVE), "{x:e}: {norm:e}");
             }
-            assert_eq!(metric.norm(&[0.0, 0.0]), 0.0);
+            assert_eq!(metric.length(&[0.0, 0.0]), 0.0);
         }
-        assert_eq!(Metric::identity(2).norm(&[f64::NAN, 1.0]), f64::INFINITY);
+        assert_eq!(Metric::identity(2).length(&[f64::NAN, 1.0]), f64::INFINITY);
         let tiny_scale = Metric::from_scales(MetricKind::Given, vec![1e-200, 1.0]).unwrap();
-        assert!(tiny_scale.norm(&[1e-200, 0.0]) > 0.0);
+        assert!(tiny_scale.length(&[1e-200, 0.0]) > 0.0);
     }
 }

@@ -5,14 +5,12 @@ use glam::DVec3;
 use super::metric::Metric;
 use crate::{Error, Modes, TriMesh, limits};
 
-impl Metric {
-    /// Refuses modes for which the rounding bounds do not hold in this metric.
-    ///
-    /// # Errors
-    /// When the metric is of another rank, or the modes divided by its factor leave the range in which the proofs hold.
-    pub fn check(&self, mesh: &TriMesh, modes: &Modes) -> Result<(), Error> {
-        check_scaled_modes(mesh, modes, self).map(|_| ())
-    }
+/// Refuses a metric in which the rounding bounds do not hold for modes.
+///
+/// # Errors
+/// When the metric is of another rank, or the modes divided by its factor leave the range in which the proofs hold.
+pub fn check_metric(metric: &Metric, mesh: &TriMesh, modes: &Modes) -> Result<(), Error> {
+    check_scaled_modes(mesh, modes, metric).map(|_| ())
 }
 
 /// The largest magnitude of an entry of `A = U S^-1` over the used vertices. It is 0 (no mode moves anything) or within
@@ -21,6 +19,7 @@ impl Metric {
 /// # Errors
 /// When the metric has another rank, or the scaled modes are out of range.
 pub(crate) fn check_scaled_modes(mesh: &TriMesh, modes: &Modes, metric: &Metric) -> Result<f64, Error> {
+    modes.check_mesh(mesh)?;
     if metric.rank() != modes.rank() {
         return Err(Error::MetricLength { found: metric.rank(), rank: modes.rank() });
     }

@@ -211,10 +211,11 @@ mod tests {
     use glam::{DMat3, DVec3};
 
     use super::*;
+    use crate::certificates::Scope;
     use crate::detect::vertex_motion::DeformedMotion;
     use crate::hierarchy::Hierarchy;
     use crate::test_models::Random;
-    use crate::{Modes, ReducedModel, Scope, TriMesh};
+    use crate::{Modes, ReducedModel, TriMesh};
 
     /// Against the lengths of moved vectors: no unit vector becomes longer than the bound. The matrices stretch mostly
     /// along a diagonal, where the entries of F'F are alike.

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3, Vec4};
 use super::core_points::CORE_POINTS;
 use super::separation::{AffineMap, MovedPoints, PlaneTest, Points};
 use super::{MovedHulls, NodeHulls};
+use crate::certificates::Scope;
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::layout::{Layout, Needs};
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
@@ -17,7 +18,7 @@ use crate::model::ScaledModel;
 use crate::query::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::test_models::Random;
 use crate::vectors::{Baseline, InstructionSet};
-use crate::{ContactFilter, Modes, ReducedModel, Scope, TriMesh, intersect_triangle_triangle};
+use crate::{ContactFilter, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
 /// A model with all that its hulls need.
 struct Case {
@@ -298,7 +299,7 @@ fn motions_and_capsules_are_covered() {
         let ends = [&t0[..], &t1[..]];
         let reach = ends.map(|q| case_of.model.check_coordinates(q).unwrap()).into_iter().fold(0.0, f64::max);
         assert!(case_of.check(&DeformedMotion::new(ends, reach), ends, "two ends").is_some());
-        let radius = 0.1 * scope.metric.norm(&t0);
+        let radius = 0.1 * scope.metric.length(&t0);
         let ball = CapsuleMotion::new(&rates, [&t0, &t0], radius, 2.0 * reach);
         let capsule = CapsuleMotion::new(&rates, ends, radius, 2.0 * reach);
         for v in (0..case_of.model.mesh().rest_positions().len() as u32).step_by(7) {
@@ -307,7 +308,7 @@ fn motions_and_capsules_are_covered() {
             let axis = v as usize % 3;
             let length = rows.iter().map(|a| a[axis] * a[axis]).sum::<f64>().sqrt();
             let z: Vec<f64> = rows.iter().map(|a| a[axis] / length * radius * 0.999).collect();
-            let d = scope.metric.unscaled(&z);
+            let d = scope.metric.unscale(&z);
             if d.iter().any(|x| !x.is_finite()) {
                 continue;
             }

@@ -10,6 +10,7 @@ use super::region_pairs::RegionPairs;
 use super::region_search::RegionSearch;
 use super::safe_distance::SafeDistances;
 use super::step_history::StepHistory;
+use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Counters;
 use crate::model::{ScaledModel, check_scaled_modes};
@@ -17,7 +18,6 @@ use crate::query::capsule_motion::{CapsuleMotion, CapsuleRates};
 use crate::query::configuration::Configuration;
 use crate::query::configuration_search::{SweptSearch, motion};
 use crate::query::query::Query;
-use crate::query::statistics::Statistics;
 use crate::{CancelToken, Certificates, Error, Impact, Pair, ReducedModel};
 
 /// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
@@ -52,6 +52,29 @@ const FIND_COST: u64 = 150;
 /// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
 /// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
 /// cost the same as in a [`Query`]. Takes three times its memory.
+///
+/// ```
+/// # use glam::DVec3;
+/// use sscc::{Certificates, CertifyOptions, KineticQuery, Modes, ReducedModel, TriMesh};
+///
+/// # fn main() -> Result<(), sscc::Error> {
+/// # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+/// # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
+/// # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
+/// # let model = ReducedModel::new(mesh, modes)?;
+/// # let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+/// // The second of two triangles, one unit apart, falls in steps of 1/16 and touches the first once.
+/// let mut query = KineticQuery::new(&model, &certificates)?;
+/// let mut touching = Vec::new();
+/// for step in 0..32 {
+///     if !query.discrete(&[f64::from(step) / 16.0])?.is_empty() {
+///         touching.push(step);
+///     }
+/// }
+/// assert_eq!(touching, [16]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone)]
 pub struct KineticQuery {
     pub(in crate::query) query: Query,
@@ -211,11 +234,6 @@ impl KineticQuery {
     /// The cost of the last query.
     pub fn statistics(&self) -> Statistics {
         self.query.statistics()
-    }
-
-    /// `|z|` of the last query, as [`Query::norm`].
-    pub fn norm(&self) -> f64 {
-        self.query.norm()
     }
 
     fn find_without_region(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {

@@ -117,16 +117,16 @@ mod tests {
             let q = |along: f64, across: f64| {
                 let mut z = vec![0.0; rank];
                 (z[0], z[1]) = (along, across);
-                metric.unscaled(&z)
+                metric.unscale(&z)
             };
             let (start, end) = (q(1.0, 0.0), q(3.0, 0.0));
             let mut region = Region::new(rank);
             region.end.copy_from_slice(&end);
-            let first = Configuration { q: &start, norm: metric.norm(&start), reach: 1.0 };
+            let first = Configuration { q: &start, norm: metric.length(&start), reach: 1.0 };
             // The end has the larger reach, 1.5, or the start.
             let (reach_t0, reach_t1) = if case % 3 == 0 { (1.0, 1.5) } else { (1.5, 0.5) };
             let first = Configuration { reach: reach_t0, ..first };
-            region.set_capsule(&metric, first, (metric.norm(&end), reach_t1), 0.5);
+            region.set_capsule(&metric, first, (metric.length(&end), reach_t1), 0.5);
             for (along, across, is_in) in [
                 (1.0, 0.499, true),
                 (1.0, 0.501, false),
@@ -142,14 +142,14 @@ mod tests {
                 (0.7, -0.401, false),
             ] {
                 let q = q(along, across);
-                let at = |reach| Configuration { q: &q, norm: metric.norm(&q), reach };
+                let at = |reach| Configuration { q: &q, norm: metric.length(&q), reach };
                 assert_eq!(region.contains(&metric, at(3.0)), is_in, "case {case}: {along} {across}");
                 assert!(!region.contains(&metric, at(3.1)));
             }
-            region.set_ball(Configuration { q: &end, norm: metric.norm(&end), reach: 1.0 }, 0.5);
+            region.set_ball(Configuration { q: &end, norm: metric.length(&end), reach: 1.0 }, 0.5);
             for (along, across, is_in) in [(3.3, 0.399, true), (3.3, 0.401, false), (f64::NAN, 0.0, false)] {
                 let q = q(along, across);
-                let at = Configuration { q: &q, norm: metric.norm(&q), reach: 1.0 };
+                let at = Configuration { q: &q, norm: metric.length(&q), reach: 1.0 };
                 assert_eq!(region.contains(&metric, at), is_in);
             }
         }

@@ -73,8 +73,9 @@ impl SafeDistances {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificates::Scope;
     use crate::test_models::{Random, strips};
-    use crate::{ContactFilter, Neighbours, Scope};
+    use crate::{ContactFilter, Neighbours};
 
     /// No pair collides within its safe distance, in random directions and in those that close gaps fastest. And distances
     /// are not much too small: many are reached up to a tenth.
@@ -85,8 +86,7 @@ mod tests {
             let random = &mut Random(case as u64 + 1);
             let (model, half) = strips(random, case);
             let rank = model.rank();
-            let filter =
-                ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2], false);
+            let filter = ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2]);
             let center = (0..rank).map(|_| if case % 5 == 0 { random.signed() } else { 0.0 }).collect();
             let scope = Scope { center, filter: filter.clone(), ..Scope::of(&model) };
             let filter = PairFilter::new(&model, &filter);
@@ -123,7 +123,7 @@ mod tests {
                     let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
                     let step = |size: f64| -> Vec<f64> {
                         let z: Vec<f64> = way.iter().map(|x| x / length * size).collect();
-                        q.iter().zip(scope.metric.unscaled(&z)).map(|(q, d)| q + d).collect()
+                        q.iter().zip(scope.metric.unscale(&z)).map(|(q, d)| q + d).collect()
                     };
                     if length > 0.0 {
                         for share in [0.3, 0.7, 0.9, 0.99, 1.0 - 1e-9] {

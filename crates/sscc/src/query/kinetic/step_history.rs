@@ -67,7 +67,7 @@ impl StepHistory {
         if !self.is_known() {
             return 0.0;
         }
-        let bend = metric.norm(&self.change) / metric.norm(&self.step);
+        let bend = metric.length(&self.change) / metric.length(&self.step);
         // No direction is known at rest.
         if bend.is_finite() { steps.min(MAX_BEND / bend).min(MAX_STEPS).floor() } else { 0.0 }
     }
@@ -79,7 +79,7 @@ impl StepHistory {
             *end = q + steps * step + weight * change;
         }
         // The sagitta of a parabola.
-        let distance = metric.norm(&self.change) * steps * steps / 8.0;
-        RADIUS_FACTOR * distance + ADDED_RADIUS * steps * metric.norm(&self.step)
+        let distance = metric.length(&self.change) * steps * steps / 8.0;
+        RADIUS_FACTOR * distance + ADDED_RADIUS * steps * metric.length(&self.step)
     }
 }

@@ -18,7 +18,7 @@ fn model_of(shape: &FlexibleShape) -> ReducedModel {
 
 /// Local certificates of every node, in scopes of every kind.
 fn certify(model: &ReducedModel, seed: u64, random: &mut Numbers) -> Certificates {
-    let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+    let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
     let rank = model.rank();
     let metric = (seed.is_multiple_of(2) && rank < 40).then(|| {
         let entry = |i: usize, j: usize| scales[i] * scales[j] * if i == j { 1.0 } else { 0.2 / rank as f64 };
@@ -30,17 +30,15 @@ fn certify(model: &ReducedModel, seed: u64, random: &mut Numbers) -> Certificate
         scales.iter().map(|scale| size * random.signed() / scale).collect()
     });
     let neighbours = [Neighbours::Exclude, Neighbours::IncludeOneVertex][seed as usize / 2 % 2];
-    let options = CertifyOptions {
-        metric,
-        center,
-        filter: Some(ContactFilter::new(neighbours, seed % 5 < 3)),
-        ignore_rest: seed % 4 == 3,
-        budget: 0,
-        local_budget: 1 << 20,
-        epsilon: 0.9,
-        threads: Some(1),
-        ..CertifyOptions::default()
-    };
+    let options = CertifyOptions::default()
+        .metric(metric)
+        .center(center)
+        .filter(ContactFilter::new(neighbours).weld(seed % 5 < 3))
+        .ignore_rest(seed % 4 == 3)
+        .budget(0)
+        .local_budget(1 << 20)
+        .epsilon(0.9)
+        .threads(1);
     Certificates::compute(model, &options, &()).unwrap()
 }
 
@@ -109,7 +107,7 @@ impl<'a> Attack<'a> {
 
     /// A direction: few or many modes, or a part of a turn.
     fn ray(&self, shape: &FlexibleShape, random: &mut Numbers) -> Vec<f64> {
-        let scales = Metric::displacement(self.model.mesh(), self.model.modes()).scales();
+        let scales = Metric::displacement(self.model.mesh(), self.model.modes()).unwrap().scales();
         let decay = random.below(3) as i32;
         let few = random.below(3) == 0;
         let mut ray: Vec<f64> = scales
@@ -133,7 +131,7 @@ impl<'a> Attack<'a> {
     /// The shortest offset at which points of two triangles of a claim meet, in the displacement metric.
     fn approach(&self, (n, m): NodePair, random: &mut Numbers) -> Option<Vec<f64>> {
         let Self { model, certificates, .. } = self;
-        let scales = Metric::displacement(model.mesh(), model.modes()).scales();
+        let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
         let hierarchy = certificates.hierarchy();
         let (mut d, mut b) = (DVec3::ZERO, vec![DVec3::ZERO; model.rank()]);
         for (n, sign) in [(n, -1.0), (m, 1.0)] {
@@ -403,7 +401,7 @@ fn rounding_of_positions_far_away_closes_gaps() {
             Modes::from_matrix(6, 1, entry).unwrap(),
         );
         let model = model.unwrap();
-        let options = CertifyOptions { local_budget: 1 << 20, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().local_budget(1 << 20);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut attack = Attack::new(&model, &certificates);
         for index in 0..certificates.parts().local.nodes.len() {
@@ -426,7 +424,7 @@ fn half_a_turn_is_no_proof() {
     for seed in (0..20).filter(|seed| FlexibleShape::new(*seed, Shape::Box, 2).is_affine) {
         let shape = FlexibleShape::new(seed, Shape::Box, 2);
         let model = model_of(&shape);
-        let options = CertifyOptions { budget: 0, local_budget: 1 << 20, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().budget(0).local_budget(1 << 20);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut attack = Attack::new(&model, &certificates);
         let ends = [0.3, 0.3 + std::f64::consts::PI].map(|angle| shape.turned(DVec3::ONE, angle).unwrap());

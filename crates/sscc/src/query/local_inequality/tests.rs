@@ -7,11 +7,12 @@ use sscc_testing::Numbers;
 use super::super::exact_matrix::{Matrix, exact, gram, is_above, matrix, of_map};
 use super::super::local_tables::tables_of;
 use super::*;
+use crate::Metric;
+use crate::certificates::LocalBounds;
 use crate::certificates::LocalCertificates;
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::DeformedMotion;
 use crate::geometry::Aabb;
-use crate::{LocalBounds, Metric};
 
 /// Numbers of a certificate in the layout of its arrays, and the same as matrices.
 struct Certificate {

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::super::local_tables::tables_of;
 use super::*;
+use crate::certificates::LocalBounds;
 use crate::certificates::{EllipsoidBlocks, FactorScales, gradient_len};
 use crate::detect::vertex_motion::DeformedMotion;
 use crate::test_models::square;
-use crate::{LocalBounds, Metric, Modes, ReducedModel};
+use crate::{Metric, Modes, ReducedModel};
 
 /// The certificate of one node with ratio 1 that allows ratios below `1 / |q|`, for two modes.
 fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {

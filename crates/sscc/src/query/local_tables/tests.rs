@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::LocalBounds;
+use crate::certificates::LocalBounds;
 use crate::test_models::{Random, strips};
 
 /// Lists that set few bits and all.

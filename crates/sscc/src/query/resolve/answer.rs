@@ -1,13 +1,21 @@
 //! The question and the answer of [`Query::resolve`](crate::Query::resolve).
 
-/// How [`Query::resolve`](crate::Query::resolve) searches.
+/// How [`Query::resolve`](crate::Query::resolve) searches. Each method sets one option.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ResolveOptions {
-    /// A free configuration from which the search begins (r entries); none: the centre of the certificates.
-    pub start: Option<Vec<f64>>,
-    /// Whether exceptions must be free as well. Without it they are left as they are: they may collide at the start and
-    /// in the answer.
-    pub all: bool,
+    pub(super) start: Option<Vec<f64>>,
+    pub(super) all: bool,
+}
+
+impl ResolveOptions {
+    setters! {
+        /// A free configuration from which the search begins (r entries); none: the centre of the certificates.
+        start: impl Into<Option<Vec<f64>>>,
+        /// Whether exceptions must be free as well. Otherwise they are left as they are: they may collide at the start
+        /// and in the answer.
+        all: bool,
+    }
 }
 
 /// A free configuration near a colliding one, or that none was found.

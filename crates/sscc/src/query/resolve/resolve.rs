@@ -34,6 +34,26 @@ impl Query {
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
     /// number of steps. The last answer of the query is forgotten.
     ///
+    /// ```
+    /// # use glam::DVec3;
+    /// use sscc::{Certificates, CertifyOptions, Modes, Query, ReducedModel, ResolveOptions, TriMesh};
+    ///
+    /// # fn main() -> Result<(), sscc::Error> {
+    /// # let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    /// # let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])?;
+    /// # let modes = Modes::from_matrix(6, 1, |row, _mode| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 })?;
+    /// # let model = ReducedModel::new(mesh, modes)?;
+    /// # let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+    /// // Two triangles touch at q = 1. The nearest free q is just before.
+    /// let mut query = Query::new(&model, &certificates)?;
+    /// let resolved = query.resolve(&[1.0], &ResolveOptions::default())?;
+    /// let q = resolved.q.expect("the centre is free");
+    /// assert!(query.discrete(&q)?.is_empty());
+    /// assert!(0.9 < q[0] && q[0] < 1.0 && resolved.change < 0.1);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
     /// # Errors
     /// As [`Query::discrete`], for q and the start; when a given start collides.
     pub fn resolve(&mut self, q: &[f64], options: &ResolveOptions) -> Result<Resolved, Error> {

@@ -143,7 +143,7 @@ impl<'w> Walk<'w> {
         let displacement = projection.point();
         let share = self.separations.allowed_share(displacement);
         let displacement: Vec<f64> = displacement.iter().map(|s| s * share).collect();
-        let there: Vec<f64> = self.q.iter().zip(metric.unscaled(&displacement)).map(|(q, d)| q + d).collect();
+        let there: Vec<f64> = self.q.iter().zip(metric.unscale(&displacement)).map(|(q, d)| q + d).collect();
         // Extreme numbers can overflow.
         if self.query.context.model.check_coordinates(&there).is_ok() { there } else { self.q.clone() }
     }

@@ -9,3 +9,4 @@ mod weight_sweep;
 mod work;
 
 pub use sweep::{Sweep, SweepOutcome};
+pub use sweep_modes::ModeRange;

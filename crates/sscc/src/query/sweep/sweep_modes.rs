@@ -7,26 +7,37 @@ use crate::parallel::{map_with, on_threads};
 use crate::query::query::Query;
 use crate::{Error, Progress};
 
+/// The weights over which a mode is swept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModeRange {
+    /// The mode, from 0.
+    pub mode: usize,
+    /// The smallest weight.
+    pub low: f64,
+    /// The largest weight.
+    pub high: f64,
+}
+
 impl Query {
-    /// Sweeps modes over ranges of their weights `(mode, [low, high])`, with all others as in q: for each mode upwards from
+    /// Sweeps modes over ranges of their weights, with all others as in q: for each mode upwards from
     /// its weight in q to `high`, then downwards to `low`. Where the weight in q is outside of the range, one sweep goes
     /// from the nearer end of the range to the other one. The results are the same for any number of threads (none: all
     /// cores). `progress` may cancel them; that of [`Query::cancelled_by`] is not used.
     ///
-    /// [`ReducedModel::weight_limit`](crate::ReducedModel::weight_limit) is a range for modes of any unit.
+    /// [`ReducedModel::weight_limits`](crate::ReducedModel::weight_limits) is a range for modes of any unit.
     ///
     /// # Errors
     /// When a range is empty or not finite; as [`Query::sweep`], for the first sweep that has an error.
     pub fn sweep_modes(
         &self,
         q: &[f64],
-        ranges: &[(usize, [f64; 2])],
+        ranges: &[ModeRange],
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Vec<Sweep>, Error> {
         self.context.model.check_coordinates(q)?;
         let mut ways = Vec::with_capacity(2 * ranges.len());
-        for &(mode, [low, high]) in ranges {
+        for &ModeRange { mode, low, high } in ranges {
             let weight = *q.get(mode).ok_or(Error::ModeIndex { mode, rank: q.len() })?;
             if !(low < high && (high - low).is_finite()) {
                 return Err(Error::SweepRange { mode, low, high });

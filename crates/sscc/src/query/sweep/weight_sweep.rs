@@ -14,10 +14,10 @@
 use super::sweep::{Sweep, SweepOutcome};
 use super::weight_line::{WeightLine, forward, weight_before};
 use super::work::Work;
+use crate::detect::answer::Statistics;
 use crate::geometry::free_until;
 use crate::query::configuration_search::SweptSearch;
 use crate::query::query::Query;
-use crate::query::statistics::Statistics;
 use crate::{Error, Pair};
 
 /// `first_free` and `first_hit` are at most this share of the range apart (1e-9, less the rounding of weights).

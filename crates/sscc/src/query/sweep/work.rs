@@ -1,7 +1,7 @@
 //! The work of a sweep: counted, and limited by the number of triangles alone, so that the answer is the same on every
 //! machine.
 
-use crate::query::statistics::Statistics;
+use crate::detect::answer::Statistics;
 
 /// Intervals, at most; each takes one swept search. A sweep without grazing contacts takes a few.
 const INTERVALS: usize = 4096;
@@ -79,8 +79,9 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificates::Scope;
     use crate::test_models::{Random, strips};
-    use crate::{Method, Query, Scope, SweepOutcome};
+    use crate::{Method, Query, SweepOutcome};
 
     /// Each limit of the work gives a bracket: at most that of a larger limit, and free by brute force.
     #[test]
@@ -92,7 +93,7 @@ mod tests {
             let query = |method| Query::without_certificates(&model, Scope::of(&model), method).unwrap();
             let (mut query, mut oracle) = (query(Method::BdTree), query(Method::BruteForce));
             let q = vec![0.0; model.rank()];
-            let to = 2.0 * model.weight_limit(0);
+            let to = 2.0 * model.weight_limits()[0];
             let whole = query.sweep(&q, 0, to).unwrap();
             let Some(whole_free) = whole.first_free else { continue };
             for left in [0, 1, 8, 64, 512, 4096] {

@@ -6,9 +6,9 @@ pub mod pair_trees;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DMat3, DVec3};
+use sscc::parts::Scope;
 use sscc::{
-    CancelToken, CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, Scope,
-    TriMesh,
+    CancelToken, CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, TriMesh,
 };
 
 /// Small pseudo-random numbers.
@@ -296,13 +296,13 @@ pub fn random_model(seed: u64) -> ReducedModel {
     let mesh = TriMesh::new(p, faces).unwrap();
     let metric = match random.below(5) {
         0 => Metric::identity(rank),
-        1 => Metric::mass(&mesh, &modes),
+        1 => Metric::mass(&mesh, &modes).unwrap(),
         2 => {
             let scales = (0..rank).map(|_| random.power(-6.0, 6.0)).collect();
             Metric::from_scales(MetricKind::Given, scales).unwrap()
         }
         3 => dense_metric(random, &mesh, &modes),
-        _ => Metric::displacement(&mesh, &modes),
+        _ => Metric::displacement(&mesh, &modes).unwrap(),
     };
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
@@ -323,7 +323,7 @@ fn split_vertices(random: &mut Random, p: &mut Vec<DVec3>, faces: &mut [[u32; 3]
 /// A matrix whose unit ball is turned and stretched.
 fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
     let rank = modes.rank();
-    let scales = Metric::displacement(mesh, modes).scales();
+    let scales = Metric::displacement(mesh, modes).unwrap().scales();
     let g: Vec<f64> = (0..rank * rank).map(|_| random.signed()).collect();
     let entry = |i: usize, j: usize| -> f64 {
         let inner: f64 = (0..rank).map(|k| g[k * rank + i] * g[k * rank + j]).sum();
@@ -360,31 +360,48 @@ pub fn winding_strip(random: &mut Random, seed: u64) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
+/// Options, and those of their values that tests need.
+pub struct RandomOptions {
+    pub options: CertifyOptions,
+    pub filter: ContactFilter,
+    pub ignore_rest: bool,
+}
+
 /// Options of every kind, by the number of the model.
 pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
+    random_choices(seed, model).options
+}
+
+/// The same with their values.
+pub fn random_choices(seed: u64, model: &ReducedModel) -> RandomOptions {
     let random = &mut Random::new(seed + 3_000_000);
     let center = (random.below(4) == 0).then(|| {
         let size = random.power(-3.0, 0.5);
         model.metric().scales().iter().map(|s| random.signed() * size / s).collect()
     });
-    CertifyOptions {
-        center,
-        filter: Some(ContactFilter::new(
-            [Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)],
-            random.below(2) == 0,
-        )),
-        ignore_rest: random.below(3) == 0,
-        max_exceptions: [None, Some(0), Some(1000)][random.below(3)],
+    let filter = ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][random.below(2)])
+        .weld(random.below(2) == 0);
+    let ignore_rest = random.below(3) == 0;
+    let options = CertifyOptions::default()
+        .center(center)
+        .filter(filter.clone())
+        .ignore_rest(ignore_rest)
+        .max_exceptions([None, Some(0), Some(1000)][random.below(3)])
         // More than by default: these models are small.
-        budget: 16,
-        threads: Some(1),
-        ..CertifyOptions::default()
-    }
+        .budget(16)
+        .threads(1);
+    RandomOptions { options, filter, ignore_rest }
+}
+
+/// Whether two faces share a vertex number.
+pub fn are_adjacent(mesh: &TriMesh, a: u32, b: u32) -> bool {
+    let [a, b] = [a, b].map(|t| mesh.faces()[t as usize]);
+    a.iter().any(|i| b.contains(i))
 }
 
 /// `center + S^-1 z`
 pub fn at(scope: &Scope, z: &[f64]) -> Vec<f64> {
-    scope.metric.unscaled(z).iter().zip(&scope.center).map(|(d, c)| c + d).collect()
+    scope.metric.unscaled(z).unwrap().iter().zip(&scope.center).map(|(d, c)| c + d).collect()
 }
 
 /// The smallest z found that brings two points of the triangles together (relative modes of full rank), the points

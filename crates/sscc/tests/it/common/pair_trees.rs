@@ -1,6 +1,6 @@
 //! Pair trees with something changed.
 
-use sscc::PairTree;
+use sscc::parts::PairTree;
 
 /// A link's bits.
 pub const LAST: u32 = 1 << 31;

@@ -10,7 +10,7 @@ const VALUES: [f32; 3] = [f32::MIN_POSITIVE, 1.5e-40, 3.0];
 /// A larger model, and its certificates.
 fn large() -> (ReducedModel, Certificates) {
     let model = strip(900);
-    let options = CertifyOptions { budget: 8, local_budget: 256, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(8).local_budget(256);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     (model, certificates)
 }
@@ -26,7 +26,7 @@ fn every_field_round_trips_bit_for_bit() {
     local.list_ratios[..2].copy_from_slice(&[f32::INFINITY, VALUES[1]]);
     local.bounds[0].ratio = f64::INFINITY;
     local.ellipsoids[..4].copy_from_slice(&[0x8000, 0x7f7f, 1, 0xff7f]);
-    local.bounds[1] = sscc::LocalBounds {
+    local.bounds[1] = sscc::parts::LocalBounds {
         ratio: 5e-324,
         per_factor: 0.1,
         per_error: 1.0 + f64::EPSILON,
@@ -35,7 +35,7 @@ fn every_field_round_trips_bit_for_bit() {
         across: [0.6, -0.8, 1e-320],
         flatness: 0.25,
     };
-    let changed = Certificates::from_parts(parts).unwrap();
+    let changed = Certificates::try_from(parts).unwrap();
     for certificates in [certificates, changed] {
         let bytes = certificates_to_bytes(&certificates).unwrap();
         let file = Container::parse(&bytes, CERTIFICATES).unwrap();
@@ -56,7 +56,7 @@ fn every_field_round_trips_bit_for_bit() {
 fn groups_and_local_certificates_are_in_one_file() {
     let groups = TriangleGroups::new(&(0..22).map(|t| t / 6).collect::<Vec<u32>>()).unwrap().between_only();
     let filter = ContactFilter::default().with_groups(groups);
-    let options = CertifyOptions { filter: Some(filter), local_budget: 64, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().filter(filter).local_budget(64);
     let certificates = Certificates::compute(&model(), &options, &()).unwrap();
     let bytes = certificates_to_bytes(&certificates).unwrap();
     assert_eq!(Container::parse(&bytes, CERTIFICATES).unwrap().version(), 7);
@@ -69,12 +69,12 @@ fn groups_and_local_certificates_are_in_one_file() {
 #[test]
 fn the_rest_of_the_file_does_not_depend_on_them() {
     let (model, certificates) = large();
-    let options = CertifyOptions { budget: 8, local_budget: 0, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(8).local_budget(0);
     let plain = Certificates::compute(&model, &options, &()).unwrap();
     assert_eq!(plain.parts().digest, certificates.parts().digest);
-    let without = sscc::CertificateParts { local: Arc::default(), ..certificates.parts().clone() };
+    let without = sscc::parts::CertificateParts { local: Arc::default(), ..certificates.parts().clone() };
     let bytes = certificates_to_bytes(&plain).unwrap();
-    assert_eq!(certificates_to_bytes(&Certificates::from_parts(without).unwrap()).unwrap(), bytes);
+    assert_eq!(certificates_to_bytes(&Certificates::try_from(without).unwrap()).unwrap(), bytes);
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
     assert_eq!(file.version(), 4);
     assert!(file.names().iter().all(|name| !name.starts_with("local")));
@@ -201,10 +201,10 @@ fn files_of_the_first_version_are_read() {
     copy(&file, &mut writer, &["local_bounds"]);
     let mut expected = certificates().parts().clone();
     let bounds = &mut Arc::make_mut(&mut expected.local).bounds;
-    let first = |b: &sscc::LocalBounds| [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest];
+    let first = |b: &sscc::parts::LocalBounds| [b.ratio, b.per_factor, b.per_error, b.steepest, b.widest];
     let numbers: Vec<f64> = bounds.iter().flat_map(first).collect();
     writer.f64("local_bounds", &[bounds.len(), 5], &numbers);
     bounds.iter_mut().for_each(|b| (b.across, b.flatness) = ([0.0; 3], f64::INFINITY));
     let read = certificates_from_bytes(&writer.finish().unwrap()).unwrap();
-    assert_eq!(read, Certificates::from_parts(expected).unwrap());
+    assert_eq!(read, Certificates::try_from(expected).unwrap());
 }

@@ -88,7 +88,7 @@ impl Case {
         let modes = Modes::from_matrix(vertices, 1, |row, _| (row as f64).sin()).unwrap();
         let model = ReducedModel::new(mesh, modes).unwrap();
         let hierarchy = Hierarchy::build(&model, model.metric());
-        let filter = PairFilter::new(&model, &ContactFilter::new(neighbours, false));
+        let filter = PairFilter::new(&model, &ContactFilter::new(neighbours));
         Self { model, hierarchy, filter }
     }
 }

@@ -12,7 +12,7 @@ use crate::{CertifyOptions, Method, Modes, Query, ReducedModel};
 const RANK: usize = 11;
 
 fn parts() -> CertificateParts {
-    let options = CertifyOptions { budget: 0, local_budget: 4096, ..CertifyOptions::default() };
+    let options = CertifyOptions::default().budget(0).local_budget(4096);
     Certificates::compute(&ring(300, RANK, 0.4), &options, &()).unwrap().parts().clone()
 }
 
@@ -25,7 +25,7 @@ fn each_inconsistent_part_is_refused() {
     let changed = |change: &dyn Fn(&mut LocalCertificates)| {
         let mut parts = parts.clone();
         change(Arc::make_mut(&mut parts.local));
-        match Certificates::from_parts(parts) {
+        match Certificates::try_from(parts) {
             Ok(certificates) => {
                 let model = ring(300, RANK, 0.4);
                 let mut query = Query::new(&model, &certificates).unwrap();
@@ -208,10 +208,10 @@ fn what_is_computed_is_accepted() {
     for (quads, rank, budget) in
         [(2, 1, 0), (4, 2, 64), (9, 3, 4096), (20, 2, 64), (40, 9, 4096), (300, 3, 64)]
     {
-        let options = CertifyOptions { local_budget: budget, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().local_budget(budget);
         let certificates = Certificates::compute(&ring(quads, rank, 0.4), &options, &()).unwrap();
         let parts = certificates.parts();
-        let read = Certificates::from_parts(parts.clone());
+        let read = Certificates::try_from(parts.clone());
         assert_eq!(read.map_err(|error| error.to_string()).as_ref(), Ok(&certificates), "{quads} quads");
         assert_eq!(parts.local.nodes.is_empty(), budget == 0, "{quads} quads, {budget}");
         // Neighbours are listed by one of the two, also where the root is as small as a bucket.
@@ -235,13 +235,13 @@ fn nodes_that_no_mode_moves_are_certified() {
             .map(|(v, k, u)| if is_still(v, k) { DVec3::ZERO } else { u })
             .collect();
         let model = ReducedModel::new(mesh.clone(), Modes::new(rank, displacements).unwrap()).unwrap();
-        let options = CertifyOptions { local_budget: 4096, ..CertifyOptions::default() };
+        let options = CertifyOptions::default().local_budget(4096);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let local = &certificates.parts().local;
         let free = |i: &usize| local.mode_starts[*i] == local.mode_starts[*i + 1];
         let counts = (0..local.nodes.len()).filter(free).filter(|i| local.bounds[*i].ratio < 1e-12).count();
         assert!(counts > 2 && (still == rank) == (counts == local.nodes.len()), "{counts}");
-        let read = Certificates::from_parts(certificates.parts().clone()).unwrap();
+        let read = Certificates::try_from(certificates.parts().clone()).unwrap();
         assert_eq!(read, certificates);
         let mut query = Query::new(&model, &read).unwrap();
         let mut brute = Query::with_method(&model, &read, Method::BruteForce).unwrap();

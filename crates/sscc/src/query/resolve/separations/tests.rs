@@ -1,7 +1,8 @@
 use super::*;
+use crate::certificates::Scope;
 use crate::query::query::Query;
 use crate::test_models::{Random, strips};
-use crate::{ContactFilter, Method, Neighbours, Scope};
+use crate::{ContactFilter, Method, Neighbours};
 
 /// Displacements within the half-spaces of all pairs keep all pairs free; at the most violated half-space the gap is the
 /// margin.
@@ -12,7 +13,7 @@ fn displacements_within_the_half_spaces_are_free() {
         let random = &mut Random(case as u64 + 1);
         let (model, half) = strips(random, case);
         let rank = model.rank();
-        let filter = ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2], false);
+        let filter = ContactFilter::new([Neighbours::Exclude, Neighbours::IncludeOneVertex][case % 2]);
         let scope = Scope { filter, ..Scope::of(&model) };
         let mut query = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let start: Vec<f64> = (0..rank).map(|_| random.signed() * 0.05).collect();
@@ -31,7 +32,7 @@ fn displacements_within_the_half_spaces_are_free() {
             let displacement: Vec<f64> = (0..rank).map(|_| random.signed() * 3.0).collect();
             let at = |share: f64| -> Vec<f64> {
                 let z: Vec<f64> = displacement.iter().map(|s| s * share).collect();
-                start.iter().zip(scope.metric.unscaled(&z)).map(|(q, d)| q + d).collect()
+                start.iter().zip(scope.metric.unscale(&z)).map(|(q, d)| q + d).collect()
             };
             let share = separations.allowed_share(&displacement);
             assert!(query.first(&at(share)).unwrap().is_none(), "case {case}");

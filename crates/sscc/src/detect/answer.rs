@@ -1,6 +1,7 @@
-//! The cost of a query.
+//! The answer for one shape of a batch, its cost, and what proved it.
 
-use crate::detect::search::Counters;
+use super::search::Counters;
+use crate::Pair;
 
 /// What proved the answer of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,20 +15,23 @@ pub enum Proof {
     Search,
 }
 
-impl Proof {
-    /// Its name in files and JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Radius => "radius",
-            Self::Local => "local",
-            Self::Search => "search",
-        }
-    }
+names! { Proof, "proof": Radius = "radius", Local = "local", Search = "search" }
+
+/// The answer for one q, or one set of positions, of a batch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    /// All colliding pairs, sorted.
+    pub pairs: Vec<Pair>,
+    /// The cost of this answer.
+    pub statistics: Statistics,
 }
 
-/// The cost of the last query.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The cost of an answer, and what proved it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
+    /// `|z| = |S (q - center)|`, rounded up, in the metric and about the centre of the query; of a continuous query the larger
+    /// one of start and end. 0 for a [`Detector`](crate::Detector), which has no q.
+    pub norm: f64,
     /// Whether the root's certificate alone proved the shape free, exceptions apart: its radius or its local certificate.
     pub root_certified: bool,
     /// What proved the answer, exceptions apart.
@@ -40,27 +44,34 @@ pub struct Statistics {
     pub box_tests: u64,
     /// Pairs of triangles tested exactly.
     pub triangle_tests: u64,
+    /// The cost of a detector's refitted hierarchy by the surface area heuristic; 0 for a query.
+    pub tree_cost: f64,
+    /// How often a detector has built its hierarchy again since it was made; 0 for a query.
+    pub rebuilds: u64,
 }
 
 impl Statistics {
     /// The cost of a query that the root's certificate alone answers.
-    pub(super) const PROVEN_FREE: Self = Self {
+    pub(crate) const PROVEN_FREE: Self = Self {
+        norm: 0.0,
         root_certified: true,
         proof: Proof::Radius,
         complete: true,
         opened: 0,
         box_tests: 0,
         triangle_tests: 0,
+        tree_cost: 0.0,
+        rebuilds: 0,
     };
 
     /// Says what proved the answer.
-    pub(super) fn set_proof(&mut self, proof: Proof) {
+    pub(crate) fn set_proof(&mut self, proof: Proof) {
         self.proof = proof;
         self.root_certified = proof != Proof::Search;
     }
 
     /// Takes over the counters of a search.
-    pub(super) fn set_counters(&mut self, counters: &Counters) {
+    pub(crate) fn set_counters(&mut self, counters: &Counters) {
         let Counters { opened, box_tests, triangle_tests, .. } = *counters;
         (self.opened, self.box_tests, self.triangle_tests) = (opened, box_tests, triangle_tests);
     }

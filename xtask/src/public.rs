@@ -1,0 +1,135 @@
+//! `cargo xtask public`: counts the public items of the core that a user may have to read.
+//!
+//! These are types, traits, functions, methods, constants, public fields and variants that can be reached from the root, without
+//! those of the module `parts`. Not counted: modules, fields of variants, implementations of traits, what other crates define,
+//! and what is hidden from the documentation. By this rule there were 387 at commit 1fcad41, `parts` included, which did not exist.
+//!
+//! rustdoc's JSON lists the items. Its format is unstable, so its version is checked.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use serde_json::Value;
+
+use crate::program::cargo;
+
+/// The version of rustdoc's JSON that is read here.
+const FORMAT: u64 = 57;
+
+/// The maximum number of items outside of `parts`.
+const MAX_ITEMS: usize = 260;
+
+/// Prints the items of each type, and their sums. With `--list` also their names. Fails where there are more than
+/// [`MAX_ITEMS`].
+pub fn run(arguments: &[String]) -> ExitCode {
+    let is_listed = match arguments {
+        [] => false,
+        [flag] if flag == "--list" => true,
+        _ => {
+            eprintln!("Usage: cargo xtask public [--list]    (counts the public items of the core)");
+            return ExitCode::from(2);
+        }
+    };
+    let json = match documentation() {
+        Ok(json) => json,
+        Err(line) => {
+            eprintln!("error: {line}");
+            return ExitCode::from(2);
+        }
+    };
+    let mut items = Items { index: &json["index"], visited: BTreeSet::new(), found: Vec::new() };
+    let root = items.of(&json["root"]);
+    let is_parts = |item: &Value| item["name"] == "parts" && item["inner"]["module"].is_object();
+    if let Some(parts) = items.children(root).into_iter().find(|item| is_parts(item)) {
+        items.visit(parts);
+    }
+    let parts = std::mem::take(&mut items.found);
+    items.visit(root);
+    let sum = |found: &[Vec<String>]| found.iter().map(Vec::len).sum::<usize>();
+    let (inside, outside) = (sum(&parts), sum(&items.found));
+    if is_listed {
+        for names in &items.found {
+            println!("{:>7}  {}", names.len(), names.join(", "));
+        }
+    }
+    println!("{outside:>7}  outside of parts, at most {MAX_ITEMS}\n{inside:>7}  in parts");
+    if outside <= MAX_ITEMS { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Runs rustdoc, and returns its JSON.
+fn documentation() -> Result<Value, String> {
+    let target = std::env::current_exe().ok().and_then(|xtask| Some(xtask.parent()?.parent()?.to_owned()));
+    let target: PathBuf = target.ok_or("the target folder is not known")?.join("public");
+    let mut command = cargo();
+    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..")).env("RUSTC_BOOTSTRAP", "1");
+    command.args(["rustdoc", "--quiet", "--package", "sscc", "--lib", "--target-dir"]).arg(&target);
+    command.args(["--", "-Z", "unstable-options", "--output-format", "json", "--cap-lints", "allow"]);
+    if !command.status().map_err(|error| error.to_string())?.success() {
+        return Err("rustdoc failed".into());
+    }
+    let path = target.join("doc/sscc.json");
+    let text = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let json: Value =
+        serde_json::from_slice(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+    match json["format_version"].as_u64() {
+        Some(FORMAT) => Ok(json),
+        found => Err(format!("rustdoc's JSON has version {found:?}, {FORMAT} was expected")),
+    }
+}
+
+/// The items of a crate.
+struct Items<'j> {
+    index: &'j Value,
+    /// Numbers of the items that were counted.
+    visited: BTreeSet<String>,
+    /// The names of each type, trait, function or constant with its fields, variants and methods.
+    found: Vec<Vec<String>>,
+}
+
+impl<'j> Items<'j> {
+    fn of(&self, id: &Value) -> &'j Value {
+        &self.index[id.to_string()]
+    }
+
+    /// The public items of a module.
+    fn children(&self, module: &Value) -> Vec<&'j Value> {
+        let items = list(&module["inner"]["module"]["items"]).iter().map(|id| self.of(id));
+        items.filter(|item| item["visibility"] == "public").collect()
+    }
+
+    /// Counts the public items of a module, or an item and its own ones.
+    fn visit(&mut self, item: &'j Value) {
+        let inner = &item["inner"];
+        if inner["module"].is_object() {
+            self.children(item).into_iter().for_each(|child| self.visit(child));
+        } else if inner["use"].is_object() {
+            // An item of another crate is null, which is nothing.
+            self.visit(self.of(&inner["use"]["id"]));
+        } else if !item.is_null() && self.visited.insert(item["id"].to_string()) {
+            let kind = inner.as_object().and_then(|map| map.values().next()).unwrap_or(inner);
+            let mut names = vec![text(&item["name"])];
+            let fields = [&kind["kind"]["plain"]["fields"], &kind["kind"]["tuple"]];
+            let own = fields.into_iter().chain([&kind["variants"]]).flat_map(list);
+            let of_traits = list(&kind["items"]).iter();
+            let own = own.chain(of_traits).map(|id| self.of(id)).filter(|item| item["visibility"] != "crate");
+            names.extend(own.filter(|item| !item.is_null()).map(|item| text(&item["name"])));
+            let implementations = list(&kind["impls"]).iter().map(|id| &self.of(id)["inner"]["impl"]);
+            let inherent = implementations.filter(|found| found.is_object() && found["trait"].is_null());
+            let methods = inherent.flat_map(|found| list(&found["items"])).map(|id| self.of(id));
+            names.extend(
+                methods.filter(|item| item["visibility"] == "public").map(|item| text(&item["name"])),
+            );
+            self.found.push(names);
+        }
+    }
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+fn text(value: &Value) -> String {
+    value.as_str().unwrap_or_default().to_owned()
+}
