@@ -204,6 +204,12 @@ def test_arrays_beyond_memory_raise_memory_error(certs: sscc.Certificates) -> No
 def test_errors_of_files_name_the_file(tmp_path: Path, certs: sscc.Certificates) -> None:
     with pytest.raises(FileNotFoundError, match=r"a\.obj: not found$"):
         sscc.Model.load(tmp_path / "a.obj")
+    mesh = tmp_path / "mesh.obj"
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with pytest.raises(ValueError, match=r"mesh\.obj: a mesh has no modes: add modes FILE, or"):
+        sscc.Model.load(mesh)
+    with pytest.raises(ValueError, match=r"only a glTF file can have several meshes: leave out mesh_name$"):
+        sscc.Model.load(mesh, mesh_name="a")
     with pytest.raises(OSError, match="is a directory, a file was expected"):
         sscc.Certificates.load(tmp_path, certs.model)
     with pytest.raises(TypeError, match="^path is a int: the name of a file was expected"):

@@ -98,6 +98,9 @@ def test_shapes_in_a_folder_equal_shapes_in_memory(tmp_path: Path) -> None:
 
 def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) -> None:
     vertices, faces, _ = torus(12, 8, 1)
+    solid = tmp_path / "s.mesh"
+    content = "MeshVersionFormatted 1\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra 1\n1 2 3 4 0\n"
+    solid.write_text(content)
     text: Any = "x"
     not_a_pair: Any = vertices
     one_corner = r"^fix_box has shape \[1, 3\]: \(2, 3\) was expected, two corners of a box$"
@@ -116,6 +119,7 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
         (lambda: sscc.modes.linear((vertices, faces), 3, poisson=text), TypeError, "^poisson is a str"),
         (lambda: sscc.modes.nonlinear((vertices, faces), 3, threads=-1), ValueError, "^threads is -1"),
         (lambda: sscc.modes.polynomial((vertices, faces), resolution=0), ValueError, "^resolution is 0"),
+        (lambda: sscc.modes.linear(solid, 3, resolution=4), ValueError, r"s\.mesh: resolution is for surfaces: "),
         (lambda: sscc.modes.pca(vertices, faces), ValueError, r"^shapes has shape \[96, 3\]: \(n, V, 3\)"),
         (lambda: sscc.modes.pca(vertices[None], faces), ValueError, "^shapes: "),
         (lambda: sscc.modes.pca(vertices[None]), TypeError, "^faces is missing"),

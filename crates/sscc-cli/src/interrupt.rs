@@ -53,5 +53,9 @@ pub fn check() -> anyhow::Result<()> {
 /// same message.
 pub fn message(error: &anyhow::Error) -> String {
     let root = error.root_cause().to_string();
-    if root.starts_with(MESSAGE) { root } else { crate::output::one_line(&format!("{error:#}")) }
+    if root.starts_with(MESSAGE) {
+        return root;
+    }
+    let messages: Vec<String> = error.chain().map(crate::flags::message).collect();
+    crate::output::one_line(&messages.join(": "))
 }

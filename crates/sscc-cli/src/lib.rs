@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod flags;
 mod interrupt;
 mod load;
 mod meter;

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Error, Result, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
-use sscc_io::{IoError, LoadOptions, LoadedModel, check_writable, folder};
+use sscc_io::{IoError, LoadOptions, LoadedModel, Setting, check_writable, folder};
 use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads, read_configuration};
 
 use crate::output::{note, warn};
@@ -35,8 +35,11 @@ pub fn request(
     if let Some(typed) = typed.neighbours {
         check_models(typed)?;
     }
-    let center =
-        typed.center.as_deref().map(|typed| read_configuration("--center", typed, loaded)).transpose()?;
+    let center = typed
+        .center
+        .as_deref()
+        .map(|typed| read_configuration(Setting::Center, typed, loaded))
+        .transpose()?;
     Ok(CertificateRequest {
         model: files.path.clone(),
         mesh_name: files.mesh_name.clone(),

@@ -3,8 +3,10 @@
 use std::sync::{Mutex, PoisonError};
 
 use sscc::{CancelToken, Progress};
+use sscc_io::Setting;
 use sscc_sim::{Stage, Watch};
 
+use crate::flags;
 use crate::interrupt;
 use crate::meter::Meter;
 use crate::output;
@@ -77,5 +79,9 @@ impl Watch for Stages {
 
     fn warn(&self, warning: &str) {
         self.write(|| output::write_stderr(format_args!("warning: {warning}")));
+    }
+
+    fn name(&self, setting: Setting) -> String {
+        flags::flag(setting)
     }
 }

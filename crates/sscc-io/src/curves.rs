@@ -38,7 +38,7 @@ fn check(path: &Path, found: &ContactCurves) -> Result<(), IoError> {
     } else {
         return Ok(());
     };
-    Err(IoError::Request { path: path.to_owned(), cause })
+    Err(IoError::request(path, cause))
 }
 
 /// The comment of the whole file.

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::Message;
+
 /// Error of reading, parsing or writing a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -55,7 +57,7 @@ pub enum IoError {
         /// The file to which the error belongs.
         path: PathBuf,
         /// Cause, and how to correct it.
-        cause: String,
+        cause: Message,
     },
 }
 
@@ -64,7 +66,7 @@ pub enum IoError {
 #[error("{place}{cause}")]
 pub struct FormatError {
     place: Place,
-    cause: String,
+    cause: Message,
 }
 
 /// A place in a file.
@@ -98,23 +100,40 @@ impl fmt::Display for Place {
     }
 }
 
+impl IoError {
+    pub(crate) fn request(path: &Path, cause: impl Into<Message>) -> Self {
+        Self::Request { path: path.to_owned(), cause: cause.into() }
+    }
+
+    /// Returns the message with its settings as data.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Format { path, error } => {
+                Message::from(format!("{}: {}", line(path), error.place)) + error.cause.clone()
+            }
+            Self::Request { path, cause } => Message::from(format!("{}: ", line(path))) + cause.clone(),
+            error => error.to_string().into(),
+        }
+    }
+}
+
 impl FormatError {
-    pub(crate) fn new(place: Place, cause: impl Into<String>) -> Self {
+    pub(crate) fn new(place: Place, cause: impl Into<Message>) -> Self {
         Self { place, cause: cause.into() }
     }
 
     /// Returns an error for the whole file.
-    pub(crate) fn whole(cause: impl Into<String>) -> Self {
+    pub(crate) fn whole(cause: impl Into<Message>) -> Self {
         Self::new(Place::Whole, cause)
     }
 
     /// Returns an error for a line, counted from 1.
-    pub(crate) fn line(line: usize, cause: impl Into<String>) -> Self {
+    pub(crate) fn line(line: usize, cause: impl Into<Message>) -> Self {
         Self::new(Place::Line(line), cause)
     }
 
     /// Returns an error for a named part.
-    pub(crate) fn part(name: impl Into<String>, cause: impl Into<String>) -> Self {
+    pub(crate) fn part(name: impl Into<String>, cause: impl Into<Message>) -> Self {
         Self::new(Place::Part(name.into()), cause)
     }
 
@@ -124,7 +143,7 @@ impl FormatError {
     }
 
     /// Returns the cause, with advice where there is one.
-    pub fn cause(&self) -> &str {
+    pub fn cause(&self) -> &Message {
         &self.cause
     }
 

@@ -22,7 +22,7 @@ pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result
         _ => {
             let cause = "files of this kind have no groups of triangles: use a .obj, .glb, .gltf or .vrm, or a file of \
                          one number for each triangle";
-            Err(IoError::Request { path: path.to_owned(), cause: cause.into() })
+            Err(IoError::request(path, cause))
         }
     }
 }
@@ -46,11 +46,11 @@ pub fn read_base_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> R
 /// # Errors
 /// When the file cannot be read, or a number is no integer from 0 to 65,535.
 pub fn read_group_numbers(path: &Path) -> Result<NamedGroups, IoError> {
-    let refused = |at: usize, number: f64| IoError::Request {
-        path: path.to_owned(),
-        cause: format!(
+    let refused = |at: usize, number: f64| {
+        let cause = format!(
             "the group of triangle {at} (counted from 0) is {number}: an integer from 0 to 65535 was expected"
-        ),
+        );
+        IoError::request(path, cause)
     };
     let mut of_triangle = Vec::new();
     for (at, number) in read_vector(path)?.into_iter().enumerate() {

@@ -70,6 +70,7 @@ mod load;
 pub mod mesh;
 mod mesh_modes;
 mod mesh_path;
+mod message;
 pub mod modes;
 mod named_groups;
 mod natural_order;
@@ -96,6 +97,7 @@ pub use load::{
 pub use mesh::{read_mesh, read_mesh_with_warnings};
 pub use mesh_modes::read_modes_for;
 pub use mesh_path::split_mesh_name;
+pub use message::{Message, Setting};
 pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
 pub use named_groups::{GroupsBy, NamedGroups};
 pub use npy::write_npy;

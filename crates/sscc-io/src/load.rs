@@ -8,15 +8,13 @@ use crate::file::{check_exists, ending, unsupported};
 use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
 use crate::mesh_path::named_file;
 use crate::solid::{is_solid_name, read_volume_or_surface};
-use crate::{IoError, ModelInfo, NamedModes, NpzModel, gltf, read_model, read_modes_for, read_npz_model};
+use crate::{
+    IoError, ModelInfo, NamedModes, NpzModel, Setting, gltf, read_model, read_modes_for, read_npz_model,
+};
 
 /// Endings of the files that have a mesh.
 const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf, .vrm; models: \
                          .npz, .model.safetensors";
-
-/// Cause of the error for a mesh without modes.
-const NO_MODES: &str = "a mesh has no modes: add --modes FILE, or compute modes with sscc modes; sscc check without a \
-                        q checks the mesh as it is";
 
 /// Options for loading a model.
 #[derive(Clone, Debug, Default)]
@@ -100,7 +98,6 @@ pub fn load_model(path: &Path, modes: Option<&Path>) -> Result<(ReducedModel, Mo
 pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedModel, IoError> {
     let (file, mesh_name) = named_file(path, options.mesh_name)?;
     let (path, mesh_name) = (file.as_path(), mesh_name.as_deref());
-    let refused = |cause: &str| IoError::Request { path: path.to_owned(), cause: cause.into() };
     // A missing file is reported first.
     check_exists(path)?;
     let format = ending(path);
@@ -128,12 +125,14 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             Ok(LoadedModel { mode_weights: weights, ..loaded })
         }
         (format, Some(_)) if is_gltf || matches!(format, "safetensors" | "npz") => {
-            Err(refused("a model file has its own modes: leave out --modes"))
+            Err(IoError::request(path, "a model file has its own modes: leave out " + Setting::Modes))
         }
         (_, None) => {
             // A missing or malformed mesh is reported before missing modes.
             load_mesh(path, None)?;
-            Err(refused(NO_MODES))
+            let advice =
+                " FILE, or compute modes with sscc modes; sscc check without a q checks the mesh as it is";
+            Err(IoError::request(path, "a mesh has no modes: add " + Setting::Modes + advice))
         }
         (_, Some(modes_path)) => {
             let LoadedMesh { mesh, warnings } = load_mesh_with_warnings(path, None)?;
@@ -186,15 +185,13 @@ pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<L
 
 /// Returns the error for a named mesh of a file that has only one.
 fn named_mesh_error(path: &Path) -> IoError {
-    let cause = "only a glTF file can have several meshes: leave out --mesh-name".into();
-    IoError::Request { path: path.to_owned(), cause }
+    IoError::request(path, "only a glTF file can have several meshes: leave out " + Setting::MeshName)
 }
 
 /// Builds the model. `at` is the file to name in the error if mesh and modes do not fit.
 fn assemble(at: &Path, mesh: TriMesh, modes: NamedModes, provenance: String) -> Result<LoadedModel, IoError> {
     let NamedModes { modes, names: mode_names, deviations } = modes;
-    let model = ReducedModel::new(mesh, modes)
-        .map_err(|error| IoError::Request { path: at.to_owned(), cause: error.to_string() })?;
+    let model = ReducedModel::new(mesh, modes).map_err(|error| IoError::request(at, error.to_string()))?;
     let info = ModelInfo { deviations, ..ModelInfo::new("", provenance) };
     Ok(loaded(model, info, mode_names))
 }
@@ -243,9 +240,9 @@ mod tests {
         let message = |path: &Path, modes: Option<&Path>| load_model(path, modes).unwrap_err().to_string();
         assert!(
             message(&mesh, None)
-                .contains("a.obj: a mesh has no modes: add --modes FILE, or compute modes with sscc modes")
+                .contains("a.obj: a mesh has no modes: add modes FILE, or compute modes with sscc modes")
         );
-        assert!(message(&model, Some(&modes)).ends_with("has its own modes: leave out --modes"));
+        assert!(message(&model, Some(&modes)).ends_with("has its own modes: leave out modes"));
         assert!(message(&directory.path().join("b.obj"), None).ends_with("b.obj: not found"));
         write_npy(&modes, &[9, 2], &[1e-70; 18]).unwrap();
         assert!(load_model(&mesh, Some(&modes)).is_ok());
@@ -294,13 +291,13 @@ mod tests {
         let npz = message("a.npz", LoadOptions::default());
         assert!(npz.contains("a.npz: the archive has no array named mean"), "{npz}");
         let named = message("a.obj", LoadOptions::new(None, Some("x")));
-        assert!(named.ends_with("leave out --mesh-name"), "{named}");
+        assert!(named.ends_with("leave out mesh_name"), "{named}");
         for own in ["a.npz", "b.glb", "b.gltf"] {
             let modes = path("a.npy");
             let refused = || message(own, LoadOptions::new(Some(&modes), None));
             assert!(path(own).exists() || refused().ends_with(&format!("{own}: not found")));
             std::fs::write(path(own), "x").unwrap();
-            assert!(refused().ends_with("leave out --modes"));
+            assert!(refused().ends_with("leave out modes"));
         }
         // The surface of a solid has all vertices of its file, so its modes fit.
         let solid = "MeshVersionFormatted 1\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra 1\n1 2 3 4 0\n";
@@ -309,7 +306,7 @@ mod tests {
         assert_eq!(load("s.mesh", "s.npy").model.mesh(), &load_mesh(&path("s.mesh"), None).unwrap());
         assert_eq!(load("s.mesh", "s.npy").model.mesh().faces().len(), 4);
         let no_modes = message("s.mesh", LoadOptions::default());
-        assert!(no_modes.contains("s.mesh: a mesh has no modes: add --modes FILE"), "{no_modes}");
+        assert!(no_modes.contains("s.mesh: a mesh has no modes: add modes FILE"), "{no_modes}");
         std::fs::write(path("a.fbx"), "x").unwrap();
         for refused in [
             message("a.fbx", LoadOptions::default()),
@@ -333,7 +330,7 @@ mod tests {
             assert_eq!(ContactFilter::of(&read).weld, mesh == "a.STL");
         }
         let named = load_mesh(&path("a.obj"), Some("x")).unwrap_err().to_string();
-        assert!(named.ends_with("leave out --mesh-name"), "{named}");
+        assert!(named.ends_with("leave out mesh_name"), "{named}");
     }
 
     #[test]

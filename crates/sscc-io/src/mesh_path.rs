@@ -26,7 +26,7 @@ pub(crate) fn named_file(path: &Path, mesh_name: Option<&str>) -> Result<(PathBu
         (_, Some(name)) => {
             let cause =
                 format!("the mesh is named twice, here and by the name {}: leave one out", quoted(name));
-            Err(IoError::Request { path: path.to_owned(), cause })
+            Err(IoError::request(path, cause))
         }
     }
 }

@@ -53,7 +53,7 @@ fn check(path: &Path, mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -
     } else {
         return Ok(());
     };
-    Err(IoError::Request { path: path.to_owned(), cause })
+    Err(IoError::request(path, cause))
 }
 
 fn obj(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> String {

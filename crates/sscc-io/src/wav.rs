@@ -24,8 +24,7 @@ const MAX_BYTES: usize = u32::MAX as usize - 4096;
 /// # Errors
 /// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.
 pub fn write_wav(path: &Path, rate: u32, samples: &[f64], format: WavFormat) -> Result<(), IoError> {
-    let bytes = wav_to_bytes(rate, samples, format)
-        .map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    let bytes = wav_to_bytes(rate, samples, format).map_err(|cause| IoError::request(path, cause))?;
     write_whole(path, &bytes)
 }
 

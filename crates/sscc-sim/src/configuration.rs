@@ -2,31 +2,31 @@
 
 use std::path::Path;
 
-use sscc_io::{LoadedModel, read_vector};
+use sscc_io::{LoadedModel, Message, Setting, read_vector};
 
 use crate::error::{At, Result};
 use crate::text::quoted;
 use crate::{SimError, nearest};
 
-/// Returns the q that a flag states: r numbers with commas; `NAME=WEIGHT,NAME=WEIGHT`, where modes that are not named are 0;
+/// Returns the q that a setting states: r numbers with commas; `NAME=WEIGHT,NAME=WEIGHT`, where modes that are not named are 0;
 /// or a file of r numbers. A mode can also be named by its number from 0.
 ///
 /// # Errors
 /// When an entry is no number, a name is unknown (the error has the nearest one), ambiguous or repeated, the file cannot be
 /// read, or q is not a configuration of the model.
-pub fn read_configuration(flag: &str, typed: &str, loaded: &LoadedModel) -> Result<Vec<f64>> {
-    let mut place = flag.to_owned();
+pub fn read_configuration(setting: Setting, typed: &str, loaded: &LoadedModel) -> Result<Vec<f64>> {
+    let mut place = Message::from(setting);
     let q = match typed.split(',').map(number).collect() {
         Ok(numbers) => numbers,
         Err(_) if Path::new(typed).exists() || !typed.contains(['=', ',']) => {
-            place = format!("{flag} {typed}");
-            let cause = || format!("{flag} is not a list of numbers, so it must be a file");
-            read_vector(Path::new(typed)).at(cause)?
+            place = setting + format!(" {typed}");
+            let cause = " is not a list of numbers, so it must be a file";
+            read_vector(Path::new(typed)).at(|| setting + cause)?
         }
         Err(_) if typed.contains('=') => {
-            by_name(typed, loaded).map_err(|cause| SimError::refused(flag, cause))?
+            by_name(typed, loaded).map_err(|cause| SimError::refused(setting, cause))?
         }
-        Err(cause) => return Err(SimError::refused(flag, cause)),
+        Err(cause) => return Err(SimError::refused(setting, cause)),
     };
     loaded.model.check_coordinates(&q).at(|| place)?;
     Ok(q)
@@ -93,7 +93,7 @@ mod tests {
         }
         let loaded = load_model_with(&mesh, &LoadOptions::new(Some(&targets), None)).unwrap();
         assert_eq!(loaded.mode_names, ["jawOpen", "smile", "x=1"]);
-        let read = |typed: &str| read_configuration("--q", typed, &loaded);
+        let read = |typed: &str| read_configuration(Setting::Q, typed, &loaded);
         assert_eq!(read("smile=0.5").unwrap(), [0.0, 0.5, 0.0]);
         assert_eq!(read(" smile = -2e-1 ,0=1").unwrap(), [1.0, -0.2, 0.0]);
         assert_eq!(read("x=1=3").unwrap(), [0.0, 0.0, 3.0]);
@@ -105,26 +105,26 @@ mod tests {
             assert_eq!(read(file.to_str().unwrap()).unwrap(), [3.0, 2.0, 1.0]);
         }
         let message = |typed: &str| read(typed).unwrap_err().to_string();
-        let unknown = "--q: there is no mode 'jawOpn': the nearest name is 'jawOpen'; sscc info lists all";
+        let unknown = "q: there is no mode 'jawOpn': the nearest name is 'jawOpen'; sscc info lists all";
         assert_eq!(message("jawOpn=1"), unknown);
-        assert_eq!(message("smile=1,smile=1"), "--q: 'smile' is named twice");
-        assert_eq!(message("smile=1,0.5"), "--q: '0.5' has no weight: NAME=WEIGHT was expected");
-        assert_eq!(message("smile=x\n"), "--q: 'x' is not a number");
-        assert_eq!(message("1,,3"), "--q: '' is not a number");
-        assert!(message("none.txt").contains("--q is not a list of numbers, so it must be a file"));
-        assert_eq!(message("1,2"), "--q: q has 2 entries, the model has 3 modes");
-        assert_eq!(message("smile=inf"), "--q: q[1] is inf: every entry must be finite");
+        assert_eq!(message("smile=1,smile=1"), "q: 'smile' is named twice");
+        assert_eq!(message("smile=1,0.5"), "q: '0.5' has no weight: NAME=WEIGHT was expected");
+        assert_eq!(message("smile=x\n"), "q: 'x' is not a number");
+        assert_eq!(message("1,,3"), "q: '' is not a number");
+        assert!(message("none.txt").contains("q is not a list of numbers, so it must be a file"));
+        assert_eq!(message("1,2"), "q: q has 2 entries, the model has 3 modes");
+        assert_eq!(message("smile=inf"), "q: q[1] is inf: every entry must be finite");
         assert!(message(&format!("{}=1", "a\u{7}".repeat(5000))).len() < 250);
         let mut twice = loaded.clone();
         twice.mode_names = vec!["a".into(), "b".into(), "a".into()];
-        let ambiguous = read_configuration("--q", "a=1", &twice).unwrap_err().to_string();
-        assert_eq!(ambiguous, "--q: modes 0 and 2 are both named 'a': use their numbers");
+        let ambiguous = read_configuration(Setting::Q, "a=1", &twice).unwrap_err().to_string();
+        assert_eq!(ambiguous, "q: modes 0 and 2 are both named 'a': use their numbers");
         let mut unnamed = loaded.clone();
         unnamed.mode_names.clear();
-        assert_eq!(read_configuration("--q", "2=1", &unnamed).unwrap(), [0.0, 0.0, 1.0]);
-        let no_names = read_configuration("--q", "3=1", &unnamed).unwrap_err().to_string();
+        assert_eq!(read_configuration(Setting::Q, "2=1", &unnamed).unwrap(), [0.0, 0.0, 1.0]);
+        let no_names = read_configuration(Setting::Q, "3=1", &unnamed).unwrap_err().to_string();
         let expected =
-            "--q: there is no mode '3': the modes of this model have no names; use numbers from 0 to 2";
+            "q: there is no mode '3': the modes of this model have no names; use numbers from 0 to 2";
         assert_eq!(no_names, expected);
     }
 }

@@ -1,11 +1,10 @@
 //! Errors of models, scenes and simulations: one line each, which names the file, the place and the cause.
 
-use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use sscc_dynamics::DynamicsError;
-use sscc_io::IoError;
+use sscc_io::{IoError, Message, Setting};
 use sscc_modes::ModesError;
 use sscc_solid::{MaterialError, SolidError};
 
@@ -35,7 +34,7 @@ pub enum SimError {
     #[error("{place}: {cause}")]
     System {
         /// The file or folder.
-        place: String,
+        place: Message,
         /// The system's error.
         cause: io::Error,
     },
@@ -53,15 +52,15 @@ pub enum SimError {
     #[error("{place}: {cause}")]
     Refused {
         /// The file, the key or the part at fault.
-        place: String,
+        place: Message,
         /// The error, and the way out.
-        cause: String,
+        cause: Message,
     },
     /// Another error, with its place.
     #[error("{place}: {error}")]
     At {
         /// The file, the scene or the part.
-        place: String,
+        place: Message,
         /// The error there.
         error: Box<SimError>,
     },
@@ -102,17 +101,31 @@ pub enum SimError {
 
 impl SimError {
     /// Returns a [`SimError::Refused`] with the part at fault and the cause.
-    pub fn refused(place: impl Display, cause: impl Into<String>) -> Self {
-        Self::Refused { place: place.to_string(), cause: cause.into() }
+    pub fn refused(place: impl Into<Message>, cause: impl Into<Message>) -> Self {
+        Self::Refused { place: place.into(), cause: cause.into() }
     }
 
     pub(crate) fn system(path: &Path, cause: io::Error) -> Self {
-        Self::System { place: path.display().to_string(), cause }
+        Self::System { place: path.display().into(), cause }
     }
 
     /// Returns this error with a place. A cancellation is returned unchanged.
-    pub fn at(self, place: impl Into<String>) -> Self {
+    pub fn at(self, place: impl Into<Message>) -> Self {
         if self.is_cancelled() { self } else { Self::At { place: place.into(), error: Box::new(self) } }
+    }
+
+    /// Returns the message with its settings as data.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::File(error) => error.message(),
+            Self::Refused { place, cause } => place.clone() + ": " + cause.clone(),
+            Self::At { place, error } => place.clone() + ": " + error.message(),
+            Self::System { place, cause } => place.clone() + ": " + cause.to_string(),
+            Self::Solid(SolidError::UnsupportedMaterial { .. }) => {
+                Message::from(self.to_string()) + ", as in " + Setting::Material + " youngs=1e6,poisson=0.4"
+            }
+            error => error.to_string().into(),
+        }
     }
 
     /// Whether the error is a cancellation by the caller's progress.
@@ -158,21 +171,21 @@ impl From<MaterialError> for SimError {
 /// Adds a place to errors; cancellations stay unchanged.
 pub(crate) trait At<T> {
     /// Adds a place.
-    fn at(self, place: impl FnOnce() -> String) -> Result<T, SimError>;
+    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T, SimError>;
 
     /// Adds a file as the place, except to errors of readers and writers, which name their file already.
     fn in_file(self, path: &Path) -> Result<T, SimError>;
 }
 
 impl<T, E: Into<SimError>> At<T> for Result<T, E> {
-    fn at(self, place: impl FnOnce() -> String) -> Result<T, SimError> {
+    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T, SimError> {
         self.map_err(|error| error.into().at(place()))
     }
 
     fn in_file(self, path: &Path) -> Result<T, SimError> {
         match self.map_err(Into::into) {
             Err(SimError::File(error)) => Err(error.into()),
-            found => found.at(|| path.display().to_string()),
+            found => found.at(|| path.display()),
         }
     }
 }

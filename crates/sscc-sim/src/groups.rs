@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use sscc::TriangleGroups;
 use sscc_io::gltf::MeshNode;
 use sscc_io::{
-    FormatError, GroupsBy, IoError, NamedGroups, read_base_groups, read_group_numbers, read_groups,
+    FormatError, GroupsBy, IoError, NamedGroups, Setting, read_base_groups, read_group_numbers, read_groups,
 };
 
 use crate::SimError;
@@ -96,8 +96,8 @@ impl GroupRules {
         if self.is_empty() {
             return match self.by {
                 Some(_) => {
-                    let cause = "it changes nothing without --ignore-groups or --only-groups";
-                    Err(SimError::refused("--group-by", cause))
+                    let cause = "it changes nothing without " + Setting::IgnoreGroups;
+                    Err(SimError::refused(Setting::GroupBy, cause + " or " + Setting::OnlyGroups))
                 }
                 None => Ok(None),
             };
@@ -122,15 +122,15 @@ impl GroupRules {
 
     /// Returns a table for each of these groups. Each pair must be one of at least one of them.
     fn tables(&self, all: &[NamedGroups]) -> Result<Vec<TriangleGroups>> {
-        let (flag, typed) = match self.only[..] {
-            [] => ("--ignore-groups", &self.ignored),
-            _ => ("--only-groups", &self.only),
+        let (setting, typed) = match self.only[..] {
+            [] => (Setting::IgnoreGroups, &self.ignored),
+            _ => (Setting::OnlyGroups, &self.only),
         };
         let mut pairs = vec![Vec::new(); all.len()];
         for text in typed {
             let found: Vec<_> = all.iter().map(|named| named.pair(text)).collect();
             if found.iter().all(Result::is_err) {
-                return Err(SimError::refused(format!("{flag} {text}"), missing(all, text)));
+                return Err(SimError::refused(setting + " " + text.as_str(), missing(all, text)));
             }
             pairs.iter_mut().zip(found).for_each(|(pairs, found)| pairs.extend(found));
         }
@@ -157,7 +157,7 @@ fn missing(all: &[NamedGroups], text: &str) -> String {
 
 fn numbers(file: &Path) -> Result<NamedGroups> {
     read_group_numbers(file)
-        .at(|| "--group-by is none of group, object and material, so it must be a file".into())
+        .at(|| Setting::GroupBy + " is none of group, object and material, so it must be a file")
 }
 
 #[cfg(test)]
@@ -189,11 +189,11 @@ mod tests {
         let message = |rules: GroupRules| rules.tables(&all).unwrap_err().to_string();
         assert_eq!(
             message(rules(&[], &["hair,coat"])),
-            "--only-groups hair,coat: no triangle is in a group 'coat'; groups: 'hair', 'face', 'hat', 'shoe'"
+            "only_groups hair,coat: no triangle is in a group 'coat'; groups: 'hair', 'face', 'hat', 'shoe'"
         );
         assert_eq!(
             message(rules(&["hat,hat", "hair,shoe"], &[])),
-            "--ignore-groups hair,shoe: no node has both groups, and collisions between nodes are not searched"
+            "ignore_groups hair,shoe: no node has both groups, and collisions between nodes are not searched"
         );
     }
 
@@ -203,6 +203,6 @@ mod tests {
         assert!(rules.of_mesh("missing.obj".as_ref(), None, 1).unwrap().is_none());
         rules.by = Some("material".into());
         let message = rules.of_mesh("missing.obj".as_ref(), None, 1).unwrap_err().to_string();
-        assert!(message.starts_with("--group-by: it changes nothing without"), "{message}");
+        assert!(message.starts_with("group_by: it changes nothing without"), "{message}");
     }
 }

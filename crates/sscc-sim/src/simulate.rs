@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sscc_io::check_writable;
+use sscc_io::{Message, Setting, check_writable};
 
 use crate::error::{At, Result, SimError};
 use crate::machine::available_threads;
@@ -96,7 +96,7 @@ pub fn make_folder(folder: &Path) -> Result<(), SimError> {
         check_writable(folder)
     };
     make().map_err(|cause| SimError::System {
-        place: format!("{}: cannot write to this folder", folder.display()),
+        place: Message::from(folder.display()) + ": cannot write to this folder",
         cause,
     })
 }
@@ -105,7 +105,7 @@ pub fn make_folder(folder: &Path) -> Result<(), SimError> {
 fn own_folder(path: &Path, name: &str) -> Result<PathBuf> {
     let folder = PathBuf::from(name);
     if name.is_empty() || name.starts_with('.') || folder.is_file() {
-        let cause = "the scene's name cannot be the name of a folder; choose a folder with --out";
+        let cause = "the scene's name cannot be the name of a folder; choose a folder with " + Setting::Out;
         return Err(SimError::refused(path.display(), cause));
     }
     Ok(folder)

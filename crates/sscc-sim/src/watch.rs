@@ -1,6 +1,7 @@
 //! Callbacks by which a caller follows a simulation: stages, progress and notes.
 
 use sscc::Progress;
+use sscc_io::Setting;
 
 use crate::SimError;
 
@@ -41,6 +42,11 @@ pub trait Watch: Progress {
     /// Receives a warning: one line about input that breaks a rule, and how it was understood. By default a note.
     fn warn(&self, warning: &str) {
         self.note(warning);
+    }
+
+    /// Returns the caller's name of a setting, for notes.
+    fn name(&self, setting: Setting) -> String {
+        setting.name().into()
     }
 }
 

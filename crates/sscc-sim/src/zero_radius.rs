@@ -5,9 +5,6 @@ use sscc::{Certificates, Error, Progress, Query, ReducedModel};
 
 use crate::CertificateRequest;
 
-/// Maximum number of triangles in a note.
-const MAX_LISTED: usize = 8;
-
 /// The reason for a root's radius of 0, found by queries at the centre and at rest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ZeroRadius {
@@ -53,29 +50,6 @@ impl ZeroRadius {
         let can_ignore_rest = !request.ignore_rest && left <= max_exceptions;
         Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
     }
-
-    /// Returns a note with the remedy.
-    pub fn note(&self) -> String {
-        match self {
-            Self::Colliding { max_exceptions, can_ignore_rest } => {
-                let ignore = if *can_ignore_rest {
-                    ", or ignore the pairs that collide at rest with --ignore-rest"
-                } else {
-                    ""
-                };
-                format!(
-                    "more pairs collide at the centre than may be exceptions ({max_exceptions}): parts that contain \
-                     one have radius 0; raise --max-exceptions{ignore}"
-                )
-            }
-            Self::TooClose { triangles } => format!(
-                "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
-                 radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \
-                 another --center",
-                listed(triangles)
-            ),
-        }
-    }
 }
 
 /// Returns the triangles of the smallest node with radius 0. Nodes within a bucket are skipped, because they repeat the
@@ -93,15 +67,4 @@ fn smallest_zero_node(certificates: &Certificates) -> Vec<u32> {
     let mut triangles = smallest.map(|n| hierarchy.triangles(&nodes[n]).to_vec()).unwrap_or_default();
     triangles.sort_unstable();
     triangles
-}
-
-/// Returns the numbers of triangles as text, at most [`MAX_LISTED`] of them.
-fn listed(triangles: &[u32]) -> String {
-    let shown: Vec<String> = triangles.iter().take(MAX_LISTED).map(u32::to_string).collect();
-    let more = if triangles.len() > MAX_LISTED {
-        format!(", ... ({} in all)", triangles.len())
-    } else {
-        String::new()
-    };
-    shown.join(", ") + &more
 }

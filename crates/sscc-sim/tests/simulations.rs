@@ -218,7 +218,7 @@ fn refusals_name_the_file_and_the_way_out() {
     assert!(large.ends_with("bad.toml: file has 1048577 bytes; scenes may have at most 1048576"), "{large}");
     let models = folder.path().join("none");
     let named = refused(Request { models: Some(models.clone()), ..request(folder.path()) }).to_string();
-    assert_eq!(named, format!("{}: no folder of models; leave out --models", models.display()));
+    assert_eq!(named, format!("{}: no folder of models; leave out models", models.display()));
     let file = folder.path().join("bad.toml");
     let error = refused(Request { out: Some(file.clone()), ..request(folder.path()) });
     let start = format!("{}: cannot write to this folder: ", file.display());

@@ -118,7 +118,7 @@ pub enum SolidError {
     /// A material of elements has a stiffness that is not computed.
     #[error(
         "the material {name} is of the kind {kind}, whose stiffness is not computed: state both numbers of an isotropic \
-         stiffness instead, as in --material youngs=1e6,poisson=0.4"
+         stiffness instead"
     )]
     UnsupportedMaterial {
         /// Name in the file.

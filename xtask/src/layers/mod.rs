@@ -1,10 +1,11 @@
 //! `cargo xtask layers`: checks that imports go down the order in `layers.toml`, between crates and between the modules
-//! of a crate, and that no files of a crate form a circle.
+//! of a crate, that no files of a crate form a circle, and that libraries name no flags of the command.
 //!
 //! Crates are checked by their dependencies. Within a crate an import is a path from `crate`, `super` or `self`, in a `use` or in
 //! code, or from a module that a `use` names. It imports the file that defines the item: re-exports are followed. The tool does
 //! not know types, so it misses methods. Items and files for tests do not count.
 
+mod flags;
 mod imports;
 mod order;
 mod paths;
@@ -13,6 +14,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use crate::sources::{self, Crate};
+use flags::flags;
 use imports::Imports;
 use order::Order;
 
@@ -47,6 +49,7 @@ fn violations(root: &Path) -> Result<Vec<String>, String> {
         violations.extend(order.unplaced_modules(krate));
         violations.extend(imports.up_the_order(&order));
         violations.extend(imports.circle());
+        violations.extend(flags(krate));
     }
     Ok(violations)
 }

@@ -78,7 +78,8 @@ fn simulate(setup: &Setup<'_>, scene: &Scene, prepared: &PreparedScene) -> Resul
         |again| pool.install(|| run(scene, prepared, &folder, scene.steps, again, &[], setup.watch));
     let RunOutcome { history, failure, .. } = match run_on_pool(false) {
         Err(error) if StateLog::is_begun(&folder) => {
-            setup.watch.note(&format!("simulated again: {}", one_line(&error.to_string())));
+            let cause = error.message().with_names(|setting| setup.watch.name(setting));
+            setup.watch.note(&format!("simulated again: {}", one_line(&cause)));
             run_on_pool(true)?
         }
         outcome => outcome?,

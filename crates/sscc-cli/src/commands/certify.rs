@@ -11,6 +11,7 @@ use sscc_io::write_whole;
 use sscc_sim::ZeroRadius;
 use sscc_view::Picture;
 
+use super::zero_radius;
 use crate::args::Certify;
 use crate::interrupt;
 use crate::load;
@@ -92,7 +93,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         }
     }
     out.finish()?;
-    let notes = [zero_radius.map(|reason| reason.note()), picture.and_then(|drawn| drawn.note)];
+    let notes = [zero_radius.map(|reason| zero_radius::note(&reason)), picture.and_then(|drawn| drawn.note)];
     notes.into_iter().flatten().for_each(note);
     Ok(Outcome::Done)
 }

@@ -11,6 +11,7 @@ mod resolve;
 mod simulate;
 mod sweep;
 mod view;
+mod zero_radius;
 
 use crate::args::{Cli, Command};
 use crate::outcome::Outcome;

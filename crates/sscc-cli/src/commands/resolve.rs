@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 use sscc::ResolveOptions;
+use sscc_io::Setting;
 use sscc_sim::{ResolveReport, read_configuration, resolve_rows};
 
 use super::check::coordinates;
@@ -28,7 +29,8 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let rows = coordinates(&args.at, &loaded)?;
-    let start = args.from.as_deref().map(|typed| read_configuration("--from", typed, &loaded)).transpose()?;
+    let start =
+        args.from.as_deref().map(|typed| read_configuration(Setting::From, typed, &loaded)).transpose()?;
     let certificates = match &args.certificates {
         Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, model)?,
         None => load::certificates_now(&loaded, &args.model, &args.options)?,

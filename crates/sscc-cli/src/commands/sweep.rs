@@ -29,7 +29,7 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         true => rows.iter().try_for_each(|row| out.json(row))?,
         false => {
             out.line(request.ranges(&loaded)?)?;
-            sweep_table(&rows).into_iter().try_for_each(|line| out.line(line))?;
+            sweep_table(&rows, "--q, --ignore-rest").into_iter().try_for_each(|line| out.line(line))?;
         }
     }
     out.finish()?;

@@ -1,6 +1,6 @@
 //! Tensor read from a container.
 
-use crate::{FormatError, Place};
+use crate::{FormatError, Message, Place};
 
 /// Matches any length of an axis in [`Tensor::shaped`].
 pub const ANY: usize = usize::MAX;
@@ -33,7 +33,7 @@ impl<T> Tensor<T> {
     }
 
     /// Returns an error for the values of the tensor.
-    pub fn refused(&self, cause: impl Into<String>) -> FormatError {
+    pub fn refused(&self, cause: impl Into<Message>) -> FormatError {
         FormatError::new(Place::Tensor(self.name.clone()), cause)
     }
 }

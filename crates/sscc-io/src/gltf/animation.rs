@@ -53,8 +53,7 @@ pub fn write_animation(
     times: &[f64],
     tracks: &[Track],
 ) -> Result<(), IoError> {
-    let bytes = animation_to_bytes(models, times, tracks)
-        .map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    let bytes = animation_to_bytes(models, times, tracks).map_err(|cause| IoError::request(path, cause))?;
     write_whole(path, &bytes)
 }
 

@@ -2,8 +2,8 @@
 
 use super::json::{Mesh, Root};
 use super::triangles::{morph_targets, with_triangles};
-use crate::FormatError;
 use crate::error::{cut, quoted};
+use crate::{FormatError, Message, Setting};
 
 /// A mesh of a glTF file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,17 +33,22 @@ pub(super) fn choose(root: &Root, name: Option<&str>) -> Result<usize, FormatErr
     let wanted = Wanted {
         is_candidate: &|mesh| morph_targets(mesh) > 0,
         content: "morph targets",
-        flags: "--mesh-name",
-        none: "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes",
+        settings: Setting::MeshName.into(),
+        none: "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with "
+            + Setting::Modes,
     };
     wanted.choose(root, name)
 }
 
 /// As [`choose`], for meshes with triangles.
 pub(super) fn choose_base(root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
-    let none = "no mesh of the file has triangles";
-    let flags = "--mesh-name or --against-mesh";
-    Wanted { is_candidate: &has_triangles, content: "triangles", flags, none }.choose(root, name)
+    let wanted = Wanted {
+        is_candidate: &has_triangles,
+        content: "triangles",
+        settings: Setting::MeshName + " or " + Setting::AgainstMesh,
+        none: "no mesh of the file has triangles".into(),
+    };
+    wanted.choose(root, name)
 }
 
 /// Whether a mesh has triangles.
@@ -56,14 +61,14 @@ struct Wanted<'a> {
     is_candidate: &'a dyn Fn(&Mesh) -> bool,
     /// What candidates have, in messages.
     content: &'a str,
-    /// Flags that name a mesh, in messages.
-    flags: &'a str,
+    /// Settings that name a mesh, in messages.
+    settings: Message,
     /// Message without a candidate.
-    none: &'a str,
+    none: Message,
 }
 
 impl Wanted<'_> {
-    fn choose(&self, root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
+    fn choose(self, root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
         let (all, content) = (list(root), self.content);
         let is_candidate = |index: usize| (self.is_candidate)(&root.meshes[index]);
         let candidates: Vec<usize> = (0..all.len()).filter(|i| is_candidate(*i)).collect();
@@ -75,12 +80,11 @@ impl Wanted<'_> {
             return match candidates[..] {
                 [one] => Ok(one),
                 [] => Err(FormatError::whole(self.none)),
-                _ => Err(FormatError::whole(format!(
-                    "{} meshes have {content}: choose one with {}, or as FILE#NAME: {}",
-                    candidates.len(),
-                    self.flags,
-                    names()
-                ))),
+                _ => {
+                    let cause = format!("{} meshes have {content}: choose one with ", candidates.len());
+                    let names = format!(", or as FILE#NAME: {}", names());
+                    Err(FormatError::whole(Message::from(cause) + self.settings + names))
+                }
             };
         };
         let by_number = || -> Option<usize> {
@@ -137,7 +141,7 @@ mod tests {
         let many = root(&[(None, 1), (Some("b"), 1), (Some("b"), 3), (Some("#0"), 0)]);
         assert_eq!(
             message(&many, None),
-            "3 meshes have morph targets: choose one with --mesh-name, or as FILE#NAME: '#0', 'b', 'b'"
+            "3 meshes have morph targets: choose one with mesh_name, or as FILE#NAME: '#0', 'b', 'b'"
         );
         assert_eq!(
             message(&many, Some("b")),
@@ -148,7 +152,7 @@ mod tests {
         assert!(message(&many, Some("#4")).starts_with("there is no mesh '#4'"));
         assert_eq!(
             message(&root(&[]), None),
-            "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with --modes"
+            "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with modes"
         );
         assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; meshes with morph targets: none");
         let infos = list(&many);

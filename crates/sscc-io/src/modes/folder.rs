@@ -25,7 +25,7 @@ const MAX_MESHES: usize = 10_000;
 /// of vertices, has faces that differ from the neutral ones (it may have none), or has a coordinate that is not finite
 /// or too large.
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
-    let request = |cause: String| IoError::Request { path: folder.to_owned(), cause };
+    let request = |cause: String| IoError::request(folder, cause);
     // The neutral mesh may have another path (links, `..`).
     let mut paths = mesh_files(folder, fs::canonicalize(neutral_path).ok().as_deref(), "target")?;
     paths.sort_by(|a, b| a.as_os_str().as_encoded_bytes().cmp(b.as_os_str().as_encoded_bytes()));
@@ -60,7 +60,7 @@ pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> R
             paths.push(path);
         }
     }
-    let request = |cause: String| Err(IoError::Request { path: folder.to_owned(), cause });
+    let request = |cause: String| Err(IoError::request(folder, cause));
     match paths.len() {
         0 => request(format!("there is no {what} mesh in this folder")),
         count if count > MAX_MESHES => {

@@ -35,7 +35,7 @@ pub fn to_bytes(shape: &[usize], values: &[f64]) -> Option<Vec<u8>> {
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> Result<(), IoError> {
     let Some(bytes) = to_bytes(shape, values) else {
         let cause = format!("{} values do not fill an array of shape {shape:?}", values.len());
-        return Err(IoError::Request { path: path.to_owned(), cause });
+        return Err(IoError::request(path, cause));
     };
     write_whole(path, &bytes)
 }

@@ -10,7 +10,7 @@ use super::deviations::deviations;
 use super::names::Part;
 use crate::modes::array;
 use crate::npy::{self, Array};
-use crate::{FormatError, Place};
+use crate::{FormatError, Message, Place, Setting};
 
 /// Recognised arrays of an archive: name and bytes.
 pub(super) struct Parts(BTreeMap<Part, (String, Vec<u8>)>);
@@ -55,8 +55,9 @@ impl Parts {
         parse(bytes).map(Some).map_err(|error| FormatError::part(archive::place(name), error.to_string()))
     }
 
-    fn missing(part: Part, advice: &str) -> FormatError {
-        FormatError::whole(format!("the archive has no array named {}{advice}", part.names()))
+    fn missing(part: Part, advice: impl Into<Message>) -> FormatError {
+        let cause = Message::from(format!("the archive has no array named {}", part.names()));
+        FormatError::whole(cause + advice)
     }
 
     /// Returns the rest positions, one per vertex.
@@ -84,15 +85,15 @@ impl Parts {
         }
         let columns = |bytes: &[u8]| array::from_array(&npy::parse(bytes)?, vertices);
         self.get(Part::Modes, columns)?
-            .ok_or_else(|| Self::missing(Part::Modes, &format!(", {}", Part::Components.names())))
+            .ok_or_else(|| Self::missing(Part::Modes, format!(", {}", Part::Components.names())))
     }
 
     /// Returns the mesh of a complete model.
     pub fn mesh(&self) -> Result<TriMesh, FormatError> {
         let mean = self.mean()?.ok_or_else(|| Self::missing(Part::Mean, ""))?;
         let faces = self.get(Part::Faces, |bytes| faces(&npy::parse_integers(bytes)?, mean.len()))?;
-        let advice = ": pass it as --modes of a mesh file";
-        let faces = faces.ok_or_else(|| Self::missing(Part::Faces, advice))?;
+        let advice = || ": pass it as " + Setting::Modes + " of a mesh file";
+        let faces = faces.ok_or_else(|| Self::missing(Part::Faces, advice()))?;
         Ok(TriMesh::new(mean, faces)?)
     }
 

@@ -161,7 +161,7 @@ fn errors_name_the_array() {
     assert!(
         without("modes").starts_with("the archive has no array named modes, shapedirs, U, basis, components")
     );
-    assert!(without("faces").ends_with("triangles: pass it as --modes of a mesh file"));
+    assert!(without("faces").ends_with("triangles: pass it as modes of a mesh file"));
     let twice = "'mean' and 'v_template' are the same part of the model: remove one of them";
     assert_eq!(message(&with("v_template", numbers(&[4, 3]))), twice);
     assert!(

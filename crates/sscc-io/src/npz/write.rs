@@ -26,7 +26,7 @@ pub struct NamedArray<'a> {
 /// When the number of values does not fit a shape, a name is duplicated or invalid (allowed: letters, digits and `_`),
 /// or the file cannot be written.
 pub fn write_npz(path: &Path, arrays: &[NamedArray<'_>]) -> Result<(), IoError> {
-    let bytes = to_bytes(arrays).map_err(|cause| IoError::Request { path: path.to_owned(), cause })?;
+    let bytes = to_bytes(arrays).map_err(|cause| IoError::request(path, cause))?;
     write_whole(path, &bytes)
 }
 

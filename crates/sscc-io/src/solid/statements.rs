@@ -51,7 +51,7 @@ pub(super) fn index(field: &str) -> Result<u64, String> {
 
 /// Returns a finite number, or the cause of the error.
 pub(super) fn value(field: &str) -> Result<f64, String> {
-    crate::text::number(field, 0).map_err(|error| error.cause().to_owned())
+    crate::text::number(field, 0).map_err(|error| error.cause().to_string())
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
     // If the given file is missing, its reader reports it.
     if path.exists() && !companion.exists() {
         let cause = format!("the .{other} file of the same name does not exist beside it");
-        return Err(IoError::Request { path: path.to_owned(), cause });
+        return Err(IoError::request(path, cause));
     }
     Ok(companion)
 }

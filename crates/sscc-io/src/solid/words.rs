@@ -2,7 +2,7 @@
 
 use crate::error::quoted;
 use crate::text::{Lines, count, decoded, line_end, number};
-use crate::{FormatError, Place};
+use crate::{FormatError, Message, Place};
 
 /// Position in a file, from which words or bytes are read.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ impl<'a> Words<'a> {
         if self.binary { Place::Byte(self.at) } else { Place::Line(self.line) }
     }
 
-    pub fn refused<T>(&self, cause: impl Into<String>) -> Result<T, FormatError> {
+    pub fn refused<T>(&self, cause: impl Into<Message>) -> Result<T, FormatError> {
         Err(FormatError::new(self.place(), cause))
     }
 
@@ -82,7 +82,7 @@ impl<'a> Words<'a> {
     }
 
     fn here(&self, error: &FormatError) -> FormatError {
-        FormatError::new(self.place(), error.cause())
+        FormatError::new(self.place(), error.cause().clone())
     }
 
     pub fn integer(&mut self, what: &str) -> Result<i64, FormatError> {

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use sscc::parts::{DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, Scope, is_reach};
 use sscc::{CertifyOptions, ContactFilter, Metric, Neighbours, ReducedModel};
 
+use sscc_io::Setting;
+
 use super::metric::metric;
 use crate::error::{At, Result};
 use crate::{GroupRules, SimError, available_threads};
@@ -116,7 +118,7 @@ impl CertificateRequest {
         match (self.scheme, self.budget) {
             (Some(Scheme::Paper), None) => Ok(Some(0)),
             (Some(Scheme::Paper), Some(_)) => {
-                Err(SimError::refused("--scheme paper", "it stores no pair tree: leave --budget out"))
+                Err(refused_by_paper("it stores no pair tree: leave ", Setting::Budget))
             }
             (Some(Scheme::Full), None) => Ok(Some(DEFAULT_BUDGET)),
             (_, budget) => Ok(budget),
@@ -127,10 +129,9 @@ impl CertificateRequest {
     pub(super) fn local_budget(&self) -> Result<Option<usize>> {
         match (self.scheme, self.local_budget) {
             (Some(Scheme::Paper), None) => Ok(Some(0)),
-            (Some(Scheme::Paper), Some(_)) => Err(SimError::refused(
-                "--scheme paper",
-                "it stores no local certificates: leave --local-budget out",
-            )),
+            (Some(Scheme::Paper), Some(_)) => {
+                Err(refused_by_paper("it stores no local certificates: leave ", Setting::LocalBudget))
+            }
             (_, budget) => Ok(budget),
         }
     }
@@ -138,16 +139,19 @@ impl CertificateRequest {
     /// Returns how far radii may reach, if it is stated.
     pub(super) fn reach(&self) -> Result<Option<f64>> {
         if self.reach.is_some() && self.scheme == Some(Scheme::Paper) {
-            return Err(SimError::refused(
-                "--scheme paper",
-                "its radii end at the global radius: leave --reach out",
-            ));
+            return Err(refused_by_paper("its radii end at the global radius: leave ", Setting::Reach));
         }
         match self.reach {
-            Some(reach) if !is_reach(reach) => {
-                Err(SimError::refused("--reach", format!("{reach} is not a finite number of at least 1")))
-            }
+            Some(reach) if !is_reach(reach) => Err(SimError::refused(
+                Setting::Reach,
+                format!("{reach} is not a finite number of at least 1"),
+            )),
             reach => Ok(reach),
         }
     }
+}
+
+/// Returns the error for a setting that the scheme of the paper excludes.
+fn refused_by_paper(cause: &str, excluded: Setting) -> SimError {
+    SimError::refused(Setting::Scheme + " paper", cause + excluded + " out")
 }

@@ -5,11 +5,14 @@ use std::sync::Arc;
 
 use sscc::parts::{CertificateParts, DEFAULT_BUDGET, check_filter, is_within_reach};
 use sscc::{Certificates, ContactFilter, ReducedModel};
-use sscc_io::read_certificates;
+use sscc_io::{Message, Setting, read_certificates};
 
 use super::certificate_request::{CertificateRequest, Scheme};
 use crate::SimError;
 use crate::error::{At, Result};
+
+/// End of the message on a contradiction.
+const REMEDY: &str = "; leave the flag out, or certify anew";
 
 impl CertificateRequest {
     /// Reads certificates. Refuses those of another model, and those that contradict an option.
@@ -41,23 +44,21 @@ impl CertificateRequest {
     }
 
     /// Returns the first other contradiction: the cause of the refusal.
-    fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<String>> {
+    fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<Message>> {
         let epsilon = certificates.parts().epsilon;
         if let Some(typed) = self.epsilon.filter(|typed| *typed != epsilon) {
-            return Ok(Some(format!("certified with --epsilon {epsilon}, not {typed}; leave the flag out")));
+            let numbers = format!(" {epsilon}, not {typed}; leave the flag out");
+            return Ok(Some("certified with " + Setting::Epsilon + numbers));
         }
         let known = certificates.metric();
         let form = (known.scales(), known.dense_factor());
         let metric = self.metric(model)?;
         if metric.is_some_and(|typed| (typed.scales(), typed.dense_factor()) != form) {
-            return Ok(Some(format!(
-                "certified with another metric ({}) than --metric; leave the flag out, or certify anew",
-                known.kind()
-            )));
+            let cause = format!("certified with another metric ({}) than ", known.kind());
+            return Ok(Some(Message::from(cause) + Setting::Metric + REMEDY));
         }
         if self.center.as_deref().is_some_and(|typed| typed != certificates.center()) {
-            let cause = "certified about another centre than --center; leave the flag out, or certify anew";
-            return Ok(Some(cause.into()));
+            return Ok(Some("certified about another centre than " + Setting::Center + REMEDY));
         }
         let (tree, triangles) =
             (&certificates.parts().pair_tree, certificates.parts().hierarchy.order().len());
@@ -67,44 +68,35 @@ impl CertificateRequest {
         let is_of_scheme = self.scheme.is_none_or(|scheme| is_full == (scheme == Scheme::Full));
         let is_in_budget = |bytes: usize| has_tree && tree.bytes() <= bytes.saturating_mul(triangles);
         if !is_of_scheme || !self.budget.is_none_or(is_in_budget) {
-            return Ok(Some(format!(
-                "its pair tree of {} bytes for {triangles} triangles contradicts --scheme or --budget; leave the flag out, \
-                 or certify anew",
-                tree.bytes()
-            )));
+            let cause =
+                format!("its pair tree of {} bytes for {triangles} triangles contradicts ", tree.bytes());
+            return Ok(Some(Message::from(cause) + Setting::Scheme + " or " + Setting::Budget + REMEDY));
         }
         self.local_budget()?;
         if !self.is_in_local_budget(certificates.parts()) {
-            let local = &certificates.parts().local;
-            return Ok(Some(format!(
-                "its local certificates of {} bytes for {triangles} triangles contradict --local-budget; leave the flag out, or \
-                 certify anew",
-                local.bytes()
-            )));
+            let bytes = certificates.parts().local.bytes();
+            let cause =
+                format!("its local certificates of {bytes} bytes for {triangles} triangles contradict ");
+            return Ok(Some(Message::from(cause) + Setting::LocalBudget + REMEDY));
         }
         if let Some(reach) = self.reach()? {
             if !has_tree {
-                return Ok(Some(
-                    "it has no pair tree, so --reach has no meaning; leave the flag out, or certify anew"
-                        .into(),
-                ));
+                let cause = "it has no pair tree, so " + Setting::Reach;
+                return Ok(Some(cause + " has no meaning" + REMEDY));
             }
             if !is_within_reach(certificates, model, reach) {
-                return Ok(Some(format!(
-                    "its radii reach farther than --reach {reach} allows; leave the flag out, or certify anew"
-                )));
+                let cause = "its radii reach farther than " + Setting::Reach;
+                return Ok(Some(cause + format!(" {reach} allows") + REMEDY));
             }
         }
         let ignored = certificates.filter().ignored().len() as u64;
         if self.ignore_rest && ignored != certificates.rest_collisions() {
-            return Ok(Some("certified without --ignore-rest; leave the flag out, or certify anew".into()));
+            return Ok(Some("certified without " + Setting::IgnoreRest + REMEDY));
         }
         let exceptions = certificates.exceptions().len();
         Ok(self.max_exceptions.filter(|max| exceptions > *max).map(|_| {
-            format!(
-                "certified with {exceptions} exceptions, more than --max-exceptions allows; leave the flag out, or certify \
-                 anew"
-            )
+            let cause = format!("certified with {exceptions} exceptions, more than ");
+            Message::from(cause) + Setting::MaxExceptions + " allows" + REMEDY
         }))
     }
 

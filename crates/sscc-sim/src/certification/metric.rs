@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sscc::parts::check_metric;
 use sscc::{Metric, MetricKind, ReducedModel};
-use sscc_io::read_matrix;
+use sscc_io::{Message, Setting, read_matrix};
 
 use crate::SimError;
 use crate::error::{At, Result};
@@ -20,21 +20,22 @@ pub(super) fn metric(model: &ReducedModel, typed: &Path) -> Result<Metric> {
         Some("energy") => {
             let own = model.metric().kind();
             let cause = format!(
-                "the model's own metric is {own}, not energy; make a model with its stiffness by sscc modes --kind linear \
-                 or nonlinear, or give a file"
+                "the model's own metric is {own}, not energy; make a model with its stiffness by sscc modes "
             );
-            return Err(SimError::refused("--metric energy", cause));
+            let cause = Message::from(cause) + Setting::Kind + " linear or nonlinear, or give a file";
+            return Err(SimError::refused(Setting::Metric + " energy", cause));
         }
         _ => from_file(model, typed)?,
     };
-    // Checked here, because later errors cannot name the flag.
-    check_metric(&metric, model.mesh(), model.modes()).at(|| format!("--metric {}", typed.display()))?;
+    // Checked here, because later errors cannot name the setting.
+    check_metric(&metric, model.mesh(), model.modes()).at(|| Setting::Metric + " " + typed.display())?;
     Ok(metric)
 }
 
 fn from_file(model: &ReducedModel, file: &Path) -> Result<Metric> {
-    let numbers = read_matrix(file)
-        .at(|| "--metric is none of energy, displacement, mass and identity, so it must be a file".into())?;
+    let place =
+        || Setting::Metric + " is none of energy, displacement, mass and identity, so it must be a file";
+    let numbers = read_matrix(file).at(place)?;
     let rank = model.rank();
     let refused = |cause: String| Err(SimError::refused(file.display(), cause));
     let made = match (numbers.rows, numbers.columns) {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc_io::gltf::{PlacedMesh, is_gltf, read_placed_mesh};
-use sscc_io::{IoError, LoadedMesh, load_mesh_with_warnings, split_mesh_name};
+use sscc_io::{IoError, LoadedMesh, Message, Setting, load_mesh_with_warnings, split_mesh_name};
 
 use super::weld_classes::WeldClasses;
 use crate::SimError;
@@ -156,15 +156,20 @@ impl MeshSource {
                     return Ok(());
                 }
                 let (path, _) = split_mesh_name(&self.file);
-                format!(
-                    "the same mesh is on both sides: name a mesh for each, as in {0}#A --against {0}#B, or with --mesh-name \
-                     and --against-mesh (sscc info lists the meshes)",
-                    path.display()
-                )
+                let path = path.display();
+                let named = format!("the same mesh is on both sides: name a mesh for each, as in {path}#A ");
+                Message::from(named)
+                    + Setting::Against
+                    + format!(" {path}#B, or with ")
+                    + Setting::MeshName
+                    + " and "
+                    + Setting::AgainstMesh
+                    + " (sscc info lists the meshes)"
             }
-            _ => "the same mesh is on both sides: give another one; its collisions with itself are found without \
-                  --against"
-                .to_owned(),
+            _ => {
+                let cause = "the same mesh is on both sides: give another one; its collisions with itself are found without ";
+                cause + Setting::Against
+            }
         };
         Err(SimError::refused(file, cause))
     }

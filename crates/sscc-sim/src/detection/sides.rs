@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use sscc_io::gltf::is_gltf;
-use sscc_io::split_mesh_name;
+use sscc_io::{Setting, split_mesh_name};
 
 use super::mesh_source::MeshSource;
 use super::moving_mesh::MovingMesh;
@@ -193,8 +193,10 @@ fn check_animated(file: &Path) -> Result<()> {
         return Ok(());
     }
     let cause = match split_mesh_name(file) {
-        (_, Some(_)) => "an animation moves every node: leave out the name after #; --node selects a node",
-        _ => "only .glb, .gltf and .vrm files have animations: give --frames",
+        (_, Some(_)) => {
+            "an animation moves every node: leave out the name after #; " + Setting::Node + " selects a node"
+        }
+        _ => "only .glb, .gltf and .vrm files have animations: give " + Setting::Frames,
     };
     Err(SimError::refused(file.display(), cause))
 }

@@ -1,7 +1,7 @@
 //! Modes of elastic solids, as modes of their surface.
 
 use sscc::{Modes, Progress, ReducedModel};
-use sscc_io::ModelInfo;
+use sscc_io::{ModelInfo, Setting};
 use sscc_modes::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};
 use sscc_solid::MassData;
 
@@ -94,7 +94,7 @@ pub fn elastic_model(
     progress: &dyn Progress,
 ) -> Result<NewModel, SimError> {
     if kind == ModesKind::Polynomial && (rank.is_some() || !fixed.is_empty()) {
-        return Err(SimError::refused("--rank and --fix", POLYNOMIAL_MODES_ERROR));
+        return Err(SimError::refused(Setting::Rank + " and " + Setting::Fix, POLYNOMIAL_MODES_ERROR));
     }
     let ElasticModes { solid: found, on_surface, mass } =
         ElasticModes::new(&source, kind, rank, fixed, progress)?;

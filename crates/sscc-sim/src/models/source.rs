@@ -6,7 +6,9 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::{Modes, Progress, TriMesh};
 use sscc_io::mesh::is_mesh_name;
-use sscc_io::{IoError, VolumeOrSurface, read_mesh_with_warnings, read_volume_mesh, read_volume_or_surface};
+use sscc_io::{
+    IoError, Setting, VolumeOrSurface, read_mesh_with_warnings, read_volume_mesh, read_volume_or_surface,
+};
 use sscc_modes::EmbeddedSurface;
 use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid, VolumeMesh};
 
@@ -141,7 +143,8 @@ impl SolidSource {
             VolumeOrSurface::Volume(file) => file,
         };
         if resolution.is_some() {
-            return Err(SimError::refused("--resolution is for surfaces", "this file has its own elements"));
+            let place = Setting::Resolution + " is for surfaces";
+            return Err(SimError::refused(place, "this file has its own elements"));
         }
         Self::whole(&file, material)
     }

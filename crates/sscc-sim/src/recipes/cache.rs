@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use sscc_io::check_writable;
+use sscc_io::{Message, Setting, check_writable};
 
 use crate::error::InSystem;
 use crate::text::one_line;
@@ -31,7 +31,9 @@ impl Cache {
             check_writable(&folder)
         };
         open().map_err(|cause| SimError::System {
-            place: format!("{}: cannot write to this folder; choose one with --cache", folder.display()),
+            place: Message::from(folder.display())
+                + ": cannot write to this folder; choose one with "
+                + Setting::Cache,
             cause,
         })?;
         Ok(Self { folder, program: OnceLock::new() })

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use sscc::{Metric, MetricKind, Modes, ReducedModel};
-use sscc_io::{LoadOptions, ModelInfo, load_model_with, read_reduced_forces};
+use sscc_io::{LoadOptions, ModelInfo, Setting, load_model_with, read_reduced_forces};
 use sscc_modes::{diagonalize, energy_metric};
 use sscc_solid::{Elasticity, MassData, MassProperties, Material, PartialMaterial, Stiffness};
 
@@ -139,8 +139,9 @@ fn elasticity(files: &ModelFiles, info: &ModelInfo, rank: usize) -> Result<Elast
     match (&files.forces, &info.elasticity) {
         (None, Some(own)) => Ok(own.clone()),
         (None, None) => {
-            let cause = "the model has no forces, so it cannot move: compute it from a solid with sscc modes --kind \
-                         linear (or nonlinear, polynomial), or give the file of its forces: forces = \"FILE.cub\"";
+            let cause = "the model has no forces, so it cannot move: compute it from a solid with sscc modes "
+                + Setting::Kind
+                + " linear (or nonlinear, polynomial), or give the file of its forces: forces = \"FILE.cub\"";
             Err(SimError::refused(files.path.display(), cause))
         }
         (Some(forces), Some(_)) => {

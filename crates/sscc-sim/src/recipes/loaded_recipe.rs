@@ -93,7 +93,10 @@ impl<'a> LoadedRecipe<'a> {
             Matter::Solid(source) => return Ok(source),
             Matter::Surface(mesh) => mesh,
             Matter::Model(_) => {
-                return Err(SimError::refused(&self.source, "a model with modes has no solid of its own"));
+                return Err(SimError::refused(
+                    self.source.as_str(),
+                    "a model with modes has no solid of its own",
+                ));
             }
         };
         if let Some(source) = self.around.get() {
@@ -122,7 +125,9 @@ impl<'a> LoadedRecipe<'a> {
             ModesSpec::Linear(rank) => (ModesKind::Linear, Some(rank)),
             ModesSpec::Nonlinear(rank) => (ModesKind::Nonlinear, Some(rank)),
             ModesSpec::Polynomial => (ModesKind::Polynomial, None),
-            ModesSpec::Given => return Err(SimError::refused(&self.source, "this file has no modes")),
+            ModesSpec::Given => {
+                return Err(SimError::refused(self.source.as_str(), "this file has no modes"));
+            }
         };
         let ElasticModes { solid, on_surface, mass } =
             ElasticModes::new(source, kind, rank, &fixed, watch).at(|| self.source.clone())?;

@@ -3,16 +3,16 @@
 use std::env;
 use std::path::{Path, PathBuf};
 
-use sscc::{Progress, TriMesh};
-use sscc_io::{read_mesh, read_mesh_with_warnings, read_volume_mesh};
+use sscc::TriMesh;
+use sscc_io::{Message, Setting, read_mesh, read_mesh_with_warnings, read_volume_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
 use super::given_model::{GivenModel, ModelFiles};
 use super::resize::{Resize, scaled};
-use crate::SimError;
 use crate::error::At;
 use crate::models::{SolidSource, is_solid, read_embedded};
+use crate::{SimError, Watch};
 
 /// Rings of the embedded spring, and vertices of each.
 pub const SPRING_RINGS: [usize; 2] = [500, 16];
@@ -76,7 +76,7 @@ impl Shape {
         models: Option<&Path>,
         material: &PartialMaterial,
         resize: Resize,
-        progress: &dyn Progress,
+        watch: &dyn Watch,
     ) -> Result<LoadedShape, SimError> {
         let surface = |mesh: TriMesh, source: String, note| -> Result<LoadedShape, SimError> {
             let factor = resize.factor(mesh.rest_positions()).at(|| source.clone())?;
@@ -109,7 +109,7 @@ impl Shape {
                 let (mesh, _) = read_embedded(surface).in_file(surface)?;
                 let factor = resize.factor(mesh.rest_positions()).in_file(surface)?;
                 let file = read_volume_mesh(path)?.scaled(factor).in_file(path)?;
-                let found = SolidSource::embedded(scaled(mesh, factor)?, &file, material, progress);
+                let found = SolidSource::embedded(scaled(mesh, factor)?, &file, material, watch);
                 let source = format!("{} in {}", file_name(surface), file_name(path));
                 return solid(found.in_file(path)?, source, factor);
             }
@@ -126,7 +126,10 @@ impl Shape {
             None => surface(
                 embedded(),
                 format!("embedded {name}"),
-                Some(format!("the embedded {name} stands in for {file}: no --models given")),
+                Some(format!(
+                    "the embedded {name} stands in for {file}: no {} given",
+                    watch.name(Setting::Models)
+                )),
             ),
         }
     }
@@ -143,15 +146,13 @@ fn file_name(path: &Path) -> String {
 pub fn models_folder(wanted: Option<&Path>) -> Result<Option<PathBuf>, SimError> {
     let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
     let (folder, named_by) = match (wanted, named) {
-        (Some(wanted), _) => (wanted.to_owned(), "--models"),
-        (None, Some(named)) => (named, "the environment variable SSCC_MODELS"),
+        (Some(wanted), _) => (wanted.to_owned(), Message::from(Setting::Models)),
+        (None, Some(named)) => (named, "the environment variable SSCC_MODELS".into()),
         (None, None) => return Ok(None),
     };
     if !folder.is_dir() {
-        return Err(SimError::refused(
-            folder.display(),
-            format!("no folder of models; leave out {named_by}"),
-        ));
+        let cause = Message::from("no folder of models; leave out ");
+        return Err(SimError::refused(folder.display(), cause + named_by));
     }
     Ok(Some(folder))
 }

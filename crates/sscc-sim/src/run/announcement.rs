@@ -103,7 +103,7 @@ fn of_vibrations(
     seconds: f64,
 ) -> Result<f64> {
     let rank = rates.len();
-    let oscillator = LinearOscillator::new(eigenvalues, damping, step).at(|| "shake".into())?;
+    let oscillator = LinearOscillator::new(eigenvalues, damping, step).at(|| "shake")?;
     let (mut q, mut v, mut peaks) = (vec![0.0; rank], rates.to_vec(), vec![0.0_f64; rank]);
     let no_forces = vec![0.0; rank];
     for _ in 0..(seconds / step).ceil() as usize {

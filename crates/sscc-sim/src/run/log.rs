@@ -9,7 +9,7 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use blake3::Hasher;
-use sscc_io::{read_whole, write_whole};
+use sscc_io::{Message, Setting, read_whole, write_whole};
 
 use super::history::{History, StateLayout};
 use crate::error::{InSystem, Result, SimError};
@@ -65,10 +65,9 @@ impl StateLog {
         // Two simulations at once would overwrite each other's states.
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
-                return Err(SimError::refused(
-                    path.display(),
-                    "another simulation is writing to this file: wait for it, or choose another folder with --out",
-                ));
+                let cause = "another simulation is writing to this file: wait for it, or choose another folder with "
+                    + Setting::Out;
+                return Err(SimError::refused(path.display(), cause));
             }
             Err(TryLockError::Error(error)) => return Err(error).system(&path),
             Ok(()) => {}
@@ -80,9 +79,8 @@ impl StateLog {
         let mut first = Vec::new();
         (&mut file).take(DIGEST as u64).read_to_end(&mut first).system(&path)?;
         if first.len() == DIGEST && first != digest {
-            let cause = "this file belongs to another scene, other models or another version of this program: choose \
-                another folder, or begin again with --restart";
-            return Err(SimError::refused(path.display(), cause));
+            let owner = "another scene, other models or another version of this program";
+            return Err(of_another(&path, owner));
         }
         let mut log = Self { folder: folder.to_owned(), digest, layout, file, len: 0, hasher: Hasher::new() };
         let checkpoint = log.checkpoint()?;
@@ -119,10 +117,7 @@ impl StateLog {
         }
         let (digest, rest) = rest.split_at_checked(DIGEST).ok_or_else(damaged)?;
         if digest != self.digest {
-            return Err(SimError::refused(
-                path.display(),
-                "this file belongs to another simulation: choose another folder, or begin again with --restart",
-            ));
+            return Err(of_another(&path, "another simulation"));
         }
         let (of_states, rest) = rest.split_at_checked(HASH).ok_or_else(damaged)?;
         let ([states, memory @ ..], []) = rest.as_chunks::<8>() else { return Err(damaged()) };
@@ -130,7 +125,7 @@ impl StateLog {
         let log = self.path();
         let there = self.file.metadata().system(&log)?.len();
         let end = self.bytes(states).filter(|needed| *needed <= there).ok_or_else(|| {
-            let cause = "the log beside this file has fewer states; begin again with --restart";
+            let cause = "the log beside this file has fewer states; begin again with " + Setting::Restart;
             SimError::refused(path.display(), cause)
         })?;
         let mut hasher = Hasher::new();
@@ -203,7 +198,12 @@ impl StateLog {
 }
 
 fn damaged(path: &Path) -> SimError {
-    SimError::refused(path.display(), "this file is damaged; begin again with --restart")
+    SimError::refused(path.display(), "this file is damaged; begin again with " + Setting::Restart)
+}
+
+fn of_another(path: &Path, owner: &str) -> SimError {
+    let cause = format!("this file belongs to {owner}: choose another folder, or begin again with ");
+    SimError::refused(path.display(), Message::from(cause) + Setting::Restart)
 }
 
 #[cfg(test)]
@@ -257,7 +257,7 @@ mod tests {
         log.write_checkpoint(&[1.0]).unwrap();
         drop(log);
         let message = |digest| open(path, digest).err().unwrap().to_string();
-        assert!(message(2).contains("another folder, or begin again with --restart"));
+        assert!(message(2).contains("another folder, or begin again with restart"));
         let good = fs::read(path.join(CHECKPOINT)).unwrap();
         for at in [0, 33, 41, good.len() - 1] {
             let mut bad = good.clone();

@@ -116,12 +116,12 @@ impl PreparedModel {
                  per second",
                 scene.step
             );
-            return Err(SimError::refused(&certified.name, cause));
+            return Err(SimError::refused(certified.name.as_str(), cause));
         }
         let sound = scene.sound.as_ref().map(|sound| -> Result<SoundBank> {
             let rate = 1.0 / scene.step;
             let (modes, eigenvalues) =
-                vibrations(&loaded, sound.modes, cache, watch).at(|| "sound: modes".into())?;
+                vibrations(&loaded, sound.modes, cache, watch).at(|| "sound: modes")?;
             let damping = sound.damping.unwrap_or(spec.damping);
             let square = sound.pitch * sound.pitch;
             let eigenvalues: Vec<f64> = eigenvalues.iter().map(|x| x * square).collect();
@@ -156,7 +156,7 @@ fn elasticity(certified: &CertifiedModel, spec: &ModelSpec) -> Result<Elasticity
                 "the {} modes have no forces of large deformations; use linear dynamics",
                 certified.model.rank()
             );
-            Err(SimError::refused(&certified.name, cause))
+            Err(SimError::refused(certified.name.as_str(), cause))
         }
         known => Ok(known.clone()),
     }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use cpu_time::ThreadTime;
 use sscc_dynamics::{DynamicsError, SoundBank, World};
+use sscc_io::Setting;
 
 use super::clock::SystemClocks;
 use super::history::{History, StateLayout};
@@ -59,7 +60,7 @@ pub fn run(
     let bytes = 8.0 * steps as f64 * layout.width() as f64;
     if bytes > MAX_LOG_BYTES {
         let place = format!("{steps} steps need {:.0} GB", bytes / 1e9);
-        return Err(SimError::refused(place, "choose fewer with --steps"));
+        return Err(SimError::refused(place, "choose fewer with " + Setting::Steps));
     }
     let (mut log, checkpoint) = StateLog::open(folder, prepared.digest(scene), layout.clone(), again)?;
     if again {

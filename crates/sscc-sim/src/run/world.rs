@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use sscc_dynamics::{SoundBank, Start, State, World};
+use sscc_io::Setting;
 
 use super::prepared::PreparedScene;
 use crate::error::{At, Result, SimError};
@@ -50,9 +51,9 @@ pub fn restore(
     let at = || "the checkpoint".to_owned();
     world.restore(&State { step: step as u64, numbers: numbers.to_vec() }).at(at)?;
     for bank in sounds.iter_mut().flatten() {
-        let (own, others) = rest
-            .split_at_checked(bank.state().len())
-            .ok_or_else(|| SimError::refused("the checkpoint", "too short; begin again with --restart"))?;
+        let (own, others) = rest.split_at_checked(bank.state().len()).ok_or_else(|| {
+            SimError::refused("the checkpoint", "too short; begin again with " + Setting::Restart)
+        })?;
         bank.restore(own).at(at)?;
         rest = others;
     }

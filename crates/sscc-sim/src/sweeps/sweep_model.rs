@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use sscc::{Certificates, ModeRange, Pair, Progress, Query, ReducedModel};
 use sscc_io::gltf::PlacedMesh;
-use sscc_io::{IoError, LoadedModel, write_ply_pose};
+use sscc_io::{IoError, LoadedModel, Setting, write_ply_pose};
 
 use super::sweep_range::SweepRange;
 use super::sweep_row::SweepRow;
@@ -42,7 +42,7 @@ impl SweepRequest {
         let q = self
             .q
             .as_deref()
-            .map_or_else(|| Ok(center.to_vec()), |typed| read_configuration("--q", typed, loaded))?;
+            .map_or_else(|| Ok(center.to_vec()), |typed| read_configuration(Setting::Q, typed, loaded))?;
         let ranges = self.ranges(loaded)?.ends(&loaded.model, &q);
         self.pose.as_deref().map_or(Ok(()), make_folder)?;
         Ok((q, ranges))

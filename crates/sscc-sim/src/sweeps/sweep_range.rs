@@ -3,7 +3,7 @@
 use std::fmt;
 
 use sscc::ReducedModel;
-use sscc_io::LoadedModel;
+use sscc_io::{LoadedModel, Message, Setting};
 
 use super::sweep_row::weight;
 use crate::SimError;
@@ -31,16 +31,16 @@ impl SweepRange {
     /// # Errors
     /// When there are not two finite numbers in ascending order.
     pub fn parse(typed: &str) -> Result<Self> {
-        let refused = |cause: &str| Err(SimError::refused(format!("--range {typed}"), cause));
+        let refused = |cause: Message| Err(SimError::refused(Setting::Range + " " + typed, cause));
         let numbers: std::result::Result<Vec<f64>, _> =
             typed.split(',').map(|text| text.trim().parse()).collect();
         match numbers.as_deref() {
-            Ok([low, high]) if !(high - low).is_finite() => refused("both ends must be finite"),
+            Ok([low, high]) if !(high - low).is_finite() => refused("both ends must be finite".into()),
             Ok([low, high]) if low >= high => {
-                refused("the range is empty: the first number must be the smaller one")
+                refused("the range is empty: the first number must be the smaller one".into())
             }
             Ok([low, high]) => Ok(Self::Given([*low, *high])),
-            _ => refused("two numbers were expected, as in --range=-1,1"),
+            _ => refused("two numbers were expected, as in " + Setting::Range + "=-1,1"),
         }
     }
 
@@ -115,11 +115,11 @@ mod tests {
     fn ranges_are_two_numbers_in_order() {
         assert_eq!(SweepRange::parse("-1, 2.5").unwrap(), SweepRange::Given([-1.0, 2.5]));
         let message = |typed: &str| SweepRange::parse(typed).unwrap_err().to_string();
-        let empty = "--range 1,1: the range is empty: the first number must be the smaller one";
+        let empty = "range 1,1: the range is empty: the first number must be the smaller one";
         assert_eq!(message("1,1"), empty);
         assert!(message("1,0").contains("is empty"));
         for typed in ["", "1", "1,2,3", "a,b"] {
-            assert!(message(typed).ends_with("two numbers were expected, as in --range=-1,1"), "{typed}");
+            assert!(message(typed).ends_with("two numbers were expected, as in range=-1,1"), "{typed}");
         }
         for typed in ["nan,1", "0,inf", "-1e308,1e308"] {
             assert!(message(typed).ends_with("both ends must be finite"), "{typed}");

@@ -76,8 +76,9 @@ impl SweepRow {
 /// Longest name of a line, in characters.
 const MAX_NAME: usize = 40;
 
-/// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs are one line.
-pub fn sweep_table(rows: &[SweepRow]) -> Vec<String> {
+/// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs are one line;
+/// `remedy` is what the caller can change about them.
+pub fn sweep_table(rows: &[SweepRow], remedy: &str) -> Vec<String> {
     let lines = listed(rows);
     let cells: Vec<[String; 3]> = lines.iter().map(|same| cells(same, rows.len())).collect();
     let width = |column: usize| {
@@ -90,7 +91,7 @@ pub fn sweep_table(rows: &[SweepRow]) -> Vec<String> {
         table.push(format!("{n:<name$}  {f:>from$}  {t:>to$}  {}", same[0].result()));
     }
     if let Some(row) = rows.iter().find(|row| row.outcome == SweepOutcome::CollidingAtStart) {
-        table.push(format!("{} (--q, --ignore-rest)", row.outcome));
+        table.push(format!("{} ({remedy})", row.outcome));
     }
     let free = rows.iter().filter(|row| row.outcome == SweepOutcome::Free).count();
     let proven = "free means proven free at every weight";
@@ -172,7 +173,7 @@ mod tests {
         let json = serde_json::to_value(&start).unwrap();
         assert_eq!((json["first_free"].is_null(), json["note"].is_string()), (true, true));
         let close = row(SweepOutcome::TooClose((1, 2)), Some(-1e-9), None, &[]);
-        let lines = sweep_table(&[hit, free, start, close]);
+        let lines = sweep_table(&[hit, free, start, close], "q");
         assert_eq!(lines[0], "mode            from    to  result");
         assert_eq!(lines[1], "smile\\u{7} L/R     0  -1.5  touches at -0.25  2 pairs, first 3 9");
         assert_eq!(lines[2], "smile\\u{7} L/R     0  -1.5  free");
@@ -197,7 +198,7 @@ mod tests {
             ..row(SweepOutcome::CollidingAtStart, None, Some(0.0), pairs)
         };
         let rows: Vec<SweepRow> = (0..67).map(|k| at_start(k / 2, &[(0, 7), (1, 9)])).collect();
-        let lines = sweep_table(&rows);
+        let lines = sweep_table(&rows, "q");
         assert_eq!(lines.len(), 4, "{lines:?}");
         assert_eq!(lines[1], "all               COLLIDING at the start  2 pairs, first 0 7");
         assert_eq!(lines[3], "67 sweeps: 0 free, 67 not; free means proven free at every weight");
@@ -205,7 +206,7 @@ mod tests {
         let mut mixed = rows.clone();
         mixed[5] = row(SweepOutcome::Free, Some(-1.5), None, &[]);
         mixed[6] = at_start(3, &[(5, 6)]);
-        let lines = sweep_table(&mixed);
+        let lines = sweep_table(&mixed, "q");
         assert_eq!(lines.len(), 6, "{lines:?}");
         assert!(lines[1].starts_with("target 0, target 1, target 2, target ...  "), "{}", lines[1]);
         assert!(lines[2].ends_with("  free") && lines[3].ends_with("1 pair, first 5 6"), "{lines:?}");

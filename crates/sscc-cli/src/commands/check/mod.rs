@@ -10,7 +10,7 @@ mod text;
 use anyhow::{Context, Result, bail, ensure};
 use sscc::parts::Scope;
 use sscc::{Certificates, Method, Query};
-use sscc_io::{LoadedModel, Rows, read_rows};
+use sscc_io::{LoadedModel, Rows, Setting, read_rows};
 use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_configuration};
 
 use crate::args::{At, Check};
@@ -103,7 +103,7 @@ pub fn coordinates(at: &At, loaded: &LoadedModel) -> Result<Rows> {
             Ok(rows)
         }
         (None, q) => {
-            let q = read_configuration("--q", q.as_deref().unwrap_or_default(), loaded)?;
+            let q = read_configuration(Setting::Q, q.as_deref().unwrap_or_default(), loaded)?;
             Ok(Rows { rows: 1, columns: q.len(), data: q })
         }
     }

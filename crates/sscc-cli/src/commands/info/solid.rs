@@ -6,6 +6,7 @@ use sscc_sim::SolidSource;
 use sscc_solid::{NamedMaterial, PartialMaterial, VolumeMesh};
 
 use super::surface::{Surface, size};
+use crate::flags;
 use crate::output::{counted, grouped, note, one_line};
 
 /// Maximum number of materials in the text; the JSON has all.
@@ -60,7 +61,7 @@ impl Solid {
                 source.note().into_iter().for_each(note);
                 (Some(Surface::of(source.mesh())), None)
             }
-            Err(error) => (None, Some(error.to_string())),
+            Err(error) => (None, Some(flags::message(&error))),
         };
         let points = || file.vertices().iter().copied();
         Self {

@@ -31,7 +31,7 @@ impl Groups {
             let (dimension, number) = (words.integer(LAST_NAME)?, words.integer(LAST_NAME)?);
             let place = words.place();
             let name = decoded(words.rest_of_line(), 0)
-                .map_err(|error| FormatError::new(place.clone(), error.cause()))?
+                .map_err(|error| FormatError::new(place.clone(), error.cause().clone()))?
                 .trim_ascii();
             let Some(name) = name.strip_prefix('"').and_then(|name| name.strip_suffix('"')) else {
                 return Err(FormatError::new(place, "a name in double quotes was expected"));

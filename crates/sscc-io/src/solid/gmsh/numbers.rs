@@ -2,7 +2,7 @@
 
 use crate::error::quoted;
 use crate::solid::words::Words;
-use crate::{FormatError, Place};
+use crate::{FormatError, Message, Place};
 
 /// Reads numbers of a text or a binary file. Nothing is allocated by a count: each item is read before the next.
 pub(super) struct Numbers<'a> {
@@ -16,7 +16,7 @@ impl Numbers<'_> {
         self.words.place()
     }
 
-    pub fn refused<T>(&self, cause: impl Into<String>) -> Result<T, FormatError> {
+    pub fn refused<T>(&self, cause: impl Into<Message>) -> Result<T, FormatError> {
         Err(FormatError::new(self.place(), cause))
     }
 

@@ -57,7 +57,9 @@ impl Reader<'_> {
         let main = self.main;
         let within = |error: FormatError| match (name, error.place()) {
             (None, _) => error.of(main),
-            (Some(name), Place::Line(line)) => FormatError::part(at(name, *line), error.cause()).of(main),
+            (Some(name), Place::Line(line)) => {
+                FormatError::part(at(name, *line), error.cause().clone()).of(main)
+            }
             (Some(name), _) => FormatError::part(cut(name, 60), error.to_string()).of(main),
         };
         for statement in statements(bytes).map_err(within)? {

@@ -190,7 +190,7 @@ impl Parser {
         let first = numbered(fields.next(), done, self.builder.first, &self.vertices, "vertices")?;
         self.builder.first = first;
         let position = position(&mut fields)?;
-        self.builder.vertex(position, place.clone()).map_err(|error| error.cause().to_owned())
+        self.builder.vertex(position, place.clone()).map_err(|error| error.cause().to_string())
     }
 
     fn element(&mut self, text: &str, place: &Place) -> Result<(), String> {
@@ -215,6 +215,6 @@ impl Parser {
             }
             self.builder.cube(corners, material, place.clone())
         };
-        added.map_err(|error| error.cause().to_owned())
+        added.map_err(|error| error.cause().to_string())
     }
 }

@@ -1,0 +1,42 @@
+//! Libraries name no flags of the command: they name settings, which each front end calls by its own name.
+
+use crate::sources::Crate;
+
+/// Crates whose messages are those of the command and of the tasks.
+const FRONT_ENDS: [&str; 3] = ["sscc-cli", "sscc-bench", "xtask"];
+
+/// Returns the places where a library names a flag.
+pub fn flags(krate: &Crate) -> Vec<String> {
+    if FRONT_ENDS.contains(&krate.name.as_str()) {
+        return Vec::new();
+    }
+    let lines = krate.files.iter().flat_map(|file| file.lines.iter().map(|line| (&file.path, line)));
+    let violation = |(path, (number, line)): (&String, &(usize, String))| {
+        let flag = flag_in(line)?;
+        Some(format!("{path}:{number}: names the flag {flag}: libraries name a setting (sscc_io::Setting)"))
+    };
+    lines.filter_map(violation).collect()
+}
+
+/// Returns the first flag in a line of code without its comment. Only string literals have flags, as Rust has no operator `--`.
+fn flag_in(line: &str) -> Option<&str> {
+    let code = line.split(" // ").next()?;
+    let is_flag = |at: &usize| code[at + 2..].starts_with(|c: char| c.is_ascii_alphabetic());
+    let start = code.match_indices("--").map(|(at, _)| at).find(is_flag)?;
+    let is_end = |c: char| !c.is_ascii_alphanumeric() && c != '-';
+    code[start..].split(is_end).next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_are_found_in_text_alone() {
+        assert_eq!(flag_in(r#"    "add --mesh-name=NAME","#), Some("--mesh-name"));
+        assert_eq!(flag_in("    continued --q, --"), Some("--q"));
+        for line in ["f(x); // --q", r#"    "<!-- a -- b -->""#, "a - -b", r#"    "------BEGIN""#] {
+            assert_eq!(flag_in(line), None, "{line}");
+        }
+    }
+}
