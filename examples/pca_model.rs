@@ -89,7 +89,7 @@ struct Random(u64);
 impl Random {
     /// Uniform in (0, 1].
     fn uniform(&mut self) -> f64 {
-        ((sscc::random::bits(&mut self.0) >> 11) + 1) as f64 / (1_u64 << 53) as f64
+        ((sscc::parts::next_bits(&mut self.0) >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 
     /// Normal, mean 0 and deviation 1 (Box and Muller).

@@ -7,7 +7,7 @@ pub struct Random(pub u64);
 impl Random {
     /// Returns a number in [0, 1).
     pub fn uniform(&mut self) -> f64 {
-        sscc::random::uniform(&mut self.0)
+        sscc::parts::next_uniform(&mut self.0)
     }
 
     /// Returns a normally distributed number of mean 0 and variance 1 (Box and Muller).

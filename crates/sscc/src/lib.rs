@@ -292,7 +292,7 @@ pub mod parts;
 mod posed;
 mod progress;
 mod query;
-pub mod random;
+mod random;
 #[cfg(test)]
 mod test_models;
 mod vectors;

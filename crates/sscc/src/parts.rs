@@ -5,7 +5,7 @@
 //! - The command, the page and benches: the hierarchy, defaults and checks of options, which share of a shape is proven how
 //!   ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
 //! - Dynamics: shapes in the world, one against another ([`PosedShape`], [`SweptShape`]).
-//! - Several: AABBs, areas, and exact tests of simplices that share vertices or move.
+//! - Several: AABBs, areas, pseudo-random numbers, and exact tests of simplices that share vertices or move.
 //!
 //! These items change more often than those at the root.
 
@@ -29,3 +29,4 @@ pub use crate::hierarchy::{Hierarchy, Node};
 pub use crate::model::{check_metric, vertex_areas};
 pub use crate::posed::{Pose, PosedShape, SweptShape};
 pub use crate::query::ProvenShares;
+pub use crate::random::{next_bits, next_uniform};

@@ -47,7 +47,7 @@ pub(super) struct Random(pub u64);
 impl Random {
     /// Returns the next number.
     pub fn next(&mut self) -> f64 {
-        2.0 * sscc::random::uniform(&mut self.0) - 1.0
+        2.0 * sscc::parts::next_uniform(&mut self.0) - 1.0
     }
 
     /// Returns a matrix of random numbers.

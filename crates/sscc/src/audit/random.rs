@@ -10,13 +10,13 @@ impl Random {
     /// The stream number `stream` of a seed.
     pub(super) fn new(seed: u64, stream: u64) -> Self {
         let mut this = Self(seed ^ stream.wrapping_mul(0xd1b5_4a32_d192_ed03));
-        random::bits(&mut this.0);
+        random::next_bits(&mut this.0);
         this
     }
 
     /// Uniform in [0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
-        random::uniform(&mut self.0)
+        random::next_uniform(&mut self.0)
     }
 
     /// Uniform in 0 .. n.

@@ -70,5 +70,5 @@ fn normalize(features: &mut [ClusterFeature], range: Range<usize>) {
 
 /// Fixed pseudo-random bits: number x of a generator that begins at 0.
 fn hash(x: u64) -> u64 {
-    random::bits(&mut x.wrapping_mul(random::INCREMENT))
+    random::next_bits(&mut x.wrapping_mul(random::INCREMENT))
 }

@@ -12,7 +12,7 @@ pub struct Random(pub u64);
 impl Random {
     /// Returns a number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
-        sscc::random::uniform(&mut self.0)
+        sscc::parts::next_uniform(&mut self.0)
     }
 
     /// Returns a number whose logarithm is uniform.

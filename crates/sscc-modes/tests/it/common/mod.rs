@@ -9,7 +9,7 @@ pub struct Random(pub u64);
 impl Random {
     /// Returns a number between -1 and 1.
     pub fn number(&mut self) -> f64 {
-        sscc::random::bits(&mut self.0) as i64 as f64 / 2.0_f64.powi(63)
+        sscc::parts::next_bits(&mut self.0) as i64 as f64 / 2.0_f64.powi(63)
     }
 
     /// Returns a vector in the cube from -1 to 1.

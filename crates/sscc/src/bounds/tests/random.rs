@@ -15,12 +15,12 @@ impl Random {
     }
 
     fn bits(&mut self) -> u64 {
-        random::bits(&mut self.0)
+        random::next_bits(&mut self.0)
     }
 
     /// In [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
-        random::uniform(&mut self.0)
+        random::next_uniform(&mut self.0)
     }
 
     /// In 0 .. n.

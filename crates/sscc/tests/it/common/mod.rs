@@ -22,12 +22,12 @@ impl Random {
     }
 
     pub fn bits(&mut self) -> u64 {
-        sscc::random::bits(&mut self.0)
+        sscc::parts::next_bits(&mut self.0)
     }
 
     /// In [0, 1).
     pub fn uniform(&mut self) -> f64 {
-        sscc::random::uniform(&mut self.0)
+        sscc::parts::next_uniform(&mut self.0)
     }
 
     /// In [-1, 1).
