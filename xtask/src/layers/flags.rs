@@ -21,7 +21,9 @@ pub fn flags(krate: &Crate) -> Vec<String> {
 /// Returns the first flag in a line of code without its comment. Only string literals have flags, as Rust has no operator `--`.
 fn flag_in(line: &str) -> Option<&str> {
     let code = line.split(" // ").next()?;
-    let is_flag = |at: &usize| code[at + 2..].starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_flag = |at: &usize| {
+        !code[..*at].ends_with('-') && code[at + 2..].starts_with(|c: char| c.is_ascii_alphabetic())
+    };
     let start = code.match_indices("--").map(|(at, _)| at).find(is_flag)?;
     let is_end = |c: char| !c.is_ascii_alphanumeric() && c != '-';
     code[start..].split(is_end).next()

@@ -207,8 +207,7 @@ fn what_the_page_cannot_show_is_refused() {
         MeshReport::default().add(&answer(&mesh, 0, 3_000_000, &[], [&x, &[]])).unwrap_err().to_string();
     assert_eq!(
         too_many,
-        "the report would be larger than 256 MiB, the most that sscc view reads: give fewer frames (of an animation by \
-         --fps or --times)"
+        "the report would be larger than 256 MiB, the most that sscc view reads: give fewer frames"
     );
     MeshReport::default().add(&answer(&mesh, 0, 500_000, &[], [&x, &[]])).unwrap();
     // Pairs count as well.
