@@ -107,7 +107,10 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
         let message = format!("{name}: an array of numbers was expected: {}", error.value(py));
         if error.is_instance_of::<PyValueError>(py) { value(message) } else { kind(message) }
     };
-    let array = numpy.call_method1("asarray", (any,)).map_err(refused)?;
+    // NumPy takes an object that has DLPack alone for a scalar.
+    let convert =
+        if any.hasattr("__dlpack__")? && !any.hasattr("__array__")? { "from_dlpack" } else { "asarray" };
+    let array = numpy.call_method1(convert, (any,)).map_err(refused)?;
     let letter: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if letter == 'O' && has_long_integer(&array)? {
         let message = format!("{name} has an integer of more than 64 bits: integers are exact up to 2^53");

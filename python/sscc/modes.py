@@ -25,6 +25,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sscc._affine import affine_modes
+from sscc._arrays import check_finite, numbers
 from sscc._progress import Report
 from sscc._sscc import Model, _elastic, _pca, _polynomial
 
@@ -126,8 +128,8 @@ def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
     Answers are exact for every q. But a usual motion of one bone is a large q, so certificates prove only small motions
     about their center (docs/python.md has measurements). For poses of an animation, ``Detector`` is faster.
     """
-    x = _numbers(vertices, "vertices")
-    w = _numbers(weights, "weights")
+    x = numbers(vertices, "vertices")
+    w = numbers(weights, "weights")
     if x.ndim != 2 or x.shape[1] != 3:
         raise ValueError(f"vertices has shape {list(x.shape)}: (V, 3) was expected")
     if w.ndim != 2 or w.shape[0] != len(x) or w.shape[1] == 0:
@@ -144,12 +146,7 @@ def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
             f"weights[{vertex}] sums to {sums[vertex, 0]:.6g}: 1 was expected; "
             "to normalize, pass weights / weights.sum(axis=1, keepdims=True)"
         )
-    moved = np.concatenate([x, np.ones((len(x), 1))], axis=1)
-    of_bones = ((w / sums)[:, :, None] * moved[:, None, :]).reshape(len(x), -1, 4)
-    modes = np.zeros((len(x), 3, w.shape[1], 3, 4))
-    for axis in range(3):
-        modes[:, axis, :, axis, :] = of_bones
-    return modes.reshape(len(x), 3, -1)
+    return affine_modes(x, w / sums)
 
 
 def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
@@ -157,12 +154,10 @@ def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
 
     More axes in front are poses: (n, B, 4, 4) gives Q (n, 12 B). The last row of a 4 x 4 matrix must be (0, 0, 0, 1).
     """
-    m = _numbers(matrices, "matrices")
+    m = numbers(matrices, "matrices")
     if m.ndim < 3 or m.shape[-2:] not in ((3, 4), (4, 4)):
         raise ValueError(f"matrices has shape {list(m.shape)}: (B, 3, 4) or (B, 4, 4) was expected")
-    if not np.isfinite(m).all():
-        place = [int(i) for i in np.argwhere(~np.isfinite(m))[0]]
-        raise ValueError(f"matrices{place} is {m[tuple(place)]}: every entry must be finite")
+    check_finite(m, "matrices")
     projective = (m[..., 3:, :] != (0, 0, 0, 1)).any(axis=(-2, -1))
     if projective.any():
         place = [int(i) for i in np.argwhere(projective)[0]]
@@ -172,14 +167,3 @@ def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
         )
     rows: NDArray[np.float64] = m[..., :3, :] - np.eye(3, 4)
     return rows.reshape(*m.shape[:-3], -1)
-
-
-def _numbers(given: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Returns a copy as float64."""
-    try:
-        array = np.array(given)
-    except ValueError as error:
-        raise ValueError(f"{name}: an array of numbers was expected: {error}") from None
-    if array.dtype.kind not in "fiu" or isinstance(given, np.ma.MaskedArray):
-        raise TypeError(f"{name} is a {type(given).__name__} of {array.dtype}: an array of numbers was expected")
-    return array.astype(np.float64)

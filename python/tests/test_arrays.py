@@ -32,7 +32,28 @@ def every_other(array: Any64) -> Any64:
     return view
 
 
-LAYOUTS: dict[str, Callable[[Any64], Any64]] = {
+class OnlyDlpack:
+    """An array of another library that has DLPack alone."""
+
+    def __init__(self, array: Any64) -> None:
+        self.array = np.array(array)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return self.array.__dlpack_device__()
+
+
+class OnlyInterface:
+    """An array of another library that has the array interface alone."""
+
+    def __init__(self, array: Any64) -> None:
+        self.array = array
+        self.__array_interface__ = array.__array_interface__
+
+
+LAYOUTS: dict[str, Callable[[Any64], Any]] = {
     "C": np.ascontiguousarray,
     "Fortran": np.asfortranarray,
     "transposed": lambda a: np.ascontiguousarray(a.T).T,
@@ -41,6 +62,9 @@ LAYOUTS: dict[str, Callable[[Any64], Any64]] = {
     "unaligned": unaligned,
     "big-endian": lambda a: a.astype(a.dtype.newbyteorder(">")),
     "read-only": lambda a: np.frombuffer(a.tobytes(), a.dtype).reshape(a.shape),
+    "DLPack": OnlyDlpack,
+    "array interface": OnlyInterface,
+    "buffer": lambda a: memoryview(np.ascontiguousarray(a).data),
     "matrix or list": lambda a: np.asmatrix(a) if a.ndim == 2 else a.tolist(),
 }
 
