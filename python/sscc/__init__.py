@@ -31,6 +31,7 @@ from sscc._sscc import (
 from sscc._resolve import FreeSamples, Resolved
 from sscc._simulate import Simulation, simulate
 from sscc._sweep import Sweep
+from sscc.simulators import from_mujoco, from_simplicits, from_sofa
 
 __all__ = [
     "Answer",
@@ -50,6 +51,9 @@ __all__ = [
     "Simulation",
     "Sweep",
     "__version__",
+    "from_mujoco",
+    "from_simplicits",
+    "from_sofa",
     "modes",
     "self_intersections",
     "simulate",

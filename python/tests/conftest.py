@@ -35,6 +35,12 @@ def ipctk(request: pytest.FixtureRequest) -> None:
     needs(request, "ipctk")
 
 
+@pytest.fixture
+def mujoco(request: pytest.FixtureRequest) -> None:
+    """Needs the package mujoco."""
+    needs(request, "mujoco")
+
+
 def needs(request: pytest.FixtureRequest, module: str) -> None:
     """Skips a test if a module is not installed."""
     if importlib.util.find_spec(module) is None:

@@ -66,6 +66,22 @@ def test_frames_of_a_deforming_mesh() -> None:
     assert len(starts) > 0 and set(starts) <= set(begins)
 
 
+@pytest.mark.usefixtures("mujoco")
+def test_a_soft_bar_in_mujoco() -> None:
+    colliding = example("mujoco_bar").main()
+    assert 0 < colliding.sum() < len(colliding) and not colliding[:100].any()
+
+
+def test_poses_of_simplicits() -> None:
+    colliding = example("simplicits").main()
+    assert 0 < colliding.sum() < len(colliding)
+
+
+def test_coordinates_of_a_reduced_model_in_sofa() -> None:
+    sweeps = example("sofa_modes").main()
+    assert len(sweeps) == 6 and any(sweep.first_hit is not None for sweep in sweeps)
+
+
 @pytest.mark.filterwarnings("default")
 def test_a_cluster() -> None:
     pytest.importorskip("distributed", reason="dask.distributed is not installed")
