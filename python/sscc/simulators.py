@@ -213,6 +213,10 @@ def _matrix(given: ArrayLike | str | PathLike[str], name: str, *, has_size: bool
     size = rows.pop(0) if has_size and rows else None
     if not rows:
         raise ValueError(f"{path}: the file has no rows of numbers")
-    if has_size and size != [len(rows), len(rows[0])]:
-        raise ValueError(f"{path}: line 1: '{len(rows)} {len(rows[0])}' was expected, the size of the matrix")
-    return np.array(rows)
+    matrix = np.array(rows)
+    if size is None:
+        return matrix
+    if len(size) != 2 or size[0] != len(rows) or not 1 <= size[1] <= matrix.shape[1]:
+        raise ValueError(f"{path}: line 1: '{len(rows)} {matrix.shape[1]}' was expected, the size of the matrix")
+    # SOFA reads no other columns, which its own files may have.
+    return matrix[:, : int(size[1])]

@@ -26,7 +26,8 @@ def text(array: Any) -> str:
 
 V, F, _ = torus(16, 8, 1)
 
-#: A block with two pinned nodes in a body that moves, a ring, a bar of six cells, a net whose vertices are bodies, and a rope.
+#: A block with two pinned nodes in a body that moves, a ring, a bar of six cells, a shell whose inner node follows the
+#: others, a net whose vertices are bodies, and a rope.
 SCENE = f"""
 <mujoco><worldbody>
   <body name="base" pos=".1 .2 .3" euler="10 20 30">
@@ -40,11 +41,14 @@ SCENE = f"""
             dof="quadratic" mass="1"/>
   <flexcomp name="bar" type="grid" dim="3" count="7 3 3" spacing=".1 .1 .1" radius=".001" dof="quadratic" cellcount="3 1 2"
             mass="1"/>
+  <flexcomp name="shell" type="box" dim="2" count="4 4 4" spacing=".1 .1 .1" radius=".001" dof="quadratic" mass="1">
+    <elasticity young="1e4" poisson=".2" elastic2d="both" thickness=".01"/>
+  </flexcomp>
   <flexcomp name="net" type="grid" dim="2" count="3 3 1" spacing=".1 .1 .1" radius=".001" mass="1"/>
   <flexcomp name="rope" type="direct" dim="1" point="0 0 0 .1 0 .1 .1 .1 0" element="0 1 1 2" radius=".001"
             dof="trilinear" mass="1"/>
 </worldbody></mujoco>"""
-BLOCK, RING, BAR = range(3)
+BLOCK, RING, BAR, SHELL = range(4)
 
 
 @pytest.fixture(autouse=True)
@@ -93,10 +97,11 @@ def test_a_thousand_states_of_a_flex(scene: Any, name: str, flex: int, rank: int
     assert 100 < colliding < 1000
 
 
-def test_cells_of_a_flex(scene: Any) -> None:
-    model, q_of = sscc.from_mujoco(scene, BAR)
-    assert model.rank == 3 * 7 * 3 * 5
-    for data, x in states(scene, BAR, 10, 0.1):
+@pytest.mark.parametrize("flex, rank", [(BAR, 3 * 7 * 3 * 5), (SHELL, 81)])
+def test_cells_and_shells(scene: Any, flex: int, rank: int) -> None:
+    model, q_of = sscc.from_mujoco(scene, flex)
+    assert model.rank == rank
+    for data, x in states(scene, flex, 10, 0.1):
         assert np.allclose(model.positions(q_of(data)), x, rtol=0, atol=1e-14)
 
 
@@ -133,11 +138,16 @@ def test_a_body_that_moves_and_turns_is_proven_free() -> None:
 
 
 FLEXES: list[tuple[Any, type[Exception], str]] = [
-    ("net", ValueError, "flex: 'net' is not interpolated, with dof 'trilinear' or 'quadratic'; those that are: 'block', 'ring'"),
-    (3, ValueError, "flex: 'net' is not interpolated"),
+    (
+        "net",
+        ValueError,
+        "flex: 'net' is not interpolated, with dof 'trilinear' or 'quadratic'; "
+        "those that are: 'block', 'ring', 'bar', 'shell', 'rope'",
+    ),
+    (4, ValueError, "flex: 'net' is not interpolated"),
     ("rnig", ValueError, "flex: there is no 'rnig': the nearest name is 'ring'"),
-    (5, ValueError, "flex is 5: the model has 5, counted from 0"),
-    (-1, ValueError, "flex is -1: the model has 5"),
+    (6, ValueError, "flex is 6: the model has 6, counted from 0"),
+    (-1, ValueError, "flex is -1: the model has 6"),
     (None, TypeError, "flex is a NoneType: a name or a number was expected"),
     ("rope", ValueError, "flex: 'rope' has dim 1: 2 or 3 was expected, for a surface"),
 ]
@@ -228,6 +238,9 @@ def test_sofa(tmp_path: Path) -> None:
     read = sscc.from_sofa(str(points), model.faces, modes_file(tmp_path, MODES), 3)
     assert np.array_equal(read.vertices, CUBE) and np.array_equal(read.faces, model.faces)
     assert np.array_equal(read.modes, model.modes[:, :, :3])
+    wide = tmp_path / "modes.txt"
+    wide.write_text(wide.read_text().replace("24 4", "24 2", 1))
+    assert np.array_equal(sscc.from_sofa(CUBE, TETRAHEDRA, wide).modes, model.modes[:, :, :2])
 
 
 SOFA: list[tuple[dict[str, Any], type[Exception], str]] = [
@@ -255,6 +268,7 @@ FILES = [
     ("1 2\n1 x\n", "line 2: numbers were expected"),
     ("2 2\n1 2\n3\n", "line 3 has 1 numbers: 2 were expected"),
     ("3 2\n1 2\n3 4\n", "line 1: '2 2' was expected, the size of the matrix"),
+    ("1 3\n1 2\n", "line 1: '1 2' was expected, the size of the matrix"),
     ("1 2 3\n1 2 3\n", "line 1: '1 3' was expected, the size of the matrix"),
     ("\0\xff", "line 1: numbers were expected"),
 ]
