@@ -1,10 +1,8 @@
 //! Penetration depths and contact curves of the pairs of an answer.
 
-use std::cmp::Ordering;
-
 use sscc::parts::{
     ContactCurves, Penetration, Surface, contact_curves, contact_curves_between,
-    penetration_triangle_triangle,
+    penetration_triangle_triangle, weld_classes_of_positions,
 };
 use sscc::{Error, Pair};
 
@@ -56,14 +54,7 @@ impl Contacts {
 
 /// Returns the faces with one number for all vertices at the same position.
 fn joined_faces(surface: Surface<'_>) -> Vec<[u32; 3]> {
-    let position = |vertex: &u32| surface.positions[*vertex as usize].to_array();
-    let compare = |a: &u32, b: &u32| position(a).partial_cmp(&position(b)).unwrap_or(Ordering::Equal);
-    let mut order: Vec<u32> = (0..surface.positions.len() as u32).collect();
-    order.sort_by(compare);
-    let mut numbers = vec![0; order.len()];
-    for class in order.chunk_by(|a, b| compare(a, b) == Ordering::Equal) {
-        class.iter().for_each(|vertex| numbers[*vertex as usize] = class[0]);
-    }
+    let numbers = weld_classes_of_positions(surface.positions);
     surface.faces.iter().map(|face| face.map(|vertex| numbers[vertex as usize])).collect()
 }
 

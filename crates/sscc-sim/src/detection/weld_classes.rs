@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+use sscc::parts::weld_classes_of_positions;
 
 /// Classes of vertices that have been at equal positions so far. Each class has the number of its first vertex.
 pub(super) struct WeldClasses(Vec<u32>);
@@ -17,9 +18,7 @@ impl From<&[u32]> for WeldClasses {
 impl WeldClasses {
     /// The classes at some positions.
     pub fn at(positions: &[DVec3]) -> Self {
-        let mut classes = Self(vec![0; positions.len()]);
-        classes.split(positions);
-        classes
+        Self(weld_classes_of_positions(positions))
     }
 
     /// Returns for each vertex the number of its class.

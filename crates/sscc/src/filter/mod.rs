@@ -12,4 +12,5 @@ pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, chec
 pub(crate) use pair_filter::{PairFilter, Relation};
 pub(crate) use simplex_pairs::SimplexPair;
 pub use triangle_groups::{GroupTable, TriangleGroups};
-pub(crate) use weld::{weld_classes, weld_classes_of_positions};
+pub(crate) use weld::weld_classes;
+pub use weld::weld_classes_of_positions;

@@ -12,8 +12,8 @@ pub(crate) fn weld_classes(model: &ReducedModel) -> Vec<u32> {
     classes(rest.len(), |i| std::iter::once(&rest[i as usize]).chain(modes.of_vertex(i)))
 }
 
-/// For each vertex the lowest one at exactly the same position.
-pub(crate) fn weld_classes_of_positions(positions: &[DVec3]) -> Vec<u32> {
+/// Returns for each vertex the lowest one at exactly the same position (+0 and -0 are equal). No position may be NaN.
+pub fn weld_classes_of_positions(positions: &[DVec3]) -> Vec<u32> {
     classes(positions.len(), |i| std::iter::once(&positions[i as usize]))
 }
 
