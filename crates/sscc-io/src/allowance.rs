@@ -23,6 +23,13 @@ impl Allowance {
         Self { remaining: total, total }
     }
 
+    /// Adds that of another file with `read` bytes.
+    pub fn add(&mut self, read: u64) {
+        let more = read.saturating_mul(MAX_GROWTH);
+        self.remaining = self.remaining.saturating_add(more);
+        self.total = self.total.saturating_add(more);
+    }
+
     /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if that exceeds the
     /// remaining bytes.
     pub fn take(&mut self, count: u64, size: u64) -> Result<(), String> {
@@ -52,6 +59,8 @@ mod tests {
         assert!(allowance.take(125, 8).is_ok());
         assert!(allowance.take(1, 1).is_err());
         assert!(allowance.take(0, 8).is_ok());
+        allowance.add(1);
+        assert!(allowance.take(101, 1).is_err() && allowance.take(100, 1).is_ok());
         assert!(Allowance::new(u64::MAX, 100).take(101, 1).is_err());
     }
 }

@@ -40,8 +40,10 @@
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
 //! | the mesh of any file, without modes, where nodes put it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
+//! | the files of a folder that have a mesh | [`list_mesh_files`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
+//! | what a glTF file contains | [`gltf::read_contents`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
@@ -63,11 +65,13 @@ pub mod container;
 mod curves;
 mod error;
 mod file;
+mod folder_files;
 mod forces;
 pub mod gltf;
 mod groups;
 mod load;
 pub mod mesh;
+mod mesh_files;
 mod mesh_modes;
 mod mesh_path;
 mod message;
@@ -95,6 +99,7 @@ pub use load::{
     LoadOptions, LoadedMesh, LoadedModel, load_mesh, load_mesh_with_warnings, load_model, load_model_with,
 };
 pub use mesh::{read_mesh, read_mesh_with_warnings};
+pub use mesh_files::list_mesh_files;
 pub use mesh_modes::read_modes_for;
 pub use mesh_path::split_mesh_name;
 pub use message::{Message, Setting};

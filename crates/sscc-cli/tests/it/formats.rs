@@ -166,11 +166,6 @@ fn info_of_a_gltf_file() {
         ),
         (&json!("two\nlines"), &json!(["lower", "shift"]), &json!(20), &json!(60), &json!([0.5, 0.0]))
     );
-    let text = sscc(folder, &["info", "strips.gltf"]);
-    assert_eq!(text.stdout.lines().count(), 3, "{}", text.stdout);
-    assert!(
-        text.stdout.contains("--mesh-name two\\nlines: 20 triangles, 60 vertices, 2 modes: lower, shift")
-    );
 }
 
 /// PCA and body models: an archive with mean, components and faces.

@@ -14,6 +14,7 @@ mod folded;
 mod formats;
 mod guide;
 mod help;
+mod info;
 mod interrupt;
 mod left_out;
 mod modes;

@@ -15,23 +15,31 @@ pub(super) struct Accessors<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Creates a reader for these buffers. `size` is the size of the glTF file.
+    /// Creates a reader of these accessors; [`Accessors::load`] adds others. `size` is the size of the glTF file.
     pub fn new(
         root: &'a Root,
-        mut buffers: Buffers<'a>,
+        buffers: Buffers<'a>,
         accessors: impl Iterator<Item = usize>,
         size: u64,
     ) -> Result<Self, FormatError> {
+        let mut reader = Self { root, buffers, allowance: Allowance::new(size, u64::MAX) };
+        reader.load(accessors)?;
+        Ok(reader)
+    }
+
+    /// Loads the buffers of these accessors; some may not exist.
+    pub fn load(&mut self, accessors: impl Iterator<Item = usize>) -> Result<(), FormatError> {
+        let (root, before) = (self.root, self.buffers.external_size());
         for accessor in accessors.filter_map(|index| root.accessors.get(index)) {
             let sparse = accessor.sparse.iter().flat_map(|s| [s.indices.buffer_view, s.values.buffer_view]);
             for view in accessor.buffer_view.into_iter().chain(sparse) {
                 if let Some(view) = root.buffer_views.get(view) {
-                    buffers.load(view.buffer)?;
+                    self.buffers.load(view.buffer)?;
                 }
             }
         }
-        let allowance = Allowance::new(size.saturating_add(buffers.external_size()), u64::MAX);
-        Ok(Self { root, buffers, allowance })
+        self.allowance.add(self.buffers.external_size() - before);
+        Ok(())
     }
 
     /// Returns the count of an accessor, not yet checked against the file.

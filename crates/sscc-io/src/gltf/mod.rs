@@ -1,5 +1,5 @@
-//! Reads morph targets ([`read`]), meshes at rest ([`read_placed_mesh`]) and animated scenes ([`read_scene`]) from glTF 2.0
-//! files (`.gltf`, `.glb` and `.vrm`), and writes animated bodies as `.glb` ([`write_animation`]).
+//! Reads morph targets ([`read`]), meshes at rest ([`read_placed_mesh`]), animated scenes ([`read_scene`]) and the list of all
+//! parts ([`read_contents`]) of glTF 2.0 files (`.gltf`, `.glb` and `.vrm`), and writes animated bodies as `.glb` ([`write_animation`]).
 //!
 //! A mesh with morph targets is a reduced model: rest positions are the base mesh, and mode k is the displacement of
 //! target k. [`read`] ignores nodes and their transforms, skins and animations: models, and certificates about them, are
@@ -42,10 +42,10 @@ pub use animation::{NamedModel, Track, animation_to_bytes, key_frames, write_ani
 pub use joined::PrimitiveRange;
 pub use morph::MorphModel;
 pub use scene::{
-    AnimatedScene, AnimationInfo, MeshNode, PlacedMesh, ScenePose, SkinWeights, parse_placed_mesh,
-    parse_scene, read_model_placement, read_placed_mesh, read_scene,
+    AnimatedScene, AnimationContents, AnimationInfo, Contents, MeshContents, MeshNode, MeshNodeContents,
+    NamedPart, PlacedMesh, ScenePose, SkinWeights, parse_contents, parse_placed_mesh, parse_scene,
+    read_contents, read_model_placement, read_placed_mesh, read_scene,
 };
-pub use select::MeshInfo;
 
 /// Whether the ending of a file name is that of a glTF file: `.gltf`, `.glb` or `.vrm`, an avatar in binary glTF.
 pub fn is_gltf(path: &Path) -> bool {
@@ -77,16 +77,6 @@ pub fn read(path: &Path, mesh_name: Option<&str>) -> Result<MorphModel, IoError>
 /// As [`read`], and when a buffer is in another file.
 pub fn parse(bytes: &[u8], mesh_name: Option<&str>) -> Result<MorphModel, FormatError> {
     parse_in(bytes, mesh_name, None)
-}
-
-/// Returns the meshes of a file, in file order, including those without morph targets. Buffers are not read.
-///
-/// # Errors
-/// When the file cannot be read or is malformed.
-pub fn list_meshes(path: &Path) -> Result<Vec<MeshInfo>, IoError> {
-    let bytes = read_whole(path)?;
-    let root = glb::split(&bytes).and_then(|chunks| Root::parse(chunks.json));
-    root.map(|root| select::list(&root)).map_err(|error| error.of(path))
 }
 
 /// Reads the groups of the triangles of a mesh, which is chosen as [`read`] chooses it.
@@ -129,7 +119,7 @@ fn parse_in(bytes: &[u8], name: Option<&str>, folder: Option<&Path>) -> Result<M
     let chunks = glb::split(bytes)?;
     let root = Root::parse(chunks.json)?;
     let index = select::choose(&root, name)?;
-    let mesh_name = root.meshes[index].name.clone().unwrap_or_else(|| format!("#{index}"));
+    let mesh_name = select::mesh_name(&root.meshes[index], index);
     let buffers = Buffers::new(&root.buffers, chunks.binary, folder);
     morph::model(&root, index, mesh_name, buffers, bytes.len() as u64)
 }

@@ -84,7 +84,8 @@ pub(super) fn fitted_weights(stored: &[f64], rank: usize) -> Vec<f64> {
     stored.iter().copied().chain(std::iter::repeat(0.0)).take(rank).collect()
 }
 
-fn target_names(mesh: &Mesh, rank: usize) -> Vec<String> {
+/// Returns the names of the morph targets of a mesh.
+pub(super) fn target_names(mesh: &Mesh, rank: usize) -> Vec<String> {
     match &mesh.extras {
         Some(Extras::Names { target_names }) if target_names.len() == rank => target_names.clone(),
         _ => (0..rank).map(|k| format!("target {k}")).collect(),

@@ -5,26 +5,9 @@ use super::triangles::{morph_targets, with_triangles};
 use crate::error::{cut, quoted};
 use crate::{FormatError, Message, Setting};
 
-/// A mesh of a glTF file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct MeshInfo {
-    /// Name that selects it: its own, or `#3` for an unnamed fourth mesh.
-    pub name: String,
-    /// Number of primitives.
-    pub primitives: usize,
-    /// Number of morph targets, 0 for none.
-    pub targets: usize,
-}
-
-/// Returns all meshes in file order.
-pub(super) fn list(root: &Root) -> Vec<MeshInfo> {
-    let info = |(index, mesh): (usize, &Mesh)| MeshInfo {
-        name: mesh.name.clone().unwrap_or_else(|| format!("#{index}")),
-        primitives: mesh.primitives.len(),
-        targets: morph_targets(mesh),
-    };
-    root.meshes.iter().enumerate().map(info).collect()
+/// Returns the name that selects a mesh: its own, or `#3` for an unnamed fourth mesh.
+pub(super) fn mesh_name(mesh: &Mesh, number: usize) -> String {
+    mesh.name.clone().unwrap_or_else(|| format!("#{number}"))
 }
 
 /// Returns the index of the mesh of that name, else of the only one with morph targets. `#3` and `3` are the fourth mesh,
@@ -46,7 +29,7 @@ pub(super) fn choose_base(root: &Root, name: Option<&str>) -> Result<usize, Form
         is_candidate: &has_triangles,
         content: "triangles",
         settings: Setting::MeshName + " or " + Setting::AgainstMesh,
-        none: "no mesh of the file has triangles".into(),
+        none: "no mesh of the file has triangles: export the scene with its surfaces".into(),
     };
     wanted.choose(root, name)
 }
@@ -69,11 +52,12 @@ struct Wanted<'a> {
 
 impl Wanted<'_> {
     fn choose(self, root: &Root, name: Option<&str>) -> Result<usize, FormatError> {
-        let (all, content) = (list(root), self.content);
+        let names = root.meshes.iter().enumerate().map(|(number, mesh)| mesh_name(mesh, number));
+        let (all, content): (Vec<String>, _) = (names.collect(), self.content);
         let is_candidate = |index: usize| (self.is_candidate)(&root.meshes[index]);
         let candidates: Vec<usize> = (0..all.len()).filter(|i| is_candidate(*i)).collect();
         let names = || {
-            let names: Vec<_> = candidates.iter().take(20).map(|i| quoted(&all[*i].name)).collect();
+            let names: Vec<_> = candidates.iter().take(20).map(|i| quoted(&all[*i])).collect();
             cut(&names.join(", "), 200)
         };
         let Some(name) = name else {
@@ -90,7 +74,7 @@ impl Wanted<'_> {
         let by_number = || -> Option<usize> {
             name.strip_prefix('#').unwrap_or(name).parse().ok().filter(|index| *index < all.len())
         };
-        let named: Vec<usize> = (0..all.len()).filter(|i| all[*i].name == name).collect();
+        let named: Vec<usize> = (0..all.len()).filter(|i| all[*i] == name).collect();
         let cause = match named[..] {
             [one] if is_candidate(one) => return Ok(one),
             [_] => format!("the mesh {} has no {content}", quoted(name)),
@@ -155,8 +139,6 @@ mod tests {
             "no mesh of the file has morph targets: export it with shape keys, or give a mesh file with modes"
         );
         assert_eq!(message(&root(&[]), Some("a")), "there is no mesh 'a'; meshes with morph targets: none");
-        let infos = list(&many);
-        assert_eq!((infos[0].name.as_str(), infos[2].targets, infos[2].primitives), ("#0", 3, 1));
         let long = "x".repeat(1000);
         assert!(message(&root(&[(Some(long.as_str()), 1); 50]), None).len() < 400);
     }

@@ -132,7 +132,7 @@ fn external_and_embedded_buffers() {
     fs::write(folder.join("sub dir/b.bin"), [&binary()[..], b"more"].concat()).unwrap();
     let json = with_uri("./sub%20dir/b.bin");
     assert_eq!(read(&path, None).unwrap(), whole);
-    assert_eq!(list_meshes(&path).unwrap()[0].targets, 2);
+    assert_eq!(read_contents(&path).unwrap().meshes[0].targets.len(), 2);
     let alone = parse(json.as_bytes(), None).unwrap_err().to_string();
     assert!(
         alone.contains("buffers[0]: the file './sub%20dir/b.bin' is needed, but these data have no folder"),

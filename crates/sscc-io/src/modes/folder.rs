@@ -7,7 +7,7 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh, limits};
 
 use super::named_modes::NamedModes;
-use crate::file::read_error;
+use crate::folder_files::list_files;
 use crate::mesh::{is_mesh_name, read_soup};
 use crate::{FormatError, IoError};
 
@@ -44,22 +44,11 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
     Ok(NamedModes { modes, names: paths.iter().map(name).collect(), deviations: None })
 }
 
-/// Returns the mesh files of a folder without the neutral one (its canonical path), in any order; at least one. `what`
+/// Returns the mesh files of a folder without the neutral one (its canonical path), in natural order; at least one. `what`
 /// names them in messages.
 pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
-    let refused = |cause| read_error(folder, cause);
-    let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).map_err(refused)? {
-        let name = entry.map_err(refused)?.file_name();
-        let path = folder.join(&name);
-        let hidden = name.as_encoded_bytes().starts_with(b".");
-        if hidden || !is_mesh_name(&path) || path.is_dir() {
-            continue;
-        }
-        if neutral.is_none() || fs::canonicalize(&path).ok().as_deref() != neutral {
-            paths.push(path);
-        }
-    }
+    let is_neutral = |path: &Path| neutral.is_some() && fs::canonicalize(path).ok().as_deref() == neutral;
+    let paths = list_files(folder, |path| is_mesh_name(path) && !is_neutral(path))?;
     let request = |cause: String| Err(IoError::request(folder, cause));
     match paths.len() {
         0 => request(format!("there is no {what} mesh in this folder")),

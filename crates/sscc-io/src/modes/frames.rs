@@ -6,7 +6,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use super::folder::{mesh_files, positions_like};
-use crate::{IoError, natural_order, read_mesh_with_warnings};
+use crate::{IoError, read_mesh_with_warnings};
 
 /// Frames of an animation.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,16 +42,7 @@ pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
 
 /// Returns the mesh files of a folder, in natural order; at least one.
 pub(super) fn frame_files(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
-    let mut paths = mesh_files(folder, None, "frame")?;
-    // Endings are compared last, so that `walk.obj` comes before `walk-1.obj`.
-    fn parts(path: &Path) -> [&[u8]; 2] {
-        [path.file_stem(), path.file_name()].map(|part| part.unwrap_or_default().as_encoded_bytes())
-    }
-    paths.sort_by(|a, b| {
-        let ([stem_a, name_a], [stem_b, name_b]) = (parts(a), parts(b));
-        natural_order::compare(stem_a, stem_b).then_with(|| natural_order::compare(name_a, name_b))
-    });
-    Ok(paths)
+    mesh_files(folder, None, "frame")
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! `sscc info`: shows the contents of a file.
 
 mod certificates;
-mod meshes;
+mod gltf;
 mod model;
 mod solid;
 mod surface;
+mod table;
 mod text;
 
 use std::path::Path;
@@ -22,7 +23,7 @@ use crate::args::Info;
 use crate::outcome::Outcome;
 use crate::output::{Output, warn};
 use certificates::CertificatesInfo;
-use meshes::Meshes;
+use gltf::Gltf;
 use model::Model;
 use solid::Solid;
 use surface::Surface;
@@ -35,7 +36,7 @@ enum Report {
     Solid(Solid),
     Model(Model),
     Certificates(CertificatesInfo),
-    Gltf(Meshes),
+    Gltf(Gltf),
 }
 
 pub fn run(args: &Info) -> Result<Outcome> {
@@ -54,7 +55,7 @@ impl Report {
     fn of(path: &Path) -> Result<Self, IoError> {
         match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
             "safetensors" => {}
-            "glb" | "gltf" | "vrm" => return Ok(Self::Gltf(Meshes::of(path)?)),
+            "glb" | "gltf" | "vrm" => return Ok(Self::Gltf(Gltf::of(path)?)),
             "npz" => {
                 let LoadedModel { model, info, mode_weights, .. } =
                     load_model_with(path, &LoadOptions::default())?;
@@ -95,7 +96,7 @@ impl Report {
             Self::Solid(solid) => solid.lines(),
             Self::Model(model) => model.lines(),
             Self::Certificates(certificates) => certificates.lines(),
-            Self::Gltf(meshes) => meshes.lines(),
+            Self::Gltf(gltf) => gltf.lines(),
         }
     }
 }

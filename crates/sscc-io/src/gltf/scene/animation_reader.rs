@@ -10,7 +10,9 @@ use super::sampler::{Interpolation, Sampler};
 use crate::FormatError;
 use crate::error::quoted;
 use crate::gltf::accessors::Accessors;
+use crate::gltf::json::Root;
 use crate::gltf::role::Role;
+use crate::gltf::triangles::morph_targets;
 
 /// Reads animations. Channels share key times, because most files use one accessor of times for many channels.
 pub(super) struct AnimationReader<'a, 'b> {
@@ -19,6 +21,13 @@ pub(super) struct AnimationReader<'a, 'b> {
     /// Number of morph targets of each node's mesh.
     pub morph_targets: &'a [usize],
     pub times: BTreeMap<usize, Arc<[f64]>>,
+}
+
+/// Returns the number of morph targets of each node's mesh.
+pub(super) fn morph_targets_of_nodes(root: &Root, nodes: &[json::Node]) -> Vec<usize> {
+    let of_meshes: Vec<usize> = root.meshes.iter().map(morph_targets).collect();
+    let of_node = |node: &json::Node| of_meshes.get(node.mesh? as usize).copied();
+    nodes.iter().map(|node| of_node(node).unwrap_or(0)).collect()
 }
 
 impl AnimationReader<'_, '_> {

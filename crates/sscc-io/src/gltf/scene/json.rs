@@ -20,9 +20,10 @@ pub(super) struct PlacedRoot {
     pub scene: Option<usize>,
 }
 
-/// The root nodes of a scene.
+/// A scene, with its root nodes.
 #[derive(Deserialize)]
 pub(super) struct Scene {
+    pub name: Option<Box<str>>,
     #[serde(default, deserialize_with = "or_default")]
     pub nodes: Box<[u32]>,
 }
@@ -34,6 +35,15 @@ pub(super) struct SkinRoot {
     pub meshes: Vec<Mesh>,
     #[serde(default, deserialize_with = "or_default")]
     pub skins: Vec<Skin>,
+}
+
+/// Skins and animations, beside nodes and scenes.
+#[derive(Deserialize)]
+pub(super) struct MotionRoot {
+    #[serde(default, deserialize_with = "or_default")]
+    pub skins: Vec<Skin>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub animations: Vec<Animation>,
 }
 
 #[derive(Deserialize)]
@@ -93,6 +103,7 @@ pub(super) struct SkinAttributes {
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Skin {
+    pub name: Option<Box<str>>,
     pub inverse_bind_matrices: Option<usize>,
     pub joints: Vec<u32>,
 }

@@ -6,6 +6,7 @@
 mod animated_scene;
 mod animation;
 mod animation_reader;
+mod contents;
 mod find;
 mod influences;
 mod json;
@@ -25,6 +26,9 @@ mod weld;
 
 pub use animated_scene::AnimatedScene;
 pub use animation::AnimationInfo;
+pub use contents::{
+    AnimationContents, Contents, MeshContents, MeshNodeContents, NamedPart, parse_contents, read_contents,
+};
 pub use mesh_node::MeshNode;
 pub use place::SkinWeights;
 pub use placed_mesh::{PlacedMesh, parse_placed_mesh, read_model_placement, read_placed_mesh};

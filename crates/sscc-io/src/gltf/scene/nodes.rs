@@ -6,6 +6,9 @@ use super::json;
 use super::transform::{Parts, Transform};
 use crate::FormatError;
 
+/// Memory of a node for each 3 bytes of text (`{},`), in bytes.
+pub(super) const NODE_SIZE: u64 = 512;
+
 /// Nodes with their parents and stored transforms.
 pub(super) struct Nodes {
     transforms: Vec<Transform>,

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use sscc::TriMesh;
 
 use super::json::{self, PlacedRoot, SkinRoot};
-use super::nodes::Nodes;
+use super::nodes::{NODE_SIZE, Nodes};
 use super::place::{Place, SkinWeights, check_joints, check_positions};
 use super::shape::Shape;
 use super::shown::{Shown, choose_shown, shown_nodes};
@@ -16,13 +16,10 @@ use crate::gltf::accessors::Accessors;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::json::{Root, parse_parts};
 use crate::gltf::part_names::PartNames;
-use crate::gltf::triangles::with_triangles;
+use crate::gltf::triangles::geometry_accessors;
 use crate::gltf::{glb, select};
 use crate::named_groups::{GroupCollector, GroupsBy, NamedGroups};
 use crate::{FormatError, IoError, read_whole};
-
-/// Memory of a node for each 3 bytes of text (`{},`), in bytes.
-const NODE_SIZE: u64 = 512;
 
 /// A mesh of a glTF file without its morph targets, and its places: the nodes of the default scene that show it; if none
 /// does, the nodes of any scene; if no node shows it, one place, in the mesh's own coordinates.
@@ -100,13 +97,11 @@ fn parse_in(
         false => SkinRoot::default(),
     };
     let attributes = file_skins.meshes.get(index);
-    let used = with_triangles(mesh)
-        .flat_map(|(_, primitive)| primitive.attributes.position.into_iter().chain(primitive.indices));
     let influences = attributes.into_iter().flat_map(json::Mesh::skin_accessors);
     let used_skins = shown.iter().filter_map(|node| file_skins.skins.get(skin_of(node)?));
     let matrices = used_skins.filter_map(|skin| skin.inverse_bind_matrices);
     let buffers = Buffers::new(&root.buffers, chunks.binary, folder);
-    let used = used.chain(influences).chain(matrices);
+    let used = geometry_accessors(mesh).chain(influences).chain(matrices);
     let mut accessors = Accessors::new(&root, buffers, used, bytes.len() as u64)?;
     let refused = |cause| FormatError::part("nodes", cause);
     accessors.allowance.take(placed.nodes.len() as u64, NODE_SIZE).map_err(refused)?;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::animated_scene::AnimatedScene;
 use super::animation::AnimationInfo;
-use super::animation_reader::AnimationReader;
+use super::animation_reader::{AnimationReader, morph_targets_of_nodes};
 use super::json::{self, SceneRoot};
 use super::mesh_node::MeshNode;
-use super::nodes::Nodes;
+use super::nodes::{NODE_SIZE, Nodes};
 use super::place::check_joints;
 use super::shape::Shape;
 use super::skin::Skin;
@@ -22,9 +22,6 @@ use crate::gltf::part_names::PartNames;
 use crate::gltf::select::has_triangles;
 use crate::gltf::triangles::{morph_targets, with_triangles};
 use crate::{FormatError, IoError, read_whole};
-
-/// Memory of a node for each 3 bytes of text (`{},`), in bytes.
-const NODE_SIZE: u64 = 512;
 
 /// Reads all nodes with a mesh, skins and animations of a `.gltf` or `.glb` file. Buffers may be in the file, or in files
 /// in its folder or below; symbolic links are followed.
@@ -60,9 +57,7 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let nodes = Nodes::new(&scene.nodes)?;
     let names = Arc::new(PartNames::parse(chunks.json)?);
     let (mesh_nodes, skins) = mesh_nodes(&mut accessors, &root, &scene, &nodes, &names)?;
-    let of_meshes: Vec<usize> = root.meshes.iter().map(morph_targets).collect();
-    let targets = |node: &json::Node| of_meshes.get(node.mesh? as usize).copied();
-    let targets: Vec<usize> = scene.nodes.iter().map(|node| targets(node).unwrap_or(0)).collect();
+    let targets = morph_targets_of_nodes(&root, &scene.nodes);
     let mut reader = AnimationReader {
         accessors: &mut accessors,
         nodes: &nodes,

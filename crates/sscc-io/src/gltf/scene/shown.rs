@@ -50,7 +50,7 @@ pub(super) fn shown_nodes(placed: &PlacedRoot, mesh: usize) -> Vec<usize> {
 }
 
 /// Returns for each node whether the default scene has it. Without `scene`, players show the first scene.
-fn nodes_of_default_scene(placed: &PlacedRoot) -> Vec<bool> {
+pub(super) fn nodes_of_default_scene(placed: &PlacedRoot) -> Vec<bool> {
     let mut is_in_scene = vec![false; placed.nodes.len()];
     let scene = placed.scenes.get(placed.scene.unwrap_or(0));
     let mut next: Vec<u32> = scene.map(|scene| scene.nodes.to_vec()).unwrap_or_default();

@@ -3,13 +3,13 @@
 use proptest::prelude::*;
 
 use super::file::{JSON, binary, changed, glb};
-use crate::gltf::{SkinWeights, parse_placed_mesh, parse_scene};
+use crate::gltf::{SkinWeights, parse_contents, parse_placed_mesh, parse_scene};
 
 #[test]
 fn every_truncation_is_rejected() {
     let bytes = changed(&[]);
     for len in 0..bytes.len() {
-        assert!(parse_placed_mesh(&bytes[..len], None).is_err());
+        assert!(parse_placed_mesh(&bytes[..len], None).is_err() && parse_contents(&bytes[..len]).is_err());
         let error = parse_scene(&bytes[..len]).unwrap_err().to_string();
         assert!(!error.contains('\n') && error.len() < 400, "{len}: {error}");
     }
@@ -29,6 +29,14 @@ fn evaluate(bytes: &[u8]) {
                     Err(error) => one_line(error),
                 }
             }
+        }
+        Err(error) => one_line(error),
+    }
+    match parse_contents(bytes) {
+        Ok(contents) => {
+            let of_meshes = contents.meshes.into_iter().filter_map(|mesh| mesh.size.err());
+            let of_animations = contents.animations.into_iter().filter_map(|animation| animation.error);
+            of_meshes.chain(of_animations).for_each(one_line);
         }
         Err(error) => one_line(error),
     }

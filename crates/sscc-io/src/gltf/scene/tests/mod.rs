@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bad_input;
+mod contents;
 mod damaged;
 mod file;
 mod lists;

@@ -55,7 +55,7 @@ fn each_node_is_a_place() {
     let message = placed(&changed(&[]), Some("pole")).err().unwrap();
     assert_eq!(message, "there is no mesh 'pole'; meshes with triangles: 'flag'");
     let lines = placed(&changed(&[(r#""mode":5"#, r#""mode":1"#)]), None).err().unwrap();
-    assert_eq!(lines, "no mesh of the file has triangles");
+    assert_eq!(lines, "no mesh of the file has triangles: export the scene with its surfaces");
 }
 
 #[test]
