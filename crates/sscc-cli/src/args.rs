@@ -63,7 +63,7 @@ pub enum Command {
     Resolve(Box<Resolve>),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
-    /// Show the contents of a model, certificate, mesh or solid file
+    /// Show the contents of a model, certificate, mesh, solid or glTF file
     Info(Info),
     /// Simulate the bodies of a scene with contact and friction, and write their motion
     Simulate(Simulate),
@@ -333,6 +333,7 @@ pub struct Certify {
         "sscc check spring.model.safetensors --trajectory q.npy --only colliding --json"
         "sscc check bunny.obj"
         "sscc check bunny.obj face.obj --json"
+        "sscc check meshes/ --json"
         "sscc check mesh.obj --frames frames/ --continuous"
         "sscc check mesh.obj --frames frames.npy --ignore-rest"
         "sscc check character.glb --animation wave --fps 60 --report wave.html"
@@ -349,7 +350,8 @@ Exit codes: 0 everything is free, 1 something collides, 2 error."
 pub struct Check {
     #[command(flatten)]
     pub model: Model,
-    /// Further meshes, checked one by one; each result names its file
+    /// Further meshes, checked one by one; each result names its file. A folder is a data set: all its meshes, solids and glTF
+    /// files. A file that cannot be read does not end the run
     #[arg(value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
     /// Certificates of this model, from `sscc certify`; without them they are computed first
@@ -594,6 +596,7 @@ pub struct Audit {
         "sscc info spring.sscc.safetensors"
         "sscc info bunny.obj --json"
         "sscc info bar.veg"
+        "sscc info character.glb"
     )
 )]
 pub struct Info {

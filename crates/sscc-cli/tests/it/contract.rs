@@ -334,6 +334,40 @@ fn modes_and_info() {
     assert_eq!(certificates["levels"][0]["min"], certificates["root_radius"]);
 }
 
+#[test]
+fn info_of_gltf_files_and_split_meshes() {
+    let directory = crate::detector::folder();
+    let folder = directory.path();
+    let info = sscc(folder, &["info", "flag.gltf", "--json"]).json().remove(0);
+    assert_eq!(keys(&info), sorted("kind, scenes, default_scene, nodes, meshes, skins, animations"));
+    for (part, names) in [
+        ("nodes", "node, name, mesh, skin, in_default_scene"),
+        ("meshes", "name, primitives, targets, triangles, vertices, default_q"),
+        ("animations", "name, seconds, channels"),
+    ] {
+        assert_eq!(keys(&info[part][0]), sorted(names), "{part}");
+    }
+    let facet = |corners: &str| format!("facet\nouter loop\n{corners}endloop\nendfacet\n");
+    let two = facet("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n")
+        + &facet("vertex 0 1 0\nvertex 1 0 0\nvertex 1 1 0\n");
+    fs::write(folder.join("two.stl"), format!("solid\n{two}endsolid\n")).unwrap();
+    let info = sscc(folder, &["info", "two.stl", "--json"]).json().remove(0);
+    let names =
+        "kind, triangles, vertices, used_vertices, boundary_edges, non_manifold_edges, welded, lower, upper";
+    assert_eq!(keys(&info), sorted(names));
+    assert_eq!(keys(&info["welded"]), sorted("vertices, boundary_edges, non_manifold_edges"));
+}
+
+#[test]
+fn check_of_a_data_set() {
+    let directory = crate::detector::folder();
+    let folder = directory.path();
+    let run = sscc(folder, &["check", "mesh.obj", "missing.obj", "--json"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(2), "error: missing.obj: not found\n"));
+    let [answer, failed] = &run.json()[..] else { panic!("{run:?}") };
+    assert_eq!((keys(answer), keys(failed)), (sorted(&format!("{CHECK}, file")), sorted("file, error")));
+}
+
 /// Two tetrahedra with a common face, in every format of solids.
 #[test]
 fn info_of_solids() {

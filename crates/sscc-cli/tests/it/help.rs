@@ -174,6 +174,7 @@ fn examples_run_as_they_are_shown() {
     write_face(folder, 3);
     write_meshes(folder, &["targets/a.obj", "targets/b.obj"].map(str::to_owned));
     write_meshes(folder, &(0..12).map(|n| format!("frames/{n:02}.obj")).collect::<Vec<_>>());
+    write_meshes(folder, &["meshes/a.obj", "meshes/b.obj"].map(str::to_owned));
     write_head(folder);
     write_bar(folder);
     write_frames(folder);

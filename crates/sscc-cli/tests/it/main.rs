@@ -5,6 +5,7 @@ mod bad_input;
 mod bench;
 mod common;
 mod contract;
+mod data_sets;
 mod detector;
 mod detector_bad_input;
 mod detector_models;

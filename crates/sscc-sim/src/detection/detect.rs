@@ -18,64 +18,102 @@ use crate::error::Result;
 use crate::watch::check_cancelled;
 use crate::{LeftOut, SimError, Stage, Watch, available_threads};
 
-/// Calls `take` with the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh), frame by
-/// frame. `take` can end that early.
+/// Calls `take` with each file and the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh),
+/// frame by frame. `take` can end that early. Several meshes at rest are read and answered in parallel.
+///
+/// Of a file that cannot be answered, `take` receives the error. It returns that to end the run, or goes on with the next file.
 ///
 /// Frames from files are checked before the first answer. Memory is that of one mesh and a few frames for each thread;
 /// meshes of a folder of frames are kept up to 1 GiB.
 ///
 /// # Errors
-/// When a file cannot be read or does not fit its mesh; when a request is contradictory, or would compare a mesh with
-/// itself; when positions are not finite;
-/// when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit; when `watch` cancels; when `take` fails.
+/// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when it
+/// cannot be read or does not fit its mesh; when a mesh would be compared with itself; when positions are not finite; when a
+/// query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
 pub fn detect<E: From<SimError>>(
     request: &Detection,
     watch: &dyn Watch,
-    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
+    mut take: impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
     check_request(request)?;
     let is_at_rest = matches!(request.motion, MeshMotion::Rest) && request.against.is_none();
     if is_at_rest && request.meshes.len() > 1 && !request.is_continuous {
-        return at_rest(request, watch, take);
+        return at_rest(request, watch, take).map(drop);
     }
     for (number, file) in request.meshes.iter().enumerate() {
-        let mut sides = Sides::load(file, request, watch)?;
-        let frames = sides.frames;
-        let each = if request.is_continuous { frames - 1 } else { frames };
-        let queries = each * sides.len();
-        watch.begin(Stage::Detection);
-        for before in 0..sides.len() {
-            let (mesh, other) = sides.get(before)?;
-            let (mesh, other) = (&*mesh, other.as_deref());
-            let is_last = number + 1 == request.meshes.len() && before + 1 == sides.len();
-            let last = is_last.then_some(each - 1);
-            let taken = in_order(
-                each,
-                request.threads.unwrap_or_else(available_threads),
-                || Worker::new(request, mesh, other, last),
-                Worker::answer,
-                |index, found| {
-                    check_cancelled(watch)?;
-                    let other = other.map(AnswerSource::from);
-                    let taken = take(&answer(mesh.into(), other, index, &found?, [queries, frames]))?;
-                    watch.report(before * each + index + 1, queries);
-                    Ok::<_, E>(taken)
-                },
-            )?;
-            if taken.is_break() {
-                return Ok(());
+        let is_last = number + 1 == request.meshes.len();
+        let taken = match in_motion(file, is_last, request, watch, |found| take(file, Ok(found))) {
+            Ok(taken) => taken,
+            Err(Failure::File(error)) => {
+                check_cancelled(watch)?;
+                take(file, Err(error))?
             }
+            Err(Failure::Run(error)) => return Err(error),
+        };
+        if taken.is_break() {
+            return Ok(());
         }
     }
     Ok(())
+}
+
+/// An error that ends a file, or the whole run.
+enum Failure<E> {
+    File(SimError),
+    Run(E),
+}
+
+impl<E> From<SimError> for Failure<E> {
+    fn from(error: SimError) -> Self {
+        Self::File(error)
+    }
+}
+
+/// Answers the queries of one file, in parallel. `is_last`: whether no other file follows.
+fn in_motion<E>(
+    file: &Path,
+    is_last: bool,
+    request: &Detection,
+    watch: &dyn Watch,
+    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, Failure<E>> {
+    let mut sides = Sides::load(file, request, watch)?;
+    let frames = sides.frames;
+    let each = if request.is_continuous { frames - 1 } else { frames };
+    let queries = each * sides.len();
+    watch.begin(Stage::Detection);
+    for before in 0..sides.len() {
+        let (mesh, other) = sides.get(before)?;
+        let (mesh, other) = (&*mesh, other.as_deref());
+        let last = (is_last && before + 1 == sides.len()).then_some(each - 1);
+        let taken = in_order(
+            each,
+            request.threads.unwrap_or_else(available_threads),
+            || Worker::new(request, mesh, other, last),
+            Worker::answer,
+            |index, found| {
+                check_cancelled(watch)?;
+                let other = other.map(AnswerSource::from);
+                let found = found?;
+                let answer = answer(mesh.into(), other, index, &found, [queries, frames]);
+                let taken = take(&answer).map_err(Failure::Run)?;
+                watch.report(before * each + index + 1, queries);
+                Ok::<_, Failure<E>>(taken)
+            },
+        )?;
+        if taken.is_break() {
+            return Ok(taken);
+        }
+    }
+    Ok(ControlFlow::Continue(()))
 }
 
 /// Answers several meshes at rest, each on one thread.
 fn at_rest<E: From<SimError>>(
     request: &Detection,
     watch: &dyn Watch,
-    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
-) -> Result<(), E> {
+    mut take: impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, E> {
     watch.begin(Stage::Detection);
     let count = request.meshes.len();
     let work = |(): &mut (), index: usize| {
@@ -87,22 +125,26 @@ fn at_rest<E: From<SimError>>(
         // Its detector is no longer needed: it is far larger than the mesh.
         Ok((mesh.mesh, mesh.left_out, found))
     };
-    let taken = in_order(
+    in_order(
         count,
         request.threads.unwrap_or_else(available_threads),
         || (),
         work,
         |index, result: Result<_>| {
             check_cancelled(watch)?;
-            let (mesh, left_out, found) = result?;
             let file = &request.meshes[index];
-            let mesh = AnswerSource { file, mesh: &mesh, node: None, times: None, left_out: &left_out };
-            let taken = take(&answer(mesh, None, 0, &found, [1, 1]))?;
+            let taken = match result {
+                Ok((mesh, left_out, found)) => {
+                    let mesh =
+                        AnswerSource { file, mesh: &mesh, node: None, times: None, left_out: &left_out };
+                    take(file, Ok(&answer(mesh, None, 0, &found, [1, 1])))
+                }
+                Err(error) => take(file, Err(error)),
+            }?;
             watch.report(index + 1, count);
             Ok(taken)
         },
-    );
-    taken.map(drop)
+    )
 }
 
 /// The parts of a [`MovingMesh`] that answers show.

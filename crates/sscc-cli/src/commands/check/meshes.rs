@@ -1,17 +1,18 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc::TriMesh;
 use sscc_io::gltf::SkinWeights;
 use sscc_io::write_whole;
 use sscc_sim::{
-    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, Times, detect,
+    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, SimError, Times, detect,
 };
 use sscc_view::MeshReport;
 
+use super::data_set::DataSet;
 use super::printer::Printer;
 use super::shapes;
 use super::soup_hint::SoupHint;
@@ -23,7 +24,8 @@ use crate::stages::Stages;
 pub fn check(args: &Check) -> Result<bool> {
     check_flags(args)?;
     shapes::check(args)?;
-    let request = request(args);
+    let mut data_set = DataSet::of(args)?;
+    let request = request(args, data_set.files.clone());
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",
         (MeshMotion::Rest, _) if request.against.as_ref().is_some_and(|other| other.frames.is_none()) => {
@@ -33,13 +35,20 @@ pub fn check(args: &Check) -> Result<bool> {
         _ => "frame",
     };
     let mut printer = Printer::new(noun, args.json.json, None);
-    printer.has_files = request.meshes.len() > 1;
+    printer.has_files = data_set.has_several();
+    printer.has_folder = data_set.has_folder;
     printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some() || args.pose.is_some();
     let mut report = MeshReport::default();
     let mut answers = 0;
     let mut hint = SoupHint::default();
-    detect(&request, &Stages::default(), |found: &DetectionAnswer<'_>| {
+    let watch = Stages::default();
+    let take = |file: &Path, found: Result<&DetectionAnswer<'_>, SimError>| {
+        let found = match found {
+            Ok(found) => found,
+            Err(error) if data_set.has_several() => return printer.fail(&data_set.fail(file, &error)),
+            Err(error) => return Err(error.into()),
+        };
         answers += 1;
         // Pairs of two meshes are never neighbours.
         if request.against.is_none() && !is_welded(&request, found.mesh) {
@@ -57,12 +66,14 @@ pub fn check(args: &Check) -> Result<bool> {
         // A report has all frames, also where nobody reads the output.
         let go_on = args.report.is_some();
         printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
-    })?;
+    };
+    detect(&request, &watch, take)?;
     if let Some(path) = &args.report {
         write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
     }
     let colliding = printer.finish()?;
     hint.print(&args.model.path);
+    data_set.finish()?;
     Ok(colliding)
 }
 
@@ -120,7 +131,7 @@ fn check_flags(args: &Check) -> Result<()> {
     Ok(())
 }
 
-fn request(args: &Check) -> Detection {
+fn request(args: &Check, meshes: Vec<PathBuf>) -> Detection {
     let (options, motion) = (&args.options, &args.motion);
     let animated = motion.animation.as_ref().map(|animation| AnimationMotion {
         animation: animation.clone(),
@@ -141,7 +152,7 @@ fn request(args: &Check) -> Detection {
         frames: motion.against_frames.clone(),
     };
     Detection {
-        meshes: [&args.model.path].into_iter().chain(&args.meshes).cloned().collect(),
+        meshes,
         mesh_name: args.model.mesh_name.clone(),
         motion: frames.or(animated.map(MeshMotion::Animation)).unwrap_or(MeshMotion::Rest),
         against: motion.against.as_deref().map(other),

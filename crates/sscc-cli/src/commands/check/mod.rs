@@ -1,6 +1,7 @@
 //! `sscc check`: answers a discrete or continuous query for every q of a model, or every frame of a mesh.
 
 mod answer;
+mod data_set;
 mod meshes;
 mod printer;
 mod shapes;

@@ -6,8 +6,9 @@ use anyhow::Result;
 use sscc_sim::DetectionAnswer;
 
 use super::answer::Answer;
+use super::data_set::FileError;
 use super::text::{self, Summary};
-use crate::output::Output;
+use crate::output::{Output, note};
 
 /// Prints answers as text or JSON, and a summary.
 pub struct Printer {
@@ -21,6 +22,8 @@ pub struct Printer {
     pub only_colliding: bool,
     /// Whether the run has several files.
     pub has_files: bool,
+    /// Whether the run has a folder, so that its summary is printed in any case.
+    pub has_folder: bool,
     /// Whether the last answer is needed even if no one reads the output.
     pub needs_last: bool,
 }
@@ -37,6 +40,7 @@ impl Printer {
             answers: 0,
             only_colliding: false,
             has_files: false,
+            has_folder: false,
             needs_last: false,
         }
     }
@@ -57,17 +61,36 @@ impl Printer {
             }
             (true, false) => self.out.line(answer.line(self.noun))?,
         }
-        let is_over = self.out.is_closed() && !self.needs_last;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        Ok(self.next())
     }
 
-    /// Prints the summary of several answers. Returns whether any of them has a collision: the exit code is that of the
-    /// answers so far.
+    /// Prints the line of a file that could not be checked. Breaks if further answers have no reader.
+    pub fn fail(&mut self, failed: &FileError) -> Result<ControlFlow<()>> {
+        self.summary.failures += 1;
+        match self.is_json {
+            true => self.out.json(failed)?,
+            false => self.out.line(text::failure(failed))?,
+        }
+        Ok(self.next())
+    }
+
+    fn next(&self) -> ControlFlow<()> {
+        let is_over = self.out.is_closed() && !self.needs_last;
+        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Prints the summary of several answers, of a folder also beside JSON. Returns whether any of them has a collision: the
+    /// exit code is that of the answers so far.
     pub fn finish(mut self) -> Result<bool> {
-        if !self.is_json && (self.answers > 1 || self.only_colliding) {
+        let is_summarized =
+            self.answers + self.summary.failures > 1 || self.only_colliding || self.has_folder;
+        if !self.is_json && is_summarized {
             self.out.line(self.summary.line())?;
         }
-        self.out.finish()?;
+        self.out.flush()?;
+        if self.is_json && self.has_folder {
+            note(self.summary.line());
+        }
         Ok(self.summary.colliding > 0)
     }
 }

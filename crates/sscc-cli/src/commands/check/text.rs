@@ -3,6 +3,7 @@
 use sscc_sim::{FreeProof, LeftOut, free_sentence};
 
 use super::answer::Answer;
+use super::data_set::FileError;
 use crate::output::{counted, duration, grouped, length};
 
 /// Maximum number of pairs in the text; `--json` lists more.
@@ -100,12 +101,19 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     lines
 }
 
+/// Returns the line of a file that could not be checked, beside those of the answers.
+pub fn failure(failed: &FileError) -> String {
+    format!("{}   {:>9}  ERROR      {}", failed.file, "", failed.error)
+}
+
 /// Counts and times of all queries of a run, and the worst one.
 pub struct Summary {
     /// The noun for a query: `step`, `configuration`, ...
     noun: &'static str,
     root_certified: Option<usize>,
     pub colliding: usize,
+    /// Files that could not be checked.
+    pub failures: usize,
     /// Whether an answer does not have all of its pairs. Then none is the worst.
     is_limited: bool,
     worst: Option<Worst>,
@@ -128,6 +136,7 @@ impl Summary {
             noun,
             root_certified: None,
             colliding: 0,
+            failures: 0,
             is_limited: false,
             worst: None,
             microseconds: Vec::new(),
@@ -176,14 +185,20 @@ impl Summary {
         let certified = self.root_certified.map(|n| format!(" ({n} by the root's certificate alone)"));
         let worst = self.worst.as_ref().filter(|_| !self.is_limited);
         let worst = worst.map(|worst| format!("; worst: {}", worst.text));
+        let failures = match self.failures {
+            0 => String::new(),
+            n => format!(", {} not checked", counted(n as u64, "file")),
+        };
+        let median = self.microseconds.get(all / 2).map(|median| format!("; median {}", duration(*median)));
         let counts = numbered(self.noun).map(|label| format!("; {label}s are counted from 0"));
         format!(
-            "{}: {} free{}, {} colliding; median {}{}{}{}",
+            "{}: {} free{}, {} colliding{}{}{}{}{}",
             counted(all as u64, self.noun),
             all - self.colliding,
             certified.unwrap_or_default(),
             self.colliding,
-            duration(self.microseconds[all / 2]),
+            failures,
+            median.unwrap_or_default(),
             worst.unwrap_or_default(),
             counts.unwrap_or_default(),
             apart
