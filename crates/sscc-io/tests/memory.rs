@@ -53,6 +53,8 @@ fn json_uses_little_memory() {
         let text = gltf_text(&accessors, &meshes);
         let peak = peak(|| assert!(gltf::parse(text.as_bytes(), None).is_err()));
         assert!(peak < 50 * text.len() as u64, "{peak} for {}", text.len());
+        let contents = self::peak(|| assert!(gltf::parse_contents(text.as_bytes()).is_ok()));
+        assert!(contents < 50 * text.len() as u64, "{contents} for {}", text.len());
     }
 }
 
@@ -89,6 +91,8 @@ fn scenes_use_little_memory() {
         assert!(peak < 100 * text.len() as u64, "{peak} for {}: {}", text.len(), &parts[..80]);
         let placed = self::peak(|| drop(gltf::parse_placed_mesh(text.as_bytes(), None)));
         assert!(placed < 100 * text.len() as u64, "{placed} for {}: {}", text.len(), &parts[..80]);
+        let contents = self::peak(|| assert_eq!(gltf::parse_contents(text.as_bytes()).is_ok(), is_valid));
+        assert!(contents < 100 * text.len() as u64, "{contents} for {}: {}", text.len(), &parts[..80]);
     }
 }
 

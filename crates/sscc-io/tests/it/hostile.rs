@@ -27,6 +27,7 @@ fn parse_all(bytes: &[u8]) {
     one_line(&gltf::parse(bytes, Some("#0")));
     one_line(&gltf::parse_scene(bytes));
     one_line(&gltf::parse_placed_mesh(bytes, None));
+    one_line(&gltf::parse_contents(bytes));
     one_line(&model_from_bytes(bytes));
     one_line(&certificates_from_bytes(bytes));
     for kind in [MODEL, CERTIFICATES] {
@@ -206,6 +207,7 @@ proptest! {
         one_line(&gltf::parse(text.as_bytes(), None));
         one_line(&gltf::parse_scene(text.as_bytes()));
         one_line(&gltf::parse_placed_mesh(text.as_bytes(), None));
+        one_line(&gltf::parse_contents(text.as_bytes()));
     }
 
     #[test]
