@@ -71,13 +71,18 @@ impl Gltf {
     pub fn of(path: &Path) -> Result<Self, IoError> {
         let contents = read_contents(path)?;
         let Contents { scenes, default_scene, nodes, mesh_nodes, meshes, skins, animations, .. } = contents;
+        let named = |parts: Vec<NamedPart>| parts.into_iter().map(|part| (part.name, part.parts));
+        let node = |node: MeshNodeContents| {
+            let MeshNodeContents { node, name, mesh, skin, is_in_default_scene, .. } = node;
+            Node { node, name, mesh, skin, in_default_scene: is_in_default_scene }
+        };
         Ok(Self {
-            scenes: scenes.into_iter().map(Scene::from).collect(),
+            scenes: named(scenes).map(|(name, root_nodes)| Scene { name, root_nodes }).collect(),
             default_scene,
             all_nodes: nodes,
-            nodes: mesh_nodes.into_iter().map(Node::from).collect(),
+            nodes: mesh_nodes.into_iter().map(node).collect(),
             meshes: meshes.into_iter().map(Mesh::from).collect(),
-            skins: skins.into_iter().map(Skin::from).collect(),
+            skins: named(skins).map(|(name, joints)| Skin { name, joints }).collect(),
             animations: animations.into_iter().map(Animation::from).collect(),
         })
     }
@@ -181,25 +186,6 @@ impl Gltf {
             table.row([number.to_string(), seconds, animation.channels.to_string()], name);
         }
         table.lines()
-    }
-}
-
-impl From<NamedPart> for Scene {
-    fn from(NamedPart { name, parts, .. }: NamedPart) -> Self {
-        Self { name, root_nodes: parts }
-    }
-}
-
-impl From<NamedPart> for Skin {
-    fn from(NamedPart { name, parts, .. }: NamedPart) -> Self {
-        Self { name, joints: parts }
-    }
-}
-
-impl From<MeshNodeContents> for Node {
-    fn from(node: MeshNodeContents) -> Self {
-        let MeshNodeContents { node, name, mesh, skin, is_in_default_scene, .. } = node;
-        Self { node, name, mesh, skin, in_default_scene: is_in_default_scene }
     }
 }
 
