@@ -129,6 +129,7 @@ fn folders_without_errors() {
         (&["set", "--report", "a.html"], "set: --report is for one mesh: name a file of the folder"),
         (&["set", "--frames", "set"], "set: --frames is for one mesh: name a file of the folder"),
         (&["set", "--against", "set/2.obj"], "set: --against is for one mesh: name a file of the folder"),
+        (&["set", "--curves", "set/10.obj"], "set/10.obj: the output is an input"),
         (&["set", "--q=0"], "set: unknown kind of mesh file; supported: "),
     ] {
         let run = sscc(folder, &[&["check"], args].concat());

@@ -23,8 +23,8 @@ use crate::stages::Stages;
 /// Answers every query. Returns whether any of them found a collision.
 pub fn check(args: &Check) -> Result<bool> {
     check_flags(args)?;
-    shapes::check(args)?;
     let mut data_set = DataSet::of(args)?;
+    shapes::check(args, &data_set.files)?;
     let request = request(args, data_set.files.clone());
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",

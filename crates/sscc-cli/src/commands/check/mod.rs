@@ -8,6 +8,8 @@ mod shapes;
 mod soup_hint;
 mod text;
 
+use std::slice;
+
 use anyhow::{Context, Result, bail, ensure};
 use sscc::parts::Scope;
 use sscc::{Certificates, Method, Query};
@@ -40,7 +42,7 @@ fn check_model(args: &Check) -> Result<bool> {
         !args.continuous || rows.rows > 1,
         "--continuous: the trajectory has one row; a motion needs at least two"
     );
-    shapes::check(args)?;
+    shapes::check(args, slice::from_ref(&args.model.path))?;
     let request = load::request(&loaded, &args.model, &args.options)?;
     let certificates = match &args.certificates {
         Some(path) => Some(request.read(path, model)?),

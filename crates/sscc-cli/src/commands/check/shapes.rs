@@ -1,7 +1,7 @@
 //! Writes shapes (`--pose`) and contact curves (`--curves`).
 
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
 use glam::DVec3;
@@ -13,12 +13,12 @@ use crate::args::Check;
 use crate::load;
 use crate::output::note;
 
-/// Refuses files that cannot be written, before the first query.
-pub fn check(args: &Check) -> Result<()> {
+/// Refuses files that cannot be written or are inputs, such as these meshes, before the first query.
+pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
     let Check { model, certificates, at, motion, options, .. } = args;
     let files = [&model.modes, certificates, &at.trajectory, &motion.frames, &motion.against];
     let more = [&motion.against_frames, &options.metric, &options.groups.group_by];
-    let files = files.into_iter().chain(more).flatten().chain(&args.meshes).chain([&model.path]);
+    let files = files.into_iter().chain(more).flatten().chain(meshes);
     let inputs: Vec<&Path> = files.map(|file| file.as_path()).collect();
     if let Some(report) = &args.report {
         load::check_output(report, ".html", &inputs)?;
