@@ -84,7 +84,7 @@ fn parts_that_cannot_be_checked() {
         json!({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "lost.bin"}],
             "bufferViews": [{"buffer": 0, "byteLength": 36}],
             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-            "meshes": [points, lost, {"primitives": []}], "nodes": [{"mesh": 1}],
+            "meshes": [points, lost, {"primitives": []}], "nodes": [{"mesh": 1}, {"mesh": 7}], "scenes": [{}],
             "animations": [{"name": "run", "channels": [], "samplers": []},
                 {"name": "run", "channels": [], "samplers": []}]}),
     );
@@ -98,6 +98,7 @@ fn parts_that_cannot_be_checked() {
         "   1          -         -        0  a\\nb (malformed: buffers[0]: ",
         "   2          0         0        0  #2 (points and lines only)\n",
         "   0     1     -  - (not in the default scene)\n",
+        "   1     7     -  - (malformed: there is no such mesh)\n",
         "\nseveral meshes have the name a\\nb: choose one by its number, as in --mesh-name 0\n",
         "\nseveral animations have the name run: choose one by its number, as in --animation 0\n",
     ] {

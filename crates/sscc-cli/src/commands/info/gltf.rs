@@ -135,8 +135,12 @@ impl Gltf {
         let mut table = Table::new(["node", "mesh", "skin"]);
         for node in &self.nodes {
             let skin = node.skin.map_or("-".to_owned(), |skin| skin.to_string());
-            let place = if node.in_default_scene { "" } else { " (not in the default scene)" };
-            let name = name_of(node.name.as_deref()) + place;
+            let remark = match self.default_scene {
+                _ if node.mesh >= self.meshes.len() => " (malformed: there is no such mesh)",
+                Some(_) if !node.in_default_scene => " (not in the default scene)",
+                _ => "",
+            };
+            let name = name_of(node.name.as_deref()) + remark;
             table.row([node.node.to_string(), node.mesh.to_string(), skin], name);
         }
         table.lines()
