@@ -12,6 +12,7 @@ use sscc_sim::text::{counted, grouped};
 use crate::answer::Reduction;
 use crate::arguments::{count, switch};
 use crate::arrays::{floats, line, pairs, table};
+use crate::clearance::{self, NearArrays, Nearest, near_arrays};
 use crate::contacts::Contacts;
 use crate::detector_answer::{DetectorAnswer, DetectorImpacts, FoundFrame};
 use crate::detector_batch::DetectorBatch;
@@ -92,6 +93,11 @@ fn at_fault(error: &Error, given: &[(&[&NamedPositions], usize)]) -> PyErr {
         .iter()
         .find_map(|(positions, vertices)| positions.iter().find_map(|positions| positions.fault(*vertices)));
     fault.unwrap_or_else(|| refused(error, ""))
+}
+
+/// Returns the arguments `positions` and `other_positions`.
+fn named_both(positions: &Bound<'_, PyAny>, other: &Bound<'_, PyAny>) -> PyResult<[NamedPositions; 2]> {
+    Ok([NamedPositions::of(positions, "positions")?, NamedPositions::of(other, "other_positions")?])
 }
 
 /// Returns the detector in the argument `other`.
@@ -211,8 +217,7 @@ impl Detector {
         other_positions: &Bound<'_, PyAny>,
     ) -> PyResult<DetectorAnswer> {
         let other = as_detector(other)?;
-        let x = NamedPositions::of(positions, "positions")?;
-        let y = NamedPositions::of(other_positions, "other_positions")?;
+        let [x, y] = named_both(positions, other_positions)?;
         let faces = [self, other].map(|detector| detector.pool.mesh.faces.as_slice());
         self.ask_both(py, &[&x], other, &[&y], |detector, other| {
             let pairs = detector.against(&x.points, other, &y.points)?.to_vec();
@@ -239,6 +244,79 @@ impl Detector {
             let impacts = detector.continuous_against(x, other, y)?.to_vec();
             Ok(DetectorImpacts::of(&impacts, detector.statistics()))
         })
+    }
+
+    #[pyo3(signature = (positions, clearance, *, rings=None))]
+    fn within<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+        clearance: &Bound<'py, PyAny>,
+        rings: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<NearArrays<'py>> {
+        let clearance = clearance::clearance(clearance, rings)?;
+        let x = NamedPositions::of(positions, "positions")?;
+        let near = self.ask(py, &[&x], |detector| Ok(detector.within(&x.points, &clearance)?.to_vec()))?;
+        near_arrays(py, &near)
+    }
+
+    fn within_against<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+        other: &Bound<'py, PyAny>,
+        other_positions: &Bound<'py, PyAny>,
+        clearance: &Bound<'py, PyAny>,
+    ) -> PyResult<NearArrays<'py>> {
+        let (other, clearance) = (as_detector(other)?, clearance::clearance(clearance, None)?);
+        let [x, y] = named_both(positions, other_positions)?;
+        let near = self.ask_both(py, &[&x], other, &[&y], |detector, other| {
+            Ok(detector.within_against(&x.points, other, &y.points, &clearance)?.to_vec())
+        })?;
+        near_arrays(py, &near)
+    }
+
+    #[pyo3(signature = (positions, *, rings=None))]
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        positions: &Bound<'_, PyAny>,
+        rings: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Nearest> {
+        let rings = clearance::rings_of(rings)?;
+        let x = NamedPositions::of(positions, "positions")?;
+        self.ask(py, &[&x], |detector| detector.nearest(&x.points, rings)).map(clearance::nearest)
+    }
+
+    fn nearest_against(
+        &self,
+        py: Python<'_>,
+        positions: &Bound<'_, PyAny>,
+        other: &Bound<'_, PyAny>,
+        other_positions: &Bound<'_, PyAny>,
+    ) -> PyResult<Nearest> {
+        let other = as_detector(other)?;
+        let [x, y] = named_both(positions, other_positions)?;
+        let ask = |detector: &mut sscc::Detector, other: &mut sscc::Detector| {
+            detector.nearest_against(&x.points, other, &y.points)
+        };
+        self.ask_both(py, &[&x], other, &[&y], ask).map(clearance::nearest)
+    }
+
+    fn enclosed(
+        &self,
+        py: Python<'_>,
+        positions: &Bound<'_, PyAny>,
+        other: &Bound<'_, PyAny>,
+        other_positions: &Bound<'_, PyAny>,
+    ) -> PyResult<[(usize, usize); 2]> {
+        let other = as_detector(other)?;
+        let [x, y] = named_both(positions, other_positions)?;
+        let ask = |detector: &mut sscc::Detector, other: &mut sscc::Detector| {
+            detector.enclosed(&x.points, other, &y.points)
+        };
+        let sides = self.ask_both(py, &[&x], other, &[&y], ask)?;
+        Ok(sides.map(|side| (side.inside, side.components)))
     }
 
     #[getter]

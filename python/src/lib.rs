@@ -6,6 +6,7 @@ mod arrays;
 mod batch;
 mod certificates;
 mod certify;
+mod clearance;
 mod colliding_triangles;
 mod contacts;
 mod core_seconds;

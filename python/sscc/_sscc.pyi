@@ -452,6 +452,33 @@ class Detector:
         self, x0: ArrayLike, x1: ArrayLike, other: Detector, y0: ArrayLike, y1: ArrayLike
     ) -> DetectorImpacts:
         """The pairs of ``against`` that collide while this mesh moves from x0 to x1 and the other from y0 to y1."""
+    def within(
+        self, positions: ArrayLike, clearance: float, *, rings: SupportsIndex | None = None
+    ) -> tuple[_U32, _F64]:
+        """The pairs nearer than a distance, sorted: (n, 2), and their distances (n,), which are 0 where they collide.
+
+        Distances have an error of at most 2^-40 of the size of both triangles. Triangles with a common vertex never count. ``rings``: those within
+        so many rings of each other on the surface do not count either: 1 (default): with a common vertex; 2: with a common
+        neighbour of this kind, and so on.
+        """
+    def within_against(
+        self, positions: ArrayLike, other: Detector, other_positions: ArrayLike, clearance: float
+    ) -> tuple[_U32, _F64]:
+        """The pairs (triangle of this mesh, triangle of the other) nearer than a distance, and their distances."""
+    def nearest(
+        self, positions: ArrayLike, *, rings: SupportsIndex | None = None
+    ) -> tuple[float, tuple[int, int]] | None:
+        """The smallest distance of two triangles that count as in ``within``, and these; None: no pair counts."""
+    def nearest_against(
+        self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
+    ) -> tuple[float, tuple[int, int]] | None:
+        """The smallest distance of this mesh and the other one, and its triangles."""
+    def enclosed(
+        self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
+    ) -> tuple[tuple[int, int], tuple[int, int]]:
+        """How many connected components of this mesh are inside the other one, and how many it has; likewise those of
+        the other one inside this mesh. It holds where ``against`` finds no pair. Only closed components have an inside.
+        """
     @property
     def faces(self) -> _U32:
         """Vertex numbers, (F, 3); a copy."""

@@ -557,3 +557,25 @@ def test_invalid_options_are_refused() -> None:
     ]
     for call, error, message in refused:
         check_refused(call, error, message)
+
+
+def test_near_pairs_and_the_nearest_one():
+    detector = sscc.Detector([[0, 1, 2], [3, 4, 5]], X)
+    pairs, distances = detector.within(X, 1.5)
+    assert (pairs.tolist(), distances.tolist()) == ([[0, 1]], [1.0])
+    assert not pairs.flags.writeable and not distances.flags.writeable
+    assert detector.within(X, 1.0)[0].shape == (0, 2)
+    assert detector.nearest(X) == (1.0, (0, 1))
+    assert detector.nearest(FALLEN, rings=np.int64(3))[0] == 1.0
+    other = sscc.Detector([[0, 1, 2]])
+    far = X[:3] + [0, 0, 9]
+    assert detector.nearest_against(X, other, far) == (8.0, (1, 0))
+    assert detector.within_against(X, other, far, 8.5)[0].tolist() == [[1, 0]]
+    assert detector.enclosed(X, other, far) == ((0, 2), (0, 1))
+    for bad in [0, -1, float("inf"), float("nan")]:
+        with pytest.raises(ValueError, match="clearance"):
+            detector.within(X, bad)
+    with pytest.raises(TypeError, match="clearance is a str"):
+        detector.within(X, "1")
+    with pytest.raises(ValueError, match="rings is 0"):
+        detector.nearest(X, rings=0)

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use sscc::parts::is_reach;
-use sscc::{Method, Neighbours};
+use sscc::{Clearance, Method, Neighbours};
 
 /// The template of a help page with examples, one command a line. The examples are part of the template because clap
 /// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
@@ -340,12 +340,13 @@ pub struct Certify {
         "sscc check face.obj --against bunny.obj --curves cut.obj"
         "sscc check character.glb#shirt --against character.glb#body"
         "sscc check bunny.obj --depths --json"
+        "sscc check part.stl --against housing.stl --clearance 0.2"
     ),
     after_help = "\
 With --q or --trajectory, the certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a \
 flag that contradicts them is refused. Without, a mesh needs no modes: it is checked as it is, or in frames or an \
 animation.\n\
-Exit codes: 0 everything is free, 1 something collides, 2 error."
+Exit codes: 0 everything is free, 1 something collides (with --clearance: is nearer than that), 2 error."
 )]
 pub struct Check {
     #[command(flatten)]
@@ -371,6 +372,19 @@ pub struct Check {
     /// come within the tolerance without touching) [default: certified]
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
+    /// List the pairs nearer than this distance (in units of the mesh) in place of those that collide, with their distances,
+    /// and tell the smallest distance; triangles with a common vertex never count
+    #[arg(
+        long,
+        value_name = "D",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["continuous", "first", "limit", "depths", "curves", "pose", "report", "method", "certificates", "neighbours"]
+    )]
+    pub clearance: Option<f64>,
+    /// With --clearance: leave out triangles of one mesh within N rings of each other on the surface: 1 for a common vertex, 2 for a
+    /// common neighbour of this kind, and so on [default: 1]
+    #[arg(long, value_name = "N", requires = "clearance", conflicts_with = "against", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub rings: Option<u32>,
     /// List one colliding pair of each query (with --continuous: the one with the earliest time of impact)
     #[arg(long, conflicts_with = "limit")]
     pub first: bool,
@@ -431,6 +445,18 @@ pub enum Answers {
 }
 
 impl Check {
+    /// Returns the clearance that is asked for.
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn clearance(&self) -> anyhow::Result<Option<Clearance>> {
+        let of = |distance: f64| match Clearance::new(distance) {
+            Ok(clearance) => Ok(clearance.beyond_rings(self.rings.unwrap_or(1))),
+            Err(_) => anyhow::bail!("--clearance is {distance}: it must be positive and finite"),
+        };
+        self.clearance.map(of).transpose()
+    }
+
     /// Returns the maximum number of pairs for each query.
     pub fn max_pairs(&self) -> Option<usize> {
         self.limit.map(|limit| limit as usize).or(self.first.then_some(1))

@@ -40,7 +40,7 @@ mod zero_radius;
 pub use certification::{CertificateRequest, Scheme};
 pub use configuration::read_configuration;
 pub use detection::{
-    AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, OtherMesh, RowQueries,
+    AnimationMotion, ContactOptions, Detection, DetectionAnswer, MeshMotion, Near, OtherMesh, RowQueries,
     ShapeInMotion, Times, check_rows, detect,
 };
 pub use error::SimError;

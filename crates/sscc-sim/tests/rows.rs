@@ -86,6 +86,7 @@ fn rows_in_blocks_are_those_of_single_queries() {
         rows: &trajectory,
         is_continuous: false,
         limit,
+        clearance: None,
         threads,
         contacts: ContactOptions { depths: true, curves: false },
     };
@@ -145,6 +146,7 @@ fn a_row_that_is_no_configuration_is_refused() {
         rows: &trajectory,
         is_continuous: false,
         limit: None,
+        clearance: None,
         threads: None,
         contacts,
     };

@@ -8,7 +8,6 @@
 //! - [`Element`]: one tetrahedron or cube with its integration points;
 //! - [`Boundary`] and [`MassProperties`] of a solid, [`MassData`] of a reduced model;
 //! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q;
-//! - [`DisjointSets`]: which cells, triangles or bodies are connected.
 //!
 //! Constructors check their data, so functions can rely on valid values.
 //!
@@ -28,7 +27,6 @@
 //! ```
 
 mod boundary;
-mod disjoint_sets;
 mod elasticity;
 mod element;
 mod error;
@@ -44,7 +42,6 @@ mod stiffness;
 mod volume_mesh;
 
 pub use boundary::Boundary;
-pub use disjoint_sets::DisjointSets;
 pub use elasticity::Elasticity;
 pub use element::{Element, IntegrationPoint};
 pub use error::SolidError;

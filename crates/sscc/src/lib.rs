@@ -68,6 +68,8 @@
 //! | --- | --- |
 //! | Which triangles of any mesh collide at given positions, or between two sets of them? | [`Detector::discrete`], [`Detector::continuous`] |
 //! | Which triangles of two meshes collide? | [`Detector::against`], [`Detector::continuous_against`] |
+//! | Which triangles are nearer than a distance, and what is the smallest distance? | [`Detector::within`], [`Detector::nearest`], at q [`Query::within`] |
+//! | Is a mesh inside another one? | [`Detector::enclosed`] |
 //! | Which triangles collide at q? | [`Query::discrete`] |
 //! | Does any pair of triangles collide at q? | [`Query::first`], which stops at the first pair |
 //! | Which pairs collide at q, at most n? | [`Query::discrete_at_most`] |
@@ -280,6 +282,7 @@ mod cancel_token;
 mod certificates;
 mod curves;
 mod detect;
+mod disjoint_sets;
 mod error;
 mod filter;
 mod geometry;
@@ -300,10 +303,13 @@ mod vectors;
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use cancel_token::CancelToken;
 pub use certificates::{Certificates, CertifyOptions};
-pub use detect::{Answer, Detector, Impact, Proof, Statistics};
+pub use detect::{Answer, Clearance, Detector, Enclosed, Impact, NearPair, Proof, Statistics};
 pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
-pub use geometry::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
+pub use geometry::{
+    DISTANCE_ERROR, MovingTriangle, distance_triangle_triangle, impact_triangle_triangle,
+    intersect_triangle_triangle,
+};
 pub use glam;
 pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_position};
 pub use progress::Progress;

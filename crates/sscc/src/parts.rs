@@ -5,7 +5,8 @@
 //! - The command, the page and benches: the hierarchy, defaults and checks of options, which share of a shape is proven how
 //!   ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
 //! - Dynamics: shapes in the world, one against another ([`PosedShape`], [`SweptShape`]).
-//! - Several: AABBs, areas, pseudo-random numbers, vertices at equal positions, and exact tests of simplices that share vertices or move.
+//! - Several: AABBs, areas, disjoint sets, pseudo-random numbers, vertices at equal positions, and exact tests of simplices that share
+//!   vertices or move.
 //!
 //! These items change more often than those at the root.
 
@@ -19,6 +20,7 @@ pub use crate::curves::{
     contact_curves_between,
 };
 pub use crate::detect::detector_with_weld_classes;
+pub use crate::disjoint_sets::DisjointSets;
 pub use crate::filter::{GroupTable, check_continuous, check_models, weld_classes_of_positions};
 pub use crate::geometry::{
     Aabb, Feature, Intersection, IntersectionPoint, Penetration, impact_edge_edge, impact_vertex_face,

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bench;
+mod clearance;
 mod common;
 mod contract;
 mod data_sets;

@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use sscc_solid::DisjointSets;
+use sscc::parts::DisjointSets;
 
 use crate::bodies::body_set::BodySet;
 

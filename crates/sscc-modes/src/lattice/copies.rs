@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::Progress;
-use sscc_solid::DisjointSets;
+use sscc::parts::DisjointSets;
 
 use super::cells::{CELL_SAMPLES, Cells};
 use super::crossings::{Interval, SAMPLES};

@@ -1,7 +1,7 @@
 //! Nodes of a lattice: corners of copies that coincide.
 
 use glam::DVec3;
-use sscc_solid::DisjointSets;
+use sscc::parts::DisjointSets;
 
 use super::cells::{Cells, NONE};
 use super::copies::Copies;

@@ -1,6 +1,6 @@
 //! Check that each part of a surface is oriented as the boundary of a solid.
 
-use sscc_solid::DisjointSets;
+use sscc::parts::DisjointSets;
 
 use super::crossings::Interval;
 use super::surface::Surface;

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
-use sscc_solid::DisjointSets;
+use sscc::parts::DisjointSets;
 
 use super::cells::{CELL_SAMPLES, Cells};
 use super::crossings::{SAMPLES, cross, sample_at};

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use sscc::parts::{ContactCurves, Penetration};
-use sscc::{Impact, Pair, Proof, TriMesh};
+use sscc::{Clearance, Enclosed, Impact, Pair, Proof, TriMesh};
 
+use super::near::Near;
 use crate::LeftOut;
 
 /// The answer to one query of a [`Detection`](super::Detection), or at one q of a model.
@@ -31,6 +32,11 @@ pub struct DetectionAnswer<'a> {
     pub penetrations: Option<&'a [Penetration]>,
     /// Contact curves, on request of the last answer.
     pub curves: Option<&'a ContactCurves>,
+    /// The clearance, and the distances that were found; then `pairs` are those nearer than it.
+    pub near: Option<(Clearance, &'a Near)>,
+    /// How many connected components of the mesh are inside the other one, and of the other inside this one, where discrete
+    /// queries find no pair that collides.
+    pub enclosed: Option<[Enclosed; 2]>,
     /// Whether `pairs` are all.
     pub is_complete: bool,
     /// Duration of the query on its thread, without reading files and evaluating animations. Where several q of a model are

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec3;
-use sscc::TriMesh;
 use sscc::parts::check_continuous;
+use sscc::{Clearance, TriMesh};
 
 use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
@@ -94,8 +94,8 @@ fn in_motion<E>(
             |index, found| {
                 check_cancelled(watch)?;
                 let other = other.map(AnswerSource::from);
-                let found = found?;
-                let answer = answer(mesh.into(), other, index, &found, [queries, frames]);
+                let found = (&found?, request.clearance);
+                let answer = answer(mesh.into(), other, index, found, [queries, frames]);
                 let taken = take(&answer).map_err(Failure::Run)?;
                 watch.report(before * each + index + 1, queries);
                 Ok::<_, Failure<E>>(taken)
@@ -137,7 +137,7 @@ fn at_rest<E: From<SimError>>(
                 Ok((mesh, left_out, found)) => {
                     let mesh =
                         AnswerSource { file, mesh: &mesh, node: None, times: None, left_out: &left_out };
-                    take(file, Ok(&answer(mesh, None, 0, &found, [1, 1])))
+                    take(file, Ok(&answer(mesh, None, 0, (&found, request.clearance), [1, 1])))
                 }
                 Err(error) => take(file, Err(error)),
             }?;
@@ -168,7 +168,7 @@ fn answer<'a>(
     mesh: AnswerSource<'a>,
     other: Option<AnswerSource<'a>>,
     index: usize,
-    found: &'a QueryResult,
+    (found, clearance): (&'a QueryResult, Option<Clearance>),
     [queries, frames]: [usize; 2],
 ) -> DetectionAnswer<'a> {
     let shape = |AnswerSource { file, mesh, .. }: AnswerSource<'a>, [x_t0, x_t1]: &'a [Vec<DVec3>; 2]| {
@@ -187,6 +187,8 @@ fn answer<'a>(
         times: found.times.as_deref(),
         penetrations: found.contacts.penetrations.as_deref(),
         curves: found.contacts.curves.as_ref(),
+        near: clearance.zip(found.near.as_ref()),
+        enclosed: found.enclosed,
         is_complete: found.is_complete,
         microseconds: found.microseconds,
         norm: None,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sscc::Neighbours;
+use sscc::{Clearance, Neighbours};
 use sscc_io::gltf::SkinWeights;
 
 use super::contacts::ContactOptions;
@@ -35,6 +35,8 @@ pub struct Detection {
     /// Maximum number of pairs for each query; of continuous queries the earliest. None: more than
     /// [`sscc::Detector::MAX_PAIRS`] are an error.
     pub limit: Option<usize>,
+    /// Asks for the pairs nearer than this, with their distances, in place of those that collide. For discrete queries without a limit.
+    pub clearance: Option<Clearance>,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
     /// Whether answers have the positions of each frame, as reports need them.
@@ -57,6 +59,7 @@ impl Default for Detection {
             groups: GroupRules::default(),
             is_continuous: false,
             limit: None,
+            clearance: None,
             contacts: ContactOptions::default(),
             has_positions: false,
             threads: None,

@@ -6,11 +6,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use sscc::parts::{Scope, Surface};
-use sscc::{Answer, CancelToken, Impact, Pair, Progress, Query, ReducedModel, Statistics};
+use sscc::{Answer, CancelToken, Clearance, Impact, Pair, Progress, Query, ReducedModel, Statistics};
 use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
 use super::contacts::{ContactOptions, Contacts};
+use super::near::Near;
 use crate::watch::check_cancelled;
 use crate::{LeftOut, SimError};
 
@@ -24,6 +25,8 @@ pub struct RowQueries<'a> {
     pub is_continuous: bool,
     /// Maximum number of pairs for each query; of continuous queries the earliest. None: all.
     pub limit: Option<usize>,
+    /// Asks for the pairs nearer than this, in place of those that collide. For discrete queries without a limit.
+    pub clearance: Option<Clearance>,
     /// Number of threads for discrete queries of several q. None: all cores.
     pub threads: Option<usize>,
     /// Options for the contacts of the pairs that discrete queries find.
@@ -40,6 +43,59 @@ const MIN_MICROSECONDS: f64 = 20.0;
 /// Blocks are smaller where the q of a block would have more pairs together than this, at the largest number so far.
 const MAX_BLOCK_PAIRS: usize = 1 << 24;
 
+/// Calls `take` with the pairs nearer than a clearance at each q, in order: those of positions, by no certificate.
+fn check_clearance<E: From<SimError>>(
+    query: &mut Query,
+    requests: &RowQueries<'_>,
+    clearance: &Clearance,
+    progress: &dyn Progress,
+    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
+) -> Result<(), E> {
+    let (left_out, queries) = (LeftOut::of(&Scope::of_query(query).filter), requests.rows.rows);
+    for (index, q) in requests.rows.iter().enumerate() {
+        check_cancelled(progress)?;
+        let start = Instant::now();
+        let found = query.within(q, clearance).map_err(SimError::from)?.to_vec();
+        let near = Near::of(found, || query.nearest(q, clearance.rings()));
+        let (pairs, near) = near.map_err(SimError::from)?;
+        let statistics = query.statistics();
+        let next = take(&DetectionAnswer {
+            file: Path::new(""),
+            mesh: requests.model.mesh(),
+            node: None,
+            other_node: None,
+            index,
+            time: None,
+            pairs: &pairs,
+            times: None,
+            penetrations: None,
+            curves: None,
+            near: Some((*clearance, &near)),
+            enclosed: None,
+            is_complete: true,
+            microseconds: start.elapsed().as_secs_f64() * 1e6,
+            norm: Some(statistics.norm),
+            root_certified: None,
+            proof: None,
+            exceptions: 0,
+            left_out: &left_out,
+            opened: statistics.opened,
+            box_tests: statistics.box_tests,
+            triangle_tests: statistics.triangle_tests,
+            queries,
+            frames: queries,
+            frame_times: None,
+            shape: None,
+            other: None,
+        })?;
+        progress.report(index + 1, queries);
+        if next.is_break() {
+            break;
+        }
+    }
+    Ok(())
+}
+
 /// Calls `take` with the answer to each query, in order. `take` can end that early. Discrete queries of several q are answered
 /// together ([`Query::batch`]), with the same answers.
 ///
@@ -51,6 +107,9 @@ pub fn check_rows<E: From<SimError>>(
     progress: &dyn Progress,
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
+    if let Some(clearance) = &requests.clearance {
+        return check_clearance(query, requests, clearance, progress, take);
+    }
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
     let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
     let (mut next, mut block, mut most_pairs) = (0, 1, 1);
@@ -96,6 +155,8 @@ pub fn check_rows<E: From<SimError>>(
                 times: found.times.as_deref(),
                 penetrations: contacts.penetrations.as_deref(),
                 curves: contacts.curves.as_ref(),
+                near: None,
+                enclosed: None,
                 is_complete: found.is_complete,
                 microseconds,
                 norm: Some(found.statistics.norm),

@@ -4,11 +4,12 @@ use std::time::Instant;
 
 use glam::DVec3;
 use sscc::parts::Surface;
-use sscc::{Detector, Impact, Pair, Statistics};
+use sscc::{Clearance, Detector, Enclosed, Impact, Pair, Statistics};
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
 use super::moving_mesh::MovingMesh;
+use super::near::Near;
 use super::request::Detection;
 use crate::error::{At, Result};
 
@@ -34,6 +35,8 @@ pub(super) struct QueryResult {
     pub pairs: Vec<Pair>,
     pub times: Option<Vec<f64>>,
     pub contacts: Contacts,
+    pub near: Option<Near>,
+    pub enclosed: Option<[Enclosed; 2]>,
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: Statistics,
@@ -60,8 +63,21 @@ impl<'m, 'w> Worker<'m, 'w> {
             other.read(frame, is_continuous)?;
         }
         let mesh = self.side.mesh;
-        let found = if is_continuous { self.continuous() } else { self.discrete(self.last == Some(frame)) };
+        let found = match (is_continuous, self.request.clearance) {
+            (true, _) => self.continuous(),
+            (false, Some(clearance)) => self.near(&clearance),
+            (false, None) => self.discrete(self.last == Some(frame)),
+        };
         let mut found = found.at(|| mesh.place(frame))?;
+        let is_free = match &found.near {
+            Some(near) => near.nearest.is_none_or(|near| near.distance > 0.0),
+            None => found.pairs.is_empty(),
+        };
+        if let Some(other) = self.other.as_mut().filter(|_| is_free && !is_continuous) {
+            let (x, y) = (&mut self.side, other);
+            let enclosed = x.detector.enclosed(&x.x_t0, &mut y.detector, &y.x_t0);
+            found.enclosed = Some(enclosed.at(|| mesh.place(frame))?);
+        }
         if self.request.has_positions {
             let sides = [&self.side].into_iter().chain(&self.other);
             found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
@@ -87,7 +103,43 @@ impl<'m, 'w> Worker<'m, 'w> {
             Contacts::of(self.side.surface(), self.other.as_ref().map(Side::surface), &pairs, options)?;
         let is_complete = statistics.complete;
         let positions = Vec::new();
-        Ok(QueryResult { pairs, times: None, contacts, is_complete, microseconds, statistics, positions })
+        Ok(QueryResult {
+            pairs,
+            times: None,
+            contacts,
+            near: None,
+            enclosed: None,
+            is_complete,
+            microseconds,
+            statistics,
+            positions,
+        })
+    }
+
+    fn near(&mut self, clearance: &Clearance) -> Result<QueryResult, sscc::Error> {
+        let x = &mut self.side;
+        let start = Instant::now();
+        let (pairs, near) = match &mut self.other {
+            None => {
+                let found = x.detector.within(&x.x_t0, clearance)?.to_vec();
+                Near::of(found, || x.detector.nearest(&x.x_t0, clearance.rings()))
+            }
+            Some(y) => {
+                let found = x.detector.within_against(&x.x_t0, &mut y.detector, &y.x_t0, clearance)?.to_vec();
+                Near::of(found, || x.detector.nearest_against(&x.x_t0, &mut y.detector, &y.x_t0))
+            }
+        }?;
+        Ok(QueryResult {
+            pairs,
+            times: None,
+            contacts: Contacts::default(),
+            near: Some(near),
+            enclosed: None,
+            is_complete: true,
+            microseconds: start.elapsed().as_secs_f64() * 1e6,
+            statistics: x.detector.statistics(),
+            positions: Vec::new(),
+        })
     }
 
     fn continuous(&mut self) -> Result<QueryResult, sscc::Error> {
@@ -105,6 +157,8 @@ impl<'m, 'w> Worker<'m, 'w> {
             pairs: kept.iter().map(|impact| impact.pair).collect(),
             times: Some(kept.iter().map(|impact| impact.time).collect()),
             contacts: Contacts::default(),
+            near: None,
+            enclosed: None,
             is_complete,
             microseconds,
             statistics: x.detector.statistics(),

@@ -52,6 +52,8 @@ fn answer<'a>(
         times: None,
         penetrations: None,
         curves: None,
+        near: None,
+        enclosed: None,
         is_complete: true,
         microseconds: 2000.0,
         norm: None,

@@ -47,7 +47,7 @@ impl<const E: usize> BroadPhase<E> {
                 }
                 state.counters.triangle_tests += 1;
                 let relation = context.filter.relation(pair.0, pair.1);
-                let hit = N::test(&context.filter, relation, pair, &corners[a], &corners[b]);
+                let hit = narrow.test(&context.filter, relation, pair, &corners[a], &corners[b]);
                 narrow.hits().list.extend(hit);
             }
         }

@@ -40,5 +40,6 @@ mod vertex_store;
 
 pub use answer::{Answer, Proof, Statistics};
 pub(crate) use colliding_pairs::colliding_pairs;
-pub use detector::{Detector, detector_with_weld_classes};
-pub use narrow_phase::Impact;
+pub(crate) use detector::detector_of_model;
+pub use detector::{Clearance, Detector, Enclosed, detector_with_weld_classes};
+pub use narrow_phase::{Impact, NearPair};

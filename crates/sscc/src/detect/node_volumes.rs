@@ -147,7 +147,10 @@ impl<const E: usize> NodeVolumes<E> {
         if motion.margin() == 0.0 {
             return Vec4::ZERO;
         }
-        Vec4::splat((motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5)) as f32)
+        let margin = motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5);
+        // Coordinates in the frame are rounded, and once more when they are moved: by less than four units of 2^-24 within [-4, 4].
+        let rounding = right_or!(4.0 * f64::from(f32::EPSILON), MarginExact, 0.0);
+        Vec4::splat((margin + rounding) as f32)
     }
 
     /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of

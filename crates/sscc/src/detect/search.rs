@@ -228,7 +228,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         debug_assert!(SIDES == 2 || relation == filter.relation(pair.0, pair.1));
         let is_counted =
             || SIDES == 2 || !filter.is_excluded(pair.0, pair.1) && !self.sides[0].context.is_exception(pair);
-        if let Some(hit) = N::test(filter, relation, pair, &corners[0], &corners[1])
+        if let Some(hit) = self.narrow.test(filter, relation, pair, &corners[0], &corners[1])
             && is_counted()
             && !self.narrow.hits().note_if_full()
         {
@@ -269,7 +269,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
             }
             self.count_triangle_test();
             let relation = filter.relation(pair.0, pair.1);
-            let hit = N::test(filter, relation, pair, &a, &b);
+            let hit = self.narrow.test(filter, relation, pair, &a, &b);
             self.narrow.hits().list.extend(hit);
         }
     }

@@ -4,12 +4,14 @@
 mod common_corners;
 mod contact_filter;
 mod pair_filter;
+mod rings;
 mod simplex_pairs;
 mod triangle_groups;
 mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, check_models};
 pub(crate) use pair_filter::{PairFilter, Relation};
+pub(crate) use rings::Rings;
 pub(crate) use simplex_pairs::SimplexPair;
 pub use triangle_groups::{GroupTable, TriangleGroups};
 pub(crate) use weld::weld_classes;

@@ -13,6 +13,7 @@
 mod aabb;
 mod binary64;
 pub(crate) mod ccd;
+mod crossing;
 mod double_double;
 mod exact_orientation;
 mod intersection;
@@ -23,12 +24,14 @@ mod segment_segment;
 mod segment_triangle;
 mod shared_edge;
 mod shared_vertex;
+mod triangle_distance;
 mod triangle_triangle;
 mod two_triangles;
 
 pub use aabb::Aabb;
 pub(crate) use ccd::free_until;
 pub use ccd::{MovingTriangle, impact_edge_edge, impact_triangle_triangle, impact_vertex_face};
+pub(crate) use crossing::crossing;
 pub(crate) use intersection::TriangleContact;
 pub use intersection::{
     Feature, Intersection, IntersectionPoint, Penetration, intersection_triangle_triangle,
@@ -38,5 +41,6 @@ pub(crate) use nearest_point::{nearest_to_origin, nearest_within};
 pub use orientation::orient2d;
 pub use shared_edge::intersect_shared_edge_pair;
 pub use shared_vertex::intersect_shared_vertex_pair;
+pub use triangle_distance::{DISTANCE_ERROR, distance_triangle_triangle};
 pub use triangle_triangle::intersect_triangle_triangle;
 pub(crate) use two_triangles::TwoTriangles;

@@ -316,6 +316,14 @@ mutants! {
     LocalPlaneMapExact: CaughtBy("lib query::local_inequality::tests::flat_patches_in_regions_allow_at_most_what_is_exact");
     /// Local certificates omit the rounding of positions.
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
+    /// Boxes are widened by a quarter of a clearance.
+    ClearanceHalved: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
+    /// Triangles nearer than a clearance are separated as if they had to touch.
+    ClearanceOfBoxesAlone: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
+    /// Widened boxes are not rounded.
+    MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
+    /// The first pair of triangles is the nearest one.
+    NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// The rounding of a position along each axis is that along any direction.
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
     /// The rounding of factors without their affine part is left out.

@@ -7,6 +7,7 @@ mod batch;
 mod capsule_motion;
 mod certified_search;
 mod certified_traversal;
+mod clearance;
 mod configuration;
 mod configuration_check;
 mod configuration_search;

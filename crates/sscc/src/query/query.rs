@@ -14,7 +14,7 @@ use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::{AabbHits, SweptHits};
 use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
-use crate::{CancelToken, Certificates, Error, Pair, ReducedModel};
+use crate::{CancelToken, Certificates, Detector, Error, Pair, ReducedModel};
 
 /// Answers self-collision queries for one model. It owns its memory, so that repeated queries allocate nothing (brute force
 /// and the rare exact signs of extreme numbers aside), and shares model and certificates. One query serves one thread; clone it
@@ -32,6 +32,8 @@ pub struct Query {
     pub(super) swept: Option<Box<SweptSearch<SweptHits>>>,
     /// Made by the first sweep.
     pub(super) candidates: Option<Box<SweptSearch<AabbHits>>>,
+    /// Made by the first question about distances.
+    pub(super) detector: Option<Box<Detector>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) check: ConfigurationCheck,
@@ -102,16 +104,26 @@ impl Query {
         let discrete = DiscreteSearch::new(&context);
         let check = ConfigurationCheck::new(&context);
         let statistics = Statistics::default();
-        Self { context, discrete, swept: None, candidates: None, norm: 0.0, statistics, check }
+        Self {
+            context,
+            discrete,
+            swept: None,
+            candidates: None,
+            detector: None,
+            norm: 0.0,
+            statistics,
+            check,
+        }
     }
 
-    /// A clone without the memory of continuous queries and sweeps.
+    /// A clone without the memory of continuous queries, sweeps and distances.
     pub(super) fn discrete_alone(&self) -> Self {
         Self {
             context: self.context.clone(),
             discrete: self.discrete.clone(),
             swept: None,
             candidates: None,
+            detector: None,
             norm: self.norm,
             statistics: self.statistics,
             check: self.check.clone(),

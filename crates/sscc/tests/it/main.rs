@@ -7,6 +7,7 @@ mod batch;
 mod cancel;
 mod ccd;
 mod certificates;
+mod clearance;
 mod clusters;
 mod common;
 mod contact_curves;

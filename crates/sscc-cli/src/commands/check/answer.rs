@@ -1,8 +1,8 @@
 //! The answer of `sscc check` to one query: the keys of its JSON line.
 
 use serde::Serialize;
-use sscc::{Pair, Proof};
-use sscc_sim::{DetectionAnswer, LeftOut};
+use sscc::{Clearance, Enclosed, Pair, Proof};
+use sscc_sim::{DetectionAnswer, LeftOut, Near};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]
@@ -33,6 +33,10 @@ pub struct Answer<'a> {
     pub depths: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub directions: Option<Vec<[f64; 3]>>,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub near: Option<NearAnswer<'a>>,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub inside: Option<InsideAnswer>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
     /// What proved the answer: `radius`, `local` or `search`; none without modes.
@@ -52,7 +56,53 @@ pub struct Answer<'a> {
     pub triangle_tests: u64,
 }
 
+/// Where nothing collides, but one mesh has parts inside the other one.
+#[derive(Serialize)]
+pub struct InsideAnswer {
+    /// How many connected components of the mesh are inside the other one, and of the other inside the mesh.
+    pub inside: [usize; 2],
+    /// How many they have.
+    pub components: [usize; 2],
+}
+
+impl InsideAnswer {
+    fn new(sides: [Enclosed; 2]) -> Option<Self> {
+        let inside = sides.map(|side| side.inside);
+        (inside != [0, 0]).then(|| Self { inside, components: sides.map(|side| side.components) })
+    }
+}
+
+/// Which pairs are nearer than a clearance.
+#[derive(Serialize)]
+pub struct NearAnswer<'a> {
+    pub clearance: f64,
+    pub rings: u32,
+    /// The smallest distance of two triangles that count, also where it is not below the clearance; none where none count.
+    pub distance: Option<f64>,
+    /// These triangles.
+    pub nearest: Option<Pair>,
+    /// The distance of each pair.
+    pub distances: &'a [f64],
+}
+
+impl<'a> NearAnswer<'a> {
+    fn new((clearance, near): (Clearance, &'a Near)) -> Self {
+        Self {
+            clearance: clearance.distance(),
+            rings: clearance.rings(),
+            distance: near.nearest.map(|near| near.distance),
+            nearest: near.nearest.map(|near| near.pair),
+            distances: &near.distances,
+        }
+    }
+}
+
 impl<'a> Answer<'a> {
+    /// Whether the answer is a finding: a collision, or a pair nearer than the clearance.
+    pub fn is_finding(&self) -> bool {
+        self.count > 0
+    }
+
     /// Takes the values of an answer. `has_files`: whether the run has several files.
     pub fn new(found: &DetectionAnswer<'a>, has_files: bool) -> Self {
         Self {
@@ -62,7 +112,10 @@ impl<'a> Answer<'a> {
             time: found.time,
             index: found.index,
             norm: found.norm,
-            colliding: !found.pairs.is_empty(),
+            colliding: match found.near {
+                Some((_, near)) => near.distances.contains(&0.0),
+                None => !found.pairs.is_empty(),
+            },
             count: found.pairs.len(),
             complete: found.is_complete,
             pairs: found.pairs,
@@ -71,6 +124,8 @@ impl<'a> Answer<'a> {
             directions: found
                 .penetrations
                 .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
+            near: found.near.map(NearAnswer::new),
+            inside: found.enclosed.and_then(InsideAnswer::new),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
             proof: found.proof.map(Proof::into),

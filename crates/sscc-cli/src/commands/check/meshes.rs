@@ -25,7 +25,7 @@ pub fn check(args: &Check) -> Result<bool> {
     check_flags(args)?;
     let mut data_set = DataSet::of(args)?;
     shapes::check(args, &data_set.files)?;
-    let request = request(args, data_set.files.clone());
+    let request = request(args, data_set.files.clone())?;
     let noun = match (&request.motion, args.continuous) {
         (_, true) => "step",
         (MeshMotion::Rest, _) if request.against.as_ref().is_some_and(|other| other.frames.is_none()) => {
@@ -131,7 +131,7 @@ fn check_flags(args: &Check) -> Result<()> {
     Ok(())
 }
 
-fn request(args: &Check, meshes: Vec<PathBuf>) -> Detection {
+fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
     let (options, motion) = (&args.options, &args.motion);
     let animated = motion.animation.as_ref().map(|animation| AnimationMotion {
         animation: animation.clone(),
@@ -151,7 +151,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Detection {
         mesh_name: motion.against_mesh.clone(),
         frames: motion.against_frames.clone(),
     };
-    Detection {
+    Ok(Detection {
         meshes,
         mesh_name: args.model.mesh_name.clone(),
         motion: frames.or(animated.map(MeshMotion::Animation)).unwrap_or(MeshMotion::Rest),
@@ -162,8 +162,9 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Detection {
         groups: load::groups(&options.groups),
         is_continuous: args.continuous,
         limit: args.max_pairs(),
+        clearance: args.clearance()?,
         contacts: shapes::contacts(args),
         has_positions: args.report.is_some() || args.pose.is_some(),
         threads: Some(load::threads(&options.threads)),
-    }
+    })
 }

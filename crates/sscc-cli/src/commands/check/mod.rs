@@ -34,7 +34,9 @@ fn check_model(args: &Check) -> Result<bool> {
     if let Some(second) = args.meshes.first() {
         bail!("{}: --q and --trajectory take one model: leave it out", second.display());
     }
-    let method = args.method.unwrap_or(Method::Certified);
+    // Distances are those of positions, without certificates.
+    let default = if args.clearance.is_some() { Method::BdTree } else { Method::Certified };
+    let method = args.method.unwrap_or(default);
     let loaded = load::model(&args.model)?;
     let rows = coordinates(&args.at, &loaded)?;
     let model = &loaded.model;
@@ -43,6 +45,7 @@ fn check_model(args: &Check) -> Result<bool> {
         "--continuous: the trajectory has one row; a motion needs at least two"
     );
     shapes::check(args, slice::from_ref(&args.model.path))?;
+    let clearance = args.clearance()?;
     let request = load::request(&loaded, &args.model, &args.options)?;
     let certificates = match &args.certificates {
         Some(path) => Some(request.read(path, model)?),
@@ -77,6 +80,7 @@ fn check_model(args: &Check) -> Result<bool> {
         rows: &rows,
         is_continuous: args.continuous,
         limit: args.max_pairs(),
+        clearance,
         threads: Some(load::threads(&args.options.threads)),
         contacts: shapes::contacts(args),
     };

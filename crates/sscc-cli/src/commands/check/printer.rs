@@ -50,7 +50,7 @@ impl Printer {
         let answer = Answer::new(found, self.has_files);
         self.summary.add(&answer);
         self.answers += 1;
-        let is_listed = answer.colliding || !self.only_colliding;
+        let is_listed = answer.is_finding() || !self.only_colliding;
         match (is_listed, self.is_json) {
             // The summary counts it.
             (false, _) => {}
@@ -91,6 +91,6 @@ impl Printer {
         if self.is_json && self.has_folder {
             note(self.summary.line());
         }
-        Ok(self.summary.colliding > 0)
+        Ok(self.summary.findings > 0)
     }
 }

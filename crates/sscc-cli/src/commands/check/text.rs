@@ -2,7 +2,7 @@
 
 use sscc_sim::{FreeProof, LeftOut, free_sentence};
 
-use super::answer::Answer;
+use super::answer::{Answer, InsideAnswer};
 use super::data_set::FileError;
 use crate::output::{counted, duration, grouped, length};
 
@@ -41,15 +41,42 @@ impl Answer<'_> {
     /// Returns the line of one of several queries. `noun` names a query.
     pub fn line(&self, noun: &str) -> String {
         let result = match self.first() {
+            first if self.near.is_some() => self.near_result(first.is_some()),
             Some(first) => format!("COLLIDING  {}, first {first}", self.counted()),
             None if self.is_root_certified() => "free       by the root's certificate".to_owned(),
             None => "free".to_owned(),
         };
-        format!("{} {:>9}  {result}", self.place(noun), duration(self.microseconds))
+        format!("{} {:>9}  {result}{}", self.place(noun), duration(self.microseconds), self.inside())
     }
 
-    /// Returns the time or the depth of a pair; empty without both.
+    /// Returns which mesh has parts inside the other one.
+    fn inside(&self) -> String {
+        let Some(InsideAnswer { inside, components }) = &self.inside else { return String::new() };
+        let part = |n: usize, [own, other]: [&str; 2]| match (inside[n], components[n]) {
+            (0, _) => None,
+            (1, 1) => Some(format!("the {own} mesh is inside the {other} one")),
+            (some, all) => {
+                Some(format!("{some} of {all} parts of the {own} mesh are inside the {other} one"))
+            }
+        };
+        let parts = [part(0, ["first", "second"]), part(1, ["second", "first"])];
+        format!("; {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
+    }
+
+    /// Returns which pairs are nearer than the clearance, and the nearest pair.
+    fn near_result(&self, is_near: bool) -> String {
+        let word = if is_near { format!("NEAR       {}", self.counted()) } else { "clear".to_owned() };
+        let nearest = self.near.as_ref().and_then(|near| near.nearest.zip(near.distance));
+        let nearest = nearest.map(|((i, j), distance)| format!("nearest {i} {j} at {}", length(distance)));
+        let nearest = nearest.unwrap_or_else(|| "no pair counts".to_owned());
+        if is_near { format!("{word}, {nearest}") } else { format!("{word:<10} {nearest}") }
+    }
+
+    /// Returns the time, the depth or the distance of a pair; empty without any.
     fn of_pair(&self, at: usize) -> String {
+        if let Some(near) = &self.near {
+            return format!("  distance {}", length(near.distances[at]));
+        }
         match (self.times, &self.depths) {
             (Some(times), _) => format!("  at t = {:.4}", times[at]),
             (None, Some(depths)) => format!("  depth {}", length(depths[at])),
@@ -81,15 +108,37 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
         grouped(answer.box_tests),
         counted(answer.triangle_tests, "triangle pair")
     );
-    if !answer.colliding {
+    if let Some(near) = &answer.near {
+        let clearance = length(near.clearance);
+        let rings = (near.rings > 1).then(|| format!(", and within {} rings", near.rings));
+        let apart = answer.left_out.apart() + &rings.unwrap_or_default();
+        let nearest = near.nearest.zip(near.distance);
+        let nearest = nearest.map(|((i, j), distance)| format!("; nearest: {i} {j} at {}", length(distance)));
+        let nearest = nearest.unwrap_or_else(|| "; no pair counts".to_owned());
+        let inside = answer.inside();
+        if !answer.is_finding() {
+            return vec![
+                format!("clear: no triangles are nearer than {clearance}{nearest}{apart}{inside}"),
+                cost,
+            ];
+        }
+        let pairs = answer.counted();
+        let first = format!("NEAR: {pairs} of triangles nearer than {clearance}{nearest}{inside}");
+        return listed_below(first, cost, answer);
+    }
+    if !answer.is_finding() {
         let (proof, cost) = match answer.is_root_certified() {
             true => (FreeProof::Root { exceptions: answer.exceptions }, duration(answer.microseconds)),
             false => (FreeProof::Tests, cost),
         };
-        return vec![free_sentence(proof, &norm, answer.left_out), cost];
+        return vec![free_sentence(proof, &norm, answer.left_out) + &answer.inside(), cost];
     }
-    let pairs = answer.counted();
-    let mut lines = vec![format!("COLLIDING: {pairs} of triangles{norm}"), cost];
+    listed_below(format!("COLLIDING: {} of triangles{norm}", answer.counted()), cost, answer)
+}
+
+/// Returns two lines, and those of the first pairs.
+fn listed_below(first: String, cost: String, answer: &Answer<'_>) -> Vec<String> {
+    let mut lines = vec![first, cost];
     let listed = answer.pairs.iter().take(MAX_LISTED).enumerate();
     lines.extend(listed.map(|(at, (i, j))| format!("{i:>8} {j:>8}{}", answer.of_pair(at))));
     if answer.count > MAX_LISTED {
@@ -111,7 +160,9 @@ pub struct Summary {
     /// The noun for a query: `step`, `configuration`, ...
     noun: &'static str,
     root_certified: Option<usize>,
-    pub colliding: usize,
+    pub findings: usize,
+    /// Whether the answers are about a clearance.
+    is_near: bool,
     /// Files that could not be checked.
     pub failures: usize,
     /// Whether an answer does not have all of its pairs. Then none is the worst.
@@ -135,7 +186,8 @@ impl Summary {
         Self {
             noun,
             root_certified: None,
-            colliding: 0,
+            findings: 0,
+            is_near: false,
             failures: 0,
             is_limited: false,
             worst: None,
@@ -147,7 +199,7 @@ impl Summary {
 
     pub fn add(&mut self, answer: &Answer<'_>) {
         if let Some(is_certified) = answer.root_certified {
-            *self.root_certified.get_or_insert(0) += usize::from(is_certified && !answer.colliding);
+            *self.root_certified.get_or_insert(0) += usize::from(is_certified && !answer.is_finding());
         }
         // The frames of one mesh leave out the same pairs.
         let mesh = Some((answer.file.clone(), answer.node));
@@ -155,11 +207,12 @@ impl Summary {
             self.left_out = std::mem::take(&mut self.left_out).and(answer.left_out);
             self.last = mesh;
         }
-        self.colliding += usize::from(answer.colliding);
+        self.findings += usize::from(answer.is_finding());
+        self.is_near |= answer.near.is_some();
         self.is_limited |= !answer.complete;
         self.microseconds.push(answer.microseconds);
         let size = (answer.depths.iter().flatten().copied().fold(0.0, f64::max), answer.count);
-        if answer.colliding && self.worst.as_ref().is_none_or(|worst| worst.size < size) {
+        if answer.is_finding() && self.worst.as_ref().is_none_or(|worst| worst.size < size) {
             self.worst = Some(Worst { size, text: self.describe(answer, size.0) });
         }
     }
@@ -180,8 +233,12 @@ impl Summary {
     pub fn line(&mut self) -> String {
         let all = self.microseconds.len();
         self.microseconds.sort_by(f64::total_cmp);
-        let is_free = self.colliding < all && self.left_out != LeftOut::default();
-        let apart = if is_free { format!("; free{}", self.left_out.apart()) } else { String::new() };
+        let is_free = self.findings < all && self.left_out != LeftOut::default();
+        let apart = if is_free {
+            format!("; {}{}", if self.is_near { "clear" } else { "free" }, self.left_out.apart())
+        } else {
+            String::new()
+        };
         let certified = self.root_certified.map(|n| format!(" ({n} by the root's certificate alone)"));
         let worst = self.worst.as_ref().filter(|_| !self.is_limited);
         let worst = worst.map(|worst| format!("; worst: {}", worst.text));
@@ -192,11 +249,13 @@ impl Summary {
         let median = self.microseconds.get(all / 2).map(|median| format!("; median {}", duration(*median)));
         let counts = numbered(self.noun).map(|label| format!("; {label}s are counted from 0"));
         format!(
-            "{}: {} free{}, {} colliding{}{}{}{}{}",
+            "{}: {} {}{}, {} {}{}{}{}{}{}",
             counted(all as u64, self.noun),
-            all - self.colliding,
+            all - self.findings,
+            if self.is_near { "clear" } else { "free" },
             certified.unwrap_or_default(),
-            self.colliding,
+            self.findings,
+            if self.is_near { "near" } else { "colliding" },
             failures,
             median.unwrap_or_default(),
             worst.unwrap_or_default(),

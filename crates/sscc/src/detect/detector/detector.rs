@@ -6,15 +6,17 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::clearance_search::ClearanceSearch;
+use super::components::Components;
 use super::detector_search::{DetectorSearch, Refit};
 use super::given_motion::GivenMotion;
 use crate::detect::answer::Statistics;
 use crate::detect::context::Context;
 use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
-use crate::filter::{PairFilter, check_continuous, weld_classes_of_positions};
+use crate::filter::{PairFilter, check_continuous, weld_classes, weld_classes_of_positions};
 use crate::hierarchy::Hierarchy;
-use crate::{CancelToken, ContactFilter, Error, Impact, Pair, TriMesh, limits};
+use crate::{CancelToken, ContactFilter, Error, Impact, Pair, ReducedModel, TriMesh, limits};
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
 /// for each answer; where the hierarchy has become bad, it builds it again. It owns its memory, so that repeated answers
@@ -49,6 +51,10 @@ pub struct Detector {
     vertex_count: usize,
     pub(super) discrete: DetectorSearch<1, DiscreteHits>,
     pub(super) swept: DetectorSearch<2, SweptHits>,
+    /// Made by the first search for near pairs.
+    pub(super) clearance: Option<Box<ClearanceSearch>>,
+    /// Found by the first question for enclosed ones.
+    pub(super) components: Option<Components>,
     pub(super) statistics: Statistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,
@@ -104,6 +110,8 @@ impl Detector {
             vertex_count: positions.len(),
             discrete: DetectorSearch::default(),
             swept: DetectorSearch::default(),
+            clearance: None,
+            components: None,
             statistics: Statistics::default(),
             is_used: false,
         }
@@ -237,7 +245,7 @@ impl Detector {
     }
 
     /// Builds the hierarchy again, by these positions.
-    fn rebuild(&mut self, positions: &[DVec3]) {
+    pub(super) fn rebuild(&mut self, positions: &[DVec3]) {
         let filter = &self.context.filter;
         let hierarchy = Hierarchy::build_by_median(filter.faces(), positions);
         let layout = Arc::new(Layout::of_positions(positions.len(), &hierarchy, filter));
@@ -245,6 +253,7 @@ impl Detector {
         self.context.hierarchy = Arc::new(hierarchy);
         self.discrete = DetectorSearch::default();
         self.swept = DetectorSearch::default();
+        self.clearance = None;
         self.is_used = false;
         self.statistics.rebuilds += 1;
     }
@@ -267,6 +276,16 @@ pub fn detector_with_weld_classes(
     let vertices = classes.iter().enumerate();
     let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
     Ok(Detector::build(mesh, Some(&classes), filter))
+}
+
+/// A detector for positions of a model, which welds vertices as queries do: those of equal rest position and modes.
+///
+/// # Errors
+/// When the filter's groups are of another mesh.
+pub(crate) fn detector_of_model(model: &ReducedModel, filter: &ContactFilter) -> Result<Detector, Error> {
+    filter.check_groups(model.mesh().faces().len())?;
+    let classes = filter.weld.then(|| weld_classes(model));
+    Ok(Detector::build(model.mesh(), classes.as_deref(), filter))
 }
 
 /// # Errors

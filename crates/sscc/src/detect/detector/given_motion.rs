@@ -15,6 +15,8 @@ use crate::geometry::Aabb;
 pub(super) struct GivenMotion<'x, const E: usize> {
     positions: [&'x [DVec3]; E],
     whole: Aabb,
+    /// The distance by which boxes are widened.
+    margin: f64,
 }
 
 impl<'x, const E: usize> GivenMotion<'x, E> {
@@ -23,7 +25,7 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
         let used = layout.vertices.mesh_vertices();
         let of = |x: &[DVec3]| Aabb::of_points(used.iter().map(|v| x[*v as usize]));
         let whole = positions.iter().fold(Aabb::EMPTY, |all, x| all.union(&of(x)));
-        Self { positions, whole }
+        Self { positions, whole, margin: 0.0 }
     }
 
     /// The AABB of all positions.
@@ -35,6 +37,13 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
     pub(super) fn in_frame_of(self, whole: Aabb) -> Self {
         Self { whole, ..self }
     }
+
+    /// The same motion, whose boxes are widened so that those of triangles overlap that are nearer than a distance: by half of it, but no
+    /// farther than all overlap.
+    pub(super) fn widened(self, distance: f64) -> Self {
+        let extent = (self.whole.upper - self.whole.lower).max_element();
+        Self { margin: right_or!((distance / 2.0).min(extent), ClearanceHalved, distance / 4.0), ..self }
+    }
 }
 
 impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
@@ -43,7 +52,12 @@ impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
     /// Given positions are exact.
     #[inline]
     fn rounding(&self) -> f64 {
-        0.0
+        right_or!(self.margin, ClearanceOfBoxesAlone, 0.0)
+    }
+
+    #[inline]
+    fn margin(&self) -> f64 {
+        self.margin
     }
 
     #[inline]

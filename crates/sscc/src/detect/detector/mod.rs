@@ -2,10 +2,19 @@
 
 mod against;
 mod batch;
+mod boxes;
+mod clearance;
+mod clearance_search;
+mod components;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod detector;
 mod detector_search;
+mod enclosed;
 mod given_motion;
+mod nearest;
 mod statistics;
 
+pub use clearance::Clearance;
+pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
+pub use enclosed::Enclosed;

@@ -19,6 +19,7 @@ impl NarrowPhase<2> for AabbHits {
 
     #[inline]
     fn test(
+        &self,
         _: &PairFilter,
         _: Relation,
         pair: Pair,

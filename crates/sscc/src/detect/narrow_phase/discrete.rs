@@ -16,6 +16,7 @@ impl NarrowPhase<1> for DiscreteHits {
 
     #[inline]
     fn test(
+        &self,
         filter: &PairFilter,
         relation: Relation,
         pair: Pair,

@@ -1,11 +1,13 @@
-//! The narrow phase: the test of two triangles whose boxes overlap. There are four:
+//! The narrow phase: the test of two triangles whose boxes overlap. There are five:
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
 //! - AABB ([`AabbHits`]): whether their AABBs, around all positions in a region of z or between two configurations, overlap;
+//! - clearance ([`ClearanceHits`]): whether they are nearer than a distance at one configuration;
 //! - near ([`NearHits`]): none; all pairs whose widened boxes overlap.
 
 mod aabb;
+mod clearance;
 mod discrete;
 mod hits;
 mod impact;
@@ -16,6 +18,8 @@ mod separating_axis;
 mod swept;
 
 pub(crate) use aabb::AabbHits;
+pub(crate) use clearance::ClearanceHits;
+pub use clearance::NearPair;
 pub(crate) use discrete::DiscreteHits;
 pub use impact::Impact;
 pub(crate) use narrow_phase::NarrowPhase;

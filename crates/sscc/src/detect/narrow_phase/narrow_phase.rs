@@ -7,7 +7,7 @@ use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 
 /// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
-/// queries; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All methods share them, so that all give the same
+/// queries; `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All methods share them, so that all give the same
 /// answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
@@ -15,6 +15,7 @@ pub(crate) trait NarrowPhase<const E: usize> {
 
     /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each configuration.
     fn test(
+        &self,
         filter: &PairFilter,
         relation: Relation,
         pair: Pair,

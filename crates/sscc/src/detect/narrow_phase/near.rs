@@ -16,6 +16,7 @@ impl NarrowPhase<2> for NearHits {
 
     #[inline]
     fn test(
+        &self,
         _: &PairFilter,
         _: Relation,
         pair: Pair,

@@ -17,6 +17,7 @@ impl NarrowPhase<2> for SweptHits {
 
     #[inline]
     fn test(
+        &self,
         filter: &PairFilter,
         relation: Relation,
         pair: Pair,

@@ -1,0 +1,147 @@
+//! `sscc check --clearance`, and meshes inside others.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::common::{Run, keys, sorted, sscc, strips};
+use crate::detector::folder;
+
+const KEYS: &str = "index, norm, colliding, count, complete, pairs, microseconds, root_certified, proof, opened, box_tests, \
+                    triangle_tests, clearance, rings, distance, nearest, distances";
+
+fn check(folder: &Path, args: &[&str]) -> Run {
+    sscc(folder, &[&["check"], args].concat())
+}
+
+fn lines(folder: &Path, args: &[&str], code: i32) -> Vec<Value> {
+    let run = check(folder, &[args, &["--json"]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(code), ""), "{run:?}");
+    run.json()
+}
+
+#[test]
+fn near_pairs_of_a_mesh_and_of_its_frames() {
+    let folder = folder();
+    let folder = folder.path();
+    let far = &lines(folder, &["mesh.obj", "--clearance", "0.5"], 0)[0];
+    assert_eq!(keys(far), sorted(KEYS));
+    assert_eq!(
+        (&far["pairs"], &far["distances"], &far["colliding"]),
+        (&json!([]), &json!([]), &json!(false))
+    );
+    assert_eq!((&far["distance"], &far["nearest"], &far["rings"]), (&json!(1.0), &json!([0, 1]), &json!(1)));
+    let near = &lines(folder, &["mesh.obj", "--clearance", "1.5"], 1)[0];
+    assert_eq!(
+        (&near["pairs"], &near["distances"], &near["clearance"]),
+        (&json!([[0, 1]]), &json!([1.0]), &json!(1.5))
+    );
+    // A distance equal to the clearance is kept.
+    lines(folder, &["mesh.obj", "--clearance", "1"], 0);
+
+    let all = lines(folder, &["mesh.obj", "--frames", "frames.npy", "--clearance=0.7"], 1);
+    let of = |key: &str| all.iter().map(|line| line[key].clone()).collect::<Vec<_>>();
+    assert_eq!(of("distance"), [json!(1.0), json!(0.5), json!(0.0), json!(0.5)]);
+    assert_eq!(of("colliding"), [json!(false), json!(false), json!(true), json!(false)]);
+    let text = check(folder, &["mesh.obj", "--frames", "frames.npy", "--clearance=0.7"]);
+    let rows: Vec<&str> = text.stdout.lines().collect();
+    assert!(rows[0].ends_with("clear      nearest 0 1 at 1.000"), "{text:?}");
+    assert!(rows[1].ends_with("NEAR       1 pair, nearest 0 1 at 0.5000"), "{text:?}");
+    assert!(rows[4].starts_with("4 frames: 1 clear, 3 near; median "), "{text:?}");
+    let text = check(folder, &["mesh.obj", "--clearance=2"]);
+    assert!(
+        text.stdout.starts_with("NEAR: 1 pair of triangles nearer than 2.000; nearest: 0 1 at 1.000\n"),
+        "{text:?}"
+    );
+    assert!(text.stdout.ends_with("       0        1  distance 1.000\n"), "{text:?}");
+    let text = check(folder, &["mesh.obj", "--clearance=0.5"]).stdout;
+    let start = "clear: no triangles are nearer than 0.5000; nearest: 0 1 at 1.000, apart from pairs with common vertices\n";
+    assert!(text.starts_with(start), "{text}");
+}
+
+#[test]
+fn rings_leave_out_what_is_near_on_the_surface() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // A strip of five triangles: the first and the last two have no common vertex.
+    fs::write(folder.join("strip.obj"), "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nv 3 0 0\nf 1 2 3\nf 2 4 3\nf 3 4 5\nf 4 6 5\nf 5 6 7\n").unwrap();
+    let near = &lines(folder, &["strip.obj", "--clearance=1.5"], 1)[0];
+    assert_eq!(near["pairs"], json!([[0, 3], [0, 4], [1, 4]]));
+    let beyond = &lines(folder, &["strip.obj", "--clearance=1.5", "--rings=2"], 0)[0];
+    assert_eq!(
+        (&beyond["pairs"], &beyond["distance"], &beyond["rings"]),
+        (&json!([]), &Value::Null, &json!(2))
+    );
+    let text = check(folder, &["strip.obj", "--clearance=1.5", "--rings=2"]).stdout;
+    assert!(
+        text.starts_with("clear: no triangles are nearer than 1.500; no pair counts, apart from "),
+        "{text}"
+    );
+    assert!(text.lines().next().unwrap().ends_with("common vertices, and within 2 rings"), "{text}");
+}
+
+#[test]
+fn near_pairs_of_a_model_and_of_two_meshes() {
+    let folder = strips();
+    let folder = folder.path();
+    let model = "strips.model.safetensors";
+    let lines_at = lines(folder, &[model, "--q=0.25,0", "--clearance=0.7", "--rings=100"], 0);
+    assert_eq!(keys(&lines_at[0]), sorted(KEYS));
+    assert_eq!(lines_at[0]["distance"], json!(0.75));
+    let near = &lines(folder, &[model, "--q=0.5,0", "--clearance=0.7", "--rings=100"], 1)[0];
+    assert_eq!((&near["distance"], &near["rings"]), (&json!(0.5), &json!(100)));
+    assert_eq!(near["distances"].as_array().unwrap().len(), near["count"].as_u64().unwrap() as usize);
+
+    let folder = self::folder();
+    let folder = folder.path();
+    let near = &lines(folder, &["mesh.obj", "--against=lower.obj", "--clearance=0.1"], 1)[0];
+    assert_eq!((&near["distance"], &near["colliding"]), (&json!(0.0), &json!(true)));
+    let far = "v 0 0 50\nv 1 0 50\nv 0 1 50\nf 1 2 3\n";
+    fs::write(folder.join("far.obj"), far).unwrap();
+    let far = &lines(folder, &["mesh.obj", "--against=far.obj", "--clearance=0.1"], 0)[0];
+    assert_eq!((&far["distance"], &far["nearest"]), (&json!(49.0), &json!([1, 0])));
+}
+
+#[test]
+fn unusable_clearances_are_refused() {
+    let folder = folder();
+    for (value, name) in [("0", "0"), ("-1", "-1"), ("inf", "inf"), ("nan", "NaN")] {
+        let run = check(folder.path(), &["mesh.obj", &format!("--clearance={value}")]);
+        assert_eq!(run.refusal(), format!("error: --clearance is {name}: it must be positive and finite"));
+    }
+    for other in
+        ["--continuous", "--first", "--depths", "--limit=1", "--neighbours=exclude", "--method=bdtree"]
+    {
+        let run = check(folder.path(), &["mesh.obj", "--clearance=1", other]);
+        assert!(run.refusal().contains("cannot be used with"), "{run:?}");
+    }
+    assert!(check(folder.path(), &["mesh.obj", "--rings=2"]).refusal().contains("--clearance"));
+}
+
+/// A cube from -half to half along each axis, around (at, 0, 0).
+fn cube(at: f64, half: f64) -> String {
+    let corner = |i: u8| {
+        let [x, y, z] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { half } else { -half });
+        format!("v {} {y} {z}\n", x + at)
+    };
+    let vertices: String = (0..8).map(corner).collect();
+    vertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+}
+
+#[test]
+fn a_mesh_inside_another_one_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("housing.obj"), cube(0.0, 2.0)).unwrap();
+    fs::write(folder.join("part.obj"), cube(0.5, 0.5)).unwrap();
+    fs::write(folder.join("beside.obj"), cube(9.0, 0.5)).unwrap();
+    let found = &lines(folder, &["housing.obj", "--against=part.obj"], 0)[0];
+    assert_eq!((&found["inside"], &found["components"]), (&json!([0, 1]), &json!([1, 1])));
+    assert_eq!(lines(folder, &["part.obj", "--against=housing.obj"], 0)[0]["inside"], json!([1, 0]));
+    assert_eq!(lines(folder, &["housing.obj", "--against=beside.obj"], 0)[0].get("inside"), None);
+    let text = check(folder, &["housing.obj", "--against=part.obj"]).stdout;
+    assert!(text.lines().next().unwrap().ends_with("; the second mesh is inside the first one"), "{text}");
+    let near = &lines(folder, &["housing.obj", "--against=part.obj", "--clearance=0.5"], 0)[0];
+    assert_eq!((&near["inside"], &near["distance"]), (&json!([0, 1]), &json!(1.0)));
+}

@@ -1,0 +1,158 @@
+//! Clearance: which triangles are nearer than a distance, of one mesh or between two.
+
+use glam::DVec3;
+
+use super::clearance_search::ClearanceSearch;
+use super::detector::Detector;
+use super::detector_search::{DetectorSearch, Refit};
+use super::given_motion::GivenMotion;
+use crate::Error;
+use crate::detect::narrow_phase::NearPair;
+use crate::detect::vertex_motion::VertexMotion;
+use crate::filter::Rings;
+
+/// Pairs whose rings are tested between two checks whether the search was cancelled.
+const RINGS_PER_CHECK: usize = 1024;
+
+/// A distance that triangles should keep, and which neighbours need not keep it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    distance: f64,
+    rings: u32,
+}
+
+impl Clearance {
+    /// Pairs nearer than this distance (model unit), but triangles with a common vertex.
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn new(distance: f64) -> Result<Self, Error> {
+        if distance > 0.0 && distance.is_finite() {
+            return Ok(Self { distance, rings: 1 });
+        }
+        Err(Error::Option { name: "clearance", value: distance, wanted: "positive and finite" })
+    }
+
+    /// The same, but triangles of one mesh within so many rings of each other on the surface need not keep it: 1 for triangles
+    /// with a common vertex (these never count), 2 for those that have a common neighbour, too, and so on.
+    #[must_use]
+    pub fn beyond_rings(self, rings: u32) -> Self {
+        Self { rings, ..self }
+    }
+
+    /// The distance (model unit).
+    pub fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// How many rings need not keep it.
+    pub fn rings(&self) -> u32 {
+        self.rings
+    }
+}
+
+impl Detector {
+    /// All pairs that count and are nearer than a clearance at these positions, sorted by pair: `distance < clearance` for the
+    /// distances listed, which have the error of [`distance_triangle_triangle`](crate::distance_triangle_triangle). Pairs that
+    /// collide have distance 0. Triangles with a common vertex never count here.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use sscc::{Clearance, Detector, TriMesh};
+    ///
+    /// # fn main() -> Result<(), sscc::Error> {
+    /// // Two triangles one unit apart.
+    /// let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    /// let mesh = TriMesh::new(positions.clone(), vec![[0, 1, 2], [3, 4, 5]])?;
+    /// let mut detector = Detector::new(&mesh);
+    /// assert!(detector.within(&positions, &Clearance::new(0.5)?)?.is_empty());
+    /// let near = detector.within(&positions, &Clearance::new(1.5)?)?;
+    /// assert_eq!((near.len(), near[0].pair, near[0].distance), (1, (0, 1), 1.0));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub fn within(&mut self, positions: &[DVec3], clearance: &Clearance) -> Result<&[NearPair], Error> {
+        let motion = self.check([positions])?.widened(clearance.distance);
+        self.begin_clearance(&motion, positions, Refit::All, clearance);
+        let (context, near) = (&self.context, &mut self.clearance);
+        let Some(ClearanceSearch { search, .. }) = near.as_deref_mut() else { return Ok(&[]) };
+        let mut result = search.find(context, &motion, Self::MAX_PAIRS);
+        self.statistics.set_search(search, result.is_ok());
+        let list = &mut search.narrow.hits.list;
+        list.sort_unstable_by_key(|near| near.pair);
+        if clearance.rings > 1 && result.is_ok() {
+            let mut rings = Rings::new(&context.filter, clearance.rings);
+            let mut tests = 0;
+            list.retain(|NearPair { pair: (a, b), .. }| {
+                tests += 1;
+                if tests % RINGS_PER_CHECK == 0 && context.is_cancelled() {
+                    result = Err(Error::Cancelled);
+                }
+                result.is_ok() && !rings.contain(&context.filter, *a, *b)
+            });
+        }
+        result?;
+        self.check_complete()?;
+        Ok(self.near_pairs())
+    }
+
+    /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) nearer than a clearance, sorted.
+    /// Every pair counts; rings mean nothing between meshes.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for both.
+    pub fn within_against(
+        &mut self,
+        positions: &[DVec3],
+        other: &mut Detector,
+        other_positions: &[DVec3],
+        clearance: &Clearance,
+    ) -> Result<&[NearPair], Error> {
+        let motions = [self.check([positions])?, other.check([other_positions])?];
+        let whole = motions[0].aabb().union(&motions[1].aabb());
+        let motions = motions.map(|motion| motion.in_frame_of(whole).widened(clearance.distance));
+        self.begin_clearance(&motions[0], positions, Refit::Nodes, clearance);
+        other.begin_clearance(&motions[1], other_positions, Refit::Nodes, clearance);
+        let contexts = [&self.context, &other.context];
+        if let (Some(one), Some(two)) = (&mut self.clearance, &mut other.clearance) {
+            let result = one.search.find_between(&mut two.search, contexts, &motions, Self::MAX_PAIRS);
+            self.statistics.set_search(&mut one.search, result.is_ok());
+            result?;
+            one.search.narrow.hits.list.sort_unstable_by_key(|near| near.pair);
+        }
+        self.check_complete()?;
+        Ok(self.near_pairs())
+    }
+
+    /// The pairs of the last search for near ones.
+    pub(crate) fn near_pairs(&self) -> &[NearPair] {
+        self.clearance.as_ref().map_or(&[], |near| &near.search.narrow.hits.list)
+    }
+
+    /// Starts a search for near pairs; builds the hierarchy again, by these positions, where it has become bad.
+    fn begin_clearance(
+        &mut self,
+        motion: &GivenMotion<'_, 1>,
+        positions: &[DVec3],
+        refit: Refit,
+        clearance: &Clearance,
+    ) {
+        for is_last in [false, true] {
+            let margin = motion.margin();
+            // The cost of a hierarchy grows with the margin, so that of another one says nothing.
+            let near = self.clearance.take().filter(|near| near.margin == margin);
+            let mut near = near
+                .unwrap_or_else(|| Box::new(ClearanceSearch { margin, search: DetectorSearch::default() }));
+            near.search.narrow.distance = clearance.distance;
+            let is_good = near.search.begin(&self.context, motion, refit);
+            self.clearance = Some(near);
+            if is_good || is_last {
+                return;
+            }
+            self.rebuild(positions);
+        }
+    }
+}

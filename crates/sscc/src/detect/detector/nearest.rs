@@ -1,0 +1,124 @@
+//! The smallest distance of a mesh from itself or from another one: pairs of nodes, the nearer boxes first, while their boxes are
+//! nearer than the nearest triangles so far.
+
+use glam::DVec3;
+
+use super::boxes::Boxes;
+use super::detector::Detector;
+use crate::detect::narrow_phase::NearPair;
+use crate::filter::{Relation, Rings};
+use crate::geometry::Aabb;
+use crate::hierarchy::NodePair;
+use crate::{Error, distance_triangle_triangle};
+
+/// Pairs of nodes visited between two checks whether the search was cancelled.
+const VISITS_PER_CHECK: u64 = 1024;
+
+/// The square of the distance of two boxes in a unit, not more than that of points in them, up to rounding.
+fn square_between(a: &Aabb, b: &Aabb, unit: f64) -> f64 {
+    ((b.lower - a.upper).max(a.lower - b.upper).max(DVec3::ZERO) / unit).length_squared()
+}
+
+impl Detector {
+    /// The nearest two triangles at these positions that count and are farther apart on the surface than so many rings (1: than a common
+    /// vertex; see [`Clearance::beyond_rings`](crate::Clearance::beyond_rings)), with their distance: within the error of
+    /// [`distance_triangle_triangle`] of the smallest one, and 0 if any of them collide. None where no pair counts.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`].
+    pub fn nearest(&mut self, positions: &[DVec3], rings: u32) -> Result<Option<NearPair>, Error> {
+        self.check([positions])?;
+        let filter = &self.context.filter;
+        let mut rings = (rings > 1).then(|| Rings::new(filter, rings));
+        let counts = |a: u32, b: u32| {
+            a != b
+                && filter.relation(a, b) == Relation::NonAdjacent
+                && !filter.is_excluded(a, b)
+                && !rings.as_mut().is_some_and(|rings| rings.contain(filter, a.min(b), a.max(b)))
+        };
+        let boxes = Boxes::new(&self.context, positions);
+        nearest([&boxes, &boxes], true, counts)
+    }
+
+    /// The nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`): every pair counts.
+    ///
+    /// # Errors
+    /// As [`Detector::discrete`], for both.
+    pub fn nearest_against(
+        &mut self,
+        positions: &[DVec3],
+        other: &mut Detector,
+        other_positions: &[DVec3],
+    ) -> Result<Option<NearPair>, Error> {
+        self.check([positions])?;
+        other.check([other_positions])?;
+        let boxes = [(&self.context, positions), (&other.context, other_positions)];
+        let [one, two] = boxes.map(|(context, positions)| Boxes::new(context, positions));
+        nearest([&one, &two], false, |_, _| true)
+    }
+}
+
+/// The nearest pair of triangles that counts, of one mesh with itself (`is_self`: both are the same) or of two.
+///
+/// # Errors
+/// When the token of the first one cancels.
+fn nearest(
+    boxes: [&Boxes<'_>; 2],
+    is_self: bool,
+    mut counts: impl FnMut(u32, u32) -> bool,
+) -> Result<Option<NearPair>, Error> {
+    let [one, two] = boxes;
+    let mut best: Option<NearPair> = None;
+    let mut best_square = f64::INFINITY;
+    // Squares neither overflow nor vanish in units of the whole size.
+    let whole = one.of_nodes[0].union(&two.of_nodes[0]);
+    let unit = (whole.upper - whole.lower).max_element().max(f64::MIN_POSITIVE);
+    let bound = |(n, m): NodePair| square_between(&one.of_nodes[n as usize], &two.of_nodes[m as usize], unit);
+    let mut open = vec![((0, 0), bound((0, 0)))];
+    let (mut parts, mut visits) = (Vec::new(), 0_u64);
+    while let Some(((n, m), least)) = open.pop() {
+        if visits.is_multiple_of(VISITS_PER_CHECK) && one.context.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        visits += 1;
+        if right_or!(least > best_square, NearestTakenFirst, best.is_some()) {
+            continue;
+        }
+        if !(one.is_leaf(n) && two.is_leaf(m)) {
+            parts.clear();
+            let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
+            // Of one mesh each two nodes once.
+            let pairs = pairs.filter(|(i, j)| !(is_self && n == m && i > j));
+            parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= best_square));
+            parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
+            open.append(&mut parts);
+            continue;
+        }
+        for &a in one.triangles(n) {
+            let corners = one.corners(a);
+            for &b in two.triangles(m) {
+                if is_self && a == b {
+                    continue;
+                }
+                let others = two.corners(b);
+                let of = |x: &[DVec3; 3]| Aabb::of_points(x.iter().copied());
+                if square_between(&of(&corners), &of(&others), unit) > best_square || !counts(a, b) {
+                    continue;
+                }
+                // Rounding depends on the order of two triangles.
+                let is_turned = is_self && a > b;
+                let (x, y) = if is_turned { (&others, &corners) } else { (&corners, &others) };
+                let distance = distance_triangle_triangle(x, y);
+                if best.is_none_or(|best| distance < best.distance) {
+                    best = Some(NearPair { pair: if is_turned { (b, a) } else { (a, b) }, distance });
+                    // The bounds of boxes are rounded, by less than this.
+                    best_square = (distance / unit).powi(2) * (1.0 + 1e-12);
+                }
+            }
+        }
+        if best.is_some_and(|best| best.distance == 0.0) {
+            break;
+        }
+    }
+    Ok(best)
+}

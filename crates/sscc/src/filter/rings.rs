@@ -1,0 +1,81 @@
+//! Rings of a mesh: how far apart two triangles are on the surface.
+
+use super::pair_filter::PairFilter;
+
+/// Which triangles lie within a number of rings of another one. Triangles with a common vertex are one ring apart, those with a common
+/// neighbour of this kind two, and so on; welded vertices are one.
+pub(crate) struct Rings {
+    rings: u32,
+    /// For each vertex class its first entry in `triangles`, and the end.
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+    /// The triangle whose rings are marked.
+    center: Option<u32>,
+    /// For each triangle and each class the number of the last search that reached it.
+    reached: Vec<u32>,
+    reached_classes: Vec<u32>,
+    search: u32,
+}
+
+impl Rings {
+    pub(crate) fn new(filter: &PairFilter, rings: u32) -> Self {
+        let faces = filter.faces().len() as u32;
+        let mut starts = vec![0_u32; filter.class_count() + 1];
+        let all = || (0..faces).flat_map(|t| filter.vertex_classes(t).map(|class| (class as usize, t)));
+        all().for_each(|(class, _)| starts[class + 1] += 1);
+        for class in 1..starts.len() {
+            starts[class] += starts[class - 1];
+        }
+        let (mut next, mut triangles) = (starts.clone(), vec![0; 3 * faces as usize]);
+        for (class, t) in all() {
+            triangles[next[class] as usize] = t;
+            next[class] += 1;
+        }
+        let reached_classes = vec![0; starts.len()];
+        Self {
+            rings,
+            starts,
+            triangles,
+            center: None,
+            reached: vec![0; faces as usize],
+            reached_classes,
+            search: 0,
+        }
+    }
+
+    /// Whether two triangles are at most that many rings apart. Fast where the first one is the last call's.
+    pub(crate) fn contain(&mut self, filter: &PairFilter, a: u32, b: u32) -> bool {
+        if self.center != Some(a) {
+            self.mark(filter, a);
+        }
+        self.reached[b as usize] == self.search
+    }
+
+    /// Marks the triangles around one.
+    fn mark(&mut self, filter: &PairFilter, center: u32) {
+        // At most as many searches as triangles, whose numbers have 32 bits.
+        self.search += 1;
+        self.center = Some(center);
+        self.reached[center as usize] = self.search;
+        let mut ring = vec![center];
+        for _ in 0..self.rings {
+            let mut next = Vec::new();
+            for class in ring.iter().flat_map(|t| filter.vertex_classes(*t)) {
+                if std::mem::replace(&mut self.reached_classes[class as usize], self.search) == self.search {
+                    continue;
+                }
+                for &t in &self.triangles
+                    [self.starts[class as usize] as usize..self.starts[class as usize + 1] as usize]
+                {
+                    if std::mem::replace(&mut self.reached[t as usize], self.search) != self.search {
+                        next.push(t);
+                    }
+                }
+            }
+            if next.is_empty() {
+                return;
+            }
+            ring = next;
+        }
+    }
+}
