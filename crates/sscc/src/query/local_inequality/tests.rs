@@ -190,10 +190,13 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
     let (mut taken, mut positive, mut swept) = (0, 0, 0);
     for case in 0..900 {
         let (rank, own) = (5 + random.below(4), usize::from(case % 2 == 0));
+        // One mode makes the strain and no gradient, the others gradients so large that the rounding of what is left of them decides.
+        let is_parted = case % 5 == 4;
         let norm = |n: &[f64]| n.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut parts: Vec<(Vec<f64>, DMat3, f64)> = Vec::new();
         for _ in 0..1 + case % 2 {
             let mut n: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            n[own] *= f64::from(u8::from(!is_parted));
             for (other, _, _) in &parts {
                 let along: f64 = n.iter().zip(other).map(|(x, u)| x * u).sum();
                 n.iter_mut().zip(other).for_each(|(x, u)| *x -= along * u);
@@ -204,12 +207,19 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
         }
         // Large numbers, so that the rounding of what is left decides: of W, or of the gradients.
         let [steep, wide] = [[1.0, 1.0], [1e10, 1.0], [1.0, 1e13]][case % 3];
+        let steep = if is_parted { 2e15 } else { steep };
         let count = rank - own;
         let gradients: Vec<DMat3> = (0..count)
-            .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * steep))))
+            .map(|k| match is_parted && k == 0 {
+                true => DMat3::ZERO,
+                false => DMat3::from_cols_array(&[(); 9].map(|()| single(random.signed() * steep))),
+            })
             .collect();
         let ellipsoid: Vec<Vec<f64>> = (0..count)
-            .map(|i| (0..count).map(|k| if k >= i { half(random.signed() * wide) } else { 0.0 }).collect())
+            .map(|i| {
+                let is_zero = |k: usize| k < i || is_parted && k > 0;
+                (0..count).map(|k| if is_zero(k) { 0.0 } else { half(random.signed() * wide) }).collect()
+            })
             .collect();
         let mut certificate = certificate(gradients, ellipsoid);
         // The first mode may not move the patch.
@@ -221,7 +231,12 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
         let draw = |random: &mut Numbers, spread: f64| -> Vec<f64> {
             let along: Vec<f64> = start.iter().map(|a| a + spread * random.signed()).collect();
             let of_parts = |k: usize| parts.iter().zip(&along).map(|((n, _, _), a)| n[k] * a).sum::<f64>();
-            (0..rank).map(|k| of_parts(k) + rest * random.signed()).collect()
+            let rest_of = |k: usize, rest: f64| match (is_parted, k == own) {
+                (true, true) => 1e-12,
+                (true, false) => 0.0,
+                (false, _) => rest,
+            };
+            (0..rank).map(|k| of_parts(k) + rest_of(k, rest * random.signed())).collect()
         };
         let ends = [draw(random, 0.0), draw(random, 0.02)];
         let (mut tables, _) = tables_of(&certificate.local, &vec![0.0; rank], &Metric::identity(rank));
