@@ -24,7 +24,7 @@ pub fn clearance(distance: &Bound<'_, PyAny>, rings: Option<&Bound<'_, PyAny>>) 
 
 /// Returns the number of rings in the argument, by default 1.
 pub fn rings_of(rings: Option<&Bound<'_, PyAny>>) -> PyResult<u32> {
-    Ok(count(rings, "rings", 1..=u32::MAX as usize)?.map_or(1, |rings| rings as u32))
+    Ok(count(rings, "rings", 1..=1000)?.map_or(1, |rings| rings as u32))
 }
 
 /// Returns near pairs as arrays.

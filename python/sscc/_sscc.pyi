@@ -477,7 +477,8 @@ class Detector:
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> tuple[tuple[int, int], tuple[int, int]]:
         """How many connected components of this mesh are inside the other one, and how many it has; likewise those of
-        the other one inside this mesh. It holds where ``against`` finds no pair. Only closed components have an inside.
+        the other one inside this mesh. It holds where ``against`` finds no pair. Only closed components have an inside;
+        others can be inside of them.
         """
     @property
     def faces(self) -> _U32:

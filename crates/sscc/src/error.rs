@@ -188,6 +188,12 @@ pub enum Error {
         /// Maximum number of pairs of an answer without a limit.
         most: usize,
     },
+    /// More pairs nearer than a clearance than fit in an answer.
+    #[error("more than {most} pairs of triangles are nearer than the clearance: set a smaller one")]
+    TooManyNearPairs {
+        /// Maximum number of pairs of an answer.
+        most: usize,
+    },
     /// An option out of range.
     #[error("{name} is {value}: it must be {wanted}")]
     Option {

@@ -53,7 +53,11 @@ impl Rings {
 
     /// Marks the triangles around one.
     fn mark(&mut self, filter: &PairFilter, center: u32) {
-        // At most as many searches as triangles, whose numbers have 32 bits.
+        if self.search == u32::MAX {
+            self.reached.fill(0);
+            self.reached_classes.fill(0);
+            self.search = 0;
+        }
         self.search += 1;
         self.center = Some(center);
         self.reached[center as usize] = self.search;

@@ -211,7 +211,9 @@ impl Summary {
         self.is_near |= answer.near.is_some();
         self.is_limited |= !answer.complete;
         self.microseconds.push(answer.microseconds);
-        let size = (answer.depths.iter().flatten().copied().fold(0.0, f64::max), answer.count);
+        let deepest = answer.depths.iter().flatten().copied().fold(0.0, f64::max);
+        let nearest = answer.near.as_ref().and_then(|near| near.distance);
+        let size = (nearest.map_or(deepest, |distance| -distance), answer.count);
         if answer.is_finding() && self.worst.as_ref().is_none_or(|worst| worst.size < size) {
             self.worst = Some(Worst { size, text: self.describe(answer, size.0) });
         }
@@ -226,7 +228,11 @@ impl Summary {
         let nodes: Vec<String> = [query.join(" of ")].into_iter().chain(against).collect();
         let place = answer.file.iter().cloned().chain([nodes.join(" ").trim().to_owned()]);
         let place: Vec<String> = place.filter(|part| !part.is_empty()).collect();
-        let depth = answer.depths.as_ref().map(|_| format!(", deepest {}", length(depth)));
+        let depth = match (&answer.depths, &answer.near) {
+            (Some(_), _) => Some(format!(", deepest {}", length(depth))),
+            (None, Some(_)) => Some(format!(", nearest {}", length(-depth))),
+            (None, None) => None,
+        };
         format!("{} ({}{})", place.join(", "), answer.counted(), depth.unwrap_or_default())
     }
 

@@ -11,9 +11,6 @@ use crate::detect::narrow_phase::NearPair;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::filter::Rings;
 
-/// Pairs whose rings are tested between two checks whether the search was cancelled.
-const RINGS_PER_CHECK: usize = 1024;
-
 /// A distance that triangles should keep, and which neighbours need not keep it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
@@ -85,17 +82,16 @@ impl Detector {
         list.sort_unstable_by_key(|near| near.pair);
         if clearance.rings > 1 && result.is_ok() {
             let mut rings = Rings::new(&context.filter, clearance.rings);
-            let mut tests = 0;
             list.retain(|NearPair { pair: (a, b), .. }| {
-                tests += 1;
-                if tests % RINGS_PER_CHECK == 0 && context.is_cancelled() {
+                // Rings of one triangle may take as long as all others.
+                if context.is_cancelled() {
                     result = Err(Error::Cancelled);
                 }
                 result.is_ok() && !rings.contain(&context.filter, *a, *b)
             });
         }
         result?;
-        self.check_complete()?;
+        self.check_complete().map_err(|_| Error::TooManyNearPairs { most: Self::MAX_PAIRS })?;
         Ok(self.near_pairs())
     }
 
@@ -123,7 +119,7 @@ impl Detector {
             result?;
             one.search.narrow.hits.list.sort_unstable_by_key(|near| near.pair);
         }
-        self.check_complete()?;
+        self.check_complete().map_err(|_| Error::TooManyNearPairs { most: Self::MAX_PAIRS })?;
         Ok(self.near_pairs())
     }
 

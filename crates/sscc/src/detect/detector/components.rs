@@ -2,12 +2,9 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
-
 use crate::disjoint_sets::DisjointSets;
-use crate::filter::PairFilter;
 
-/// The connected components of a mesh, whose welded vertices are one.
+/// The connected components of a mesh.
 #[derive(Clone, Debug)]
 pub(super) struct Components {
     /// For each triangle the number of its component.
@@ -24,10 +21,12 @@ struct Component {
 }
 
 impl Components {
-    pub fn new(filter: &PairFilter) -> Self {
-        let triangles = 0..filter.faces().len() as u32;
-        let mut sets = DisjointSets::new(filter.class_count());
-        for [a, b, c] in triangles.clone().map(|t| filter.vertex_classes(t)) {
+    /// Those of triangles whose corners have these numbers.
+    pub fn new(corners: &[[u32; 3]]) -> Self {
+        let triangles = 0..corners.len() as u32;
+        let count = corners.iter().flatten().max().map_or(0, |most| *most as usize + 1);
+        let mut sets = DisjointSets::new(count);
+        for [a, b, c] in corners.iter().copied() {
             sets.unite(a, b);
             sets.unite(a, c);
         }
@@ -35,7 +34,7 @@ impl Components {
         let of_triangles: Vec<u32> = triangles
             .clone()
             .map(|triangle| {
-                *numbers.entry(sets.find(filter.vertex_classes(triangle)[0])).or_insert_with(|| {
+                *numbers.entry(sets.find(corners[triangle as usize][0])).or_insert_with(|| {
                     all.push(Component { triangle, is_closed: true });
                     all.len() as u32 - 1
                 })
@@ -44,7 +43,7 @@ impl Components {
         // Edges with their direction, and a triangle. An edge of one vertex cancels.
         let mut edges: Vec<([u32; 2], i32, u32)> = triangles
             .flat_map(|t| {
-                let [a, b, c] = filter.vertex_classes(t);
+                let [a, b, c] = corners[t as usize];
                 let own = [[a, b], [b, c], [c, a]].into_iter().filter(|[u, v]| u != v);
                 own.map(move |[u, v]| ([u.min(v), u.max(v)], if u < v { 1 } else { -1 }, t))
             })
@@ -66,16 +65,12 @@ impl Components {
         self.all.iter().map(|component| component.triangle)
     }
 
-    /// For each triangle whether it is part of a closed component. One whose welded vertices are apart at these positions is open.
-    pub fn closed_triangles(&self, filter: &PairFilter, positions: &[DVec3]) -> Vec<bool> {
-        let mut is_closed: Vec<bool> = self.all.iter().map(|component| component.is_closed).collect();
-        let mut of_classes = vec![None; filter.class_count()];
-        for (t, (face, component)) in filter.faces().iter().zip(&self.of_triangles).enumerate() {
-            for (v, class) in face.iter().zip(filter.vertex_classes(t as u32)) {
-                let x = positions[*v as usize];
-                is_closed[*component as usize] &= *of_classes[class as usize].get_or_insert(x) == x;
-            }
-        }
-        self.of_triangles.iter().map(|component| is_closed[*component as usize]).collect()
+    pub fn has_closed(&self) -> bool {
+        self.all.iter().any(|component| component.is_closed)
+    }
+
+    /// Whether a triangle is part of a closed component.
+    pub fn is_closed(&self, triangle: u32) -> bool {
+        self.all[self.of_triangles[triangle as usize] as usize].is_closed
     }
 }

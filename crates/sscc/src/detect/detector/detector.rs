@@ -53,8 +53,8 @@ pub struct Detector {
     pub(super) swept: DetectorSearch<2, SweptHits>,
     /// Made by the first search for near pairs.
     pub(super) clearance: Option<Box<ClearanceSearch>>,
-    /// Found by the first question for enclosed ones.
-    pub(super) components: Option<Components>,
+    /// Connected ones, of welded vertices; found by the first question for enclosed ones.
+    pub(super) components: Option<Arc<Components>>,
     pub(super) statistics: Statistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,

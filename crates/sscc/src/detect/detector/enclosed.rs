@@ -1,5 +1,7 @@
 //! Which parts of a mesh lie inside another one.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::boxes::Boxes;
@@ -22,10 +24,9 @@ impl Detector {
     /// How many connected components of this mesh lie inside the other one, and of the other inside this one, at positions at which
     /// [`Detector::against`] finds no pair: then each component is inside or outside as a whole.
     ///
-    /// A mesh has an inside where its surface is closed: in each connected component of it, triangles run along every edge as
-    /// often in one direction as in the other. Its other components are left out. A component is inside where the closed surface
-    /// winds about it, which is computed exactly. Vertices are one where the contact filter welds them, as long as they are at one
-    /// position.
+    /// Only closed components have an inside: those whose triangles run along every edge as often in one direction as in the other. A
+    /// component, closed or not, is inside where the closed ones of the other mesh wind about it, which is computed exactly.
+    /// Vertices that the contact filter welds are one, as long as all of them are at one position.
     ///
     /// # Errors
     /// As [`Detector::discrete`], for both.
@@ -37,14 +38,32 @@ impl Detector {
     ) -> Result<[Enclosed; 2], Error> {
         self.check([positions])?;
         other.check([other_positions])?;
-        let sides = [(self, positions), (other, other_positions)];
-        let [one, two] = sides.map(|(x, positions)| {
-            let filter = &x.context.filter;
-            let components = x.components.get_or_insert_with(|| Components::new(filter));
-            let is_closed = components.closed_triangles(filter, positions);
-            Side { boxes: Boxes::new(&x.context, positions), components, is_closed }
+        let components = [self.components_at(positions), other.components_at(other_positions)];
+        let [one, two] = components.each_ref().map(|components| &**components);
+        if !one.has_closed() && !two.has_closed() {
+            return Ok([one, two].map(|all| Enclosed { components: all.count(), inside: 0 }));
+        }
+        let one = Side { boxes: Boxes::new(&self.context, positions), components: one };
+        let two = Side { boxes: Boxes::new(&other.context, other_positions), components: two };
+        Ok([two.enclose(&one)?, one.enclose(&two)?])
+    }
+
+    /// The connected components. Where welded vertices are apart, those of vertices that are not welded.
+    fn components_at(&mut self, positions: &[DVec3]) -> Arc<Components> {
+        let filter = &self.context.filter;
+        let triangles = 0..filter.faces().len() as u32;
+        let mut of_classes = vec![None; filter.class_count()];
+        let are_together = triangles.clone().zip(filter.faces()).all(|(t, face)| {
+            face.iter().zip(filter.vertex_classes(t)).all(|(v, class)| {
+                let x = positions[*v as usize];
+                *of_classes[class as usize].get_or_insert(x) == x
+            })
         });
-        Ok([two.enclose(&one), one.enclose(&two)])
+        if !are_together {
+            return Arc::new(Components::new(filter.faces()));
+        }
+        let welded = || triangles.map(|t| filter.vertex_classes(t)).collect::<Vec<_>>();
+        Arc::clone(self.components.get_or_insert_with(|| Arc::new(Components::new(&welded()))))
     }
 }
 
@@ -52,38 +71,42 @@ impl Detector {
 struct Side<'x> {
     boxes: Boxes<'x>,
     components: &'x Components,
-    /// For each triangle whether it is part of a closed component.
-    is_closed: Vec<bool>,
 }
 
 impl Side<'_> {
     /// Counts the components of `other` that are inside.
-    fn enclose(&self, other: &Self) -> Enclosed {
-        let corner = |t: u32| other.boxes.corners(t)[0];
-        let is_inside = |t: &u32| self.winding_number(corner(*t)) != 0;
-        let inside = match self.is_closed.contains(&true) {
-            true => other.components.triangles().filter(is_inside).count(),
-            false => 0,
-        };
-        Enclosed { components: other.components.count(), inside }
+    ///
+    /// # Errors
+    /// When the token cancels.
+    fn enclose(&self, other: &Self) -> Result<Enclosed, Error> {
+        let mut inside = 0;
+        if self.components.has_closed() {
+            for triangle in other.components.triangles() {
+                inside += usize::from(self.winding_number(other.boxes.corners(triangle)[0])? != 0);
+            }
+        }
+        Ok(Enclosed { components: other.components.count(), inside })
     }
 
     /// The winding number of the closed components about a point.
-    fn winding_number(&self, point: DVec3) -> i32 {
+    fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
         let (mut open, mut winding) = (vec![0], 0);
         while let Some(n) = open.pop() {
             let aabb = &self.boxes.of_nodes[n as usize];
-            let is_below = |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
-            if !(is_below(0) && is_below(1) && point.z <= aabb.upper.z) {
+            let is_between = |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
+            if !(is_between(0) && is_between(1) && point.z <= aabb.upper.z) {
                 continue;
             }
-            if self.boxes.is_leaf(n) {
-                let closed = self.boxes.triangles(n).iter().filter(|t| self.is_closed[**t as usize]);
-                winding += closed.map(|t| crossing(point, &self.boxes.corners(*t))).sum::<i32>();
-            } else {
+            if !self.boxes.is_leaf(n) {
                 open.extend(self.boxes.parts(n));
+                continue;
             }
+            if self.boxes.context.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let closed = self.boxes.triangles(n).iter().filter(|t| self.components.is_closed(**t));
+            winding += closed.map(|t| crossing(point, &self.boxes.corners(*t))).sum::<i32>();
         }
-        winding
+        Ok(winding)
     }
 }

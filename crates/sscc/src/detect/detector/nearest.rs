@@ -14,9 +14,12 @@ use crate::{Error, distance_triangle_triangle};
 /// Pairs of nodes visited between two checks whether the search was cancelled.
 const VISITS_PER_CHECK: u64 = 1024;
 
-/// The square of the distance of two boxes in a unit, not more than that of points in them, up to rounding.
-fn square_between(a: &Aabb, b: &Aabb, unit: f64) -> f64 {
-    ((b.lower - a.upper).max(a.lower - b.upper).max(DVec3::ZERO) / unit).length_squared()
+/// The distance of two boxes, not more than that of points in them, up to rounding.
+fn distance_between(a: &Aabb, b: &Aabb) -> f64 {
+    let gaps = (b.lower - a.upper).max(a.lower - b.upper).max(DVec3::ZERO);
+    // No square overflows or vanishes.
+    let largest = gaps.max_element();
+    if largest > 0.0 { (gaps / largest).length() * largest } else { 0.0 }
 }
 
 impl Detector {
@@ -34,7 +37,7 @@ impl Detector {
             a != b
                 && filter.relation(a, b) == Relation::NonAdjacent
                 && !filter.is_excluded(a, b)
-                && !rings.as_mut().is_some_and(|rings| rings.contain(filter, a.min(b), a.max(b)))
+                && !rings.as_mut().is_some_and(|rings| rings.contain(filter, a, b))
         };
         let boxes = Boxes::new(&self.context, positions);
         nearest([&boxes, &boxes], true, counts)
@@ -69,11 +72,9 @@ fn nearest(
 ) -> Result<Option<NearPair>, Error> {
     let [one, two] = boxes;
     let mut best: Option<NearPair> = None;
-    let mut best_square = f64::INFINITY;
-    // Squares neither overflow nor vanish in units of the whole size.
-    let whole = one.of_nodes[0].union(&two.of_nodes[0]);
-    let unit = (whole.upper - whole.lower).max_element().max(f64::MIN_POSITIVE);
-    let bound = |(n, m): NodePair| square_between(&one.of_nodes[n as usize], &two.of_nodes[m as usize], unit);
+    // A box farther away has nothing nearer. The bounds of boxes are rounded, by less than the share that is added here.
+    let mut most = f64::INFINITY;
+    let bound = |(n, m): NodePair| distance_between(&one.of_nodes[n as usize], &two.of_nodes[m as usize]);
     let mut open = vec![((0, 0), bound((0, 0)))];
     let (mut parts, mut visits) = (Vec::new(), 0_u64);
     while let Some(((n, m), least)) = open.pop() {
@@ -81,7 +82,7 @@ fn nearest(
             return Err(Error::Cancelled);
         }
         visits += 1;
-        if right_or!(least > best_square, NearestTakenFirst, best.is_some()) {
+        if right_or!(least > most, NearestTakenFirst, best.is_some()) {
             continue;
         }
         if !(one.is_leaf(n) && two.is_leaf(m)) {
@@ -89,20 +90,24 @@ fn nearest(
             let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
             // Of one mesh each two nodes once.
             let pairs = pairs.filter(|(i, j)| !(is_self && n == m && i > j));
-            parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= best_square));
+            parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= most));
             parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
             open.append(&mut parts);
             continue;
         }
         for &a in one.triangles(n) {
+            // Rings of one triangle may take as long as all others.
+            if one.context.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
             let corners = one.corners(a);
             for &b in two.triangles(m) {
-                if is_self && a == b {
+                if is_self && (a == b || n == m && a > b) {
                     continue;
                 }
                 let others = two.corners(b);
                 let of = |x: &[DVec3; 3]| Aabb::of_points(x.iter().copied());
-                if square_between(&of(&corners), &of(&others), unit) > best_square || !counts(a, b) {
+                if distance_between(&of(&corners), &of(&others)) > most || !counts(a, b) {
                     continue;
                 }
                 // Rounding depends on the order of two triangles.
@@ -111,8 +116,7 @@ fn nearest(
                 let distance = distance_triangle_triangle(x, y);
                 if best.is_none_or(|best| distance < best.distance) {
                     best = Some(NearPair { pair: if is_turned { (b, a) } else { (a, b) }, distance });
-                    // The bounds of boxes are rounded, by less than this.
-                    best_square = (distance / unit).powi(2) * (1.0 + 1e-12);
+                    most = distance * (1.0 + 1e-12) + f64::MIN_POSITIVE;
                 }
             }
         }
