@@ -340,7 +340,7 @@ pub struct Certify {
         "sscc check face.obj --against bunny.obj --curves cut.obj"
         "sscc check character.glb#shirt --against character.glb#body"
         "sscc check bunny.obj --depths --json"
-        "sscc check part.stl --against housing.stl --clearance 0.2"
+        "sscc check face.obj --against bunny.obj --clearance 0.2"
     ),
     after_help = "\
 With --q or --trajectory, the certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a \

@@ -49,7 +49,7 @@ fn near_pairs_of_a_mesh_and_of_its_frames() {
     assert!(rows[0].ends_with("clear      nearest 0 1 at 1.000"), "{text:?}");
     assert!(rows[1].ends_with("NEAR       1 pair, nearest 0 1 at 0.5000"), "{text:?}");
     assert!(rows[4].starts_with("4 frames: 1 clear, 3 near; median "), "{text:?}");
-    assert!(rows[4].contains("; worst: frame 2 (1 pair, nearest 0.000)"), "{text:?}");
+    assert!(rows[4].contains("; worst: frame 2 (1 pair, nearest 0)"), "{text:?}");
     let text = check(folder, &["mesh.obj", "--clearance=2"]);
     assert!(
         text.stdout.starts_with("NEAR: 1 pair of triangles nearer than 2.000; nearest: 0 1 at 1.000\n"),
