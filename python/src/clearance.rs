@@ -13,6 +13,9 @@ pub type NearArrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 /// The nearest pair: distance, triangles.
 pub type Nearest = Option<(f64, (u32, u32))>;
 
+/// How many connected components are inside, and how many there are.
+pub type Enclosed = (usize, usize);
+
 /// Returns the clearance in the arguments.
 pub fn clearance(distance: &Bound<'_, PyAny>, rings: Option<&Bound<'_, PyAny>>) -> PyResult<Clearance> {
     let Some(distance) = number(Some(distance), "clearance")? else {

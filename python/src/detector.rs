@@ -12,7 +12,7 @@ use sscc_sim::text::{counted, grouped};
 use crate::answer::Reduction;
 use crate::arguments::{count, switch};
 use crate::arrays::{floats, line, pairs, table};
-use crate::clearance::{self, NearArrays, Nearest, near_arrays};
+use crate::clearance::{self, Enclosed, NearArrays, Nearest, near_arrays};
 use crate::contacts::Contacts;
 use crate::detector_answer::{DetectorAnswer, DetectorImpacts, FoundFrame};
 use crate::detector_batch::DetectorBatch;
@@ -309,14 +309,14 @@ impl Detector {
         positions: &Bound<'_, PyAny>,
         other: &Bound<'_, PyAny>,
         other_positions: &Bound<'_, PyAny>,
-    ) -> PyResult<[(usize, usize); 2]> {
+    ) -> PyResult<(Enclosed, Enclosed)> {
         let other = as_detector(other)?;
         let [x, y] = named_both(positions, other_positions)?;
         let ask = |detector: &mut sscc::Detector, other: &mut sscc::Detector| {
             detector.enclosed(&x.points, other, &y.points)
         };
-        let sides = self.ask_both(py, &[&x], other, &[&y], ask)?;
-        Ok(sides.map(|side| (side.inside, side.components)))
+        let [one, two] = self.ask_both(py, &[&x], other, &[&y], ask)?;
+        Ok(((one.inside, one.components), (two.inside, two.components)))
     }
 
     #[getter]

@@ -559,14 +559,14 @@ def test_invalid_options_are_refused() -> None:
         check_refused(call, error, message)
 
 
-def test_near_pairs_and_the_nearest_one():
+def test_near_pairs_and_the_nearest_one() -> None:
     detector = sscc.Detector([[0, 1, 2], [3, 4, 5]], X)
     pairs, distances = detector.within(X, 1.5)
     assert (pairs.tolist(), distances.tolist()) == ([[0, 1]], [1.0])
     assert not pairs.flags.writeable and not distances.flags.writeable
     assert detector.within(X, 1.0)[0].shape == (0, 2)
     assert detector.nearest(X) == (1.0, (0, 1))
-    assert detector.nearest(FALLEN, rings=np.int64(3))[0] == 1.0
+    assert detector.nearest(FALLEN, rings=np.int64(3)) == (1.0, (0, 1))
     other = sscc.Detector([[0, 1, 2]])
     far = X[:3] + [0, 0, 9]
     assert detector.nearest_against(X, other, far) == (8.0, (1, 0))
@@ -576,6 +576,6 @@ def test_near_pairs_and_the_nearest_one():
         with pytest.raises(ValueError, match="clearance"):
             detector.within(X, bad)
     with pytest.raises(TypeError, match="clearance is a str"):
-        detector.within(X, "1")
+        detector.within(X, "1")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="rings is 0"):
         detector.nearest(X, rings=0)
