@@ -85,7 +85,7 @@ fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
     let across = third - edge * along;
     let (mut beta, mut gamma, mut left) = (0.0, 0.0, offset);
     // Each time only what the one before has left is wrong by a share.
-    for _ in 0..right_or!(3, NeedlesOnce, 1) {
+    for _ in 0..3 {
         let more = left.dot(across) / across.length_squared();
         gamma += more;
         beta += left.dot(edge) / edge.length_squared() - more * along;

@@ -324,8 +324,6 @@ mutants! {
     MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
     /// The points where two lines are nearest are found each by itself.
     LinesUnprojected: CaughtBy("lib geometry::triangle_distance::tests::distances_of_nearly_parallel_edges_are_within_their_error");
-    /// What the formula for an inside point of a needle leaves is not looked at again.
-    NeedlesOnce: CaughtBy("lib geometry::triangle_distance::tests::distances_are_within_their_error");
     /// The first pair of triangles is the nearest one.
     NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// The rounding of a position along each axis is that along any direction.
