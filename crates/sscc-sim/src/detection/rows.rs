@@ -43,59 +43,6 @@ const MIN_MICROSECONDS: f64 = 20.0;
 /// Blocks are smaller where the q of a block would have more pairs together than this, at the largest number so far.
 const MAX_BLOCK_PAIRS: usize = 1 << 24;
 
-/// Calls `take` with the pairs nearer than a clearance at each q, in order: those of positions, by no certificate.
-fn check_clearance<E: From<SimError>>(
-    query: &mut Query,
-    requests: &RowQueries<'_>,
-    clearance: &Clearance,
-    progress: &dyn Progress,
-    mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
-) -> Result<(), E> {
-    let (left_out, queries) = (LeftOut::of(&Scope::of_query(query).filter), requests.rows.rows);
-    for (index, q) in requests.rows.iter().enumerate() {
-        check_cancelled(progress)?;
-        let start = Instant::now();
-        let found = query.within(q, clearance).map_err(SimError::from)?.to_vec();
-        let near = Near::of(found, || query.nearest(q, clearance.rings()));
-        let (pairs, near) = near.map_err(SimError::from)?;
-        let statistics = query.statistics();
-        let next = take(&DetectionAnswer {
-            file: Path::new(""),
-            mesh: requests.model.mesh(),
-            node: None,
-            other_node: None,
-            index,
-            time: None,
-            pairs: &pairs,
-            times: None,
-            penetrations: None,
-            curves: None,
-            near: Some((*clearance, &near)),
-            enclosed: None,
-            is_complete: true,
-            microseconds: start.elapsed().as_secs_f64() * 1e6,
-            norm: Some(statistics.norm),
-            root_certified: None,
-            proof: None,
-            exceptions: 0,
-            left_out: &left_out,
-            opened: statistics.opened,
-            box_tests: statistics.box_tests,
-            triangle_tests: statistics.triangle_tests,
-            queries,
-            frames: queries,
-            frame_times: None,
-            shape: None,
-            other: None,
-        })?;
-        progress.report(index + 1, queries);
-        if next.is_break() {
-            break;
-        }
-    }
-    Ok(())
-}
-
 /// Calls `take` with the answer to each query, in order. `take` can end that early. Discrete queries of several q are answered
 /// together ([`Query::batch`]), with the same answers.
 ///
@@ -107,9 +54,6 @@ pub fn check_rows<E: From<SimError>>(
     progress: &dyn Progress,
     mut take: impl FnMut(&DetectionAnswer<'_>) -> Result<ControlFlow<()>, E>,
 ) -> Result<(), E> {
-    if let Some(clearance) = &requests.clearance {
-        return check_clearance(query, requests, clearance, progress, take);
-    }
     let rows: Vec<&[f64]> = requests.rows.iter().collect();
     let queries = if requests.is_continuous { rows.len().saturating_sub(1) } else { rows.len() };
     let (mut next, mut block, mut most_pairs) = (0, 1, 1);
@@ -119,7 +63,7 @@ pub fn check_rows<E: From<SimError>>(
     let mut single = 0;
     while next < queries {
         check_cancelled(progress)?;
-        let is_single = requests.is_continuous || next < single;
+        let is_single = requests.is_continuous || requests.clearance.is_some() || next < single;
         let end = queries.min(next + if is_single { 1 } else { block });
         let start = Instant::now();
         let answers = if end - next > 1 {
@@ -127,6 +71,8 @@ pub fn check_rows<E: From<SimError>>(
             query
                 .batch_at_most(&rows[next..end], limit, requests.threads, &CancelledBy(progress))
                 .map(Answers::Batch)
+        } else if let Some(clearance) = &requests.clearance {
+            near(query, rows[next], clearance)
         } else if requests.is_continuous {
             query.continuous(rows[next], rows[next + 1]).map(|impacts| Answers::Motion(impacts.to_vec()))
         } else {
@@ -155,7 +101,7 @@ pub fn check_rows<E: From<SimError>>(
                 times: found.times.as_deref(),
                 penetrations: contacts.penetrations.as_deref(),
                 curves: contacts.curves.as_ref(),
-                near: None,
+                near: requests.clearance.zip(found.near),
                 enclosed: None,
                 is_complete: found.is_complete,
                 microseconds,
@@ -204,12 +150,15 @@ enum Answers {
     Batch(Vec<Answer>),
     /// All impacts of a motion.
     Motion(Vec<Impact>),
+    /// Those of a clearance, and the cost of the near pairs.
+    Near(Vec<Pair>, Near, Statistics),
 }
 
 /// The answer to one query.
 struct Found<'a> {
     pairs: Cow<'a, [Pair]>,
     times: Option<Vec<f64>>,
+    near: Option<&'a Near>,
     is_complete: bool,
     statistics: Statistics,
 }
@@ -220,6 +169,7 @@ impl Answers {
         let of_query = |pairs: Cow<'a, [Pair]>, times| Found {
             pairs,
             times,
+            near: None,
             is_complete: query.statistics().complete,
             statistics: query.statistics(),
         };
@@ -230,10 +180,18 @@ impl Answers {
                 Found {
                     pairs: Cow::Borrowed(pairs),
                     times: None,
+                    near: None,
                     is_complete: statistics.complete,
                     statistics: *statistics,
                 }
             }
+            Self::Near(pairs, near, statistics) => Found {
+                pairs: Cow::Borrowed(pairs),
+                times: None,
+                near: Some(near),
+                is_complete: statistics.complete,
+                statistics: *statistics,
+            },
             Self::Motion(all) => {
                 let kept = earliest_impacts(all, limit);
                 let pairs = kept.iter().map(|impact| impact.pair).collect();
@@ -244,6 +202,14 @@ impl Answers {
             }
         }
     }
+}
+
+/// Answers a query for the pairs nearer than a clearance.
+fn near(query: &mut Query, q: &[f64], clearance: &Clearance) -> Result<Answers, sscc::Error> {
+    let found = query.within(q, clearance)?.to_vec();
+    let statistics = query.statistics();
+    let (pairs, near) = Near::of(found, || query.nearest(q, clearance.rings()))?;
+    Ok(Answers::Near(pairs, near, statistics))
 }
 
 /// Returns the contacts at a q that the requests ask for.

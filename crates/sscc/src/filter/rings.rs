@@ -62,7 +62,7 @@ impl Rings {
         self.center = Some(center);
         self.reached[center as usize] = self.search;
         let mut ring = vec![center];
-        for _ in 0..self.rings {
+        for _ in 0..right_or!(self.rings, RingsOneMore, self.rings + 1) {
             let mut next = Vec::new();
             for class in ring.iter().flat_map(|t| filter.vertex_classes(*t)) {
                 if std::mem::replace(&mut self.reached_classes[class as usize], self.search) == self.search {

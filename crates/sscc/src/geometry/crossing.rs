@@ -12,7 +12,7 @@ pub(crate) fn crossing(point: DVec3, corners: &[DVec3; 3]) -> i32 {
     let p = point.xy();
     let mut turns = 0;
     for (u, v) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i].xy(), corners[j].xy())) {
-        if u.y <= p.y && p.y < v.y {
+        if u.y <= p.y && right_or!(p.y < v.y, CrossingsAtEnds, p.y <= v.y) {
             turns += i32::from(orient2d(u, v, p) > 0);
         } else if v.y <= p.y && p.y < u.y {
             turns -= i32::from(orient2d(u, v, p) < 0);

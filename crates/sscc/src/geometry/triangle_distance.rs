@@ -27,7 +27,7 @@ pub const DISTANCE_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
 /// assert_eq!(sscc::distance_triangle_triangle(&a, &a.map(|p| p + DVec3::Z * 2.0)), 2.0);
 /// ```
 pub fn distance_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
-    if intersect_triangle_triangle(a, b) {
+    if right_or!(intersect_triangle_triangle(a, b), TouchingApart, false) {
         return 0.0;
     }
     // In units of the size, so that no product overflows or vanishes.
@@ -85,7 +85,7 @@ fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
     let across = third - edge * along;
     let (mut beta, mut gamma, mut left) = (0.0, 0.0, offset);
     // Each time only what the one before has left is wrong by a share.
-    for _ in 0..3 {
+    for _ in 0..right_or!(3, NeedlesOnce, 1) {
         let more = left.dot(across) / across.length_squared();
         gamma += more;
         beta += left.dot(edge) / edge.length_squared() - more * along;
@@ -202,13 +202,36 @@ mod tests {
         assert!(apart > count / 2, "{apart}");
     }
 
+    /// Corners closely above the inside of needles.
+    #[test]
+    fn distances_to_the_inside_of_needles_are_within_their_error() {
+        let random = &mut Numbers(7);
+        let vector = |random: &mut Numbers| DVec3::new(random.signed(), random.signed(), random.signed());
+        let count = if std::env::var_os("SSCC_LONG").is_some() { 20_000 } else { 400 };
+        let mut apart = 0;
+        for case in 0..count {
+            let along = vector(random).normalize();
+            let normal = along.cross(vector(random)).normalize();
+            let across = along.cross(normal) * random.power(-13.0, -3.0);
+            let a = [DVec3::ZERO, along, along * random.signed().abs() + across].map(|x| x + along * 0.5);
+            let middle = (a[0] + a[1] + a[2]) / 3.0;
+            let above = middle + (a[case % 3] - middle) * random.signed().abs();
+            let gap = normal * random.power(-14.0, -5.0);
+            let far = [(); 2].map(|()| above + normal + vector(random) * 0.3);
+            let b = [above + gap, far[0], far[1]];
+            let (x, y) = if case % 2 == 0 { (&a, &b) } else { (&b, &a) };
+            apart += usize::from(check(x, y, case).is_some());
+        }
+        assert!(apart > count / 2, "{apart}");
+    }
+
     /// Triangles of every kind against exact arithmetic: needles, points, parallel and nearly parallel edges, grids, far from the origin,
     /// huge and tiny.
     #[test]
     fn distances_are_within_their_error() {
         let random = &mut Numbers(3);
         let count = if std::env::var_os("SSCC_LONG").is_some() { 100_000 } else { 240 };
-        let (mut apart, mut worst) = (0, 0.0_f64);
+        let (mut apart, mut touching, mut worst) = (0, 0, 0.0_f64);
         for case in 0..count {
             let vector = |random: &mut Numbers| DVec3::new(random.signed(), random.signed(), random.signed());
             let thin = [1.0, 1e-3, 1e-8, 1e-10, 3e-11, 1e-11, 1e-13, 0.0][case % 8];
@@ -222,15 +245,19 @@ mod tests {
                 if case % 7 == 0 { corners.map(|x| (x * 2.0).round()) } else { corners }
             };
             let mut pair = [triangle(random), triangle(random)];
-            let shift = vector(random) * far;
+            // Every sixth pair has one centre, so that triangles that are not thin cross.
+            let center = |x: &[DVec3; 3]| (x[0] + x[1] + x[2]) / 3.0;
+            let shift =
+                if case % 6 == 0 { center(&pair[0]) - center(&pair[1]) } else { vector(random) * far };
             pair[1] = pair[1].map(|x| x + shift);
             let origin = if case % 11 == 0 { vector(random) * 1e6 } else { DVec3::ZERO };
             let [a, b] = pair.map(|t| t.map(|x| (x + origin) * scale));
-            if let Some(used) = check(&a, &b, case) {
-                (apart, worst) = (apart + 1, worst.max(used));
+            match check(&a, &b, case) {
+                Some(used) => (apart, worst) = (apart + 1, worst.max(used)),
+                None => touching += 1,
             }
         }
-        assert!(apart > count / 2, "{apart}");
+        assert!(apart > count / 2 && touching > count / 20, "{apart} {touching}");
         assert!(worst < 0.1, "{worst}");
     }
 }

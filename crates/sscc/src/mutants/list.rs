@@ -324,6 +324,18 @@ mutants! {
     MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
     /// The points where two lines are nearest are found each by itself.
     LinesUnprojected: CaughtBy("lib geometry::triangle_distance::tests::distances_of_nearly_parallel_edges_are_within_their_error");
+    /// What the formula for an inside point of a needle leaves is not looked at again.
+    NeedlesOnce: CaughtBy("lib geometry::triangle_distance::tests::distances_to_the_inside_of_needles_are_within_their_error");
+    /// Whether two triangles have a point in common is left to the formulas of distances.
+    TouchingApart: CaughtBy("lib geometry::triangle_distance::tests::distances_are_within_their_error");
+    /// A ray through a corner crosses the edges on both sides.
+    CrossingsAtEnds: CaughtBy("lib geometry::crossing::tests::points_below_edges_and_corners_are_counted_once");
+    /// A surface with a border has an inside.
+    OpenIsClosed: CaughtBy("it clearance::enclosed_components_are_counted");
+    /// Welded vertices are at one position.
+    WeldsStayTogether: CaughtBy("it clearance::a_component_whose_welded_vertices_part_is_open");
+    /// One ring more does not count.
+    RingsOneMore: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
     /// The first pair of triangles is the nearest one.
     NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// The rounding of a position along each axis is that along any direction.

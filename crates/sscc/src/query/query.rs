@@ -154,15 +154,8 @@ impl Query {
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
         self.forget();
         let configuration = self.measure(q)?;
-        self.norm = configuration.norm;
-        // Most queries of a simulation end here.
-        if self.context.is_proven_free(self.norm) {
-            self.statistics = Statistics::PROVEN_FREE;
-            return Ok(&[]);
-        }
-        let (discrete, statistics) = (&mut self.discrete, &mut self.statistics);
-        discrete.find_pairs(&self.context, configuration, limit, statistics)?;
-        Ok(&self.discrete.narrow.0.list)
+        self.find_pairs(configuration, limit)?;
+        Ok(self.pairs())
     }
 
     /// One colliding pair at q, if there is any; which one is not fixed.
@@ -192,6 +185,22 @@ impl Query {
     #[inline(always)]
     pub(super) fn measure<'q>(&mut self, q: &'q [f64]) -> Result<Configuration<'q>, Error> {
         self.check.measure(&self.context, q)
+    }
+
+    /// Finds at most `limit` colliding pairs at a configuration, after [`Self::forget`].
+    ///
+    /// # Errors
+    /// When it was cancelled.
+    #[inline(always)]
+    pub(super) fn find_pairs(&mut self, configuration: Configuration<'_>, limit: usize) -> Result<(), Error> {
+        self.norm = configuration.norm;
+        // Most queries of a simulation end here.
+        if self.context.is_proven_free(self.norm) {
+            self.statistics = Statistics::PROVEN_FREE;
+            return Ok(());
+        }
+        let Self { context, discrete, statistics, .. } = self;
+        discrete.find_pairs(context, configuration, limit, statistics)
     }
 
     /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use sscc::intersect_triangle_triangle;
-use sscc_dynamics::{Damping, Detection, Shape, Start, World, WorldOptions};
+use sscc_dynamics::{Body, Damping, Detection, Shape, Start, World, WorldOptions};
 use sscc_solid::Elasticity;
 
 use crate::common::{block, elastic, fork, rigid_block, rubber};
@@ -90,18 +90,19 @@ pub fn eigenvalues(shape: &Shape) -> Vec<f64> {
     }
 }
 
+/// The corners of all triangles of each body, in the world.
+pub fn placed(world: &World) -> Vec<Vec<[DVec3; 3]>> {
+    let corners = |body: &Body| {
+        let model = body.shape().model();
+        let x: Vec<DVec3> = model.positions(body.q()).unwrap();
+        model.mesh().faces().iter().map(|face| face.map(|v| body.pose().apply(x[v as usize]))).collect()
+    };
+    world.bodies().iter().map(corners).collect()
+}
+
 /// The number of intersecting pairs of triangles of different bodies, by brute force.
 pub fn intersections(world: &World) -> usize {
-    let placed: Vec<Vec<[DVec3; 3]>> = world
-        .bodies()
-        .iter()
-        .map(|body| {
-            let model = body.shape().model();
-            let x: Vec<DVec3> = model.positions(body.q()).unwrap();
-            let faces = model.mesh().faces().iter();
-            faces.map(|face| face.map(|v| body.pose().apply(x[v as usize]))).collect()
-        })
-        .collect();
+    let placed = placed(world);
     let mut count = 0;
     for b in 0..placed.len() {
         for a in 0..b {

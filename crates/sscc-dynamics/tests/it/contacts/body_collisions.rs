@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use sscc::{Pair, TriMesh, intersect_triangle_triangle};
 use sscc_dynamics::{ContactOptions, Detection, Start, World, WorldOptions};
 
-use crate::common::worlds::{intersections, momenta, pile, shapes, space};
+use crate::common::worlds::{intersections, momenta, pile, placed, shapes, space};
 use crate::common::{block, elastic, rigid, rigid_block, rubber};
 
 #[test]
@@ -14,16 +14,7 @@ fn pairs_between_bodies_equal_brute_force() {
     let mut world = pile(&shapes, Detection::Certified, 0.2);
     let (mut met, mut apart) = (0, 0);
     for step in 0..700 {
-        let placed: Vec<Vec<[DVec3; 3]>> = world
-            .bodies()
-            .iter()
-            .map(|body| {
-                let model = body.shape().model();
-                let x: Vec<DVec3> = model.positions(body.q()).unwrap();
-                let x: Vec<DVec3> = x.into_iter().map(|x| body.pose().apply(x)).collect();
-                model.mesh().faces().iter().map(|face| face.map(|v| x[v as usize])).collect()
-            })
-            .collect();
+        let placed = placed(&world);
         let counts = world.advance(&mut ()).unwrap();
         if step % 7 != 0 {
             continue;

@@ -91,7 +91,9 @@ impl Detector {
 }
 
 /// Two motions in the frame of the AABB of both.
-fn in_common_frame<'x, const E: usize>(motions: [GivenMotion<'x, E>; 2]) -> [GivenMotion<'x, E>; 2] {
+pub(super) fn in_common_frame<'x, const E: usize>(
+    motions: [GivenMotion<'x, E>; 2],
+) -> [GivenMotion<'x, E>; 2] {
     let whole = motions[0].aabb().union(&motions[1].aabb());
     motions.map(|motion| motion.in_frame_of(whole))
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::against::in_common_frame;
 use super::clearance_search::ClearanceSearch;
 use super::detector::Detector;
 use super::detector_search::{DetectorSearch, Refit};
@@ -108,8 +109,7 @@ impl Detector {
         clearance: &Clearance,
     ) -> Result<&[NearPair], Error> {
         let motions = [self.check([positions])?, other.check([other_positions])?];
-        let whole = motions[0].aabb().union(&motions[1].aabb());
-        let motions = motions.map(|motion| motion.in_frame_of(whole).widened(clearance.distance));
+        let motions = in_common_frame(motions).map(|motion| motion.widened(clearance.distance));
         self.begin_clearance(&motions[0], positions, Refit::Nodes, clearance);
         other.begin_clearance(&motions[1], other_positions, Refit::Nodes, clearance);
         let contexts = [&self.context, &other.context];

@@ -51,7 +51,8 @@ impl Components {
         edges.sort_unstable();
         for same in edges.chunk_by(|x, y| x.0 == y.0) {
             let component = of_triangles[same[0].2 as usize] as usize;
-            all[component].is_closed &= same.iter().map(|edge| edge.1).sum::<i32>() == 0;
+            let is_balanced = same.iter().map(|edge| edge.1).sum::<i32>() == 0;
+            all[component].is_closed &= right_or!(is_balanced, OpenIsClosed, true);
         }
         Self { of_triangles, all }
     }

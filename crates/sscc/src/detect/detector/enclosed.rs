@@ -59,7 +59,7 @@ impl Detector {
                 *of_classes[class as usize].get_or_insert(x) == x
             })
         });
-        if !are_together {
+        if !right_or!(are_together, WeldsStayTogether, true) {
             return Arc::new(Components::new(filter.faces()));
         }
         let welded = || triangles.map(|t| filter.vertex_classes(t)).collect::<Vec<_>>();

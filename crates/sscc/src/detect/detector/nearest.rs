@@ -40,7 +40,9 @@ impl Detector {
                 && !rings.as_mut().is_some_and(|rings| rings.contain(filter, a, b))
         };
         let boxes = Boxes::new(&self.context, positions);
-        nearest([&boxes, &boxes], true, counts)
+        let found = nearest([&boxes, &boxes], true, counts);
+        self.statistics.complete = found.is_ok();
+        found
     }
 
     /// The nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`): every pair counts.
@@ -57,7 +59,9 @@ impl Detector {
         other.check([other_positions])?;
         let boxes = [(&self.context, positions), (&other.context, other_positions)];
         let [one, two] = boxes.map(|(context, positions)| Boxes::new(context, positions));
-        nearest([&one, &two], false, |_, _| true)
+        let found = nearest([&one, &two], false, |_, _| true);
+        self.statistics.complete = found.is_ok();
+        found
     }
 }
 

@@ -7,8 +7,8 @@ use crate::Pair;
 use crate::filter::{PairFilter, Relation};
 
 /// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
-/// queries; `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All methods share them, so that all give the same
-/// answers.
+/// queries, and `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All
+/// methods share them, so that all give the same answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;

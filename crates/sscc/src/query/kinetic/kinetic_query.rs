@@ -150,7 +150,7 @@ impl KineticQuery {
         let configuration = self.query.measure(q)?;
         self.query.norm = configuration.norm;
         if self.query.context.is_root_certified(configuration.norm) {
-            self.find_without_region(configuration)?;
+            self.query.find_pairs(configuration, usize::MAX)?;
         } else {
             self.find_beyond_root(configuration)?;
         }
@@ -236,11 +236,6 @@ impl KineticQuery {
         self.query.statistics()
     }
 
-    fn find_without_region(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
-        let Query { context, discrete, statistics, .. } = &mut self.query;
-        discrete.find_pairs(context, configuration, usize::MAX, statistics)
-    }
-
     fn find_beyond_root(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
         let Configuration { q, norm, .. } = configuration;
         let metric = &self.query.context.scope.metric;
@@ -270,7 +265,7 @@ impl KineticQuery {
                 self.query.statistics.complete = true;
                 return Ok(());
             }
-            self.find_without_region(configuration)?;
+            self.query.find_pairs(configuration, usize::MAX)?;
             self.control.plain_cost = plain_cost(self.query.discrete.counters());
             return Ok(());
         }
