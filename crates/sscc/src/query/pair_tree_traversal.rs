@@ -30,6 +30,9 @@ struct Visit {
 /// So many visits of stored pairs take as long as a pair of buckets that is tested in vain ([`LOOSE_PAIRS`]).
 const VISITS_OF_LOOSE_PAIR: usize = 8;
 
+/// Whether boxes or proofs would now save work is asked once in so many visits: asked at each, it takes 3% of a short search.
+const VISITS_OF_CHECK: usize = 8;
+
 /// The entry of a node.
 const NODE: u32 = u32::MAX;
 
@@ -53,7 +56,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
     let hierarchy = &search.sides[0].context.hierarchy;
     // A search that ends at its first hits may open few nodes.
     let mut can_refit = search.narrow.hits().is_unlimited() && search.sides[0].volumes.closed_buckets() > 0;
-    let mut visits = 0;
+    let mut visits = 0_usize;
     // Copied, because most searches end before any node is proven.
     let mut work_before = locals.as_ref().map_or(u64::MAX, |(proofs, _)| proofs.work_before());
     let mut has_proofs = locals.as_ref().is_some_and(|(proofs, _)| proofs.is_complete());
@@ -64,18 +67,20 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             break;
         }
         visits += 1;
-        if can_refit
-            && search.state.loose_pairs + visits / VISITS_OF_LOOSE_PAIR
-                > LOOSE_PAIRS * search.sides[0].volumes.closed_buckets()
-        {
-            search.sides[0].refit();
-            can_refit = false;
-        }
-        if work(visits as u64, search.state.counters.box_tests) > work_before
-            && let Some((proofs, tables)) = &mut locals
-        {
-            proofs.prove(tables, hierarchy, node_radii, norm);
-            (work_before, has_proofs) = (u64::MAX, true);
+        if visits.is_multiple_of(VISITS_OF_CHECK) {
+            if can_refit
+                && search.state.loose_pairs + visits / VISITS_OF_LOOSE_PAIR
+                    > LOOSE_PAIRS * search.sides[0].volumes.closed_buckets()
+            {
+                search.sides[0].refit();
+                can_refit = false;
+            }
+            if work(visits as u64, search.state.counters.box_tests) > work_before
+                && let Some((proofs, tables)) = &mut locals
+            {
+                proofs.prove(tables, hierarchy, node_radii, norm);
+                (work_before, has_proofs) = (u64::MAX, true);
+            }
         }
         if entry == NODE {
             if has_proofs && locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n))
