@@ -35,7 +35,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     // A glTF file splits vertices along seams. The mesh knows it, so that its equal vertices are welded: otherwise triangles
     // on the two sides of a seam would share no vertex, and always collide. Pairs that collide at rest (closed lips, eyes
     // in their sockets) are ignored.
-    let options = CertifyOptions::default().ignore_rest(true);
+    let options = CertifyOptions::default().ignore_rest(0);
     let certificates = Certificates::compute(&model, &options, &())?;
     println!("ignored because they collide at rest: {} pairs", certificates.rest_collisions());
 

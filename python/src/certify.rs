@@ -89,7 +89,7 @@ impl CertifyArguments<'_, '_> {
             .metric(read_metric(model, self.metric)?)
             .center(center)
             .filter(with_groups(filter, triangles, self.groups, self.ignore_groups)?)
-            .ignore_rest(switch(self.ignore_rest, "ignore_rest")?.unwrap_or(false))
+            .ignore_rest(rest_rings(self.ignore_rest)?)
             .max_exceptions(count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?)
             .budget(budget)
             .local_budget(local_budget)
@@ -112,4 +112,12 @@ pub fn certify(
     })?;
     let pool = pool.map_err(|error| refused(&error, ""))?;
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
+}
+
+/// Returns the rings around pairs that collide at rest: True for these pairs alone, or a number of rings.
+fn rest_rings(typed: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u32>> {
+    if let Some(Ok(is_ignored)) = typed.map(|typed| typed.extract::<bool>()) {
+        return Ok(is_ignored.then_some(0));
+    }
+    Ok(count(typed, "ignore_rest", 0..=u32::MAX as usize)?.map(|rings| rings as u32))
 }

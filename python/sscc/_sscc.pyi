@@ -65,7 +65,7 @@ class Model:
         reach: float | None = None,
         neighbours: Literal["exclude", "include-one-vertex"] | None = None,
         weld: bool | None = None,
-        ignore_rest: bool | None = None,
+        ignore_rest: bool | int | None = None,
         max_exceptions: int | None = None,
         groups: ArrayLike | None = None,
         ignore_groups: ArrayLike | None = None,
@@ -84,7 +84,7 @@ class Model:
         reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 1.
         neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
-        ignore_rest: whether pairs that collide at rest never count.
+        ignore_rest: True: pairs that collide at rest never count; a number: neither do those within so many rings of them.
         max_exceptions: largest number of pairs that collide at the centre and are tested in every query; None: F / 2.
         groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
         ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.

@@ -200,9 +200,10 @@ pub struct Options {
     /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
     #[arg(long, value_parser = neighbours(), value_name = "FILTER")]
     pub neighbours: Option<Neighbours>,
-    /// Ignore the pairs that collide at rest: they never count
-    #[arg(long)]
-    pub ignore_rest: bool,
+    /// Ignore the pairs that collide at rest, and those within this many rings of them on the surface (--ignore-rest=1: whose
+    /// triangles touch theirs): they never count
+    #[arg(long, value_name = "RINGS", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
+    pub ignore_rest: Option<u32>,
     #[command(flatten)]
     pub groups: Groups,
     /// Whether to weld vertices of equal position and modes (or frames), for adjacency only [default: on for STL and glTF]
@@ -529,6 +530,7 @@ fn method() -> impl TypedValueParser<Value = Method> {
         "sscc sweep head.glb"
         "sscc sweep spring.model.safetensors --certificates spring.sscc.safetensors --range=-1,1 --json"
         "sscc sweep face.obj --modes targets/ --ignore-rest --pose poses/"
+        "sscc sweep head.glb --ignore-rest=1 --intervals"
     ),
     after_help = "\
 Each weight goes up and down from its value in --q; the others stay. Free is proven at every weight, not at samples.\n\
@@ -550,6 +552,10 @@ pub struct Sweep {
     /// Also write the shape at each hit (.ply), its colliding triangles red, to this folder
     #[arg(long, value_name = "DIR")]
     pub pose: Option<PathBuf>,
+    /// Find all intervals of each weight over which the shape collides, from the low end of its range to the high one, with the
+    /// pairs and the largest penetration depth of N samples
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "101", conflicts_with = "pose")]
+    pub intervals: Option<usize>,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

@@ -66,6 +66,9 @@ pub use scenes::{
     BodySpec, ModelSpec, OWN_AMPLITUDE_SCENES, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene,
 };
 pub use simulate::{Request, make_folder, simulate};
-pub use sweeps::{SweepRange, SweepRequest, SweepRow, sweep_model, sweep_table};
+pub use sweeps::{
+    Interval, IntervalRow, SweepRange, SweepRequest, SweepRow, interval_table, sweep_model,
+    sweep_model_intervals, sweep_table,
+};
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;

@@ -47,7 +47,7 @@ impl ZeroRadius {
         let max_exceptions = request.max_exceptions.unwrap_or(default);
         let at_rest = query.discrete(&vec![0.0; model.rank()])?;
         let left = others.iter().filter(|pair| at_rest.binary_search(pair).is_err()).count();
-        let can_ignore_rest = !request.ignore_rest && left <= max_exceptions;
+        let can_ignore_rest = request.ignore_rest.is_none() && left <= max_exceptions;
         Ok(Some(Self::Colliding { max_exceptions, can_ignore_rest }))
     }
 }

@@ -182,6 +182,16 @@ pub enum Error {
         /// How many would be accepted.
         most: usize,
     },
+    /// More pairs around those that collide at rest than can be ignored.
+    #[error(
+        "within {rings} rings of the pairs that collide at rest there are too many to ignore (at most {most}): choose fewer rings"
+    )]
+    TooManyIgnored {
+        /// Maximum number of ignored pairs.
+        most: usize,
+        /// The rings asked for.
+        rings: u32,
+    },
     /// More colliding pairs than fit in an answer.
     #[error("more than {most} pairs of triangles collide: set a limit to get that many of them")]
     TooManyPairs {

@@ -80,6 +80,7 @@
 //! | Which collide at each small step of a motion? | [`KineticQuery::discrete`] |
 //! | How far towards q does the shape stay free? | [`Query::safe_scale`] |
 //! | How far can the weight of a mode go until the shape touches itself? | [`Query::sweep`], [`Query::sweep_modes`] |
+//! | Over which intervals of the weight does it collide, and how deep? | [`Query::sweep_intervals`] |
 //! | Which free q is near a colliding one? | [`Query::resolve`], [`Query::resolve_batch`] |
 //! | Which free q are near the draws of a distribution? | [`Query::free_samples`] |
 //! | Which q on the line to the centre is free by the root's certificate? | [`Certificates::clamp`] |
@@ -315,4 +316,5 @@ pub use model::{Metric, MetricKind, Modes, ReducedModel, TriMesh, deformed_posit
 pub use progress::Progress;
 pub use query::{
     FreeSamples, KineticQuery, Method, ModeRange, Query, ResolveOptions, Resolved, Sweep, SweepOutcome,
+    WeightInterval, WeightIntervals, WeightSample,
 };

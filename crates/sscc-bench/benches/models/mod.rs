@@ -30,7 +30,7 @@ pub fn all() -> Result<Vec<Case>> {
     cases.push(polynomial("bunny", read_mesh(&folder.join("bunny_14964_closed.obj"))?)?);
     if let Some((model, _)) = face()? {
         let case = Case::new("ict_face, rest ignored", model);
-        cases.push(Case { options: case.options.ignore_rest(true), ..case });
+        cases.push(Case { options: case.options.ignore_rest(0), ..case });
     }
     cases.push(polynomial("dragon", read_mesh(&folder.join("dragon_77202_closed.ply"))?)?);
     Ok(cases)

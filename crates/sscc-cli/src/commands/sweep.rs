@@ -1,8 +1,9 @@
-//! `sscc sweep`: for each mode the first weight at which the shape touches itself.
+//! `sscc sweep`: for each mode the first weight at which the shape touches itself, or all intervals in which it collides.
 
 use anyhow::Result;
+use serde::Serialize;
 use sscc::SweepOutcome;
-use sscc_sim::{SweepRequest, sweep_model, sweep_table};
+use sscc_sim::{SweepRequest, interval_table, sweep_model, sweep_model_intervals, sweep_table};
 
 use crate::args::Sweep;
 use crate::outcome::Outcome;
@@ -17,26 +18,39 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let request = SweepRequest { q: q.clone(), range: range.clone(), pose: pose.clone(), threads };
     // Refused before certificates are computed.
     request.prepare(&loaded, &vec![0.0; loaded.model.rank()])?;
+    let ranges = request.ranges(&loaded)?;
     let certificates = match &args.certificates {
         Some(path) => load::request(&loaded, &args.model, &args.options)?.read(path, &loaded.model)?,
         None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
-    let swept = sweep_model(&loaded, &certificates, &request, &Bar::new("sweeping"));
+    let bar = Bar::new("sweeping");
+    if let Some(samples) = args.intervals {
+        let found = sweep_model_intervals(&loaded, &certificates, &request, samples, &bar);
+        interrupt::check()?;
+        let rows = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
+        print(args, &rows, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
+        return Ok(outcome(rows.iter().all(|row| row.intervals.is_empty())));
+    }
+    let swept = sweep_model(&loaded, &certificates, &request, &bar);
     interrupt::check()?;
     let rows = swept.map_err(|error| load::in_file(error.into(), &args.model.path))?;
-    let mut out = Output::new();
-    match args.json.json {
-        true => rows.iter().try_for_each(|row| out.json(row))?,
-        false => {
-            out.line(request.ranges(&loaded)?)?;
-            sweep_table(&rows, "--q, --ignore-rest").into_iter().try_for_each(|line| out.line(line))?;
-        }
-    }
-    out.finish()?;
+    print(args, &rows, || [vec![ranges.to_string()], sweep_table(&rows, "--q, --ignore-rest")].concat())?;
     // The table says so itself.
     if args.json.json && rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
         note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
     }
-    let is_free = rows.iter().all(|row| row.outcome == SweepOutcome::Free);
-    Ok(if is_free { Outcome::Done } else { Outcome::Finding })
+    Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
+}
+
+fn print(args: &Sweep, rows: &[impl Serialize], table: impl Fn() -> Vec<String>) -> Result<()> {
+    let mut out = Output::new();
+    match args.json.json {
+        true => rows.iter().try_for_each(|row| out.json(row))?,
+        false => table().into_iter().try_for_each(|line| out.line(line))?,
+    }
+    Ok(out.finish()?)
+}
+
+fn outcome(is_free: bool) -> Outcome {
+    if is_free { Outcome::Done } else { Outcome::Finding }
 }

@@ -137,7 +137,7 @@ fn face_with_exceptions() {
     let Some(Face { model, cases, with_exceptions: with }) = face_of("face_with_exceptions") else { return };
     let rest = &cases[0].pairs;
     // Loose radii suffice for the pairs.
-    let options = CertifyOptions::default().ignore_rest(true).epsilon(0.9);
+    let options = CertifyOptions::default().ignore_rest(0).epsilon(0.9);
     let ignoring = Certificates::compute(model, &options, &()).unwrap();
     assert_eq!((with.exceptions(), ignoring.filter().ignored()), (&rest[..], &rest[..]));
     assert!(with.root_radius() > 0.0 && with.rest_collisions() == 124);

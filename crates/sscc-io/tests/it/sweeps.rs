@@ -39,7 +39,7 @@ fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &
 }
 
 fn certify(model: &ReducedModel, ignore_rest: bool, center: Option<Vec<f64>>) -> Certificates {
-    let options = CertifyOptions::default().ignore_rest(ignore_rest).center(center).budget(0);
+    let options = CertifyOptions::default().ignore_rest(ignore_rest.then_some(0)).center(center).budget(0);
     Certificates::compute(model, &options, &()).unwrap()
 }
 

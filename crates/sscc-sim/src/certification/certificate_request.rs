@@ -29,8 +29,8 @@ pub struct CertificateRequest {
     pub neighbours: Option<Neighbours>,
     /// Whether to weld equal vertices (`--weld`); none: as the mesh has it ([`ContactFilter::of`]).
     pub weld: Option<bool>,
-    /// Whether pairs that collide at rest never count (`--ignore-rest`).
-    pub ignore_rest: bool,
+    /// Pairs within so many rings of those that collide at rest never count (`--ignore-rest`); none: all count.
+    pub ignore_rest: Option<u32>,
     /// Which pairs of groups of triangles count.
     pub groups: GroupRules,
     /// Maximum number of exceptions (`--max-exceptions`).
@@ -85,8 +85,8 @@ impl CertificateRequest {
         self.budget()?;
         self.local_budget()?;
         self.reach()?;
-        if self.ignore_rest {
-            filter = filter.ignoring_rest(model).in_file(&self.model)?;
+        if let Some(rings) = self.ignore_rest {
+            filter = filter.ignoring_rest(model, rings).in_file(&self.model)?;
         }
         Ok(Scope {
             metric: metric.unwrap_or_else(|| model.metric().clone()),

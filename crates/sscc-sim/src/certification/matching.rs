@@ -89,9 +89,17 @@ impl CertificateRequest {
                 return Ok(Some(cause + format!(" {reach} allows") + REMEDY));
             }
         }
-        let ignored = certificates.filter().ignored().len() as u64;
-        if self.ignore_rest && ignored != certificates.rest_collisions() {
-            return Ok(Some("certified without " + Setting::IgnoreRest + REMEDY));
+        if let Some(rings) = self.ignore_rest {
+            let ContactFilter { neighbours, weld, .. } = *certificates.filter();
+            let filter = ContactFilter::new(neighbours).weld(weld);
+            let filter = match certificates.filter().groups() {
+                Some(groups) => filter.with_groups(Arc::clone(groups)),
+                None => filter,
+            };
+            if filter.ignoring_rest(model, rings)?.ignored() != certificates.filter().ignored() {
+                let rings = if rings == 0 { String::new() } else { format!(" of {rings} rings") };
+                return Ok(Some("certified without " + Setting::IgnoreRest + rings + REMEDY));
+            }
         }
         let exceptions = certificates.exceptions().len();
         Ok(self.max_exceptions.filter(|max| exceptions > *max).map(|_| {

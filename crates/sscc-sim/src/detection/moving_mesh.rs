@@ -262,8 +262,9 @@ fn detector(
     make: impl Fn(&ContactFilter) -> Result<Detector, sscc::Error>,
 ) -> Result<(Detector, LeftOut), sscc::Error> {
     let (mut detector, mut filter) = (make(&filter)?.cancelled_by(watch.cancel_token().cloned()), filter);
-    if request.ignore_rest {
-        filter = filter.ignoring(detector.discrete(mesh.rest_positions())?.to_vec());
+    if let Some(rings) = request.ignore_rest {
+        let at_rest = detector.discrete(mesh.rest_positions())?.to_vec();
+        filter = filter.ignoring(detector.surroundings(&at_rest, rings)?);
         detector = make(&filter)?.cancelled_by(watch.cancel_token().cloned());
     }
     Ok((detector, LeftOut::of(&filter)))

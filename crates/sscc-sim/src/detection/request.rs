@@ -27,7 +27,7 @@ pub struct Detection {
     /// mesh has it ([`sscc::ContactFilter::of`]); in animations they are.
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
-    pub ignore_rest: bool,
+    pub ignore_rest: Option<u32>,
     /// Which pairs of groups of triangles count; without another mesh.
     pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
@@ -55,7 +55,7 @@ impl Default for Detection {
             against: None,
             neighbours: Neighbours::default(),
             weld: None,
-            ignore_rest: false,
+            ignore_rest: None,
             groups: GroupRules::default(),
             is_continuous: false,
             limit: None,

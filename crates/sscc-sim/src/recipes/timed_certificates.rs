@@ -70,7 +70,7 @@ impl TimedCertificates {
             .metric(metric)
             .budget(budget)
             .local_budget(local_budget(budget))
-            .ignore_rest(true)
+            .ignore_rest(0)
             .threads(threads);
         watch.begin(Stage::Certificates);
         let peak = PeakMemory::start();

@@ -6,6 +6,7 @@ use sscc::{Certificates, ModeRange, Pair, Progress, Query, ReducedModel};
 use sscc_io::gltf::PlacedMesh;
 use sscc_io::{IoError, LoadedModel, Setting, write_ply_pose};
 
+use super::interval_row::IntervalRow;
 use super::sweep_range::SweepRange;
 use super::sweep_row::SweepRow;
 use crate::error::{At, Result};
@@ -47,6 +48,13 @@ impl SweepRequest {
         self.pose.as_deref().map_or(Ok(()), make_folder)?;
         Ok((q, ranges))
     }
+
+    /// As [`Self::prepare`], with the numbers of the modes.
+    fn ways(&self, loaded: &LoadedModel, certificates: &Certificates) -> Result<(Vec<f64>, Vec<ModeRange>)> {
+        let (q, ranges) = self.prepare(loaded, certificates.center())?;
+        let ranges = ranges.into_iter().enumerate();
+        Ok((q, ranges.map(|(mode, [low, high])| ModeRange { mode, low, high }).collect()))
+    }
 }
 
 /// Sweeps every mode up and down from its weight at the start, and writes the shape at each hit with its pairs marked. All
@@ -61,9 +69,7 @@ pub fn sweep_model(
     request: &SweepRequest,
     progress: &dyn Progress,
 ) -> Result<Vec<SweepRow>> {
-    let (q, ranges) = request.prepare(loaded, certificates.center())?;
-    let ranges = ranges.into_iter().enumerate();
-    let ranges: Vec<ModeRange> = ranges.map(|(mode, [low, high])| ModeRange { mode, low, high }).collect();
+    let (q, ranges) = request.ways(loaded, certificates)?;
     let query = Query::new(&loaded.model, certificates)?;
     let sweeps = query.sweep_modes(&q, &ranges, request.threads, progress)?;
     let rows: Vec<SweepRow> =
@@ -79,6 +85,24 @@ pub fn sweep_model(
         }
     }
     Ok(rows)
+}
+
+/// Finds for every mode the intervals of its weight over which the shape collides, by so many samples.
+///
+/// # Errors
+/// As [`SweepRequest::prepare`]; when the certificates are of another model, there are too few or too many samples, or `progress`
+/// cancels.
+pub fn sweep_model_intervals(
+    loaded: &LoadedModel,
+    certificates: &Certificates,
+    request: &SweepRequest,
+    samples: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<IntervalRow>> {
+    let (q, ranges) = request.ways(loaded, certificates)?;
+    let query = Query::new(&loaded.model, certificates)?;
+    let found = query.sweep_intervals(&q, &ranges, samples, request.threads, progress)?;
+    Ok(found.into_iter().map(|found| IntervalRow::new(found, &loaded.mode_names)).collect())
 }
 
 /// Writes the shape at q, where the file puts it, with the triangles of these pairs marked.

@@ -74,7 +74,7 @@ impl SweepRow {
 }
 
 /// Longest name of a line, in characters.
-const MAX_NAME: usize = 40;
+pub(super) const MAX_NAME: usize = 40;
 
 /// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs are one line;
 /// `remedy` is what the caller can change about them.

@@ -10,7 +10,7 @@ pub struct CertifyOptions {
     pub(crate) metric: Option<Metric>,
     pub(crate) center: Option<Vec<f64>>,
     pub(crate) filter: Option<ContactFilter>,
-    pub(crate) ignore_rest: bool,
+    pub(crate) ignore_rest: Option<u32>,
     pub(crate) max_exceptions: Option<usize>,
     pub(crate) budget: usize,
     pub(crate) local_budget: usize,
@@ -25,7 +25,7 @@ impl Default for CertifyOptions {
             metric: None,
             center: None,
             filter: None,
-            ignore_rest: false,
+            ignore_rest: None,
             max_exceptions: None,
             budget: DEFAULT_BUDGET,
             local_budget: DEFAULT_LOCAL_BUDGET,
@@ -55,8 +55,10 @@ impl CertifyOptions {
         center: impl Into<Option<Vec<f64>>>,
         /// Which pairs of triangles count; none: the default of the model's mesh ([`ContactFilter::of`]).
         filter: impl Into<Option<ContactFilter>>,
-        /// Whether the contact filter also ignores the pairs that collide at rest (q = 0): queries never list them.
-        ignore_rest: bool,
+        /// The contact filter also ignores the pairs that collide at rest (q = 0) and those within so many rings of them, 0 for
+        /// these pairs alone: queries never list them. Where lips rest on each other, their neighbours touch at the smallest
+        /// weight: one or two rings leave these out. None: no pair is ignored for that reason.
+        ignore_rest: impl Into<Option<u32>>,
         /// The largest number of exceptions: pairs that collide at the centre, are left out of every radius, and are tested
         /// in every query. If more pairs collide there, none of them is an exception, and the radius of each node that
         /// contains one is 0. None: half the number of the triangles, because testing more in every query costs as much as

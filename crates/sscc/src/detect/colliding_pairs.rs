@@ -8,6 +8,7 @@ use super::context::Context;
 use super::layout::Needs;
 use super::narrow_phase::DiscreteHits;
 use super::vertex_motion::DeformedMotion;
+use crate::filter::{PairFilter, surroundings};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
@@ -44,13 +45,27 @@ pub(crate) fn colliding_pairs(
 }
 
 impl ContactFilter {
-    /// The same filter, which also ignores the pairs that collide at rest (q = 0).
+    /// The same filter, which also ignores the pairs that collide at rest (q = 0), and those within so many rings of them.
     ///
     /// # Errors
-    /// When they are more than 2^24, or when the filter's groups are of another mesh.
-    pub fn ignoring_rest(self, model: &ReducedModel) -> Result<Self, Error> {
+    /// When they are more than 2^24 at rest or 2^22 with the rings, or when the filter's groups are of another mesh.
+    pub fn ignoring_rest(self, model: &ReducedModel, rings: u32) -> Result<Self, Error> {
         let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
-        Ok(self.ignoring(pairs))
+        self.ignoring_around(model, pairs, rings)
+    }
+
+    /// The same filter, which also ignores these pairs and those within so many rings of them.
+    ///
+    /// # Errors
+    /// When they are too many.
+    pub(crate) fn ignoring_around(
+        self,
+        model: &ReducedModel,
+        pairs: Vec<Pair>,
+        rings: u32,
+    ) -> Result<Self, Error> {
+        let around = surroundings(&PairFilter::new(model, &self), &pairs, rings)?;
+        Ok(self.ignoring(around))
     }
 }

@@ -6,6 +6,7 @@ mod contact_filter;
 mod pair_filter;
 mod rings;
 mod simplex_pairs;
+mod surroundings;
 mod triangle_groups;
 mod weld;
 
@@ -13,6 +14,7 @@ pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, chec
 pub(crate) use pair_filter::{PairFilter, Relation};
 pub(crate) use rings::Rings;
 pub(crate) use simplex_pairs::SimplexPair;
+pub(crate) use surroundings::surroundings;
 pub use triangle_groups::{GroupTable, TriangleGroups};
 pub(crate) use weld::weld_classes;
 pub use weld::weld_classes_of_positions;

@@ -11,6 +11,8 @@ pub(crate) struct Rings {
     triangles: Vec<u32>,
     /// The triangle whose rings are marked.
     center: Option<u32>,
+    /// The triangles that are marked: that one first, then ring by ring.
+    marked: Vec<u32>,
     /// For each triangle and each class the number of the last search that reached it.
     reached: Vec<u32>,
     reached_classes: Vec<u32>,
@@ -37,6 +39,7 @@ impl Rings {
             starts,
             triangles,
             center: None,
+            marked: Vec::new(),
             reached: vec![0; faces as usize],
             reached_classes,
             search: 0,
@@ -51,6 +54,14 @@ impl Rings {
         self.reached[b as usize] == self.search
     }
 
+    /// The triangles within the rings around one: itself first, then ring by ring.
+    pub(super) fn around(&mut self, filter: &PairFilter, center: u32) -> &[u32] {
+        if self.center != Some(center) {
+            self.mark(filter, center);
+        }
+        &self.marked
+    }
+
     /// Marks the triangles around one.
     fn mark(&mut self, filter: &PairFilter, center: u32) {
         if self.search == u32::MAX {
@@ -61,25 +72,26 @@ impl Rings {
         self.search += 1;
         self.center = Some(center);
         self.reached[center as usize] = self.search;
-        let mut ring = vec![center];
+        self.marked.clear();
+        self.marked.push(center);
+        let mut ring = 0..1;
         for _ in 0..right_or!(self.rings, RingsOneMore, self.rings + 1) {
-            let mut next = Vec::new();
-            for class in ring.iter().flat_map(|t| filter.vertex_classes(*t)) {
-                if std::mem::replace(&mut self.reached_classes[class as usize], self.search) == self.search {
-                    continue;
-                }
-                for &t in &self.triangles
-                    [self.starts[class as usize] as usize..self.starts[class as usize + 1] as usize]
-                {
-                    if std::mem::replace(&mut self.reached[t as usize], self.search) != self.search {
-                        next.push(t);
+            for i in ring.clone() {
+                for class in filter.vertex_classes(self.marked[i]).map(|class| class as usize) {
+                    if std::mem::replace(&mut self.reached_classes[class], self.search) == self.search {
+                        continue;
+                    }
+                    for &t in &self.triangles[self.starts[class] as usize..self.starts[class + 1] as usize] {
+                        if std::mem::replace(&mut self.reached[t as usize], self.search) != self.search {
+                            self.marked.push(t);
+                        }
                     }
                 }
             }
-            if next.is_empty() {
+            ring = ring.end..self.marked.len();
+            if ring.is_empty() {
                 return;
             }
-            ring = next;
         }
     }
 }

@@ -64,6 +64,12 @@ mutants! {
     SweepExact: CaughtBy("it sweep::rounding_between_two_weights_is_not_forgotten");
     /// Steps of sweeps along features omit the slack.
     FeaturesWithoutSlack: CaughtBy("lib geometry::ccd::free_until::tests::directions_along_features_leave_room_for_the_slack");
+    /// Between samples that are free nothing is swept.
+    IntervalsBySamples: CaughtBy("it sweep_intervals::a_contact_at_one_weight_is_an_interval");
+    /// The end of an interval is not looked for.
+    IntervalsEndWhereTheyBegin: CaughtBy("it sweep_intervals::each_plate_is_an_interval_whatever_the_samples");
+    /// Only the second triangle of a pair that collides at rest has surroundings.
+    SurroundingsOfOne: CaughtBy("it sweep_intervals::surroundings_are_those_of_all_triangles");
     /// Sweeps do not follow features.
     SweepFeaturesNotFollowed: CaughtBy("it near_layers::layers_that_nearly_touch_are_free_after_few_steps");
     /// A |z| that equals the root's radius is certified.

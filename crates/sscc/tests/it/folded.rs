@@ -325,7 +325,7 @@ fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
     for method in [Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce] {
         refused(Query::without_certificates(&model, scope(), method).err().unwrap());
     }
-    refused(folded().ignoring_rest(&model).unwrap_err());
+    refused(folded().ignoring_rest(&model, 0).unwrap_err());
     let mut forged = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap().parts().clone();
     forged.scope = scope().into();
     forged.digest = sscc::parts::Digest::of(&model, &forged.scope);

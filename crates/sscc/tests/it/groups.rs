@@ -123,7 +123,7 @@ fn pairs_that_do_not_count_limit_no_radius() {
     let (mut larger, mut compared) = (0, 0);
     for seed in 0..cases(80) {
         let (model, RandomOptions { options, filter, .. }, groups) = sample(seed);
-        let options = options.ignore_rest(false);
+        let options = options.ignore_rest(None);
         let certify = |options: &CertifyOptions| Certificates::compute(&model, options, &()).unwrap();
         let plain = certify(&options);
         let grouped = certify(&with_groups(&options, &filter, &groups));
@@ -244,7 +244,7 @@ fn other_groups_are_refused() {
         )
         .err(),
         Detector::with_filter(model.mesh(), &short).err(),
-        short.clone().ignoring_rest(&model).err(),
+        short.clone().ignoring_rest(&model, 0).err(),
     ];
     refused.into_iter().for_each(|error| assert_eq!(error.unwrap().to_string(), expected));
     let mut parts = certificates.parts().clone();

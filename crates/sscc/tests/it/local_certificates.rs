@@ -41,7 +41,7 @@ fn options_of(model: &ReducedModel, seed: u64, random: &mut Numbers) -> CertifyO
         .metric(metric)
         .center(center)
         .filter(filter)
-        .ignore_rest(seed % 4 == 3)
+        .ignore_rest((seed % 4 == 3).then_some(0))
         .budget(512)
         .local_budget(1 << 20)
         .epsilon(0.9)

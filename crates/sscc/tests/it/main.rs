@@ -35,3 +35,4 @@ mod resolve;
 mod rounding;
 mod safe_scale;
 mod sweep;
+mod sweep_intervals;

@@ -167,10 +167,10 @@ fn rest_collisions_can_be_ignored() {
             continue;
         }
         seen += 1;
-        let options = options.ignore_rest(true);
+        let options = options.ignore_rest(0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         assert_eq!((certificates.filter().ignored(), certificates.exceptions()), (&rest[..], &[][..]));
-        let filter = ContactFilter::default().ignoring_rest(&model).unwrap();
+        let filter = ContactFilter::default().ignoring_rest(&model, 0).unwrap();
         assert_eq!(certificates.filter(), &filter);
         assert!(check_filter(&certificates, &ContactFilter::default()).is_err());
         let mut query = Query::new(&model, &certificates).unwrap();

@@ -116,14 +116,18 @@ fn check_flags(args: &Check) -> Result<()> {
         ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");
     }
     if motion.against.is_some() {
-        let is_filtered = options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest;
+        let is_filtered =
+            options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest.is_some();
         ensure!(
             !is_filtered && load::groups(&options.groups) == GroupRules::default(),
             "--against: triangles of two meshes all count: leave out --neighbours, --weld, --ignore-rest and groups"
         );
     }
     let moves = motion.frames.is_some() || motion.animation.is_some() || motion.against_frames.is_some();
-    ensure!(moves || !options.ignore_rest, "--ignore-rest: the mesh is at rest: add --frames or --animation");
+    ensure!(
+        moves || options.ignore_rest.is_none(),
+        "--ignore-rest: the mesh is at rest: add --frames or --animation"
+    );
     ensure!(
         moves || !args.continuous,
         "--continuous: a mesh at rest has no motion: add --frames, --animation or --trajectory"

@@ -120,7 +120,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         (metric.is_some(), "--metric"),
         (center.is_some(), "--center"),
         (neighbours.is_some(), "--neighbours"),
-        (*ignore_rest, "--ignore-rest"),
+        (ignore_rest.is_some(), "--ignore-rest"),
         (!groups.ignore_groups.is_empty(), "--ignore-groups"),
         (!groups.only_groups.is_empty(), "--only-groups"),
         (groups.group_by.is_some(), "--group-by"),

@@ -75,8 +75,8 @@ impl Preparation {
         } else {
             colliding_pairs(model, &hierarchy, &filter, &center, progress)?
         };
-        if options.ignore_rest {
-            filter = filter.ignoring(at_rest);
+        if let Some(rings) = options.ignore_rest {
+            filter = filter.ignoring_around(model, at_rest, rings)?;
         }
         let triangles = model.mesh().faces().len();
         let max_exceptions = options.max_exceptions.unwrap_or_else(|| default_exceptions(triangles));

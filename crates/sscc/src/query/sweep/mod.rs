@@ -1,12 +1,14 @@
-//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket.
+//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket; intervals of weights over which it collides.
 
 mod contact;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod sweep;
 mod sweep_modes;
+mod weight_intervals;
 mod weight_line;
 mod weight_sweep;
 mod work;
 
 pub use sweep::{Sweep, SweepOutcome};
 pub use sweep_modes::ModeRange;
+pub use weight_intervals::{WeightInterval, WeightIntervals, WeightSample};

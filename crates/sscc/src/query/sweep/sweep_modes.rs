@@ -37,27 +37,57 @@ impl Query {
     ) -> Result<Vec<Sweep>, Error> {
         self.context.model.check_coordinates(q)?;
         let mut ways = Vec::with_capacity(2 * ranges.len());
-        for &ModeRange { mode, low, high } in ranges {
-            let weight = *q.get(mode).ok_or(Error::ModeIndex { mode, rank: q.len() })?;
-            if !(low < high && (high - low).is_finite()) {
-                return Err(Error::SweepRange { mode, low, high });
-            }
-            let from = weight.clamp(low, high);
+        for range in ranges {
+            let ModeRange { mode, low, high } = *range;
+            let from = range.check(q)?.clamp(low, high);
             ways.extend([high, low].into_iter().filter(|to| *to != from).map(|to| (mode, from, to)));
         }
+        self.for_each_way(q, &ways, threads, progress, |query, at, &(mode, from, to)| {
+            at[mode] = from;
+            query.sweep(at, mode, to)
+        })
+    }
+
+    /// Maps ways through q, a configuration of the model, to their results, in parallel: each with a query and a copy of q of its own.
+    ///
+    /// # Errors
+    /// That of the first way that has one.
+    pub(super) fn for_each_way<W: Sync, R: Send>(
+        &self,
+        q: &[f64],
+        ways: &[W],
+        threads: Option<usize>,
+        progress: &dyn Progress,
+        map: impl Fn(&mut Query, &mut [f64], &W) -> Result<R, Error> + Sync,
+    ) -> Result<Vec<R>, Error> {
         let done = AtomicUsize::new(0);
         let start = || (self.clone().cancelled_by(progress.cancel_token().cloned()), q.to_vec());
-        let sweep = |(query, at): &mut (Query, Vec<f64>), &(mode, from, to): &(usize, f64, f64)| {
+        let one = |(query, at): &mut (Query, Vec<f64>), way: &W| {
             if progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             at.copy_from_slice(q);
-            at[mode] = from;
-            let found = query.sweep(at, mode, to)?;
+            let found = map(query, at, way)?;
             progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, ways.len());
             Ok(found)
         };
-        let all: Vec<Result<Sweep, Error>> = on_threads(threads, || map_with(&ways, 1, start, sweep));
+        let all: Vec<Result<R, Error>> = on_threads(threads, || map_with(ways, 1, start, one));
         all.into_iter().collect()
+    }
+}
+
+impl ModeRange {
+    /// Returns the weight of the mode in q.
+    ///
+    /// # Errors
+    /// When q has no such mode; when the range is empty or not finite.
+    pub(super) fn check(&self, q: &[f64]) -> Result<f64, Error> {
+        let Self { mode, low, high } = *self;
+        let weight = *q.get(mode).ok_or(Error::ModeIndex { mode, rank: q.len() })?;
+        if low < high && (high - low).is_finite() {
+            Ok(weight)
+        } else {
+            Err(Error::SweepRange { mode, low, high })
+        }
     }
 }

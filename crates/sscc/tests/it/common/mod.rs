@@ -385,7 +385,7 @@ pub fn random_choices(seed: u64, model: &ReducedModel) -> RandomOptions {
     let options = CertifyOptions::default()
         .center(center)
         .filter(filter.clone())
-        .ignore_rest(ignore_rest)
+        .ignore_rest(ignore_rest.then_some(0))
         .max_exceptions([None, Some(0), Some(1000)][random.below(3)])
         // More than by default: these models are small.
         .budget(16)
