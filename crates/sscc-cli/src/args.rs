@@ -8,6 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use sscc::parts::is_reach;
 use sscc::{Clearance, Method, Neighbours};
+use sscc_sim::UNITS;
 
 /// The template of a help page with examples, one command a line. The examples are part of the template because clap
 /// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
@@ -121,12 +122,19 @@ pub struct Modes {
     /// contains it, or with the nearest one
     #[arg(long, value_name = "FILE", conflicts_with = "resolution")]
     pub solid: Option<PathBuf>,
+    /// Factor on all lengths of the files, which are in metres then
+    #[arg(long, value_name = "S", value_parser = scale, conflicts_with = "units")]
+    pub scale: Option<f64>,
+    /// Unit of length of the files [default: m]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(UNITS.map(|(name, _)| name)))]
+    pub units: Option<String>,
     /// Vertices that do not move: numbers counted from 0, as in 0,5,7 (with --solid those of the solid);
-    /// box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1) [default: none; the modes
+    /// box:X0,Y0,Z0,X1,Y1,Z1 in the units of the file; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1) [default: none; the modes
     /// are those of a free body, without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
-    /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of
+    /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber,
+    /// spring-steel, stainless-steel, titanium, brass, copper, nylon, pla, concrete, or any of
     /// youngs=E,poisson=NU,density=RHO; it overrides the materials in a solid's file [default: those of the file, else
     /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
@@ -137,6 +145,20 @@ pub struct Modes {
     pub resolution: Option<u32>,
     #[command(flatten)]
     pub json: Json,
+}
+
+impl Modes {
+    /// Returns the factor on all lengths of the files.
+    pub fn factor(&self) -> f64 {
+        let unit = |name: &String| UNITS.iter().find(|(known, _)| known == name).map(|(_, metres)| *metres);
+        self.scale.or_else(|| self.units.as_ref().and_then(unit)).unwrap_or(1.0)
+    }
+}
+
+/// Parses a factor on lengths.
+fn scale(typed: &str) -> Result<f64, String> {
+    let factor = typed.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+    factor.ok_or_else(|| "a number above 0 was expected".into())
 }
 
 /// Kinds of modes that `sscc modes` makes.

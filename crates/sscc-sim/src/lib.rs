@@ -28,6 +28,7 @@ mod models;
 mod nearest;
 mod outputs;
 mod recipes;
+mod resize;
 mod resolve;
 mod run;
 mod scenes;
@@ -54,9 +55,10 @@ pub use models::{
 pub use nearest::{did_you_mean, nearest};
 pub use outputs::{Outputs, SoundTrack};
 pub use recipes::{
-    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, Resize,
-    SPRING_RINGS, Shape, TimedCertificates, models_folder,
+    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, SPRING_RINGS, Shape,
+    TimedCertificates, models_folder,
 };
+pub use resize::{Resize, UNITS, longest_side, scaled};
 pub use resolve::{ResolveReport, resolve_rows};
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,

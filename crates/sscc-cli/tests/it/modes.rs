@@ -105,6 +105,41 @@ fn linear_modes_of_a_surface() {
 }
 
 #[test]
+fn units_of_a_file_scale_its_model() {
+    let directory = folder();
+    let folder = directory.path();
+    let args =
+        ["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8", "--fix", "box:-1,-1,-1,0,2,2"];
+    let of = |more: &[&str]| {
+        let report = modes(folder, &[&args[..], more].concat());
+        let numbers = ["longest_side", "mass"].map(|key| report[key].as_f64().unwrap());
+        (numbers[0], numbers[1], report["frequencies_hz"][0].as_f64().unwrap())
+    };
+    let (side, mass, first) = of(&[]);
+    assert!(side == 2.0 && (mass / 2000.0 - 1.0).abs() < 0.01);
+    for more in [["--units", "mm"], ["--scale", "0.001"]] {
+        let found = of(&more);
+        let ratios = [found.0 / side * 1e3, found.1 / mass * 1e9, found.2 / first / 1e3];
+        assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{ratios:?}");
+    }
+    let text =
+        sscc(folder, &["modes", "-o", "x.model.safetensors", "two.veg", "--kind", "linear", "--rank", "2"]);
+    assert!(text.stdout.contains("\nlongest side 1.000 m, mass 833.3 kg, first mode "), "{text:?}");
+    let refused = |more: &[&str]| {
+        let run = sscc(folder, &[&["modes", "-o", "x.model.safetensors"], &args[..], more].concat());
+        assert_eq!((run.code, run.stderr.lines().count()), (Some(2), 1), "{run:?}");
+        run.stderr
+    };
+    let unknown = refused(&["--units", "ft"]);
+    assert!(unknown.contains("'ft'") && unknown.contains("mm, cm, m, in"), "{unknown}");
+    assert!(refused(&["--units", "mm", "--scale", "2"]).contains("cannot be used with"));
+    for typed in ["--scale=0", "--scale=-1", "--scale=nan", "--scale=x", "--scale=inf"] {
+        assert!(refused(&[typed]).contains("a number above 0 was expected"));
+    }
+    assert!(refused(&["--scale", "1e100"]).contains("box.obj: "));
+}
+
+#[test]
 fn bases_for_large_deformations_have_forces() {
     let directory = folder();
     let folder = directory.path();
@@ -233,7 +268,8 @@ fn refusals() {
         ),
         (
             &["box.obj", "--resolution", "4", "--material", "stel"],
-            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber); did you mean 'steel'?",
+            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, \
+             spring-steel, stainless-steel, titanium, brass, copper, nylon, pla, concrete); did you mean 'steel'?",
         ),
         (
             &["box.obj", "--resolution", "4", "--material", "youngs=1e6,possion=0.3"],

@@ -106,12 +106,12 @@ pub fn elastic_model(
         "{of_source} {name}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
         kind.name(),
     );
-    let frequencies = found.frequencies();
+    let (frequencies, kilograms) = (found.frequencies(), mass.properties.mass);
     let metric = found.energy_metric()?;
     Ok(NewModel {
         model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
         info: ModelInfo::new("", provenance).with_elasticity(found.elasticity).with_mass(mass),
-        solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
+        solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, mass: kilograms, frequencies }),
         components: None,
     })
 }

@@ -8,7 +8,8 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use sscc_io::write_model;
-use sscc_sim::{Components, has_equal_vertices};
+use sscc_sim::text::size_and_mass;
+use sscc_sim::{Components, has_equal_vertices, longest_side};
 
 use crate::args;
 use crate::outcome::Outcome;
@@ -21,6 +22,11 @@ struct Report {
     triangles: usize,
     vertices: usize,
     rank: usize,
+    /// Longest side of the box around the surface (m).
+    longest_side: f64,
+    /// Mass of the solid (kg).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass: Option<f64>,
     /// Tetrahedra and cubes of the solid; none without a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     elements: Option<usize>,
@@ -45,6 +51,8 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         triangles: model.mesh().faces().len(),
         vertices: model.mesh().rest_positions().len(),
         rank: model.rank(),
+        longest_side: longest_side(model.mesh().rest_positions()),
+        mass: made.solid.as_ref().map(|solid| solid.mass),
         elements: made.solid.as_ref().map(|solid| solid.elements),
         degrees_of_freedom: made.solid.as_ref().map(|solid| solid.degrees_of_freedom),
         frequencies_hz: made.solid.as_ref().map(|solid| solid.frequencies.clone()),
@@ -69,12 +77,14 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
             let elements = counted(elements as u64, "element");
             out.line(format_args!("solid of {elements}, {} degrees of freedom", grouped(freedom as u64)))?;
         }
-        match report.frequencies_hz.as_deref() {
-            Some([only]) => out.line(format_args!("frequency {} Hz", length(*only)))?,
-            Some([first, .., last]) => {
-                out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
+        match (report.mass, report.frequencies_hz.as_deref()) {
+            (Some(mass), Some([first, ..])) => {
+                out.line(size_and_mass(report.longest_side, Some(mass), *first))?;
             }
-            _ => {}
+            _ => out.line(format_args!("longest side {} m", length(report.longest_side)))?,
+        }
+        if let Some([first, .., last]) = report.frequencies_hz.as_deref() {
+            out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
         }
         out.line(format_args!("written: {}", args.output.display()))?;
     }
