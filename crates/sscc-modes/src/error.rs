@@ -215,6 +215,11 @@ pub enum ModesError {
         "{_0}: more than a tenth of its size; use a solid that encloses the surface, in the same units and place"
     )]
     OutsideSolid(Outside),
+    /// A surface is to be embedded in tetrahedra of second order.
+    #[error(
+        "a surface can be embedded in tetrahedra of first order only: mesh the solid in first order, or take its own surface"
+    )]
+    EmbeddedInSecondOrder,
     /// An animation has fewer than two frames.
     #[error("{found} frames are too few: principal components need at least two")]
     TooFewFrames {

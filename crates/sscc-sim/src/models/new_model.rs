@@ -29,6 +29,9 @@ pub struct SolidFacts {
     pub mass: f64,
     /// Frequency of each mode (Hz).
     pub frequencies: Vec<f64>,
+    /// First frequency (Hz) with the same tetrahedra in second order: linear ones are too stiff by the difference. None
+    /// where it was not computed.
+    pub second_order: Option<f64>,
 }
 
 /// The variance that principal components explain.

@@ -34,9 +34,15 @@ struct Report {
     degrees_of_freedom: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
+    /// First frequency of the same tetrahedra in second order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_order_hz: Option<f64>,
     #[serde(flatten)]
     components: Option<Components>,
 }
+
+/// Maximum excess of the first frequency (percent) without a note.
+const MAX_EXCESS: f64 = 5.0;
 
 pub fn run(args: &args::Modes) -> Result<Outcome> {
     let inputs: Vec<&Path> =
@@ -56,6 +62,7 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         elements: made.solid.as_ref().map(|solid| solid.elements),
         degrees_of_freedom: made.solid.as_ref().map(|solid| solid.degrees_of_freedom),
         frequencies_hz: made.solid.as_ref().map(|solid| solid.frequencies.clone()),
+        second_order_hz: made.solid.as_ref().and_then(|solid| solid.second_order),
         components: made.components.clone(),
     };
     let mut out = Output::new();
@@ -89,6 +96,18 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         out.line(format_args!("written: {}", args.output.display()))?;
     }
     out.finish()?;
+    if let (Some([first, ..]), Some(second_order)) =
+        (report.frequencies_hz.as_deref(), report.second_order_hz)
+    {
+        let excess = 100.0 * (first / second_order - 1.0);
+        if excess > MAX_EXCESS {
+            note(format_args!(
+                "the tetrahedra are too stiff: the first frequency is {excess:.0}% above that of the same ones in second \
+                 order ({} Hz); mesh the solid in second order (gmsh: -order 2) or finer",
+                length(second_order)
+            ));
+        }
+    }
     if has_equal_vertices(model) {
         note("some vertices have equal positions and modes, as along seams: certify the model with --weld");
     }
