@@ -33,6 +33,7 @@ mod resolve;
 mod run;
 mod scenes;
 mod simulate;
+mod statics;
 mod sweeps;
 pub mod text;
 mod watch;
@@ -68,6 +69,7 @@ pub use scenes::{
     BodySpec, ModelSpec, OWN_AMPLITUDE_SCENES, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene,
 };
 pub use simulate::{Request, make_folder, simulate};
+pub use statics::{StaticAnswer, static_answer};
 pub use sweeps::{SweepRange, SweepRequest, SweepRow, sweep_model, sweep_table};
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;
