@@ -1,7 +1,8 @@
 //! The static answer of a model from a file to a load.
 
 use glam::DVec3;
-use sscc_io::{LoadedModel, Setting};
+use sscc::ReducedModel;
+use sscc_io::{ModelInfo, Setting};
 use sscc_modes::{generalized_forces, static_configuration};
 
 use crate::SimError;
@@ -24,18 +25,18 @@ pub struct StaticAnswer {
 /// # Errors
 /// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static answer.
 pub fn static_answer(
-    loaded: &LoadedModel,
+    model: &ReducedModel,
+    info: &ModelInfo,
     forces: &[(u32, DVec3)],
     gravity: Option<DVec3>,
 ) -> Result<StaticAnswer> {
-    let model = &loaded.model;
-    let Some(elasticity) = &loaded.info.elasticity else {
+    let Some(elasticity) = &info.elasticity else {
         let cause = "compute it from a solid with sscc modes " + Setting::Kind + " linear";
         return Err(SimError::refused("the model has no stiffness", cause));
     };
     let mut generalized = generalized_forces(model.modes(), forces)?;
     if let Some(gravity) = gravity {
-        let Some(mass) = &loaded.info.mass else {
+        let Some(mass) = &info.mass else {
             let cause = "compute it again with sscc modes, which states it";
             return Err(SimError::refused("the model states no mass", cause));
         };

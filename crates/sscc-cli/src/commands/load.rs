@@ -25,7 +25,7 @@ pub fn run(args: &Load) -> Result<Outcome> {
     ensure!(!args.force.is_empty() || args.gravity.is_some(), "--force or --gravity is needed");
     load::check_output(&args.output, ".npy", &[&args.model.path])?;
     let loaded = load::model(&args.model)?;
-    let found = static_answer(&loaded, &args.force, args.gravity);
+    let found = static_answer(&loaded.model, &loaded.info, &args.force, args.gravity);
     let found = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
     write_npy(&args.output, &[found.q.len()], &found.q)?;
     let report = Report { q: found.q, largest_displacement: found.largest, vertex: found.vertex };
