@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{files, sscc};
+use crate::statics::BRACKET;
 
 /// A box of 2 x 1 x 1, closed.
 const BOX: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n\
@@ -218,6 +219,22 @@ fn tetrahedra_of_second_order_bend_as_a_beam_and_linear_ones_are_noted() {
     let run = run("box.obj", &["--solid", "second.msh"]);
     let embedded = run.refusal();
     assert!(embedded.contains("a surface can be embedded in tetrahedra of first order only"), "{embedded}");
+}
+
+#[test]
+fn documented_parts_print_what_is_shown() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    fs::write(folder.join("bracket.obj"), BRACKET).unwrap();
+    fs::write(folder.join("beam.msh"), &beams()[0]).unwrap();
+    let guide = include_str!("../../../../docs/command.md");
+    for source in ["bracket.obj", "beam.msh"] {
+        let (_, block) = guide.split_once(&format!("$ sscc modes {source} ")).unwrap();
+        let (typed, shown) = block.split_once("```").unwrap().0.split_once('\n').unwrap();
+        let args: Vec<&str> = ["modes", source].into_iter().chain(typed.split(' ')).collect();
+        let run = sscc(folder, &args);
+        assert_eq!(run.stdout + &run.stderr, shown, "{args:?}");
+    }
 }
 
 #[test]

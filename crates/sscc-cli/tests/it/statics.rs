@@ -9,7 +9,7 @@ use sscc_io::write_npy;
 use crate::common::sscc;
 
 /// A bar of 60 x 8 x 20 mm.
-const BRACKET: &str = "v 0 0 0\nv 60 0 0\nv 60 8 0\nv 0 8 0\nv 0 0 20\nv 60 0 20\nv 60 8 20\nv 0 8 20\n\
+pub const BRACKET: &str = "v 0 0 0\nv 60 0 0\nv 60 8 0\nv 0 8 0\nv 0 0 20\nv 60 0 20\nv 60 8 20\nv 0 8 20\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 const MODEL: &str = "bracket.model.safetensors";
