@@ -24,7 +24,7 @@ const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64)
 }
 
 /// Materials of everyday objects. Elastic constants of the first eight are round values in the range of handbooks; those of
-/// the others are nominal values of standards and data sheets, which `docs/command.md` names. Damping was chosen by ear for
+/// the others are usual values of the grades that `docs/command.md` names. Damping was chosen by ear for
 /// the first eight, and is that of the most similar of these for the others; no value was measured.
 pub const MATERIALS: [SoundMaterial; 16] = [
     row("steel", 7850.0, 2.0e11, 0.29, 5.0, 3e-8),
