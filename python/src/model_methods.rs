@@ -1,5 +1,6 @@
 //! The methods of `sscc.Model`.
 
+use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple, PyType};
@@ -7,6 +8,8 @@ use sscc::{ContactFilter, Modes, ReducedModel};
 use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{LoadOptions, ModelInfo, load_model_with, write_model};
+use sscc_modes::DisplacementFit;
+use sscc_sim::static_answer;
 use sscc_sim::text::{counted, grouped};
 
 use crate::answer::Reduction;
@@ -16,7 +19,19 @@ use crate::certificates::Certificates;
 use crate::certify;
 use crate::errors::{file, kind, refused, room, value, warn};
 use crate::metric::{factor, read_metric};
-use crate::model::{LoadedModel, Model, mesh};
+use crate::model::{LoadedModel, Model, mesh, points};
+
+impl Model {
+    /// Returns one vector for each vertex from an array (V, 3).
+    fn of_vertices(&self, any: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<DVec3>> {
+        let (found, vertices) =
+            (points(&floats(any, name)?, name)?, self.core().mesh().rest_positions().len());
+        if found.len() != vertices {
+            return Err(value(format!("{name} has {} rows: the model has {vertices} vertices", found.len())));
+        }
+        Ok(found)
+    }
+}
 
 #[pymethods]
 impl Model {
@@ -115,6 +130,37 @@ impl Model {
         let q = vector(q, "q")?;
         let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
         table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
+    }
+
+    /// The q of a load.
+    #[pyo3(name = "static", signature = (forces, *, gravity=None))]
+    fn static_configuration<'py>(
+        &self,
+        py: Python<'py>,
+        forces: &Bound<'py, PyAny>,
+        gravity: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let forces: Vec<_> = (0..).zip(self.of_vertices(forces, "forces")?).collect();
+        let gravity = gravity.map(|gravity| vector(gravity, "gravity")).transpose()?;
+        let gravity = match gravity.as_deref() {
+            None => None,
+            Some([x, y, z]) => Some(DVec3::new(*x, *y, *z)),
+            Some(other) => {
+                return Err(value(format!("gravity has {} numbers: 3 were expected", other.len())));
+            }
+        };
+        let LoadedModel { model, info, .. } = &*self.loaded;
+        let found = static_answer(model, info, &forces, gravity).map_err(|error| value(error.to_string()))?;
+        Ok(line(py, found.q))
+    }
+
+    /// The q whose shape is nearest to positions, and the share of the displacements that remains.
+    fn fit<'py>(&self, py: Python<'py>, positions: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, f64)> {
+        let mut displacements = self.of_vertices(positions, "positions")?;
+        displacements.iter_mut().zip(self.core().mesh().rest_positions()).for_each(|(x, rest)| *x -= *rest);
+        let found = DisplacementFit::new(self.core().modes()).and_then(|fit| fit.fit(&displacements));
+        let found = found.map_err(|error| value(format!("positions: {error}")))?;
+        Ok((line(py, found.q), found.residual))
     }
 
     #[getter]

@@ -155,7 +155,7 @@ fn elastic(
 ) -> Result<(NewModel, Option<String>), SimError> {
     let BodyOptions { rank, material, fixed, fixed_box, resolution } = options;
     let solid = match source {
-        Source::File(path) => SolidSource::read(path, resolution, &material, progress)?,
+        Source::File(path) => SolidSource::read(path, resolution, 1.0, &material, progress)?,
         Source::Surface(mesh) => SolidSource::around(mesh.clone(), resolution, &material, progress)?,
     };
     let mut held = Vec::new();

@@ -94,6 +94,17 @@ class Model:
         """
     def positions(self, q: ArrayLike) -> _F64:
         """The vertices at q, (V, 3): the shape that all answers are about."""
+    def static(self, forces: ArrayLike, *, gravity: ArrayLike | None = None) -> _F64:
+        """The q (r,) of forces on the vertices, (V, 3): the linear static answer in the span of the modes.
+
+        gravity: acceleration (3,) of the whole mass. Raises ValueError for models without stiffness, or for gravity without
+        mass.
+        """
+    def fit(self, positions: ArrayLike) -> tuple[_F64, float]:
+        """The q (r,) whose shape is nearest to positions (V, 3), and the share of the displacements that remains.
+
+        Where modes depend on each other, q is the one of the smallest norm.
+        """
     @property
     def vertices(self) -> _F64:
         """Rest positions, (V, 3); a copy."""

@@ -131,3 +131,30 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
     for call, error, message in cases:
         with pytest.raises(error, match=message):
             call()
+
+
+def test_loads_and_displacements_give_q(surface: Surface) -> None:
+    model = sscc.modes.linear(surface, 8, resolution=14, fix=[0, 1, 2, 3])
+    forces = np.zeros((len(surface[0]), 3))
+    forces[100] = [0, 0, -1e-3]
+    q = model.static(forces)
+    assert model.stiffness is not None
+    assert np.allclose(model.stiffness @ q, np.einsum("vcr,vc->r", model.modes, forces))
+    heavy = model.static(0 * forces, gravity=(0, 0, -9.81))
+    assert np.abs(heavy).max() > 0
+    fitted, residual = model.fit(model.positions(q))
+    assert np.allclose(fitted, q, atol=1e-9 * np.abs(q).max()) and residual < 1e-9
+    other = model.vertices + np.random.default_rng(1).normal(size=forces.shape)
+    best, left = model.fit(other)
+    U = model.modes.reshape(-1, 8)
+    expected = np.linalg.lstsq(U, (other - model.vertices).ravel(), rcond=None)[0]
+    assert np.allclose(best, expected, rtol=1e-9) and 0.5 < left < 1
+    for bad, message in [(forces[1:], "forces has"), (forces[:, :2], "forces has shape")]:
+        with pytest.raises(ValueError, match=message):
+            model.static(bad)
+    with pytest.raises(ValueError, match="gravity has 2 numbers"):
+        model.static(forces, gravity=[0, 1])
+    with pytest.raises(ValueError, match="the model has no stiffness"):
+        sscc.Model(*surface, model.modes).static(forces)
+    with pytest.raises(ValueError):
+        model.fit(forces * np.nan)

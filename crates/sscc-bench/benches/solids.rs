@@ -95,7 +95,7 @@ fn make(mesh: &Path, kind: &str, rank: usize, resolution: &str) -> Result<()> {
     let peak = PeakMemory::start();
     let kind = if kind == "linear" { ModesKind::Linear } else { ModesKind::Nonlinear };
     let cells = if resolution == DEFAULT { None } else { Some(resolution.parse()?) };
-    let source = SolidSource::read(mesh, cells, &PartialMaterial::default(), &())?;
+    let source = SolidSource::read(mesh, cells, 1.0, &PartialMaterial::default(), &())?;
     let made = elastic_model(kind, Some(rank), source, &[], "bench", &())?;
     let folder = tempfile::tempdir()?;
     write_model(&folder.path().join("bench.model.safetensors"), &made.model, &made.info)?;

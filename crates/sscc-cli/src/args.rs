@@ -6,8 +6,10 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
 use sscc::parts::is_reach;
 use sscc::{Clearance, Method, Neighbours};
+use sscc_sim::UNITS;
 
 /// The template of a help page with examples, one command a line. The examples are part of the template because clap
 /// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
@@ -61,6 +63,10 @@ pub enum Command {
     Sweep(Box<Sweep>),
     /// Find a free q near each colliding q of a model
     Resolve(Box<Resolve>),
+    /// Compute the q of a load: the linear static answer of a model with stiffness
+    Load(Load),
+    /// Compute the q whose shape is nearest to given positions of all vertices
+    Fit(Fit),
     /// Search for collisions that refute certificates, and measure how tight their radii are
     Audit(Audit),
     /// Show the contents of a model, certificate, mesh, solid or glTF file
@@ -121,12 +127,19 @@ pub struct Modes {
     /// contains it, or with the nearest one
     #[arg(long, value_name = "FILE", conflicts_with = "resolution")]
     pub solid: Option<PathBuf>,
+    /// Factor on all lengths of the files, which are in metres then
+    #[arg(long, value_name = "S", value_parser = scale, conflicts_with = "units")]
+    pub scale: Option<f64>,
+    /// Unit of length of the files [default: m]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(UNITS.map(|(name, _)| name)))]
+    pub units: Option<String>,
     /// Vertices that do not move: numbers counted from 0, as in 0,5,7 (with --solid those of the solid);
-    /// box:X0,Y0,Z0,X1,Y1,Z1; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1) [default: none; the modes
+    /// box:X0,Y0,Z0,X1,Y1,Z1 in the units of the file; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1) [default: none; the modes
     /// are those of a free body, without its rigid motions]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
-    /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, or any of
+    /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber,
+    /// spring-steel, stainless-steel, titanium, brass, copper, nylon, pla, concrete, or any of
     /// youngs=E,poisson=NU,density=RHO; it overrides the materials in a solid's file [default: those of the file, else
     /// youngs=1e6,poisson=0.4,density=1000]
     #[arg(long, value_name = "MATERIAL")]
@@ -137,6 +150,20 @@ pub struct Modes {
     pub resolution: Option<u32>,
     #[command(flatten)]
     pub json: Json,
+}
+
+impl Modes {
+    /// Returns the factor on all lengths of the files.
+    pub fn factor(&self) -> f64 {
+        let unit = |name: &String| UNITS.iter().find(|(known, _)| known == name).map(|(_, metres)| *metres);
+        self.scale.or_else(|| self.units.as_ref().and_then(unit)).unwrap_or(1.0)
+    }
+}
+
+/// Parses a factor on lengths.
+fn scale(typed: &str) -> Result<f64, String> {
+    let factor = typed.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+    factor.ok_or_else(|| "a number above 0 was expected".into())
 }
 
 /// Kinds of modes that `sscc modes` makes.
@@ -592,6 +619,68 @@ pub struct Resolve {
     pub options: Options,
     #[command(flatten)]
     pub json: Json,
+}
+
+/// `sscc load`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc load bar.model.safetensors --force 12:0,0,-5 --force 13:0,0,-5 -o load.npy"
+        "sscc load bar.model.safetensors --gravity -o load.npy"
+    )
+)]
+pub struct Load {
+    #[command(flatten)]
+    pub model: Model,
+    /// A force on a vertex of the surface (N); may be repeated
+    #[arg(long, value_name = "VERTEX:FX,FY,FZ", allow_hyphen_values = true, value_parser = force)]
+    pub force: Vec<(u32, DVec3)>,
+    /// The weight of the body, with this acceleration [default where it has no value: 0,0,-9.81 m/s^2]
+    #[arg(long, value_name = "GX,GY,GZ", num_args = 0..=1, require_equals = true, default_missing_value = "0,0,-9.81",
+        allow_hyphen_values = true, value_parser = vector)]
+    pub gravity: Option<DVec3>,
+    /// The q to write: *.npy of shape (r)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// `sscc fit`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc fit spring.model.safetensors frames.npy -o fitted.npy"
+        "sscc fit spring.model.safetensors frames/ -o fitted.npy --json"
+    )
+)]
+pub struct Fit {
+    #[command(flatten)]
+    pub model: Model,
+    /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), or a folder of meshes with the same faces
+    #[arg(value_name = "POSITIONS")]
+    pub positions: PathBuf,
+    /// The q to write: *.npy of shape (r), of several frames (T, r)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub json: Json,
+}
+
+/// Parses a force on a vertex.
+fn force(typed: &str) -> Result<(u32, DVec3), String> {
+    let found = typed.split_once(':').and_then(|(number, force)| Some((number.trim().parse().ok()?, force)));
+    let Some((number, force)) = found else {
+        return Err("VERTEX:FX,FY,FZ was expected, as in 12:0,0,-5".into());
+    };
+    Ok((number, vector(force)?))
+}
+
+/// Parses three finite numbers.
+fn vector(typed: &str) -> Result<DVec3, String> {
+    let numbers: Result<Vec<f64>, _> = typed.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()).map(DVec3::from_array);
+    numbers.filter(|v| v.is_finite()).ok_or_else(|| "three numbers were expected, as in 0,0,-9.81".into())
 }
 
 /// `sscc audit`

@@ -86,9 +86,14 @@ fn seeds() -> Vec<Vec<u8>> {
     [3_i32, 1, 4].iter().for_each(|v| binary.extend(v.to_le_bytes()));
     sizes(&mut binary, &[1, 1, 1, 2, 3, 4]);
     binary.extend(b"\n$EndElements\n");
+    let second_order = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n{points}5 .5 0 0\n6 .5 .5 0\n7 0 .5 0\n8 0 0 .5\n9 0 .5 .5\n\
+         10 .5 0 .5\n$EndNodes\n$Elements\n2\n1 9 2 1 1 1 3 2 7 6 5\n2 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n"
+    );
     let cubic = [&[1, 0, 0, 0].repeat(4)[..], &[0; 24]].concat();
     let (medit, v4) = (medit.as_bytes().to_vec(), v4.as_bytes().to_vec());
-    vec![medit, vega.into_bytes(), v2.into_bytes(), v4, binary, NODE.to_vec(), ELE.to_vec(), cubic]
+    let (v2, second_order) = (v2.into_bytes(), second_order.into_bytes());
+    vec![medit, vega.into_bytes(), v2, v4, binary, NODE.to_vec(), ELE.to_vec(), cubic, second_order]
 }
 
 #[test]
@@ -108,6 +113,9 @@ fn seeds_are_valid() {
         check(Ok(mesh));
     }
     assert_eq!(parse_reduced_forces(&seeds[7]).unwrap().rank(), 1);
+    let second_order = gmsh::parse(&seeds[8]).unwrap();
+    assert_eq!((second_order.middles().len(), second_order.vertices().len()), (1, 10));
+    check(Ok(second_order));
 }
 
 proptest! {

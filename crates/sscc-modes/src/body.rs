@@ -185,3 +185,61 @@ fn assemble(solid: &Solid, rows: &[u32], free: usize) -> (BlockSparse, BlockSpar
     }
     (stiffness, mass)
 }
+
+#[cfg(test)]
+mod tests {
+    use sscc_solid::Material;
+
+    use super::*;
+
+    /// Tetrahedra of second order with curved edges: a cube whose centre is a vertex, so that all edges at it are inside.
+    fn curved() -> Solid {
+        let corner = |k: u32| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2));
+        let mut vertices: Vec<DVec3> = (0..8).map(corner).collect();
+        vertices.push(DVec3::new(0.5, 0.45, 0.55));
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let tets = faces.into_iter().flat_map(|[a, b, c, d]| [[8, a, b, c], [8, a, c, d]]).collect();
+        let linear = Solid::uniform(vertices, tets, vec![], Material::default()).unwrap();
+        let (straight, edges) = linear.elevated().unwrap();
+        let mut vertices = straight.vertices().to_vec();
+        for (k, _) in edges.iter().enumerate().filter(|(_, edge)| edge.contains(&8)) {
+            let t = k as f64;
+            vertices[9 + k] += 0.04 * DVec3::new(t.sin(), t.cos(), (2.0 * t).sin());
+        }
+        let middles: Vec<[u32; 6]> =
+            straight.tets10().iter().map(|nodes| std::array::from_fn(|k| nodes[4 + k])).collect();
+        let materials = (vec![Material::default()], vec![0; 12]);
+        Solid::with_middles(vertices, straight.tets().to_vec(), &middles, vec![], materials.0, materials.1)
+            .unwrap()
+    }
+
+    #[test]
+    fn curved_elements_pass_the_patch_test_and_rigid_motions_have_no_energy() {
+        let solid = curved();
+        let body = Body::new(&solid, &[]).unwrap();
+        let map = DMat3::from_cols_array(&[0.1, 0.2, -0.1, 0.05, 0.3, 0.0, 0.02, -0.04, 0.15]);
+        let turn = |p: DVec3| DVec3::new(1.0, -2.0, 3.0).cross(p) + DVec3::new(0.3, 0.2, 0.1);
+        let field = |of: &dyn Fn(DVec3) -> DVec3| {
+            let u: Vec<DVec3> = solid.vertices().iter().map(|p| of(*p)).collect();
+            let u = body.on_free(&u);
+            let u = Mat::from_fn(u.len(), 1, |row, _| u[row]);
+            let force = body.stiffness.multiply(u.as_ref());
+            (inner(u.as_ref(), force.as_ref())[(0, 0)], force)
+        };
+        let (energy, force) = field(&|p| map * p);
+        let is_inside = |p: &DVec3| p.min_element() > 0.0 && p.max_element() < 1.0;
+        let scale = (0..force.nrows()).map(|row| force[(row, 0)].abs()).fold(0.0, f64::max);
+        assert!(energy > 0.0 && solid.vertices().iter().filter(|p| is_inside(p)).count() > 6);
+        for (vertex, _) in solid.vertices().iter().enumerate().filter(|(_, p)| is_inside(p)) {
+            assert!((0..3).all(|axis| force[(3 * vertex + axis, 0)].abs() < 1e-13 * scale), "{vertex}");
+        }
+        // The energy of the constant strain in the cube of volume 1.
+        let (strain, material) = ((map + map.transpose()) * 0.5, Material::default());
+        let trace = strain.x_axis.x + strain.y_axis.y + strain.z_axis.z;
+        let square: f64 = strain.to_cols_array().iter().map(|x| x * x).sum();
+        let exact = material.lame_lambda() * trace * trace + 2.0 * material.lame_mu() * square;
+        assert!((energy / exact - 1.0).abs() < 1e-12);
+        let (rigid, _) = field(&turn);
+        assert!(rigid.abs() < 1e-9 * energy, "{rigid} {energy}");
+    }
+}

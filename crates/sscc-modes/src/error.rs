@@ -27,6 +27,19 @@ pub enum ModesError {
         /// Number of modes.
         rank: usize,
     },
+    /// A load acts on a vertex that does not exist.
+    #[error("there is no vertex {vertex} (counted from 0): the model has {vertices}")]
+    LoadedVertex {
+        /// The vertex, from 0.
+        vertex: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A load acts along a direction without stiffness.
+    #[error(
+        "the load moves the body along modes without stiffness, so it has no static answer: fix vertices, or leave these modes out"
+    )]
+    NoStaticAnswer,
     /// The stiffness has a negative eigenvalue.
     #[error(
         "the stiffness has the eigenvalue {eigenvalue:e} (largest magnitude {largest:e}): none may be negative; compute it at rest"
@@ -215,6 +228,11 @@ pub enum ModesError {
         "{_0}: more than a tenth of its size; use a solid that encloses the surface, in the same units and place"
     )]
     OutsideSolid(Outside),
+    /// A surface is to be embedded in tetrahedra of second order.
+    #[error(
+        "a surface can be embedded in tetrahedra of first order only: mesh the solid in first order, or take its own surface"
+    )]
+    EmbeddedInSecondOrder,
     /// An animation has fewer than two frames.
     #[error("{found} frames are too few: principal components need at least two")]
     TooFewFrames {

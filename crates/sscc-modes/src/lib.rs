@@ -5,6 +5,7 @@
 //! - [`diagonalize`]: modes rotated so that a given stiffness becomes diagonal (paper, section 6), after
 //!   [`reduced_stiffness`], and before [`filter_eigenvalues`] and [`energy_metric`];
 //! - [`EmbeddedSurface`], [`linear_modes`], [`nonlinear_modes`], [`polynomial_solid_modes`]: modes of elastic solids;
+//! - [`static_configuration`] and [`DisplacementFit`]: q of a load, and of given displacements;
 //! - [`pca_modes`]: the principal components of an animation;
 //! - [`shapes`]: example meshes that are computed, so that no download is needed.
 //!
@@ -49,6 +50,7 @@ mod pca;
 mod polynomial;
 pub mod shapes;
 mod sparse;
+mod statics;
 mod stiffness;
 mod vibration;
 
@@ -60,5 +62,6 @@ pub use frequencies::{mode_frequencies, natural_frequencies};
 pub use outside::Outside;
 pub use pca::{Pca, pca_modes};
 pub use polynomial::polynomial_modes;
+pub use statics::{DisplacementFit, FittedConfiguration, generalized_forces, static_configuration};
 pub use stiffness::reduced_stiffness;
 pub use vibration::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};

@@ -28,10 +28,12 @@ mod models;
 mod nearest;
 mod outputs;
 mod recipes;
+mod resize;
 mod resolve;
 mod run;
 mod scenes;
 mod simulate;
+mod statics;
 mod sweeps;
 pub mod text;
 mod watch;
@@ -54,9 +56,10 @@ pub use models::{
 pub use nearest::{did_you_mean, nearest};
 pub use outputs::{Outputs, SoundTrack};
 pub use recipes::{
-    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, Resize,
-    SPRING_RINGS, Shape, TimedCertificates, models_folder,
+    Cache, CertificateCost, CertifiedModel, LoadedRecipe, ModelFiles, ModesSpec, Recipe, SPRING_RINGS, Shape,
+    TimedCertificates, models_folder,
 };
+pub use resize::{Resize, UNITS, longest_side, scaled};
 pub use resolve::{ResolveReport, resolve_rows};
 pub use run::{
     BodyRecord, FinishedRun, History, ModelSummary, PreparedModel, PreparedScene, RunOutcome, STEP_PARTS,
@@ -66,6 +69,7 @@ pub use scenes::{
     BodySpec, ModelSpec, OWN_AMPLITUDE_SCENES, SHIPPED, Scene, Shake, ShakeUnit, Sound, read_scene,
 };
 pub use simulate::{Request, make_folder, simulate};
+pub use statics::{StaticAnswer, static_answer};
 pub use sweeps::{
     Interval, IntervalRow, SweepRange, SweepRequest, SweepRow, interval_table, sweep_model,
     sweep_model_intervals, sweep_table,

@@ -42,6 +42,13 @@ pub fn length(value: f64) -> String {
     }
 }
 
+/// Formats longest side (m), mass (kg) and first frequency (Hz) of a body: a size in other units shows in each of them. A
+/// body of unknown mass is held.
+pub fn size_and_mass(side: f64, mass: Option<f64>, first: f64) -> String {
+    let mass = mass.map_or_else(|| "held".into(), |mass| format!("mass {} kg", length(mass)));
+    format!("longest side {} m, {mass}, first mode {} Hz", length(side), length(first))
+}
+
 /// Formats a number with its noun: "1 pair", "2 pairs".
 pub fn counted(count: impl Into<u64>, noun: &str) -> String {
     match count.into() {

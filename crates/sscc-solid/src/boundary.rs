@@ -4,13 +4,14 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh};
 
 use crate::element::{CUBE_FACES, TET_FACES};
+use crate::second_order::middle;
 use crate::{Solid, SolidError, VolumeMesh, tets_within};
 
 /// Boundary of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
     /// Faces that belong to exactly one element, outward, in the order of the elements; faces of cubes are split into
-    /// two triangles. Vertices are those of the solid on the boundary, in their order.
+    /// two triangles, faces of second-order tetrahedra into four, through the middles of their edges. Vertices are those of the solid on the boundary, in their order.
     pub mesh: TriMesh,
     /// Vertex of the solid for each vertex of the mesh.
     pub vertices: Vec<u32>,
@@ -22,7 +23,11 @@ impl Solid {
     /// # Errors
     /// When three elements share a face, so that elements overlap.
     pub fn boundary(&self) -> Result<Boundary, SolidError> {
-        let triangles = outer_triangles(self.tets(), self.cubes())?;
+        let triangles = outer_triangles(
+            self.tets(),
+            |tet, k| self.tets10().get(tet).map(|nodes| nodes[k]),
+            self.cubes(),
+        )?;
         let mut used = vec![false; self.vertices().len()];
         triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
         let vertices: Vec<u32> = (0..used.len() as u32).filter(|v| used[*v as usize]).collect();
@@ -42,15 +47,22 @@ impl VolumeMesh {
     /// When three elements share a face.
     pub fn surface_mesh(&self) -> Result<TriMesh, SolidError> {
         let within = tets_within(self.tets(), self.surface());
-        let tets: Vec<[u32; 4]> =
-            self.tets().iter().zip(within).filter(|(_, within)| *within).map(|(tet, _)| *tet).collect();
-        Ok(TriMesh::new(self.vertices().to_vec(), outer_triangles(&tets, self.cubes())?)?)
+        let kept: Vec<usize> = (0..within.len()).filter(|tet| within[*tet]).collect();
+        let tets: Vec<[u32; 4]> = kept.iter().map(|tet| self.tets()[*tet]).collect();
+        let middles = |tet: usize| self.middles().get(*kept.get(tet)?);
+        let node = |tet: usize, k: usize| middles(tet).map(|middles| middles[k - 4]);
+        Ok(TriMesh::new(self.vertices().to_vec(), outer_triangles(&tets, node, self.cubes())?)?)
     }
 }
 
 /// Returns the faces of exactly one element as triangles, in the order of the elements, outward where an element is not
-/// inverted.
-fn outer_triangles(tets: &[[u32; 4]], cubes: &[[u32; 8]]) -> Result<Vec<[u32; 3]>, SolidError> {
+/// inverted. `node` returns a middle node (from 4) of a tetrahedron of second order.
+fn outer_triangles(
+    tets: &[[u32; 4]],
+    node: impl Fn(usize, usize) -> Option<u32>,
+    cubes: &[[u32; 8]],
+) -> Result<Vec<[u32; 3]>, SolidError> {
+    let faces_of_tets = 4 * tets.len();
     let tets = tets.iter().flat_map(|tet| TET_FACES.map(|f| f.map(|k| tet[k]).to_vec()));
     let cubes = cubes.iter().flat_map(|cube| CUBE_FACES.map(|f| f.map(|k| cube[k]).to_vec()));
     let faces: Vec<Vec<u32>> = tets.chain(cubes).collect();
@@ -66,11 +78,20 @@ fn outer_triangles(tets: &[[u32; 4]], cubes: &[[u32; 8]]) -> Result<Vec<[u32; 3]
         }
     }
     outer.sort_unstable();
-    let triangles = outer.into_iter().flat_map(|at| {
+    let mut triangles = Vec::new();
+    for at in outer {
         let face = &faces[at];
-        (2..face.len()).map(|k| [face[0], face[k - 1], face[k]])
-    });
-    Ok(triangles.collect())
+        let [a, b, c] = TET_FACES[at % 4];
+        let middles = [[a, b], [b, c], [c, a]].map(|[i, j]| node(at / 4, middle(i, j)));
+        match middles {
+            [Some(ab), Some(bc), Some(ca)] if at < faces_of_tets => {
+                let [a, b, c] = [face[0], face[1], face[2]];
+                triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            }
+            _ => triangles.extend((2..face.len()).map(|k| [face[0], face[k - 1], face[k]])),
+        }
+    }
+    Ok(triangles)
 }
 
 impl Boundary {

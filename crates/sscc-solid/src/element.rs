@@ -1,12 +1,14 @@
 //! Elements and their integration points.
 //!
 //! A tetrahedron has constant gradients and needs one point. A cube (trilinear hexahedron) has 2 x 2 x 2 Gauss points,
-//! one in each octant; the filled share of an octant scales the weight of its point. Stiffness, forces and polynomials
-//! are sums over the same points, so they agree with each other.
+//! one in each octant; the filled share of an octant scales the weight of its point. A tetrahedron of second order has
+//! the points of `second_order.rs`. Stiffness, forces and polynomials are sums over the same points, so they agree with
+//! each other.
 
 use glam::{DMat3, DVec3};
 
-use crate::Material;
+use crate::integration_point::{IntegrationPoint, jacobian};
+use crate::{Material, second_order};
 
 /// Corners of the cube from -1 to 1, in the order of a solid's cubes.
 const CORNERS: [DVec3; 8] = [
@@ -33,32 +35,22 @@ pub(crate) const CUBE_FACES: [[usize; 4]; 6] =
 /// An element of a solid.
 #[derive(Clone, Debug)]
 pub struct Element<'a> {
-    /// Four or eight vertices.
+    /// Four, eight or ten vertices.
     pub vertices: &'a [u32],
     /// Material.
     pub material: &'a Material,
-    /// Integration points: one or eight.
-    points: [IntegrationPoint; 8],
-    count: usize,
-}
-
-/// Integration point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct IntegrationPoint {
-    /// Gradient of each vertex's shape function at the point (1 / length).
-    pub gradients: [DVec3; 8],
-    /// Value of each vertex's shape function.
-    pub shape: [f64; 8],
-    /// Weight of the point: its volume.
-    pub volume: f64,
+    points: Vec<IntegrationPoint>,
 }
 
 impl<'a> Element<'a> {
     /// Creates a tetrahedron from the positions of its corners.
     pub(crate) fn tet(vertices: &'a [u32; 4], corners: [DVec3; 4], material: &'a Material) -> Self {
-        let mut points = [IntegrationPoint::default(); 8];
-        points[0] = tet_point(corners);
-        Self { vertices, material, points, count: 1 }
+        Self { vertices, material, points: vec![tet_point(corners)] }
+    }
+
+    /// Creates a tetrahedron of second order from the positions of its nodes.
+    pub(crate) fn second_order(vertices: &'a [u32; 10], nodes: &[DVec3; 10], material: &'a Material) -> Self {
+        Self { vertices, material, points: second_order::points(nodes) }
     }
 
     /// Creates a cube from the positions of its corners and the filled share of each octant (at corner k).
@@ -68,23 +60,20 @@ impl<'a> Element<'a> {
         fill: &[f64; 8],
         material: &'a Material,
     ) -> Self {
-        let mut points = [IntegrationPoint::default(); 8];
-        for (k, fill) in fill.iter().enumerate() {
-            points[k] = cube_point(corners, CORNERS[k] * GAUSS);
-            points[k].volume *= fill;
-        }
-        Self { vertices, material, points, count: 8 }
+        let mut points: Vec<_> = CORNERS.iter().map(|corner| cube_point(corners, *corner * GAUSS)).collect();
+        points.iter_mut().zip(fill).for_each(|(point, fill)| point.volume *= fill);
+        Self { vertices, material, points }
     }
 
     /// Returns the integration points.
     #[inline]
     pub fn points(&self) -> &[IntegrationPoint] {
-        &self.points[..self.count]
+        &self.points
     }
 
     /// Returns the consistent mass matrix: integrals of density times the product of two shape functions.
-    pub fn masses(&self) -> [[f64; 8]; 8] {
-        let mut masses = [[0.0; 8]; 8];
+    pub fn masses(&self) -> [[f64; 10]; 10] {
+        let mut masses = [[0.0; 10]; 10];
         if let [tet] = self.points() {
             let each = self.material.density() * tet.volume / 20.0;
             for i in 0..4 {
@@ -95,8 +84,8 @@ impl<'a> Element<'a> {
         } else {
             for point in self.points() {
                 let mass = self.material.density() * point.volume;
-                for i in 0..8 {
-                    for j in 0..8 {
+                for i in 0..self.vertices.len() {
+                    for j in 0..self.vertices.len() {
                         masses[i][j] += mass * point.shape[i] * point.shape[j];
                     }
                 }
@@ -129,18 +118,10 @@ fn trilinear(at: DVec3) -> ([f64; 8], [DVec3; 8]) {
     (shape, std::array::from_fn(gradient))
 }
 
-/// Derivative of the position with respect to coordinates of the cube from -1 to 1.
-fn jacobian(corners: &[DVec3; 8], gradients: &[DVec3; 8]) -> DMat3 {
-    let column = |axis: usize| corners.iter().zip(gradients).map(|(p, g)| *p * g[axis]).sum();
-    DMat3::from_cols(column(0), column(1), column(2))
-}
-
 /// Returns the integration point at a position of the cube from -1 to 1, for an eighth of its volume.
 fn cube_point(corners: &[DVec3; 8], at: DVec3) -> IntegrationPoint {
     let (shape, local) = trilinear(at);
-    let jacobian = jacobian(corners, &local);
-    let to_rest = jacobian.inverse().transpose();
-    IntegrationPoint { shape, gradients: local.map(|g| to_rest * g), volume: jacobian.determinant() }
+    IntegrationPoint::isoparametric(corners, &shape, &local, 1.0)
 }
 
 /// Whether a cube is flat or inverted at a corner or a Gauss point.

@@ -96,6 +96,38 @@ pub enum SolidError {
         /// Number of inverted tetrahedra.
         count: usize,
     },
+    /// A tetrahedron of second order is flat or inverted at some point.
+    #[error(
+        "the second-order tetrahedron {tet} (counted from 0, corners {corners:?}) is flat or inverted at one of its nodes or \
+         integration points: move the nodes of its edges towards their middles (gmsh: -optimize_ho), or mesh in first order"
+    )]
+    InvertedSecondOrderTet {
+        /// The tetrahedron, from 0.
+        tet: usize,
+        /// Its corners.
+        corners: [u32; 4],
+    },
+    /// Only some tetrahedra are of second order, so the mesh has gaps at their edges.
+    #[error(
+        "{second_order} of {tets} tetrahedra are of second order: mesh the whole solid in first or in second order"
+    )]
+    MixedOrders {
+        /// Number of tetrahedra.
+        tets: usize,
+        /// Number of those of second order.
+        second_order: usize,
+    },
+    /// Two tetrahedra have different nodes in the middle of a common edge.
+    #[error(
+        "the edge of vertices {edge:?} (counted from 0) has the nodes {middles:?} in its middle: merge the equal nodes of the \
+         mesh"
+    )]
+    DifferentMiddles {
+        /// Corners of the edge.
+        edge: [u32; 2],
+        /// Nodes of two tetrahedra.
+        middles: [u32; 2],
+    },
     /// A cube is flat or inverted at some point.
     #[error(
         "cube {cube} (counted from 0) is flat or inverted at a corner: list its corners around its lower face, then around its upper one"

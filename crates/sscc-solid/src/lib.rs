@@ -5,7 +5,7 @@
 //! - [`VolumeMesh`]: tetrahedra and cubes of a file, before the checks of geometry;
 //! - [`Solid`]: elements of positive volume, each with a [`Material`]; [`VolumeMesh::solid`] creates one;
 //! - [`PartialMaterial`]: the known properties of a material; [`Material::new`] fills in the others;
-//! - [`Element`]: one tetrahedron or cube with its integration points;
+//! - [`Element`]: one tetrahedron, of first or second order, or cube with its integration points;
 //! - [`Boundary`] and [`MassProperties`] of a solid, [`MassData`] of a reduced model;
 //! - [`Stiffness`], [`ReducedForces`] and [`Elasticity`]: elastic forces as functions of q;
 //!
@@ -31,21 +31,25 @@ mod elasticity;
 mod element;
 mod error;
 mod forces;
+mod integration_point;
 mod interior;
 mod mass;
 mod mass_data;
 mod material;
 mod meshed_solid;
 pub mod monomials;
+mod order_elevation;
+mod second_order;
 mod solid;
 mod stiffness;
 mod volume_mesh;
 
 pub use boundary::Boundary;
 pub use elasticity::Elasticity;
-pub use element::{Element, IntegrationPoint};
+pub use element::Element;
 pub use error::SolidError;
 pub use forces::ReducedForces;
+pub use integration_point::IntegrationPoint;
 pub use interior::tets_within;
 pub use mass::MassProperties;
 pub use mass_data::MassData;

@@ -29,10 +29,12 @@ impl VolumeMesh {
         let kept: Vec<usize> = (0..within.len()).filter(|t| within[*t]).collect();
         let outside = within.len() - kept.len();
         let tets: Vec<[u32; 4]> = kept.iter().map(|t| self.tets()[*t]).collect();
+        let middles: Vec<[u32; 6]> = kept.iter().filter_map(|t| self.middles().get(*t).copied()).collect();
 
         // Vertices of removed elements only are removed, too.
         let mut used = vec![outside == 0; self.vertices().len()];
-        tets.as_flattened().iter().chain(self.cubes().as_flattened()).for_each(|v| used[*v as usize] = true);
+        let of_tets = tets.as_flattened().iter().chain(middles.as_flattened());
+        of_tets.chain(self.cubes().as_flattened()).for_each(|v| used[*v as usize] = true);
         let mut count = 0;
         let mut vertices = Vec::with_capacity(used.len());
         for used in used {
@@ -59,9 +61,11 @@ impl VolumeMesh {
         let stated = used().map(|named| named.stated).collect();
         let materials: Result<_, _> =
             self.materials().iter().map(|named| Material::new(&given.or(&named.stated))).collect();
-        let solid = Solid::new(
+        let middles: Vec<[u32; 6]> = middles.iter().map(|m| m.map(number)).collect();
+        let solid = Solid::with_middles(
             positions,
             tets.iter().map(|t| t.map(number)).collect(),
+            &middles,
             self.cubes().iter().map(|c| c.map(number)).collect(),
             materials?,
             element_material,
@@ -89,6 +93,7 @@ mod tests {
         let parts = VolumeMeshParts {
             vertices: corners.map(|c| DVec3::from_array(c.map(f64::from))).to_vec(),
             tets: vec![[0, 2, 1, 4], [0, 1, 2, 3]],
+            middles: vec![],
             cubes: vec![],
             surface: surface.to_vec(),
             materials: vec![named("soft", Some(5.0)), named("none", Some(7.0)), named("silent", None)],

@@ -1,20 +1,25 @@
 //! Elastic solids: elements of positive volume with materials.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 use sscc::limits;
 
 use crate::element::{Element, cube_is_inverted};
+use crate::second_order::{self, EDGES};
 use crate::{Material, SolidError};
 
 /// Minimum of six times the volume of a tetrahedron over its longest edge cubed. Below it, the stiffness is rounding.
 const MIN_RELATIVE_VOLUME: f64 = 1e-10;
 
-/// Elastic solid: tetrahedra and hexahedra ("cubes") of positive volume, each with a material. Every vertex belongs to
+/// Elastic solid: tetrahedra (all of first or all of second order) and hexahedra ("cubes") of positive volume, each with a material. Every vertex belongs to
 /// an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     vertices: Vec<DVec3>,
     tets: Vec<[u32; 4]>,
+    /// All nodes of each tetrahedron; empty for tetrahedra of first order.
+    tets10: Vec<[u32; 10]>,
     cubes: Vec<[u32; 8]>,
     fill: Vec<[f64; 8]>,
     materials: Vec<Material>,
@@ -36,8 +41,30 @@ impl Solid {
         materials: Vec<Material>,
         element_material: Vec<u32>,
     ) -> Result<Self, SolidError> {
+        Self::with_middles(vertices, tets, &[], cubes, materials, element_material)
+    }
+
+    /// Creates a solid whose tetrahedra are of second order: `middles` are the vertices in the middle of the edges of each
+    /// tetrahedron, between its corners 0 1, 1 2, 0 2, 0 3, 2 3 and 1 3. Without middles, tetrahedra are of first order.
+    ///
+    /// # Errors
+    /// As [`Solid::new`]; when there are not middles for all tetrahedra, tetrahedra with a common edge have different ones,
+    /// or a tetrahedron is inverted at a node or an integration point.
+    pub fn with_middles(
+        vertices: Vec<DVec3>,
+        tets: Vec<[u32; 4]>,
+        middles: &[[u32; 6]],
+        cubes: Vec<[u32; 8]>,
+        materials: Vec<Material>,
+        element_material: Vec<u32>,
+    ) -> Result<Self, SolidError> {
+        check_middles(&tets, middles)?;
+        let nodes = |(tet, middles): (&[u32; 4], &[u32; 6])| {
+            std::array::from_fn(|k| if k < 4 { tet[k] } else { middles[k - 4] })
+        };
+        let tets10 = tets.iter().zip(middles).map(nodes).collect();
         let fill = vec![[1.0; 8]; cubes.len()];
-        Self { vertices, tets, cubes, fill, materials, element_material }.checked()
+        Self { vertices, tets, tets10, cubes, fill, materials, element_material }.checked()
     }
 
     /// Creates a solid with one material.
@@ -70,8 +97,8 @@ impl Solid {
             return Err(SolidError::Fill { cubes: cubes.len() });
         }
         let element_material = vec![0; cubes.len()];
-        Self { vertices, tets: Vec::new(), cubes, fill, materials: vec![material], element_material }
-            .checked()
+        let (tets, tets10) = (Vec::new(), Vec::new());
+        Self { vertices, tets, tets10, cubes, fill, materials: vec![material], element_material }.checked()
     }
 
     /// Checks all data, and orients the tetrahedra.
@@ -79,7 +106,7 @@ impl Solid {
     /// # Errors
     /// As [`Solid::new`].
     fn checked(mut self) -> Result<Self, SolidError> {
-        let Self { vertices, tets, cubes, materials, element_material, .. } = &mut self;
+        let Self { vertices, tets, tets10, cubes, materials, element_material, .. } = &mut self;
         let elements = tets.len() + cubes.len();
         if elements == 0 {
             return Err(SolidError::NoElements);
@@ -89,7 +116,8 @@ impl Solid {
             return Err(SolidError::ElementMaterials { elements, found: element_material.len() });
         }
         let mut used = vec![false; vertices.len()];
-        for index in tets.as_flattened().iter().chain(cubes.as_flattened()) {
+        let corners = tets.as_flattened().iter().chain(cubes.as_flattened());
+        for index in corners.chain(tets10.as_flattened()) {
             match used.get_mut(*index as usize) {
                 Some(used) => *used = true,
                 None => return Err(SolidError::ElementIndex { index: *index, vertices: vertices.len() }),
@@ -103,7 +131,16 @@ impl Solid {
                 return Err(SolidError::Vertex { vertex });
             }
         }
-        orient(vertices, tets)?;
+        if orient(vertices, tets)? {
+            // Without corners 2 and 3 exchanged, corners of the nodes would differ from those of the tetrahedra.
+            let reversed = [0, 1, 3, 2, 4, 9, 7, 6, 8, 5];
+            tets10.iter_mut().for_each(|nodes| *nodes = reversed.map(|k| nodes[k]));
+        }
+        for (tet, nodes) in tets10.iter().enumerate() {
+            if second_order::is_inverted(&nodes.map(|v| vertices[v as usize])) {
+                return Err(SolidError::InvertedSecondOrderTet { tet, corners: tets[tet] });
+            }
+        }
         for (cube, corners) in cubes.iter().enumerate() {
             let corners = corners.map(|v| vertices[v as usize]);
             if cube_is_inverted(&corners) {
@@ -123,9 +160,20 @@ impl Solid {
         &self.tets
     }
 
+    /// Returns all nodes of each tetrahedron of second order: its corners, then the middles of its edges as in
+    /// [`Solid::with_middles`]. Empty for tetrahedra of first order.
+    pub fn tets10(&self) -> &[[u32; 10]] {
+        &self.tets10
+    }
+
     /// Returns the corners of each cube.
     pub fn cubes(&self) -> &[[u32; 8]] {
         &self.cubes
+    }
+
+    /// Returns the materials, and the number of that of each element.
+    pub(crate) fn materials(&self) -> (&[Material], &[u32]) {
+        (&self.materials, &self.element_material)
     }
 
     /// Returns the number of elements.
@@ -139,6 +187,9 @@ impl Solid {
     /// When the element does not exist.
     pub fn element(&self, index: usize) -> Element<'_> {
         let material = &self.materials[self.element_material[index] as usize];
+        if let Some(nodes) = self.tets10.get(index) {
+            return Element::second_order(nodes, &nodes.map(|v| self.vertices[v as usize]), material);
+        }
         if let Some(tet) = self.tets.get(index) {
             return Element::tet(tet, tet.map(|v| self.vertices[v as usize]), material);
         }
@@ -149,13 +200,33 @@ impl Solid {
     }
 }
 
+/// Returns an error unless there are no middles, or six for each tetrahedron, one for each edge.
+fn check_middles(tets: &[[u32; 4]], middles: &[[u32; 6]]) -> Result<(), SolidError> {
+    if !middles.is_empty() && middles.len() != tets.len() {
+        return Err(SolidError::MixedOrders { tets: tets.len(), second_order: middles.len() });
+    }
+    let mut of_edge = HashMap::new();
+    for (corners, middles) in tets.iter().zip(middles) {
+        for (edge, middle) in EDGES.iter().zip(middles) {
+            let mut edge = edge.map(|k| corners[k]);
+            edge.sort_unstable();
+            let known = *of_edge.entry(edge).or_insert(*middle);
+            if known != *middle {
+                return Err(SolidError::DifferentMiddles { edge, middles: [known, *middle] });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Returns six times the volume of a tetrahedron.
 fn sixfold_volume([a, b, c, d]: [DVec3; 4]) -> f64 {
     (b - a).cross(c - a).dot(d - a)
 }
 
-/// Reverses all tetrahedra if all are negative. Returns an error if one is flat or only some are negative.
-fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
+/// Reverses all tetrahedra if all are negative, by an exchange of their corners 2 and 3; returns whether it did. Returns an
+/// error if one is flat or only some are negative.
+fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<bool, SolidError> {
     let mut negative = Vec::new();
     for (tet, corners) in tets.iter().enumerate() {
         let p = corners.map(|v| vertices[v as usize]);
@@ -169,8 +240,9 @@ fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
             negative.push(tet);
         }
     }
-    if negative.len() == tets.len() {
+    if !tets.is_empty() && negative.len() == tets.len() {
         tets.iter_mut().for_each(|corners| corners.swap(2, 3));
+        return Ok(true);
     } else if let Some(tet) = negative.first() {
         // The smaller group counts as inverted.
         let minority = if 2 * negative.len() <= tets.len() {
@@ -181,7 +253,7 @@ fn orient(vertices: &[DVec3], tets: &mut [[u32; 4]]) -> Result<(), SolidError> {
         let count = negative.len().min(tets.len() - negative.len());
         return Err(SolidError::InvertedTet { tet: minority, corners: tets[minority], count });
     }
-    Ok(())
+    Ok(false)
 }
 
 #[cfg(test)]

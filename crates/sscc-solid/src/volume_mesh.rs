@@ -13,6 +13,9 @@ pub struct VolumeMeshParts {
     pub vertices: Vec<DVec3>,
     /// Corners of each tetrahedron, four different vertices. In most files `(b - a) x (c - a)` points to d.
     pub tets: Vec<[u32; 4]>,
+    /// Vertices in the middle of the edges of each tetrahedron, between its corners 0 1, 1 2, 0 2, 0 3, 2 3 and 1 3, as in
+    /// gmsh; empty for tetrahedra of first order.
+    pub middles: Vec<[u32; 6]>,
     /// Corners of each cube (hexahedron), eight different vertices in the order of VegaFEM, Medit and gmsh: for the
     /// unit cube 000, 100, 110, 010 (xyz), then 001, 101, 111, 011. There is at least one tetrahedron or cube.
     pub cubes: Vec<[u32; 8]>,
@@ -36,10 +39,10 @@ impl VolumeMesh {
     /// Creates a mesh from these parts.
     ///
     /// # Errors
-    /// When there is no vertex or no element, an index is out of range, a coordinate is beyond [`sscc::limits`], an
+    /// When there is no vertex or no element, only some tetrahedra are of second order, an index is out of range, a coordinate is beyond [`sscc::limits`], an
     /// element or a face names a vertex twice, an element is duplicated, or an element has no material.
     pub fn new(parts: VolumeMeshParts) -> Result<Self, SolidError> {
-        let VolumeMeshParts { vertices, tets, cubes, surface, materials, element_material } = &parts;
+        let VolumeMeshParts { vertices, tets, middles, cubes, surface, materials, element_material } = &parts;
         if vertices.is_empty() {
             return Err(SolidError::NoVertices);
         }
@@ -51,8 +54,12 @@ impl VolumeMesh {
             return Err(SolidError::Vertex { vertex });
         }
         check_corners(tets, count)?;
+        check_corners(middles, count)?;
         check_corners(cubes, count)?;
         check_corners(surface, count)?;
+        if !middles.is_empty() && middles.len() != tets.len() {
+            return Err(SolidError::MixedOrders { tets: tets.len(), second_order: middles.len() });
+        }
         if tets.is_empty() && cubes.is_empty() {
             return Err(SolidError::NoElements);
         }
@@ -97,6 +104,11 @@ impl VolumeMesh {
     /// Returns the corners of each tetrahedron, in the file's order.
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.parts.tets
+    }
+
+    /// Returns the vertices in the middle of the edges of each tetrahedron; empty for tetrahedra of first order.
+    pub fn middles(&self) -> &[[u32; 6]] {
+        &self.parts.middles
     }
 
     /// Returns the corners of each cube.

@@ -5,7 +5,9 @@ mod bench;
 mod certify;
 mod check;
 mod demo;
+mod fit;
 mod info;
+mod load;
 mod modes;
 mod resolve;
 mod simulate;
@@ -25,6 +27,8 @@ pub fn run(cli: Cli) -> anyhow::Result<Outcome> {
         Command::Check(args) => check::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Resolve(args) => resolve::run(&args),
+        Command::Load(args) => load::run(&args),
+        Command::Fit(args) => fit::run(&args),
         Command::Audit(args) => audit::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),

@@ -474,7 +474,7 @@ fn elasticity() {
 #[test]
 fn help_and_usage() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["demo", "modes", "certify", "check", "audit", "info", "bench"] {
+    for name in ["demo", "modes", "certify", "check", "load", "fit", "audit", "info", "bench"] {
         let help = sscc(folder.path(), &[name, "--help"]);
         assert_eq!(help.code, Some(0));
         assert!(help.stdout.contains("Example"), "{name}");

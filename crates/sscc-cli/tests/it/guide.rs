@@ -113,7 +113,7 @@ fn the_guide_leads_from_files_to_sound() {
         assert!(samples.take(100).all(|sample| sample == 0), "{name}: sound before the first contact");
     }
     for note in [
-        "note: comb: longest side 0.05000 m, 0.01",
+        "note: comb: longest side 0.05000 m, mass 0.01",
         "note: octopus: ",
         " of triangles collide at rest; they make no contact",
         "note: bracket: longest side 0.05000 m, held, first mode ",

@@ -9,8 +9,10 @@ use sscc_io::write_npy;
 
 use crate::common::{Run, STRIP, command, strips};
 
-const COMMANDS: [&str; 11] =
-    ["demo", "modes", "certify", "check", "sweep", "resolve", "audit", "info", "simulate", "bench", "view"];
+const COMMANDS: [&str; 13] = [
+    "demo", "modes", "certify", "check", "sweep", "resolve", "load", "fit", "audit", "info", "simulate",
+    "bench", "view",
+];
 
 /// Returns the lines of a help page in a terminal of that width.
 fn page(name: Option<&str>, width: usize) -> Vec<String> {

@@ -30,5 +30,6 @@ mod rows;
 mod samples;
 mod scopes;
 mod simulate;
+mod statics;
 mod sweep;
 mod view;

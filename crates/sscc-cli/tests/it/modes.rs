@@ -1,9 +1,12 @@
 //! `sscc modes` of solids: surfaces in a lattice, files of elements, and solids that are refused.
 
+use glam::DVec3;
+use sscc_solid::{Material, Solid};
 use std::fs;
 use std::path::Path;
 
 use crate::common::{files, sscc};
+use crate::statics::BRACKET;
 
 /// A box of 2 x 1 x 1, closed.
 const BOX: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n\
@@ -105,6 +108,136 @@ fn linear_modes_of_a_surface() {
 }
 
 #[test]
+fn units_of_a_file_scale_its_model() {
+    let directory = folder();
+    let folder = directory.path();
+    let args =
+        ["box.obj", "--kind", "linear", "--rank", "6", "--resolution", "8", "--fix", "box:-1,-1,-1,0,2,2"];
+    let of = |more: &[&str]| {
+        let report = modes(folder, &[&args[..], more].concat());
+        let numbers = ["longest_side", "mass"].map(|key| report[key].as_f64().unwrap());
+        (numbers[0], numbers[1], report["frequencies_hz"][0].as_f64().unwrap())
+    };
+    let (side, mass, first) = of(&[]);
+    assert!(side == 2.0 && (mass / 2000.0 - 1.0).abs() < 0.01);
+    for more in [["--units", "mm"], ["--scale", "0.001"]] {
+        let found = of(&more);
+        let ratios = [found.0 / side * 1e3, found.1 / mass * 1e9, found.2 / first / 1e3];
+        assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{ratios:?}");
+    }
+    let text =
+        sscc(folder, &["modes", "-o", "x.model.safetensors", "two.veg", "--kind", "linear", "--rank", "2"]);
+    assert!(text.stdout.contains("\nlongest side 1.000 m, mass 833.3 kg, first mode "), "{text:?}");
+    let refused = |more: &[&str]| {
+        let run = sscc(folder, &[&["modes", "-o", "x.model.safetensors"], &args[..], more].concat());
+        assert_eq!((run.code, run.stderr.lines().count()), (Some(2), 1), "{run:?}");
+        run.stderr
+    };
+    let unknown = refused(&["--units", "ft"]);
+    assert!(unknown.contains("'ft'") && unknown.contains("mm, cm, m, in"), "{unknown}");
+    assert!(refused(&["--units", "mm", "--scale", "2"]).contains("cannot be used with"));
+    for typed in ["--scale=0", "--scale=-1", "--scale=nan", "--scale=x", "--scale=inf"] {
+        assert!(refused(&[typed]).contains("a number above 0 was expected"));
+    }
+    assert!(refused(&["--scale", "1e100"]).contains("box.obj: "));
+}
+
+/// Returns a gmsh file of a beam of 200 x 10 x 10 in one layer of tetrahedra, of first and of second order.
+fn beams() -> [String; 2] {
+    let vertices =
+        (0..84).map(|k| DVec3::new(f64::from(k / 4 * 10), f64::from(k % 2 * 10), f64::from(k / 2 % 2 * 10)));
+    let cube = |at: u32| [0, 4, 5, 1, 2, 6, 7, 3].map(|corner| 4 * at + corner);
+    let paths = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+    let tets = (0..20).flat_map(|at| paths.map(|path| path.map(|k| cube(at)[k]))).collect();
+    let linear = Solid::uniform(vertices.collect(), tets, vec![], Material::default()).unwrap();
+    let (second_order, _) = linear.elevated().unwrap();
+    let text = |vertices: &[DVec3], kind: u32, elements: Vec<&[u32]>| {
+        let nodes: String =
+            vertices.iter().zip(1..).map(|(p, k)| format!("{k} {} {} {}\n", p.x, p.y, p.z)).collect();
+        let line = |(nodes, k): (&&[u32], u32)| {
+            let nodes: Vec<String> = nodes.iter().map(|v| (v + 1).to_string()).collect();
+            format!("{k} {kind} 0 {}\n", nodes.join(" "))
+        };
+        let lines: String = elements.iter().zip(1..).map(line).collect();
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{nodes}$EndNodes\n$Elements\n{}\n{lines}$EndElements\n",
+            vertices.len(),
+            elements.len()
+        )
+    };
+    [
+        text(linear.vertices(), 4, linear.tets().iter().map(|tet| &tet[..]).collect()),
+        text(second_order.vertices(), 11, second_order.tets10().iter().map(|tet| &tet[..]).collect()),
+    ]
+}
+
+#[test]
+fn tetrahedra_of_second_order_bend_as_a_beam_and_linear_ones_are_noted() {
+    let directory = folder();
+    let folder = directory.path();
+    let [linear, second_order] = beams();
+    fs::write(folder.join("linear.msh"), linear).unwrap();
+    fs::write(folder.join("second.msh"), &second_order).unwrap();
+    let run = |file: &str, more: &[&str]| {
+        let fixed = ["--units", "mm", "--material", "steel", "--fix", "box:0,0,0,0,10,10", "--rank", "4"];
+        let args = ["modes", file, "-o", "x.model.safetensors", "--kind", "linear"];
+        sscc(folder, &[&args[..], &fixed, more].concat())
+    };
+    let of = |file: &str| run(file, &["--json"]).json().remove(0);
+    let hz = |report: &serde_json::Value| report["frequencies_hz"][0].as_f64().unwrap();
+    let (coarse, found) = (of("linear.msh"), of("second.msh"));
+    // Euler and Bernoulli's clamped beam of steel.
+    let expected =
+        1.875_104_f64.powi(2) / 0.04 * 0.01 * (2.0e11_f64 / 12.0 / 7850.0).sqrt() / std::f64::consts::TAU;
+    assert!((hz(&found) / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    assert!((coarse["second_order_hz"].as_f64().unwrap() / hz(&found) - 1.0).abs() < 1e-6, "{coarse}");
+    assert!(hz(&coarse) > 1.4 * expected && found.get("second_order_hz").is_none());
+    assert_eq!((&found["triangles"], &found["elements"]), (&(4 * 164).into(), &120.into()));
+    let note = run("linear.msh", &[]);
+    assert!(note.stderr.contains("note: the tetrahedra are too stiff: the first frequency is "), "{note:?}");
+    assert!(!run("second.msh", &[]).stderr.contains("stiff"));
+
+    // The first edge's node is at a corner, then in another place.
+    let nodes = second_order.lines().skip_while(|line| *line != "$Elements").nth(2).unwrap();
+    let nodes: Vec<&str> = nodes.split(' ').skip(3).collect();
+    let at = |k: usize| {
+        let line = second_order.lines().find(|line| line.starts_with(&format!("{} ", nodes[k]))).unwrap();
+        line.split_once(' ').unwrap().1.to_owned()
+    };
+    for moved in [at(0), "90 90 90".into()] {
+        let line = format!("\n{} {}\n", nodes[4], at(4));
+        let text = second_order.replacen(&line, &format!("\n{} {moved}\n", nodes[4]), 1);
+        fs::write(folder.join("bad.msh"), text).unwrap();
+        let run = run("bad.msh", &[]);
+        let refused = run.refusal();
+        assert!(
+            refused.contains("bad.msh: the second-order tetrahedron 0 (counted from 0, corners ["),
+            "{refused}"
+        );
+        assert!(refused.contains("move the nodes of its edges towards their middles"), "{refused}");
+    }
+    let run = run("box.obj", &["--solid", "second.msh"]);
+    let embedded = run.refusal();
+    assert!(embedded.contains("a surface can be embedded in tetrahedra of first order only"), "{embedded}");
+}
+
+#[test]
+fn documented_parts_print_what_is_shown() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    fs::write(folder.join("bracket.obj"), BRACKET).unwrap();
+    fs::write(folder.join("beam.msh"), &beams()[0]).unwrap();
+    let guide = include_str!("../../../../docs/command.md");
+    for source in ["bracket.obj", "beam.msh"] {
+        let (_, block) = guide.split_once(&format!("$ sscc modes {source} ")).unwrap();
+        let (typed, shown) = block.split_once("```").unwrap().0.split_once('\n').unwrap();
+        let args: Vec<&str> = ["modes", source].into_iter().chain(typed.split(' ')).collect();
+        let run = sscc(folder, &args);
+        assert_eq!(run.stdout + &run.stderr, shown, "{args:?}");
+    }
+}
+
+#[test]
 fn bases_for_large_deformations_have_forces() {
     let directory = folder();
     let folder = directory.path();
@@ -155,7 +288,10 @@ fn a_typed_material_overrides_those_of_the_file() {
         let material = material.map_or(vec![], |material| vec!["--material", material]);
         let run = sscc(folder, &[&args[..], &material].concat());
         assert_eq!(run.code, Some(0), "{run:?}");
-        (frequencies(&run.json()[0]), run.stderr, provenance(folder))
+        // Two tetrahedra are too stiff.
+        let notes =
+            run.stderr.lines().filter(|line| !line.contains("too stiff")).map(|line| format!("{line}\n"));
+        (frequencies(&run.json()[0]), notes.collect::<String>(), provenance(folder))
     };
     let note = |numbers: &str| format!("note: --material overrides the file's materials: {numbers}\n");
     let (own, stderr, stored) = run("two.veg", None);
@@ -233,7 +369,8 @@ fn refusals() {
         ),
         (
             &["box.obj", "--resolution", "4", "--material", "stel"],
-            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber); did you mean 'steel'?",
+            "--material: 'stel' is neither youngs=E, poisson=NU or density=RHO nor a known material (steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber, \
+             spring-steel, stainless-steel, titanium, brass, copper, nylon, pla, concrete); did you mean 'steel'?",
         ),
         (
             &["box.obj", "--resolution", "4", "--material", "youngs=1e6,possion=0.3"],

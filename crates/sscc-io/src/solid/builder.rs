@@ -18,6 +18,8 @@ pub(super) struct Builder {
     cube_material: Vec<u32>,
     by_name: BTreeMap<String, u32>,
     faces: Polygons,
+    /// Triangles of second order: corners, then the middles of their edges.
+    second_order: Vec<([u64; 6], Place)>,
     /// Faces of a kind that is not read, and the cause. A solid does not need them.
     unread_faces: Option<FormatError>,
     /// Largest index, from 0, and its place.
@@ -33,6 +35,7 @@ impl Builder {
             cube_material: Vec::new(),
             by_name: BTreeMap::new(),
             faces: Polygons::new(first),
+            second_order: Vec::new(),
             unread_faces: None,
             largest: None,
             first,
@@ -82,6 +85,14 @@ impl Builder {
         Ok(())
     }
 
+    /// Adds a tetrahedron of second order; nodes from 0, the middles of edges in gmsh's order.
+    pub fn tet10(&mut self, nodes: [u64; 10], material: u32, place: Place) -> Result<(), FormatError> {
+        self.check(&nodes, place.clone())?;
+        let [a, b, c, d, middles @ ..] = nodes;
+        self.parts.middles.push(middles.map(|v| v as u32));
+        self.tet([a, b, c, d], material, place)
+    }
+
     /// Adds a cube; corners from 0.
     pub fn cube(&mut self, corners: [u64; 8], material: u32, place: Place) -> Result<(), FormatError> {
         self.check(&corners, place)?;
@@ -94,6 +105,13 @@ impl Builder {
     pub fn face<const N: usize>(&mut self, corners: [u64; N], place: Place) -> Result<(), FormatError> {
         self.check(&corners, place.clone())?;
         self.faces.push(&corners, place)
+    }
+
+    /// Adds a triangle of second order: corners from 0, then the middles of the edges 0 1, 1 2 and 2 0.
+    pub fn face_of_second_order(&mut self, nodes: [u64; 6], place: Place) -> Result<(), FormatError> {
+        self.check(&nodes, place.clone())?;
+        self.second_order.push((nodes, place));
+        Ok(())
     }
 
     /// Notes faces of a kind that is not read: an error if the file has no solid elements.
@@ -134,7 +152,14 @@ impl Builder {
             }
             _ => {}
         }
-        if self.elements() == 0 && vertices > 0 {
+        // A solid has its own middles, so its surface needs corners only.
+        let is_surface = self.elements() == 0;
+        for ([a, b, c, ab, bc, ca], place) in self.second_order {
+            let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
+            let triangles = if is_surface { &parts[..] } else { &[[a, b, c]] };
+            triangles.iter().try_for_each(|corners| self.faces.push(corners, place.clone()))?;
+        }
+        if is_surface && vertices > 0 {
             if let Some(error) = self.unread_faces {
                 return Err(error);
             }

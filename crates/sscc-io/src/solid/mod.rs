@@ -4,7 +4,8 @@
 //! and the order of their corners. Readers check the guarantees of [`VolumeMesh`]: numbers, indices, repeated corners,
 //! duplicate elements. They accept inverted, flat or overlapping elements, which [`VolumeMesh::solid`] rejects.
 //!
-//! Second-order elements, prisms and pyramids are errors: skipping them would leave holes in the body.
+//! Tetrahedra of second order are read from gmsh's files alone. Other elements of higher order, prisms and pyramids are
+//! errors: skipping them would leave holes in the body.
 
 mod builder;
 pub mod gmsh;
@@ -33,7 +34,7 @@ const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .
 /// # Errors
 /// When the ending is none of these, or the file (or one that belongs to it) cannot be read or is malformed; when
 /// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is duplicated or
-/// is neither a 4-node tetrahedron nor an 8-node hexahedron, or there is no element.
+/// is neither a tetrahedron of 4 nodes (in gmsh's files also 10) nor an 8-node hexahedron, or there is no element.
 pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
     read_volume_or_surface(path)?.into_volume().map_err(|error| error.of(path))
 }

@@ -18,8 +18,11 @@ use crate::cancel::check_cancelled;
 /// Components of a symmetric strain, off-diagonal ones times the root of 2 (Mandel): their square sum is `E : E`.
 const COMPONENTS: usize = 6;
 
-/// Number of elements whose strains are multiplied at once: about 3,000 rows, which fit into the cache.
+/// Number of elements whose strains are multiplied at once: of cubes about 3,000 rows, which fit into the cache.
 const BATCH: usize = 64;
+
+/// Maximum number of integration points of an element.
+const MAX_POINTS: usize = 14;
 
 /// Number of partial sums. Fixed, so that the result is the same for any number of threads.
 const SUMS: usize = 8;
@@ -41,7 +44,7 @@ pub(crate) fn reduced_forces(
         .into_par_iter()
         .map(|sum| {
             let mut gram = Mat::<f64>::zeros(columns, columns);
-            let mut strains = Mat::<f64>::zeros(COMPONENTS * 8 * BATCH, columns);
+            let mut strains = Mat::<f64>::zeros(COMPONENTS * MAX_POINTS * BATCH, columns);
             for batch in (sum..batches).step_by(SUMS) {
                 if progress.is_cancelled() {
                     break;

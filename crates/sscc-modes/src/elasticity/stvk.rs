@@ -18,7 +18,7 @@ pub(crate) fn stress(material: &Material, strain: DMat3) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(material.lame_lambda() * trace)) + strain * (2.0 * material.lame_mu())
 }
 
-/// Returns the displacement gradient at a point from the displacements of its element's corners.
+/// Returns the displacement gradient at a point from the displacements of its element's vertices.
 pub(crate) fn gradient(point: &IntegrationPoint, displacements: &[DVec3]) -> DMat3 {
     let mut sum = DMat3::ZERO;
     for (u, g) in displacements.iter().zip(&point.gradients) {
@@ -40,7 +40,7 @@ pub(crate) fn energy_and_forces(solid: &Solid, displacements: &[DVec3]) -> (f64,
     for index in 0..solid.element_count() {
         let element = solid.element(index);
         let corners: Vec<DVec3> = element.vertices.iter().map(|v| displacements[*v as usize]).collect();
-        let mut own = [DVec3::ZERO; 8];
+        let mut own = [DVec3::ZERO; 10];
         for point in element.points() {
             let a = gradient(point, &corners);
             let strain = symmetric(a) + a.transpose() * a * 0.5;
@@ -64,11 +64,11 @@ pub(crate) fn second_derivatives(
         let mut forces = vec![vec![DVec3::ZERO; solid.vertices().len()]; pairs.len()];
         let used = |k: &usize| pairs.iter().any(|(i, j)| i == k || j == k);
         let used: Vec<usize> = (0..fields.len()).filter(used).collect();
-        let mut at_corners = vec![[DVec3::ZERO; 8]; fields.len()];
+        let mut at_corners = vec![[DVec3::ZERO; 10]; fields.len()];
         let mut at_point = vec![(DMat3::ZERO, DMat3::ZERO); fields.len()];
         for index in 0..solid.element_count() {
             let element = solid.element(index);
-            let mut own = [[DVec3::ZERO; 8]; PAIRS_PER_TASK];
+            let mut own = [[DVec3::ZERO; 10]; PAIRS_PER_TASK];
             for k in &used {
                 let corners = at_corners[*k].iter_mut().zip(element.vertices);
                 corners.for_each(|(u, v)| *u = fields[*k][*v as usize]);
@@ -94,8 +94,8 @@ pub(crate) fn second_derivatives(
     pairs.par_chunks(PAIRS_PER_TASK).flat_map_iter(of_pairs).collect()
 }
 
-/// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's corners.
-fn add_forces(point: &IntegrationPoint, stress: DMat3, forces: &mut [DVec3; 8]) {
+/// Adds the forces of a first Piola-Kirchhoff stress at a point to those of its element's vertices.
+fn add_forces(point: &IntegrationPoint, stress: DMat3, forces: &mut [DVec3; 10]) {
     let stress = stress * point.volume;
     forces.iter_mut().zip(&point.gradients).for_each(|(f, g)| *f += stress * *g);
 }

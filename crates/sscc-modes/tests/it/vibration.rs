@@ -81,6 +81,25 @@ fn frequencies_of_bars_match_closed_forms() {
 }
 
 #[test]
+fn one_layer_of_second_order_tetrahedra_bends_as_a_beam() {
+    let thickness = 0.05;
+    let linear = bar_of_tets(DVec3::new(1.0, thickness, thickness), [10, 1, 1], STEEL);
+    let (second_order, edges) = linear.elevated().unwrap();
+    assert_eq!(second_order.vertices().len(), linear.vertices().len() + edges.len());
+    let first = |solid: &Solid| {
+        let clamped = |v: &u32| solid.vertices()[*v as usize].x == 0.0;
+        let fixed: Vec<u32> = (0..solid.vertices().len() as u32).filter(clamped).collect();
+        linear_modes(solid, &fixed, 4, &()).unwrap().frequencies()[0]
+    };
+    let expected = bending_frequency(1.875_104_069, thickness);
+    let (coarse, found) = (first(&linear) / expected, first(&second_order) / expected);
+    assert!(coarse > 1.5 && (found - 1.0).abs() < 0.02, "{coarse} {found}");
+    let mass = |solid: &Solid| solid.mass_properties();
+    assert!((mass(&second_order).mass / mass(&linear).mass - 1.0).abs() < 1e-12);
+    assert!(mass(&second_order).inertia.abs_diff_eq(mass(&linear).inertia, 1e-10));
+}
+
+#[test]
 fn tetrahedra_and_cubes_agree() {
     let (size, cells) = (DVec3::new(1.0, 0.7, 0.5), [10, 7, 5]);
     let of = |solid: Solid| linear_modes(&solid, &[], 8, &()).unwrap().frequencies();

@@ -3,7 +3,7 @@
 use sscc::{Modes, Progress, ReducedModel};
 use sscc_io::{ModelInfo, Setting};
 use sscc_modes::{PolynomialModes, SolidModes, linear_modes, nonlinear_modes, polynomial_solid_modes};
-use sscc_solid::MassData;
+use sscc_solid::{MassData, Solid};
 
 use super::new_model::{NewModel, SolidFacts};
 use super::source::SolidSource;
@@ -12,6 +12,10 @@ use crate::SimError;
 /// Default numbers of modes.
 const LINEAR_RANK: usize = 20;
 const NONLINEAR_RANK: usize = 30;
+
+/// Maximum number of tetrahedra whose stiffness is compared with that in second order, which has about seven times as many
+/// vertices.
+const MAX_COMPARED: usize = 5000;
 
 /// Cause of the error if polynomial modes are requested with a rank or with fixed vertices.
 pub const POLYNOMIAL_MODES_ERROR: &str =
@@ -106,12 +110,43 @@ pub fn elastic_model(
         "{of_source} {name}, {} modes, {elements} elements, {freedom} degrees of freedom, {made_of}",
         kind.name(),
     );
-    let frequencies = found.frequencies();
+    let (frequencies, kilograms) = (found.frequencies(), mass.properties.mass);
+    let second_order = match kind {
+        ModesKind::Linear | ModesKind::Nonlinear if !source.is_embedded() => {
+            first_of_second_order(solid, fixed, progress)?
+        }
+        _ => None,
+    };
     let metric = found.energy_metric()?;
     Ok(NewModel {
         model: ReducedModel::with_metric(source.into_mesh(), on_surface, metric)?,
         info: ModelInfo::new("", provenance).with_elasticity(found.elasticity).with_mass(mass),
-        solid: Some(SolidFacts { elements, degrees_of_freedom: freedom, frequencies }),
+        solid: Some(SolidFacts {
+            elements,
+            degrees_of_freedom: freedom,
+            mass: kilograms,
+            frequencies,
+            second_order,
+        }),
         components: None,
     })
+}
+
+/// Returns the first frequency (Hz) of a solid of linear tetrahedra with its tetrahedra in second order; None for other or
+/// large solids.
+fn first_of_second_order(
+    solid: &Solid,
+    fixed: &[u32],
+    progress: &dyn Progress,
+) -> Result<Option<f64>, SimError> {
+    if !solid.cubes().is_empty() || !solid.tets10().is_empty() || solid.tets().len() > MAX_COMPARED {
+        return Ok(None);
+    }
+    // Nearly flat tetrahedra are none of second order.
+    let Ok((elevated, edges)) = solid.elevated() else { return Ok(None) };
+    let is_fixed = |v: &u32| fixed.binary_search(v).is_ok();
+    let corners = solid.vertices().len();
+    let middles = edges.iter().zip(corners as u32..).filter(|(edge, _)| edge.iter().all(is_fixed));
+    let fixed: Vec<u32> = fixed.iter().copied().chain(middles.map(|(_, v)| v)).collect();
+    Ok(linear_modes(&elevated, &fixed, 1, progress)?.frequencies().first().copied())
 }

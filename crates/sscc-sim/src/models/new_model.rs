@@ -12,21 +12,26 @@ pub struct NewModel {
     pub model: ReducedModel,
     /// Provenance; for a solid also the stiffness and the forces.
     pub info: ModelInfo,
-    /// Size and frequencies of a solid.
+    /// Size, mass and frequencies of a solid.
     pub solid: Option<SolidFacts>,
     /// Variance of principal components.
     pub components: Option<Components>,
 }
 
-/// The size of a solid and the frequencies of its modes.
+/// The size and mass of a solid, and the frequencies of its modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidFacts {
     /// Tetrahedra and cubes.
     pub elements: usize,
     /// Coordinates of vertices that are not fixed.
     pub degrees_of_freedom: usize,
+    /// Mass (kg).
+    pub mass: f64,
     /// Frequency of each mode (Hz).
     pub frequencies: Vec<f64>,
+    /// First frequency (Hz) with the same tetrahedra in second order: linear ones are too stiff by the difference. None
+    /// where it was not computed.
+    pub second_order: Option<f64>,
 }
 
 /// The variance that principal components explain.

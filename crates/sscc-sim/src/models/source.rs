@@ -15,6 +15,7 @@ use sscc_solid::{Boundary, Material, MeshedSolid, PartialMaterial, Solid, Volume
 use super::material::MaterialOrigin;
 use crate::SimError;
 use crate::error::At;
+use crate::resize::scaled;
 
 /// A solid with its surface.
 pub enum SolidSource {
@@ -105,23 +106,27 @@ impl SolidSource {
         Ok(Self::Whole { meshed, boundary, material })
     }
 
-    /// Reads a surface and the solid in which it is embedded: see [`SolidSource::embedded`].
+    /// Reads a surface and the solid in which it is embedded: see [`SolidSource::embedded`]. All lengths of both are
+    /// multiplied by `scale`.
     ///
     /// # Errors
     /// When a file cannot be read or is of another kind, and those of [`SolidSource::embedded`].
     pub fn read_within(
         surface: &Path,
         solid: &Path,
+        scale: f64,
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
         let (mesh, warnings) = read_embedded(surface)?;
-        let source = Self::embedded(mesh, &read_volume_mesh(solid)?, material, progress).in_file(solid)?;
+        let mesh = scaled(mesh, scale).in_file(surface)?;
+        let file = read_volume_mesh(solid)?.scaled(scale).in_file(solid)?;
+        let source = Self::embedded(mesh, &file, material, progress).in_file(solid)?;
         Ok(source.with_warnings(warnings))
     }
 
     /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
-    /// Numbers of `material` override those of the file.
+    /// All lengths of the file are multiplied by `scale`. Numbers of `material` override those of the file.
     ///
     /// # Errors
     /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
@@ -129,10 +134,12 @@ impl SolidSource {
     pub fn read(
         path: &Path,
         resolution: Option<usize>,
+        scale: f64,
         material: &PartialMaterial,
         progress: &dyn Progress,
     ) -> Result<Self, SimError> {
         let surface = |(mesh, warnings): (TriMesh, Vec<String>)| -> Result<Self, SimError> {
+            let mesh = scaled(mesh, scale)?;
             Ok(Self::around(mesh, resolution, material, progress)?.with_warnings(warnings))
         };
         if !is_solid(path) {
@@ -146,7 +153,7 @@ impl SolidSource {
             let place = Setting::Resolution + " is for surfaces";
             return Err(SimError::refused(place, "this file has its own elements"));
         }
-        Self::whole(&file, material)
+        Self::whole(&file.scaled(scale)?, material)
     }
 
     /// Adds lines about the file of its surface.

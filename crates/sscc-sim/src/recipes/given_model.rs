@@ -8,9 +8,9 @@ use sscc_io::{LoadOptions, ModelInfo, Setting, load_model_with, read_reduced_for
 use sscc_modes::{diagonalize, energy_metric};
 use sscc_solid::{Elasticity, MassData, MassProperties, Material, PartialMaterial, Stiffness};
 
-use super::resize::{Resize, scaled};
 use crate::SimError;
 use crate::error::At;
+use crate::resize::{Resize, scaled};
 
 /// Files of a model with modes.
 #[derive(Clone, Debug)]

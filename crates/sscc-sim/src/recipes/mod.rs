@@ -7,7 +7,6 @@ mod given_model;
 mod key;
 mod loaded_recipe;
 mod recipe;
-mod resize;
 mod shape;
 mod timed_certificates;
 
@@ -17,7 +16,5 @@ pub(crate) use certified_model::vibrations;
 pub use given_model::ModelFiles;
 pub use loaded_recipe::LoadedRecipe;
 pub use recipe::{ModesSpec, Recipe};
-pub use resize::Resize;
-pub(crate) use resize::longest_side;
 pub use shape::{SPRING_RINGS, Shape, models_folder};
 pub use timed_certificates::{CertificateCost, TimedCertificates};

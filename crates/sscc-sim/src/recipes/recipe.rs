@@ -3,11 +3,11 @@
 use sscc::{Metric, MetricKind, ReducedModel};
 use sscc_solid::PartialMaterial;
 
-use super::resize::Resize;
 use super::shape::Shape;
 use crate::SimError;
 use crate::error::At;
 use crate::models::Fix;
+use crate::resize::Resize;
 
 /// An elastic body with modes.
 #[derive(Clone, Debug)]

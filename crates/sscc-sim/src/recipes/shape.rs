@@ -9,9 +9,9 @@ use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
 use super::given_model::{GivenModel, ModelFiles};
-use super::resize::{Resize, scaled};
 use crate::error::At;
 use crate::models::{SolidSource, is_solid, read_embedded};
+use crate::resize::{Resize, scaled};
 use crate::{SimError, Watch};
 
 /// Rings of the embedded spring, and vertices of each.

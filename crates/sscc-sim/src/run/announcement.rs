@@ -7,9 +7,10 @@ use sscc_solid::Stiffness;
 
 use super::prepared::{PreparedModel, PreparedScene};
 use crate::error::{At, Result};
-use crate::recipes::{ModesSpec, longest_side};
+use crate::recipes::{ModesSpec, Recipe, Shape};
+use crate::resize::longest_side;
 use crate::scenes::{Scene, Shake};
-use crate::text::{counted, length};
+use crate::text::{counted, length, size_and_mass};
 
 /// Time of the free vibration that a line describes (s).
 const FIRST: f64 = 1.0;
@@ -19,8 +20,8 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
     let mut lines = Vec::new();
     for (spec, model) in scene.models.iter().zip(&prepared.models) {
         let name = &model.certified.name;
-        if matches!(spec.recipe.modes, ModesSpec::Given) {
-            lines.push(format!("{name}: {}", facts(model)?));
+        if matches!(spec.recipe.shape, Shape::File(_) | Shape::Embedded { .. } | Shape::Model(_)) {
+            lines.push(format!("{name}: {}", facts(&spec.recipe, model)?));
         }
         match model.certified.full.certificates.rest_collisions() {
             0 => {}
@@ -64,13 +65,13 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
 }
 
 /// Returns size, mass and first frequency of a model, which show wrong units.
-fn facts(model: &PreparedModel) -> Result<String> {
+fn facts(recipe: &Recipe, model: &PreparedModel) -> Result<String> {
     let side = longest_side(model.shape.model().mesh().rest_positions());
     let stiffness = model.shape.elasticity().stiffness();
     let first = natural_frequencies(stiffness)?.into_iter().fold(f64::INFINITY, f64::min);
-    let mass =
-        if model.is_held() { "held".into() } else { format!("{} kg", length(model.shape.mass().mass)) };
-    Ok(format!("longest side {} m, {mass}, first mode {} Hz", length(side), length(first)))
+    // The files of a held body may state no mass.
+    let is_known = !(model.is_held() && matches!(recipe.modes, ModesSpec::Given));
+    Ok(size_and_mass(side, is_known.then(|| model.shape.mass().mass), first))
 }
 
 /// Returns an upper bound of the displacement of a vertex by the free vibration with these rates at the beginning, in the

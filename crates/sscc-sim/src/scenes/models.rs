@@ -10,7 +10,8 @@ use sscc_solid::PartialMaterial;
 use super::section::Section;
 use crate::error::Result;
 use crate::models::Fix;
-use crate::recipes::{ModelFiles, ModesSpec, Recipe, Resize, Shape};
+use crate::recipes::{ModelFiles, ModesSpec, Recipe, Shape};
+use crate::resize::{Resize, UNITS};
 
 /// Maximum number of modes of a body.
 pub const MAX_RANK: usize = 500;
@@ -47,7 +48,7 @@ impl ModelSpec {
     }
 }
 
-const KEYS: [&str; 16] = [
+const KEYS: [&str; 17] = [
     "shape",
     "file",
     "solid",
@@ -55,6 +56,7 @@ const KEYS: [&str; 16] = [
     "forces",
     "size",
     "scale",
+    "units",
     "resolution",
     "kind",
     "rank",
@@ -182,15 +184,19 @@ fn modes(model: &Section<'_>) -> Result<(ModesSpec, bool)> {
     }
 }
 
-/// Reads `size` or `scale`.
+/// Reads `size`, `scale` or `units`.
 fn resize(model: &Section<'_>) -> Result<Resize> {
-    match (model.positive("size")?, model.positive("scale")?) {
-        (Some(_), Some(_)) => {
+    let (size, scale) = (model.positive("size")?, model.positive("scale")?);
+    match (size, scale, model.word("units", &UNITS)?) {
+        (None, None, None) => Ok(Resize::Keep),
+        (Some(size), None, None) => Ok(Resize::LongestSide(size)),
+        (None, Some(factor), None) | (None, None, Some(factor)) => Ok(Resize::Factor(factor)),
+        (Some(_), Some(_), _) => {
             Err(model.refused("scale", "the model has both size and scale: leave one of them out"))
         }
-        (Some(size), None) => Ok(Resize::LongestSide(size)),
-        (None, Some(factor)) => Ok(Resize::Factor(factor)),
-        (None, None) => Ok(Resize::Keep),
+        (_, _, Some(_)) => {
+            Err(model.refused("units", "the model has both units and size or scale: leave one of them out"))
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::*;
 use crate::error::Result;
 use crate::models::Fix;
-use crate::recipes::{ModesSpec, Resize, Shape};
+use crate::recipes::{ModesSpec, Shape};
+use crate::resize::Resize;
 
 const GOOD: &str = r#"
 about = "two soft springs"
@@ -127,6 +128,12 @@ fn errors_name_the_line_and_the_cause() {
         ("[0.1, -2]", "{ force = [1] }", "line 21: unknown key 'force'"),
         ("rank = 12", "rank = 1", "line 21: shake: 2 numbers for 1 modes"),
         ("size = 0.3", "size = 0.3\nscale = 2", "line 14: scale: the model has both size and scale"),
+        (
+            "size = 0.3",
+            "units = \"mm\"\nscale = 2",
+            "line 13: units: the model has both units and size or scale",
+        ),
+        ("size = 0.3", "units = \"ft\"", "line 13: units: one of mm, cm, m, in was expected"),
         ("size = 0.3", "scale = 0", "line 13: scale: a positive number was expected"),
         ("size = 0.3", "fix = [0, 1.5]", "line 13: fix: vertex numbers, counted from 0, were expected"),
         ("size = 0.3", "fix = \"box:0,1\"", "line 13: fix: the value box: six numbers were expected"),

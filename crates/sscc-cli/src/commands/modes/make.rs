@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc_io::read_frames;
 use sscc_sim::{
     Fix, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
-    polynomial_model, read_surface,
+    polynomial_model, read_surface, scaled,
 };
 
 use super::material;
@@ -28,17 +28,23 @@ pub fn make(args: &args::Modes) -> Result<NewModel> {
 }
 
 fn elastic(args: &args::Modes, kind: ModesKind) -> Result<NewModel> {
+    let scale = args.factor();
     if kind == ModesKind::Polynomial {
         refuse_rank_and_fix(args)?;
     }
     let material = args.material.as_deref().map(material::parse).transpose()?.unwrap_or_default();
     let fix = args.fix.as_deref().map(|typed| Fix::parse(typed, Path::new(""), "--fix")).transpose()?;
+    let fix = fix.map(|fix| fix.scaled(scale));
     let bar = Bar::new("modes");
     let source = match &args.solid {
-        Some(solid) => SolidSource::read_within(&args.source, solid, &material, &bar)?,
-        None => {
-            SolidSource::read(&args.source, args.resolution.map(|cells| cells as usize), &material, &bar)?
-        }
+        Some(solid) => SolidSource::read_within(&args.source, solid, scale, &material, &bar)?,
+        None => SolidSource::read(
+            &args.source,
+            args.resolution.map(|cells| cells as usize),
+            scale,
+            &material,
+            &bar,
+        )?,
     };
     source.note().into_iter().for_each(note);
     if let Some(replaced) = &source.material().replaced {
@@ -64,7 +70,7 @@ fn surface_polynomials(args: &args::Modes) -> Result<NewModel> {
     refuse_rank_and_fix(args)?;
     let (mesh, warnings) = read_surface(&args.source)?;
     warnings.iter().for_each(|warning| warn(&args.source, warning));
-    let made = polynomial_model(mesh, &file_name(&args.source));
+    let made = scaled(mesh, args.factor()).and_then(|mesh| polynomial_model(mesh, &file_name(&args.source)));
     made.with_context(|| args.source.display().to_string())
 }
 
@@ -82,7 +88,8 @@ fn principal_components(args: &args::Modes) -> Result<NewModel> {
         "--fix, --material, --resolution and --solid: principal components need no solid; leave these flags out"
     );
     ensure!(!args.source.is_file(), "{shown}: is a file; --kind pca needs a folder of meshes (the frames)");
-    let frames = read_frames(&args.source)?;
+    let mut frames = read_frames(&args.source)?;
+    frames.positions.iter_mut().flatten().for_each(|p| *p *= args.factor());
     frames.warnings.iter().for_each(|warning| warn(&frames.paths[0], warning));
     let rank = args.rank.map(|rank| rank as usize);
     let name = format!("meshes in {}", file_name(&args.source));

@@ -8,7 +8,8 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use sscc_io::write_model;
-use sscc_sim::{Components, has_equal_vertices};
+use sscc_sim::text::size_and_mass;
+use sscc_sim::{Components, has_equal_vertices, longest_side};
 
 use crate::args;
 use crate::outcome::Outcome;
@@ -21,6 +22,11 @@ struct Report {
     triangles: usize,
     vertices: usize,
     rank: usize,
+    /// Longest side of the box around the surface (m).
+    longest_side: f64,
+    /// Mass of the solid (kg).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass: Option<f64>,
     /// Tetrahedra and cubes of the solid; none without a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     elements: Option<usize>,
@@ -28,9 +34,15 @@ struct Report {
     degrees_of_freedom: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frequencies_hz: Option<Vec<f64>>,
+    /// First frequency of the same tetrahedra in second order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_order_hz: Option<f64>,
     #[serde(flatten)]
     components: Option<Components>,
 }
+
+/// Maximum excess of the first frequency (percent) without a note.
+const MAX_EXCESS: f64 = 5.0;
 
 pub fn run(args: &args::Modes) -> Result<Outcome> {
     let inputs: Vec<&Path> =
@@ -45,9 +57,12 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
         triangles: model.mesh().faces().len(),
         vertices: model.mesh().rest_positions().len(),
         rank: model.rank(),
+        longest_side: longest_side(model.mesh().rest_positions()),
+        mass: made.solid.as_ref().map(|solid| solid.mass),
         elements: made.solid.as_ref().map(|solid| solid.elements),
         degrees_of_freedom: made.solid.as_ref().map(|solid| solid.degrees_of_freedom),
         frequencies_hz: made.solid.as_ref().map(|solid| solid.frequencies.clone()),
+        second_order_hz: made.solid.as_ref().and_then(|solid| solid.second_order),
         components: made.components.clone(),
     };
     let mut out = Output::new();
@@ -69,16 +84,30 @@ pub fn run(args: &args::Modes) -> Result<Outcome> {
             let elements = counted(elements as u64, "element");
             out.line(format_args!("solid of {elements}, {} degrees of freedom", grouped(freedom as u64)))?;
         }
-        match report.frequencies_hz.as_deref() {
-            Some([only]) => out.line(format_args!("frequency {} Hz", length(*only)))?,
-            Some([first, .., last]) => {
-                out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
+        match (report.mass, report.frequencies_hz.as_deref()) {
+            (Some(mass), Some([first, ..])) => {
+                out.line(size_and_mass(report.longest_side, Some(mass), *first))?;
             }
-            _ => {}
+            _ => out.line(format_args!("longest side {} m", length(report.longest_side)))?,
+        }
+        if let Some([first, .., last]) = report.frequencies_hz.as_deref() {
+            out.line(format_args!("frequencies from {} to {} Hz", length(*first), length(*last)))?;
         }
         out.line(format_args!("written: {}", args.output.display()))?;
     }
     out.finish()?;
+    if let (Some([first, ..]), Some(second_order)) =
+        (report.frequencies_hz.as_deref(), report.second_order_hz)
+    {
+        let excess = 100.0 * (first / second_order - 1.0);
+        if excess > MAX_EXCESS {
+            note(format_args!(
+                "the tetrahedra are too stiff: the first frequency is {excess:.0}% above that of the same ones in second \
+                 order ({} Hz); mesh the solid in second order (gmsh: -order 2) or finer",
+                length(second_order)
+            ));
+        }
+    }
     if has_equal_vertices(model) {
         note("some vertices have equal positions and modes, as along seams: certify the model with --weld");
     }

@@ -13,8 +13,12 @@ const LAST_ELEMENT: &str = "the last element";
 #[derive(Clone, Copy)]
 enum Kind {
     Tet,
+    /// A tetrahedron of second order.
+    Tet10,
     Cube,
     Triangle,
+    /// A triangle of second order.
+    Triangle6,
     Quadrilateral,
     /// Not part of the volume; has this number of nodes.
     Skipped(u64),
@@ -26,8 +30,10 @@ enum Kind {
 fn kind(number: i64) -> Option<Kind> {
     Some(match number {
         4 => Kind::Tet,
+        11 => Kind::Tet10,
         5 => Kind::Cube,
         2 => Kind::Triangle,
+        9 => Kind::Triangle6,
         3 => Kind::Quadrilateral,
         // Points, lines, and faces of higher order.
         15 => Kind::Skipped(1),
@@ -36,7 +42,6 @@ fn kind(number: i64) -> Option<Kind> {
         26 => Kind::Skipped(4),
         27 => Kind::Skipped(5),
         28 => Kind::Skipped(6),
-        9 => Kind::HigherFace(number, 6),
         16 => Kind::HigherFace(number, 8),
         10 | 20 => Kind::HigherFace(number, 9),
         21 => Kind::HigherFace(number, 10),
@@ -130,8 +135,8 @@ impl Reader<'_, '_> {
         match kind(number) {
             Some(kind) => Ok(kind),
             None => self.numbers.refused(format!(
-                "element type {number} is not supported: solid elements must be 4-node tetrahedra (4) or 8-node \
-                 hexahedra (5)"
+                "element type {number} is not supported: solid elements must be tetrahedra of 4 or 10 nodes \
+                 (4, 11) or 8-node hexahedra (5)"
             )),
         }
     }
@@ -142,6 +147,10 @@ impl Reader<'_, '_> {
                 let (corners, material) = (self.corners()?, material(self.builder));
                 self.builder.tet(corners, material, self.numbers.place())
             }
+            Kind::Tet10 => {
+                let (nodes, material) = (self.corners()?, material(self.builder));
+                self.builder.tet10(nodes, material, self.numbers.place())
+            }
             Kind::Cube => {
                 let (corners, material) = (self.corners()?, material(self.builder));
                 self.builder.cube(corners, material, self.numbers.place())
@@ -149,6 +158,10 @@ impl Reader<'_, '_> {
             Kind::Triangle => {
                 let corners = self.corners::<3>()?;
                 self.builder.face(corners, self.numbers.place())
+            }
+            Kind::Triangle6 => {
+                let nodes = self.corners::<6>()?;
+                self.builder.face_of_second_order(nodes, self.numbers.place())
             }
             Kind::Quadrilateral => {
                 let corners = self.corners::<4>()?;

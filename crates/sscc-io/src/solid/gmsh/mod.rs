@@ -26,8 +26,8 @@ use nodes::Nodes;
 use numbers::Numbers;
 use version::Version;
 
-/// Parses a gmsh file: 4-node tetrahedra, 8-node hexahedra, and a surface of 3-node triangles and 4-node quadrilaterals.
-/// Points, lines and other faces are skipped. Vertices keep the file's order, independent of their tags.
+/// Parses a gmsh file: 4-node or 10-node tetrahedra, 8-node hexahedra, and a surface of triangles with 3 or 6 nodes and
+/// 4-node quadrilaterals. Points, lines and other faces are skipped. Vertices keep the file's order, independent of their tags.
 ///
 /// The material of an element is the first physical group of its volume, with the name of the group, else its number.
 /// Elements without a group have the default material.

@@ -117,12 +117,15 @@ fn files_without_elements_are_surfaces() {
     assert_eq!(mesh.faces(), [[1, 2, 3], [4, 1, 2], [4, 2, 3]]);
     assert_eq!(mesh.rest_positions().len(), 5);
     assert!(message(text).starts_with("the mesh has no elements: it is a surface of 3 triangles"));
-    let higher = text.replace("2 3 0 5 2 3 4\n", "2 9 0 5 2 3 4 9 9\n");
+    let higher = text.replace("2 3 0 5 2 3 4\n", "2 16 0 5 2 3 4 9 9 9 9\n");
     let refused = surface(&higher).unwrap_err().to_string();
-    assert!(refused.starts_with("line 15: element type 9 is not supported: only triangles"), "{refused}");
+    assert!(refused.starts_with("line 15: element type 16 is not supported: only triangles"), "{refused}");
     // A solid needs no faces; its surface is that of its elements.
     assert_eq!(
-        surface(&V2.replace("2 2 2 1 1 10 20 30", "2 9 2 1 1 10 20 30 40 7 10")).unwrap().faces().len(),
+        surface(&V2.replace("2 2 2 1 1 10 20 30", "2 16 2 1 1 10 20 30 40 7 10 10 10"))
+            .unwrap()
+            .faces()
+            .len(),
         6
     );
 }
@@ -149,9 +152,13 @@ fn errors_name_the_line() {
     assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: names node 20 twice");
     assert!(
         v2("4 4 2 6", "4 6 2 6")
-            .starts_with("line 22: element type 6 is not supported: solid elements must be 4-node")
+            .starts_with("line 22: element type 6 is not supported: solid elements must be tetrahedra of 4")
     );
-    assert!(v2("4 4 2 6", "4 11 2 6").starts_with("line 22: element type 11"));
+    // The last tetrahedron alone has ten nodes.
+    let mixed = V2.replace("4 4 2 6 1 20 30 40 7", "4 11 2 6 1 20 30 40 7 1 2 3 4 5 6");
+    let mixed =
+        mixed.replace("$Nodes\n5\n", "$Nodes\n11\n1 0 0 2\n2 0 0 3\n3 0 0 4\n4 0 0 5\n5 0 0 6\n6 0 0 7\n");
+    assert!(message(&mixed).starts_with("1 of 2 tetrahedra are of second order"), "{}", message(&mixed));
     assert_eq!(v2("$Elements", "$Other"), "the file ends before '$EndOther'");
     assert_eq!(v2("$EndElements\n", "$EndElements\n$Nodes\n"), "line 24: the section '$Nodes' is repeated");
     assert_eq!(v2("$Elements\n4", "$Elements\n5"), "line 23: '$EndElements' is not an integer");
@@ -181,4 +188,22 @@ fn every_truncation_is_rejected() {
             assert!(parse(&file[..len]).is_err(), "{len}");
         }
     }
+}
+
+#[test]
+fn tetrahedra_and_triangles_of_second_order_are_read() {
+    let nodes = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .5 0 0\n\
+        6 .5 .5 0\n7 0 .5 0\n8 0 0 .5\n9 0 .5 .5\n10 .5 0 .5\n$EndNodes\n$Elements\n";
+    let tet = format!("{nodes}2\n1 9 2 0 1 1 3 2 7 6 5\n2 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+    let mesh = parse(tet.as_bytes()).unwrap();
+    assert_eq!((mesh.tets(), mesh.middles()), (&[[0, 1, 2, 3]][..], &[[4, 5, 6, 7, 8, 9]][..]));
+    assert_eq!(mesh.surface(), [[0, 2, 1]]);
+    let solid = mesh.solid(&sscc_solid::PartialMaterial::default()).unwrap().solid;
+    assert!((solid.mass_properties().mass - 1000.0 / 6.0).abs() < 1e-9);
+    assert_eq!(mesh.surface_mesh().unwrap().faces(), solid.boundary().unwrap().mesh.faces());
+    assert_eq!(solid.boundary().unwrap().mesh.faces().len(), 16);
+    let face = format!("{nodes}1\n1 9 2 0 1 1 3 2 7 6 5\n$EndElements\n");
+    let (surface, _) = parse_any(face.as_bytes()).unwrap().into_surface().unwrap();
+    assert_eq!(surface.faces(), [[0, 6, 4], [6, 2, 5], [4, 5, 1], [6, 5, 4]]);
+    assert_eq!(message(&tet.replace("8 9 10\n", "8 9 11\n")), "line 20: names node 11, which does not exist");
 }

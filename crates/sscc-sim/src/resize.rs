@@ -1,9 +1,12 @@
-//! The size of a body: that of its file, a factor on it, or a given longest side.
+//! The size of a body: that of its file, a factor on it, a unit of its lengths, or a given longest side.
 
 use glam::DVec3;
 use sscc::TriMesh;
 
 use crate::SimError;
+
+/// Units of length in which files are drawn, with their lengths in metres.
+pub const UNITS: [(&str, f64); 4] = [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254)];
 
 /// The size of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
