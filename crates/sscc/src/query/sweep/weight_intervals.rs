@@ -118,8 +118,8 @@ impl Query {
                 // From a free weight back to one that collides, or to one beyond which nothing is proven.
                 Some(next) => {
                     let start = begin.free().unwrap_or(begin.sample().weight);
-                    let start = right_or!(start, IntervalsEndWhereTheyBegin, samples[next].weight);
-                    line.end(samples[next].weight, start)?
+                    let from = samples[next].weight;
+                    line.end(from, right_or!(start, IntervalsEndWhereTheyBegin, from))?
                 }
                 None => Some(End::OfRange(samples[last])),
             };
