@@ -138,6 +138,21 @@ impl Certificates {
         SweepArguments { range, q, modes, threads }.run(py, &self.pool, progress)
     }
 
+    #[pyo3(signature = (range=None, *, samples=None, q=None, modes=None, threads=None, progress=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn intervals<'py>(
+        &self,
+        py: Python<'py>,
+        range: Option<&Bound<'py, PyAny>>,
+        samples: Option<&Bound<'py, PyAny>>,
+        q: Option<&Bound<'py, PyAny>>,
+        modes: Option<&Bound<'py, PyAny>>,
+        threads: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        SweepArguments { range, q, modes, threads }.intervals(py, &self.pool, samples, progress)
+    }
+
     #[pyo3(signature = (q, start=None, *, all=None))]
     fn resolve<'py>(
         &self,

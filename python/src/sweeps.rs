@@ -1,9 +1,10 @@
-//! `Certificates.sweep`: its arguments, and its result as a list of `sscc.Sweep`.
+//! `Certificates.sweep` and `Certificates.intervals`: their arguments, and their results as lists of `sscc.Sweep` and
+//! `sscc.Intervals`.
 
-use numpy::PyUntypedArrayMethods;
+use numpy::{PyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
-use sscc::{ModeRange, Sweep, SweepOutcome};
+use sscc::{ModeRange, Sweep, SweepOutcome, WeightInterval};
 use sscc_sim::{SweepRange, nearest};
 
 use crate::arguments::count;
@@ -13,7 +14,10 @@ use crate::interrupt::run_borrowing;
 use crate::model::LoadedModel;
 use crate::pool::{Pool, threads};
 
-/// The arguments of `Certificates.sweep`, except `progress`; `None` for an absent one.
+/// Samples of each weight, where their number is not given.
+const SAMPLES: usize = 101;
+
+/// The arguments of both, except `progress` and `samples`; `None` for an absent one.
 pub struct SweepArguments<'a, 'py> {
     pub range: Option<&'a Bound<'py, PyAny>>,
     pub q: Option<&'a Bound<'py, PyAny>>,
@@ -29,6 +33,60 @@ impl<'py> SweepArguments<'_, 'py> {
         pool: &Pool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyList>> {
+        let loaded = &*pool.certified.loaded;
+        let (q, modes) = self.ways(pool)?;
+        let threads = threads(self.threads)?;
+        let swept = run_borrowing(py, progress, "sweeping", |progress| {
+            pool.first().sweep_modes(&q, &modes, threads, progress)
+        })?;
+        let sweeps = swept.map_err(|error| refused(&error, "range"))?;
+        let class = py.import("sscc._sweep")?.getattr("Sweep")?;
+        let made = sweeps.into_iter().map(|sweep| {
+            let Sweep { mode, from, to, first_free, first_hit, outcome, .. } = sweep;
+            let name = name(loaded, mode);
+            let is_usual = matches!(outcome, SweepOutcome::Free | SweepOutcome::Hit);
+            let note = (!is_usual).then(|| outcome.to_string());
+            let pairs = frozen(pairs(py, &sweep.pairs)?)?;
+            class.call1((mode, name, from, to, first_free, first_hit, pairs, note))
+        });
+        PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Finds intervals. Ctrl-C stops it.
+    pub fn intervals(
+        &self,
+        py: Python<'py>,
+        pool: &Pool,
+        samples: Option<&Bound<'py, PyAny>>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let samples = count(samples, "samples", 2..=1 << 20)?.unwrap_or(SAMPLES);
+        let (q, modes) = self.ways(pool)?;
+        let threads = threads(self.threads)?;
+        let found = run_borrowing(py, progress, "sweeping", |progress| {
+            pool.first().sweep_intervals(&q, &modes, samples, threads, progress)
+        })?;
+        let found = found.map_err(|error| refused(&error, "range"))?;
+        let module = py.import("sscc._sweep")?;
+        let [class, interval_class] = [module.getattr("Intervals")?, module.getattr("Interval")?];
+        let made = found.into_iter().map(|found| {
+            let ModeRange { mode, low, high } = found.range;
+            let intervals = found.intervals.iter().map(|interval| {
+                let WeightInterval { free_until, from, to, free_from, is_exact, deepest, pairs } = *interval;
+                let (depth, at) = (deepest.depth, deepest.weight);
+                interval_class.call1((from, to, free_until, free_from, is_exact, pairs, depth, at))
+            });
+            let intervals = PyList::new(py, intervals.collect::<PyResult<Vec<_>>>()?)?;
+            let rows = found.samples.iter().map(|s| vec![s.weight, s.pairs as f64, s.depth]);
+            let rows = PyArray2::from_vec2(py, &rows.collect::<Vec<_>>())
+                .map_err(|error| value(error.to_string()))?;
+            class.call1((mode, name(&pool.certified.loaded, mode), low, high, intervals, frozen(rows.into_any())?))
+        });
+        PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Returns the q at the start, and the range of each mode to sweep.
+    fn ways(&self, pool: &Pool) -> PyResult<(Vec<f64>, Vec<ModeRange>)> {
         let certified = &pool.certified;
         let (loaded, center) = (&*certified.loaded, certified.certificates.center());
         let q = self.q.map_or_else(|| Ok(center.to_vec()), |q| vector(q, "q"))?;
@@ -38,21 +96,7 @@ impl<'py> SweepArguments<'_, 'py> {
             let [low, high] = ranges[mode];
             ModeRange { mode, low, high }
         });
-        let (modes, threads) = (modes.collect::<Vec<_>>(), threads(self.threads)?);
-        let swept = run_borrowing(py, progress, "sweeping", |progress| {
-            pool.first().sweep_modes(&q, &modes, threads, progress)
-        })?;
-        let sweeps = swept.map_err(|error| refused(&error, "range"))?;
-        let class = py.import("sscc._sweep")?.getattr("Sweep")?;
-        let made = sweeps.into_iter().map(|sweep| {
-            let Sweep { mode, from, to, first_free, first_hit, outcome, .. } = sweep;
-            let name = loaded.mode_names.get(mode).cloned().unwrap_or_else(|| mode.to_string());
-            let is_usual = matches!(outcome, SweepOutcome::Free | SweepOutcome::Hit);
-            let note = (!is_usual).then(|| outcome.to_string());
-            let pairs = frozen(pairs(py, &sweep.pairs)?)?;
-            class.call1((mode, name, from, to, first_free, first_hit, pairs, note))
-        });
-        PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
+        Ok((q, modes.collect()))
     }
 
     /// Returns the range of each mode.
@@ -98,4 +142,9 @@ impl<'py> SweepArguments<'_, 'py> {
         }
         Ok(numbers)
     }
+}
+
+/// Returns the name of a mode, or its number.
+fn name(loaded: &LoadedModel, mode: usize) -> String {
+    loaded.mode_names.get(mode).cloned().unwrap_or_else(|| mode.to_string())
 }

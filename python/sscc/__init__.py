@@ -30,7 +30,7 @@ from sscc._sscc import (
 )
 from sscc._resolve import FreeSamples, Resolved
 from sscc._simulate import Simulation, simulate
-from sscc._sweep import Sweep
+from sscc._sweep import Interval, Intervals, Sweep
 from sscc.simulators import from_mujoco, from_simplicits, from_sofa
 
 __all__ = [
@@ -45,6 +45,8 @@ __all__ = [
     "FreeSamples",
     "Hierarchy",
     "Impacts",
+    "Interval",
+    "Intervals",
     "KineticQuery",
     "Model",
     "Resolved",

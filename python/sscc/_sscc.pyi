@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sscc._curve import Curve
 from sscc._resolve import FreeSamples, Resolved
-from sscc._sweep import Sweep
+from sscc._sweep import Intervals, Sweep
 
 __version__: str
 
@@ -186,6 +186,22 @@ class Certificates:
         q: the weights at the start (r,), at which the other modes stay; None: the centre.
         modes: numbers or names; None: all.
         threads, progress: as in ``Model.certify``.
+        """
+    def intervals(
+        self,
+        range: ArrayLike | None = None,
+        *,
+        samples: int | None = None,
+        q: ArrayLike | None = None,
+        modes: Sequence[int | str] | None = None,
+        threads: int | None = None,
+        progress: _Progress = None,
+    ) -> list[Intervals]:
+        """For each mode all intervals of its weight over which the shape collides, how much and how deep.
+
+        samples: samples of each weight, from 2 to 2^20; None: 101. Their pairs and depths are exact, and every weight outside of the
+            intervals is proven free.
+        range, q, modes, threads, progress: as in ``sweep``.
         """
     def resolve(self, q: ArrayLike, start: ArrayLike | None = None, *, all: bool | None = None) -> Resolved:
         """A free q near q, on a free way from ``start`` (None: the centre), which must be free. Exceptions are left as they

@@ -45,3 +45,50 @@ class Sweep(NamedTuple):
         if self.note is None:
             return f"touches at {number(self.first_hit)}, {pairs}"
         return f"free up to {number(self.first_free)}, touches at {number(self.first_hit)}, {pairs} (see note)"
+
+
+class Interval(NamedTuple):
+    """An interval of weights over which the shape collides at every sample."""
+
+    start: float
+    """Its first weight."""
+    end: float
+    """Its last weight."""
+    free_until: float | None
+    """Up to this weight the shape is proven free. None: the interval begins at the end of the range."""
+    free_from: float | None
+    """From this weight on it is proven free. None: the interval ends at the end of the range."""
+    exact: bool
+    """Whether it collides at ``start`` and ``end``, at most 1e-9 of a sweep's way from the free weights."""
+    pairs: int
+    """The most pairs that collide at a sample or an end."""
+    depth: float
+    """The largest penetration depth of a pair (model unit)."""
+    deepest: float
+    """The weight of that depth."""
+
+    def __repr__(self) -> str:
+        found = f"{counted(self.pairs, 'pair')}, depth {number(self.depth)} at {number(self.deepest)}"
+        return f"<sscc.Interval: from {number(self.start)} to {number(self.end)}: up to {found}>"
+
+
+class Intervals(NamedTuple):
+    """The intervals of one mode's weight over which the shape collides, with all others fixed."""
+
+    mode: int
+    """The mode, counted from 0."""
+    name: str
+    """Its name, or its number."""
+    start: float
+    """The smallest weight."""
+    end: float
+    """The largest weight."""
+    intervals: list[Interval]
+    """In ascending order; every weight outside of them is proven free."""
+    samples: NDArray[np.float64]
+    """Weight, number of pairs and largest penetration depth of each sample: (n, 3), read-only."""
+
+    def __repr__(self) -> str:
+        name = f"mode {self.mode}" if self.name == str(self.mode) else f"mode {self.mode} {quoted(self.name)}"
+        found = counted(len(self.intervals), "interval") if self.intervals else "free"
+        return f"<sscc.Intervals: {name} from {number(self.start)} to {number(self.end)}: {found}>"

@@ -38,6 +38,12 @@ def instances(model: sscc.Model, certs: sscc.Certificates) -> dict[str, list[obj
         "FreeSamples": [certs.free_samples(draws), certs.free_samples(draws[:0])],
         "Hierarchy": [certs.hierarchy],
         "Impacts": [certs.continuous(np.zeros(6), np.zeros(6)), certs.continuous(np.zeros(6), far)],
+        "Interval": [sscc.Interval(-1e-300, 1e300, None, 0.1, False, 10**9, 0.2, 0.3)],
+        "Intervals": [
+            *certs.intervals((-3.0, 3.0), samples=3),
+            *touching.intervals((-1.5, 1.0), samples=3),
+            sscc.Intervals(66, long_name, -1e-300, 1e300, [], np.zeros((2, 3))),
+        ],
         "KineticQuery": [certs.kinetic()],
         "Model": [model, sscc.Model(*two_triangles())],
         "Resolved": [
@@ -94,6 +100,9 @@ def test_representations_name_the_numbers_that_matter(model: sscc.Model, certs: 
     up, down = touching.sweep((-2.0, 2.0))
     assert repr(up) == "<sscc.Sweep: mode 0 from 0 to 2: free>"
     assert repr(down) == "<sscc.Sweep: mode 0 from 0 to -2: touches at -1, 1 pair>"
+    (found,) = touching.intervals((-2.0, 2.0))
+    assert repr(found) == "<sscc.Intervals: mode 0 from -2 to 2: 1 interval>"
+    assert repr(found.intervals[0]) == "<sscc.Interval: from -1 to -1: up to 1 pair, depth 0 at -1>"
     named = sscc.Sweep(3, "smile", 0.0, 1.0, 1.0, None, np.zeros((0, 2), np.uint32), None)
     assert repr(named) == "<sscc.Sweep: mode 3 'smile' from 0 to 1: free>"
 

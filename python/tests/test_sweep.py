@@ -47,6 +47,26 @@ def test_starts_and_ranges() -> None:
         certs.sweep(modes=["smile"])
 
 
+def test_intervals_are_those_of_samples(certs: sscc.Certificates) -> None:
+    found = certs.intervals((-3.0, 2.0), samples=21, modes=[1, 0], threads=1)
+    assert [(f.mode, f.name, f.start, f.end) for f in found] == [(1, "1", -3.0, 2.0), (0, "0", -3.0, 2.0)]
+    assert any(f.intervals for f in found)
+    for one in found:
+        assert not one.samples.flags.writeable and one.samples.shape == (21, 3)
+        weights = np.zeros((2000, 6))
+        weights[:, one.mode] = np.linspace(-3.0, 2.0, 2000)
+        inside = np.zeros(2000, dtype=bool)
+        for i in one.intervals:
+            low = -np.inf if i.free_until is None else i.free_until
+            high = np.inf if i.free_from is None else i.free_from
+            inside |= (weights[:, one.mode] > low) & (weights[:, one.mode] < high)
+        assert not certs.check_many(weights).colliding[~inside].any()
+        weights[:21, one.mode] = one.samples[:, 0]
+        assert np.array_equal(certs.check_many(weights[:21]).count, one.samples[:, 1])
+    with pytest.raises(ValueError, match="samples is 1"):
+        certs.intervals(samples=1)
+
+
 def test_principal_components_go_to_three_standard_deviations() -> None:
     vertices, faces, modes = two_triangles()
     shapes = [vertices + modes[:, :, 0] * offset for offset in (0.9, 1.0, 1.1, 1.2)]

@@ -18,8 +18,8 @@ use crate::program::cargo;
 /// The version of rustdoc's JSON that is read here.
 const FORMAT: u64 = 57;
 
-/// The maximum number of items outside of `parts`: 260, and those of distances.
-const MAX_ITEMS: usize = 260 + 21;
+/// The maximum number of items outside of `parts`: 260, and those of distances and of intervals of weights.
+const MAX_ITEMS: usize = 260 + 21 + 19;
 
 /// Prints the items of each type, and their sums. With `--list` also their names. Fails where there are more than
 /// [`MAX_ITEMS`].

@@ -48,7 +48,7 @@ fn print(args: &Sweep, rows: &[impl Serialize], table: impl Fn() -> Vec<String>)
         true => rows.iter().try_for_each(|row| out.json(row))?,
         false => table().into_iter().try_for_each(|line| out.line(line))?,
     }
-    Ok(out.finish()?)
+    out.finish()
 }
 
 fn outcome(is_free: bool) -> Outcome {

@@ -237,8 +237,12 @@ fn flags_must_not_contradict_certificates() {
         sscc(folder, &args)
     };
     assert!(run("--ignore-rest").refusal().contains("certified without --ignore-rest"));
+    assert!(run("--ignore-rest=2").refusal().contains("certified without --ignore-rest of 2 rings"));
     assert!(run("--max-exceptions=1").refusal().contains("more than --max-exceptions allows"));
     assert_eq!(run("--max-exceptions=1000").code, Some(1));
+    certify(folder, &model, &["--ignore-rest=1"], "t.sscc.safetensors");
+    assert_eq!(run("--ignore-rest=1").code, Some(0));
+    assert!(run("--ignore-rest").refusal().contains("certified without --ignore-rest"));
 }
 
 /// The two strips in groups of their own.

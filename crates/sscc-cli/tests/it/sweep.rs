@@ -48,6 +48,45 @@ fn each_weight_is_swept_both_ways() {
 }
 
 #[test]
+fn intervals_are_listed_for_each_weight() {
+    let directory = strips();
+    let folder = directory.path();
+    let swept =
+        |more: &[&str]| sscc(folder, &[&["sweep", MODEL, "--certificates", CERTIFICATES][..], more].concat());
+    let run = swept(&["--range=-2,3", "--intervals=6", "--json"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(1), ""), "{run:?}");
+    let rows = run.json();
+    assert!(
+        rows.len() == 2 && rows.iter().all(|row| keys(row) == sorted("name, from, to, intervals, samples"))
+    );
+    assert_eq!((rows[1]["intervals"].as_array().unwrap().len(), rows[1]["name"].as_str()), (0, Some("1")));
+    let interval = &rows[0]["intervals"][0];
+    assert_eq!(
+        keys(interval),
+        sorted("from, to, free_until, free_from, exact, pairs, depth, deepest"),
+        "{interval}"
+    );
+    assert!(interval["from"].as_f64().is_some_and(|from| (from - 1.0).abs() < 5e-9), "{interval}");
+    // Each sample is an answer of `check`.
+    let samples = rows[0]["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 6);
+    for sample in samples {
+        let q = format!("--q={},0", sample[0]);
+        let check = sscc(folder, &["check", MODEL, "--certificates", CERTIFICATES, &q, "--json"]);
+        assert_eq!(check.json()[0]["count"], sample[1], "{sample}");
+    }
+    let table = swept(&["--range=-2,3", "--intervals"]);
+    assert!(table.stdout.contains("101 samples of each weight\n"), "{table:?}");
+    assert_eq!(swept(&["--range=0,0.5", "--intervals=3"]).code, Some(0));
+    for (count, message) in [("1", "the number of samples is 1"), ("9999999999", "it must be from 2 to 2^20")]
+    {
+        let refused = swept(&[&format!("--intervals={count}")]);
+        assert!(refused.refusal().contains(message), "{refused:?}");
+    }
+    assert_eq!(swept(&["--intervals", "--pose", "poses"]).code, Some(2));
+}
+
+#[test]
 fn weights_have_names() {
     let directory = strips();
     let folder = directory.path();
