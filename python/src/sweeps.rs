@@ -80,7 +80,14 @@ impl<'py> SweepArguments<'_, 'py> {
             let rows = found.samples.iter().map(|s| vec![s.weight, s.pairs as f64, s.depth]);
             let rows = PyArray2::from_vec2(py, &rows.collect::<Vec<_>>())
                 .map_err(|error| value(error.to_string()))?;
-            class.call1((mode, name(&pool.certified.loaded, mode), low, high, intervals, frozen(rows.into_any())?))
+            class.call1((
+                mode,
+                name(&pool.certified.loaded, mode),
+                low,
+                high,
+                intervals,
+                frozen(rows.into_any())?,
+            ))
         });
         PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
     }

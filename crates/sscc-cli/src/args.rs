@@ -583,6 +583,9 @@ pub struct Sweep {
     /// pairs and the largest penetration depth of N samples
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "101", conflicts_with = "pose")]
     pub intervals: Option<usize>,
+    /// List the pairs of modes that, both at the upper end of their ranges, collide in pairs that collide with neither alone
+    #[arg(long, conflicts_with_all = ["pose", "intervals"])]
+    pub combinations: bool,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

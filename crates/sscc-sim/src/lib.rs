@@ -71,8 +71,9 @@ pub use scenes::{
 pub use simulate::{Request, make_folder, simulate};
 pub use statics::{StaticAnswer, static_answer};
 pub use sweeps::{
-    Interval, IntervalRow, SweepRange, SweepRequest, SweepRow, interval_table, sweep_model,
-    sweep_model_intervals, sweep_table,
+    CombinationRow, Combinations, Interval, IntervalRow, SweepRange, SweepRequest, SweepRow,
+    combination_table, interval_table, sweep_model, sweep_model_combinations, sweep_model_intervals,
+    sweep_table,
 };
 pub use watch::{Stage, Watch};
 pub use zero_radius::ZeroRadius;

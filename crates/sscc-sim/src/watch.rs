@@ -1,6 +1,6 @@
 //! Callbacks by which a caller follows a simulation: stages, progress and notes.
 
-use sscc::Progress;
+use sscc::{CancelToken, Progress};
 use sscc_io::Setting;
 
 use crate::SimError;
@@ -60,4 +60,15 @@ impl Watch for () {
     fn begin(&self, _stage: Stage) {}
 
     fn note(&self, _note: &str) {}
+}
+
+/// Progress that passes on cancellation and ignores reports: a batch counts its own q.
+pub(crate) struct CancelledBy<'a>(pub(crate) &'a dyn Progress);
+
+impl Progress for CancelledBy<'_> {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        self.0.cancel_token()
+    }
 }

@@ -1,9 +1,13 @@
-//! `sscc sweep`: for each mode the first weight at which the shape touches itself, or all intervals in which it collides.
+//! `sscc sweep`: for each mode the first weight at which the shape touches itself, or all intervals in which it collides;
+//! combinations of two modes.
 
 use anyhow::Result;
 use serde::Serialize;
 use sscc::SweepOutcome;
-use sscc_sim::{SweepRequest, interval_table, sweep_model, sweep_model_intervals, sweep_table};
+use sscc_sim::{
+    SweepRequest, combination_table, interval_table, sweep_model, sweep_model_combinations,
+    sweep_model_intervals, sweep_table,
+};
 
 use crate::args::Sweep;
 use crate::outcome::Outcome;
@@ -30,6 +34,13 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         let rows = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
         print(args, &rows, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
         return Ok(outcome(rows.iter().all(|row| row.intervals.is_empty())));
+    }
+    if args.combinations {
+        let found = sweep_model_combinations(&loaded, &certificates, &request, &bar);
+        interrupt::check()?;
+        let found = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
+        print(args, &found.rows, || [vec![ranges.to_string()], combination_table(&found)].concat())?;
+        return Ok(outcome(found.rows.is_empty()));
     }
     let swept = sweep_model(&loaded, &certificates, &request, &bar);
     interrupt::check()?;

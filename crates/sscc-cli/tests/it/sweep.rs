@@ -86,6 +86,37 @@ fn intervals_are_listed_for_each_weight() {
     assert_eq!(swept(&["--intervals", "--pose", "poses"]).code, Some(2));
 }
 
+/// Two strips that each come half of the way.
+#[test]
+fn combinations_collide_where_one_weight_does_not() {
+    let directory = strips();
+    let folder = directory.path();
+    let swept = |range: &str, more: &[&str]| {
+        sscc(folder, &[&["sweep", MODEL, range, "--combinations"][..], more].concat())
+    };
+    let check = |q: &str| {
+        let run = sscc(folder, &["check", MODEL, "--certificates", CERTIFICATES, q, "--json"]);
+        run.json()[0]["pairs"].as_array().unwrap().clone()
+    };
+    for range in ["--range=0,0.9", "--range=0,1", "--range=0,2"] {
+        let high = &range["--range=0,".len()..];
+        let known = [check(&format!("--q={high},0")), check(&format!("--q=0,{high}"))].concat();
+        let both = check(&format!("--q={high},{high}"));
+        let new = both.iter().filter(|pair| !known.contains(pair)).count();
+        let run = swept(range, &["--json"]);
+        let rows = run.json();
+        assert_eq!((run.code, rows.len()), (Some(i32::from(new > 0)), usize::from(new > 0)), "{run:?}");
+        for row in rows {
+            assert_eq!(keys(&row), sorted("names, to, count, new, depth"));
+            assert_eq!((&row["count"], &row["new"]), (&both.len().into(), &new.into()), "{row}");
+            assert_eq!(row["names"], serde_json::json!(["0", "1"]));
+        }
+        let table = swept(range, &[]);
+        let end = "1 combination of two modes: ";
+        assert!(table.stdout.contains(end), "{table:?}");
+    }
+}
+
 #[test]
 fn weights_have_names() {
     let directory = strips();

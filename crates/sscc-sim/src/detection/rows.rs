@@ -6,12 +6,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use sscc::parts::{Scope, Surface};
-use sscc::{Answer, CancelToken, Clearance, Impact, Pair, Progress, Query, ReducedModel, Statistics};
+use sscc::{Answer, Clearance, Impact, Pair, Progress, Query, ReducedModel, Statistics};
 use sscc_io::Rows;
 
 use super::answer::{DetectionAnswer, earliest_impacts};
 use super::contacts::{ContactOptions, Contacts};
 use super::near::Near;
+use crate::watch::CancelledBy;
 use crate::watch::check_cancelled;
 use crate::{LeftOut, SimError};
 
@@ -129,17 +130,6 @@ pub fn check_rows<E: From<SimError>>(
         block = if is_slow { (2 * block).min(MAX_BLOCK).min(MAX_BLOCK_PAIRS / most_pairs).max(1) } else { 1 };
     }
     Ok(())
-}
-
-/// Progress that passes on cancellation and ignores reports: a batch counts its own q.
-struct CancelledBy<'a>(&'a dyn Progress);
-
-impl Progress for CancelledBy<'_> {
-    fn report(&self, _done: usize, _total: usize) {}
-
-    fn cancel_token(&self) -> Option<&CancelToken> {
-        self.0.cancel_token()
-    }
 }
 
 /// The answers to the queries of a block.

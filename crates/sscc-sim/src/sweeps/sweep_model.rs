@@ -50,7 +50,11 @@ impl SweepRequest {
     }
 
     /// As [`Self::prepare`], with the numbers of the modes.
-    fn ways(&self, loaded: &LoadedModel, certificates: &Certificates) -> Result<(Vec<f64>, Vec<ModeRange>)> {
+    pub(super) fn ways(
+        &self,
+        loaded: &LoadedModel,
+        certificates: &Certificates,
+    ) -> Result<(Vec<f64>, Vec<ModeRange>)> {
         let (q, ranges) = self.prepare(loaded, certificates.center())?;
         let ranges = ranges.into_iter().enumerate();
         Ok((q, ranges.map(|(mode, [low, high])| ModeRange { mode, low, high }).collect()))
