@@ -46,6 +46,15 @@ export function sinceText(since: number): string {
     return since > 0 ? `collided between frames: at most ${count(since, "pair")} in one step` : "";
 }
 
+/** The ratio of |z| to the root's radius: percent up to twice the radius, beyond it a multiple. */
+function shareText(share: number): string {
+    if (share < 2) return `${(100 * share).toFixed(1)}%`;
+    if (!Number.isFinite(share)) return "beyond any multiple";
+    return share < 1e9
+        ? `${share.toLocaleString("en", { maximumFractionDigits: share < 100 ? 1 : 0 })} times`
+        : `${share.toExponential(1)} times`;
+}
+
 export class Gauge {
     readonly element: HTMLElement;
     private readonly mark = h("span", { class: "verdict-mark", "aria-hidden": "true" });
@@ -95,7 +104,7 @@ export class Gauge {
         const at = share === null ? 0 : share <= 1 ? share / 2 : 1 - 0.5 / share;
         this.needle.style.width = `${(100 * at).toFixed(2)}%`;
         const of = root === null ? "root radius infinite" : `root radius ${digits(root)}`;
-        const percent = share === null ? "" : ` · ${(100 * share).toFixed(share < 10 ? 1 : 0)}%`;
-        this.detail.textContent = norm === null ? "" : `|z| ${digits(norm)} · ${of}${percent}`;
+        const ratio = share === null ? "" : ` · ${shareText(share)}`;
+        this.detail.textContent = norm === null ? "" : `|z| ${digits(norm)} · ${of}${ratio}`;
     }
 }

@@ -1,7 +1,7 @@
 //! The largest deformations along single modes that the root's certificate proves free (paper, Figure 11).
 
 use serde::Serialize;
-use sscc::Certificates;
+use sscc::{Certificates, ReducedModel};
 
 /// The paper shows the first four modes, in the positive and the negative direction.
 const MAX_MODES: usize = 4;
@@ -18,17 +18,27 @@ pub struct Extremal {
     pub q: Vec<f64>,
 }
 
-/// Returns both directions of each of the first modes; empty if the root's radius is 0 or infinite.
-pub fn extremal(certificates: &Certificates) -> Vec<Extremal> {
+/// Shapes that move no vertex by this share of half the diagonal of the AABB look like the one at the centre: it is about a pixel of a
+/// picture.
+const VISIBLE: f64 = 0.02;
+
+/// Returns both directions of each of the first modes, as far as they can be told from the shape at the centre; none if the root's
+/// radius is 0 or infinite.
+pub fn extremal(model: &ReducedModel, certificates: &Certificates) -> Vec<Extremal> {
     let (center, radius) = (certificates.center(), certificates.root_radius());
     if radius <= 0.0 || !radius.is_finite() {
         return Vec::new();
     }
+    let limits = model.weight_limits();
     let along = |k: usize, sign: f64| {
         let mut unit = vec![0.0; center.len()];
         unit[k] = 1.0;
         let mut q = center.to_vec();
-        q[k] += sign * SHRINK * radius / certificates.metric().norm(&unit).ok()?;
+        let weight = SHRINK * radius / certificates.metric().norm(&unit).ok()?;
+        if weight < VISIBLE * limits[k] {
+            return None;
+        }
+        q[k] += sign * weight;
         Some(Extremal { name: format!("mode {k} {}", if sign > 0.0 { "+" } else { "-" }), q })
     };
     (0..center.len().min(MAX_MODES)).flat_map(|k| [along(k, 1.0), along(k, -1.0)]).flatten().collect()

@@ -85,7 +85,7 @@ impl ReducedFacts {
             free: FreeSentences::new(certificates),
             nodes: certificates.parts().hierarchy.nodes().len(),
             levels: levels(certificates),
-            extremal: extremal(certificates),
+            extremal: extremal(model, certificates),
         }
     }
 
