@@ -522,6 +522,10 @@ pub struct Motion {
         allow_hyphen_values = true
     )]
     pub times: Option<Vec<f64>>,
+    /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. A glTF file with
+    /// several meshes is compared so without --animation, too
+    #[arg(long, requires = "animation")]
+    pub between_nodes: bool,
     /// Check the mesh at this node only, by its number in the file [default: every node with a mesh]
     #[arg(long, value_name = "N", requires = "animation")]
     pub node: Option<usize>,

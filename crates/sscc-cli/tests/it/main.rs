@@ -28,6 +28,7 @@ mod real_data;
 mod resolve;
 mod rows;
 mod samples;
+mod scenes;
 mod scopes;
 mod simulate;
 mod statics;

@@ -20,6 +20,8 @@ pub struct DetectionAnswer<'a> {
     pub node: Option<usize>,
     /// Number of the node of the other mesh, where several show it.
     pub other_node: Option<usize>,
+    /// Their names, in an animation or a scene.
+    pub node_names: [Option<&'a str>; 2],
     /// Number of the q, frame or time, counted from 0; of continuous queries that of the start.
     pub index: usize,
     /// Its time (s), in an animation.

@@ -11,6 +11,7 @@ use super::answer::{DetectionAnswer, ShapeInMotion};
 use super::in_order::in_order;
 use super::mesh_source::MeshSource;
 use super::moving_mesh::MovingMesh;
+use super::node_pairs::NodePairs;
 use super::request::{Detection, MeshMotion};
 use super::sides::Sides;
 use super::worker::{QueryResult, Worker};
@@ -19,7 +20,7 @@ use crate::watch::check_cancelled;
 use crate::{LeftOut, SimError, Stage, Watch, available_threads};
 
 /// Calls `take` with each file and the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh),
-/// frame by frame. `take` can end that early. Several meshes at rest are read and answered in parallel.
+/// frame by frame; then frame by frame for every two nodes of a scene that collide with each other. `take` can end that early. Several meshes at rest are read and answered in parallel.
 ///
 /// Of a file that cannot be answered, `take` receives the error. It returns that to end the run, or goes on with the next file.
 ///
@@ -105,7 +106,26 @@ fn in_motion<E>(
             return Ok(taken);
         }
     }
-    Ok(ControlFlow::Continue(()))
+    let Some(meshes) = sides.compared() else { return Ok(ControlFlow::Continue(())) };
+    watch.begin(Stage::Detection);
+    in_order(
+        each,
+        request.threads.unwrap_or_else(available_threads),
+        || NodePairs::new(request, meshes),
+        NodePairs::answer,
+        |index, found| {
+            check_cancelled(watch)?;
+            for (nodes, found) in found? {
+                let [mesh, other] = nodes.map(|node| AnswerSource::from(&*meshes[node]));
+                let answer = answer(mesh, Some(other), index, (&found, request.clearance), [queries, frames]);
+                if take(&answer).map_err(Failure::Run)?.is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
+            }
+            watch.report(index + 1, each);
+            Ok::<_, Failure<E>>(ControlFlow::Continue(()))
+        },
+    )
 }
 
 /// Answers several meshes at rest, each on one thread.
@@ -135,8 +155,14 @@ fn at_rest<E: From<SimError>>(
             let file = &request.meshes[index];
             let taken = match result {
                 Ok((mesh, left_out, found)) => {
-                    let mesh =
-                        AnswerSource { file, mesh: &mesh, node: None, times: None, left_out: &left_out };
+                    let mesh = AnswerSource {
+                        file,
+                        mesh: &mesh,
+                        node: None,
+                        name: None,
+                        times: None,
+                        left_out: &left_out,
+                    };
                     take(file, Ok(&answer(mesh, None, 0, (&found, request.clearance), [1, 1])))
                 }
                 Err(error) => take(file, Err(error)),
@@ -153,14 +179,15 @@ struct AnswerSource<'a> {
     file: &'a Path,
     mesh: &'a TriMesh,
     node: Option<usize>,
+    name: Option<&'a str>,
     times: Option<&'a [f64]>,
     left_out: &'a LeftOut,
 }
 
 impl<'a> From<&'a MovingMesh<'_>> for AnswerSource<'a> {
     fn from(mesh: &'a MovingMesh<'_>) -> Self {
-        let MovingMesh { file, mesh: faces, node, left_out, .. } = mesh;
-        Self { file, mesh: faces, node: *node, times: mesh.times(), left_out }
+        let MovingMesh { file, mesh: faces, node, name, left_out, .. } = mesh;
+        Self { file, mesh: faces, node: *node, name: name.as_deref(), times: mesh.times(), left_out }
     }
 }
 
@@ -181,6 +208,7 @@ fn answer<'a>(
         mesh: mesh.mesh,
         node: mesh.node,
         other_node: other.and_then(|other| other.node),
+        node_names: [mesh.name, other.and_then(|other| other.name)],
         index,
         time: mesh.times.map(|times| times[index]),
         pairs: &found.pairs,

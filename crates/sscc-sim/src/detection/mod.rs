@@ -11,6 +11,7 @@ mod in_order;
 mod mesh_source;
 mod moving_mesh;
 mod near;
+mod node_pairs;
 mod request;
 mod rows;
 mod sides;

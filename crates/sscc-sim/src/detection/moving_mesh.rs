@@ -21,6 +21,8 @@ use crate::watch::{Stage, Watch, check_cancelled};
 pub(super) struct MovingMesh<'w> {
     pub file: PathBuf,
     pub node: Option<usize>,
+    /// The name of the node, in an animation or a scene.
+    pub name: Option<String>,
     pub mesh: TriMesh,
     pub detector: Detector,
     /// The pairs that its answers leave out.
@@ -38,7 +40,8 @@ enum Motion {
 /// An animation of a node at given times.
 struct Evaluation {
     scene: Arc<AnimatedScene>,
-    animation: usize,
+    /// None: the scene as it is stored.
+    animation: Option<usize>,
     node: usize,
     weights: SkinWeights,
     times: Arc<[f64]>,
@@ -113,10 +116,10 @@ impl<'w> MovingMesh<'w> {
         // Frames are at no node.
         let is_placed = request.against.is_some() && matches!(motion, Motion::Rest);
         let node = source.node(place).filter(|_| is_placed);
-        Ok(Self { file: file.to_owned(), node, mesh, detector, left_out, motion, watch })
+        Ok(Self { file: file.to_owned(), node, name: None, mesh, detector, left_out, motion, watch })
     }
 
-    /// Loads the nodes of an animation.
+    /// Loads the nodes of an animation, or of a scene at rest.
     pub fn animated(
         file: &Path,
         animated: &AnimationMotion,
@@ -125,16 +128,20 @@ impl<'w> MovingMesh<'w> {
     ) -> Result<Vec<Self>> {
         let scene = Arc::new(read_scene(file)?);
         scene.notes().iter().for_each(|note| watch.warn(&format!("{}: {note}", file.display())));
-        let animation = scene.find_animation(&animated.animation).map_err(|error| in_file(error, file))?;
-        let info = &scene.animations()[animation];
-        if info.channels > 0 && info.extension_channels > 0 {
+        let animation = animated.animation.as_deref().map(|name| scene.find_animation(name)).transpose();
+        let animation = animation.map_err(|error| in_file(error, file))?;
+        let info = animation.map(|number| (number, &scene.animations()[number]));
+        if let Some((number, info)) = info
+            && info.channels > 0
+            && info.extension_channels > 0
+        {
             watch.warn(&format!(
-                "{}: animations[{animation}]: {} of its channels are those of extensions, which are not evaluated",
+                "{}: animations[{number}]: {} of its channels are those of extensions, which are not evaluated",
                 file.display(),
                 info.extension_channels
             ));
         }
-        let times = animated.times.of(info.last_time);
+        let times = animated.times.of(info.map_or(0.0, |(_, info)| info.last_time));
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::SimError::refused(file.display(), cause))?.into();
         let nodes = scene.find_mesh_nodes(animated.node).map_err(|error| in_file(error, file))?;
@@ -156,7 +163,7 @@ impl<'w> MovingMesh<'w> {
             };
             let filter = filter(request, is_welded, groups);
             let (detector, mut left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
-            if nodes.len() > 1 {
+            if nodes.len() > 1 && !compares_nodes(request, animated) {
                 left_out = left_out.and_between_nodes();
             }
             if request.meshes.len() > 1 {
@@ -170,8 +177,8 @@ impl<'w> MovingMesh<'w> {
                 times: Arc::clone(&times),
                 is_warned: AtomicBool::new(false),
             });
-            let node = Some(node.node());
-            Ok(Self { file: file.to_owned(), node, mesh, detector, left_out, motion, watch })
+            let (node, name) = (Some(node.node()), node.name().map(str::to_owned));
+            Ok(Self { file: file.to_owned(), node, name, mesh, detector, left_out, motion, watch })
         };
         nodes.iter().zip(groups).map(mesh).collect()
     }
@@ -188,7 +195,7 @@ impl<'w> MovingMesh<'w> {
     /// Returns the times of all frames, in an animation.
     pub fn times(&self) -> Option<&[f64]> {
         match &self.motion {
-            Motion::Animation(evaluation) => Some(&evaluation.times),
+            Motion::Animation(evaluation) if evaluation.animation.is_some() => Some(&evaluation.times),
             _ => None,
         }
     }
@@ -238,10 +245,16 @@ impl<'w> MovingMesh<'w> {
 impl Evaluation {
     /// Replaces `positions` by those at a frame. Returns whether a scale of 0 flattens triangles.
     fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<bool, FormatError> {
-        let pose = self.scene.pose(Some(self.animation), self.times[frame])?;
+        let pose = self.scene.pose(self.animation, self.times[frame])?;
         pose.positions(self.node, self.weights, positions)?;
         Ok(pose.is_flattened(self.node))
     }
+}
+
+/// Whether the meshes of different nodes are compared with each other. Groups and ignored pairs are those within one mesh.
+pub(super) fn compares_nodes(request: &Detection, animated: &AnimationMotion) -> bool {
+    let is_scene = animated.animation.is_none();
+    (request.between_nodes || is_scene) && request.groups.is_empty() && request.ignore_rest.is_none()
 }
 
 fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {

@@ -28,6 +28,9 @@ pub struct Detection {
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: Option<u32>,
+    /// Whether the meshes of different nodes of an animation are also compared with each other. Those of a scene at rest are, unless
+    /// groups are given or pairs are ignored.
+    pub between_nodes: bool,
     /// Which pairs of groups of triangles count; without another mesh.
     pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
@@ -56,6 +59,7 @@ impl Default for Detection {
             neighbours: Neighbours::default(),
             weld: None,
             ignore_rest: None,
+            between_nodes: false,
             groups: GroupRules::default(),
             is_continuous: false,
             limit: None,
@@ -71,7 +75,8 @@ impl Default for Detection {
 #[derive(Clone, Debug)]
 pub enum MeshMotion {
     /// The mesh as it is in its file: of glTF at the first node that shows it. With another mesh, every node of both meshes
-    /// has an answer.
+    /// has an answer. Of a glTF file with several meshes, none of which is named, the scene: every node with a mesh, and every two
+    /// nodes.
     Rest,
     /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
     Frames(PathBuf),
@@ -82,14 +87,21 @@ pub enum MeshMotion {
 /// An animation of a glTF file, and when it is answered.
 #[derive(Clone, Debug)]
 pub struct AnimationMotion {
-    /// Name of the animation, or its number.
-    pub animation: String,
+    /// Name of the animation, or its number; none: the scene as it is stored, at one time.
+    pub animation: Option<String>,
     /// Times of the queries.
     pub times: Times,
     /// Number of the node; none: every node that shows a mesh with triangles.
     pub node: Option<usize>,
     /// Reading of weights that do not sum to 1.
     pub weights: SkinWeights,
+}
+
+impl AnimationMotion {
+    /// The scene as it is stored.
+    pub(super) fn at_rest() -> Self {
+        Self { animation: None, times: Times::List(vec![0.0]), node: None, weights: SkinWeights::default() }
+    }
 }
 
 /// Times of an animation.

@@ -96,6 +96,7 @@ pub fn check_rows<E: From<SimError>>(
                 mesh: requests.model.mesh(),
                 node: None,
                 other_node: None,
+                node_names: [None; 2],
                 index,
                 time: None,
                 pairs: &found.pairs,

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use sscc_io::gltf::is_gltf;
+use sscc_io::gltf::{is_gltf, read_contents};
 use sscc_io::{Setting, split_mesh_name};
 
 use super::mesh_source::MeshSource;
-use super::moving_mesh::MovingMesh;
-use super::request::{Detection, MeshMotion, OtherMesh};
+use super::moving_mesh::{MovingMesh, compares_nodes};
+use super::request::{AnimationMotion, Detection, MeshMotion, OtherMesh};
 use crate::SimError;
 use crate::error::Result;
 use crate::watch::Watch;
@@ -29,6 +29,8 @@ pub(super) struct Sides<'r, 'w> {
     other: Option<Side<'w>>,
     /// Number of frames of the motion, at least 1.
     pub frames: usize,
+    /// Whether the nodes of an animation or a scene are also compared with each other.
+    compares_nodes: bool,
     /// The mesh of the last pair, with its number.
     last: Option<(usize, Arc<MovingMesh<'w>>)>,
 }
@@ -66,12 +68,18 @@ impl<'w> Side<'w> {
 impl<'r, 'w> Sides<'r, 'w> {
     /// Loads the meshes of a file, and the other mesh.
     pub fn load(file: &Path, request: &'r Detection, watch: &'w dyn Watch) -> Result<Self> {
-        let mesh = match &request.motion {
-            MeshMotion::Animation(animated) => {
+        let animated = |animated: &AnimationMotion| {
+            let meshes = MovingMesh::animated(file, animated, request, watch)?;
+            let mesh = Side::Moving(meshes.into_iter().map(Arc::new).collect());
+            let compares_nodes = compares_nodes(request, animated);
+            Ok(Self { compares_nodes, ..Self::new(file, mesh, None, request, watch)? })
+        };
+        match &request.motion {
+            MeshMotion::Animation(motion) => {
                 check_animated(file)?;
-                let meshes = MovingMesh::animated(file, animated, request, watch)?;
-                Side::Moving(meshes.into_iter().map(Arc::new).collect())
+                animated(motion)
             }
+            MeshMotion::Rest if is_scene(file, request) => animated(&AnimationMotion::at_rest()),
             MeshMotion::Rest | MeshMotion::Frames(_) => {
                 let source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
                 let frames = match &request.motion {
@@ -87,10 +95,17 @@ impl<'r, 'w> Sides<'r, 'w> {
                     }
                     _ => None,
                 };
-                return Self::new(file, mesh, other, request, watch);
+                Self::new(file, mesh, other, request, watch)
             }
-        };
-        Self::new(file, mesh, None, request, watch)
+        }
+    }
+
+    /// The meshes that are compared with each other, if any.
+    pub fn compared(&self) -> Option<&[Arc<MovingMesh<'w>>]> {
+        match &self.mesh {
+            Side::Moving(meshes) if self.compares_nodes && meshes.len() > 1 => Some(meshes),
+            _ => None,
+        }
     }
 
     fn new(
@@ -109,7 +124,7 @@ impl<'r, 'w> Sides<'r, 'w> {
                 format!("there are {n} frames, but {m} of the other mesh: as many are needed, or one");
             return Err(SimError::refused(file.display(), cause));
         }
-        let sides = Self { request, watch, mesh, other, frames: n.max(m), last: None };
+        let sides = Self { request, watch, mesh, other, frames: n.max(m), compares_nodes: false, last: None };
         if request.against.is_some() && sides.len() > MAX_PLACES {
             let cause = format!(
                 "{} nodes show the mesh, and {} the other one: name one of them, as in FILE#NODE",
@@ -185,6 +200,14 @@ fn side<'w>(
             Side::Places(Box::new(source), 1)
         }
     })
+}
+
+/// Whether a file is checked as a scene: it is glTF, has several meshes, and the request names none.
+fn is_scene(file: &Path, request: &Detection) -> bool {
+    let is_whole =
+        request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
+    // What is malformed is left to the reader.
+    is_whole && is_gltf(file) && read_contents(file).is_ok_and(|contents| contents.meshes.len() > 1)
 }
 
 /// Refuses a file without animations. A missing file is left to its reader.

@@ -23,11 +23,11 @@ pub(super) struct Worker<'m, 'w> {
 }
 
 /// A mesh of a worker, and its positions at the start and the end of a motion.
-struct Side<'m, 'w> {
-    mesh: &'m MovingMesh<'w>,
+pub(super) struct Side<'m, 'w> {
+    pub mesh: &'m MovingMesh<'w>,
     detector: Detector,
-    x_t0: Vec<DVec3>,
-    x_t1: Vec<DVec3>,
+    pub x_t0: Vec<DVec3>,
+    pub x_t1: Vec<DVec3>,
 }
 
 /// The result of one query.
@@ -63,12 +63,8 @@ impl<'m, 'w> Worker<'m, 'w> {
             other.read(frame, is_continuous)?;
         }
         let mesh = self.side.mesh;
-        let found = match (is_continuous, self.request.clearance) {
-            (true, _) => self.continuous(),
-            (false, Some(clearance)) => self.near(&clearance),
-            (false, None) => self.discrete(self.last == Some(frame)),
-        };
-        let mut found = found.at(|| mesh.place(frame))?;
+        let sides = (&mut self.side, self.other.as_mut());
+        let mut found = query(self.request, sides, self.last == Some(frame)).at(|| mesh.place(frame))?;
         let is_free = match &found.near {
             Some(near) => near.nearest.is_none_or(|near| near.distance > 0.0),
             None => found.pairs.is_empty(),
@@ -84,91 +80,108 @@ impl<'m, 'w> Worker<'m, 'w> {
         }
         Ok(found)
     }
+}
 
-    fn discrete(&mut self, is_last: bool) -> Result<QueryResult, sscc::Error> {
-        let x = &mut self.side;
-        let start = Instant::now();
-        let pairs = match (&mut self.other, self.request.limit) {
-            (Some(y), Some(limit)) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
-            (Some(y), None) => x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0),
-            (None, Some(limit)) => x.detector.discrete_at_most(&x.x_t0, limit),
-            (None, None) => x.detector.discrete(&x.x_t0),
-        };
-        let microseconds = start.elapsed().as_secs_f64() * 1e6;
-        let pairs = pairs?.to_vec();
-        let statistics = x.detector.statistics();
-        let ContactOptions { depths, curves } = self.request.contacts;
-        let options = ContactOptions { depths, curves: curves && is_last };
-        let contacts =
-            Contacts::of(self.side.surface(), self.other.as_ref().map(Side::surface), &pairs, options)?;
-        let is_complete = statistics.complete;
-        let positions = Vec::new();
-        Ok(QueryResult {
-            pairs,
-            times: None,
-            contacts,
-            near: None,
-            enclosed: None,
-            is_complete,
-            microseconds,
-            statistics,
-            positions,
-        })
-    }
+/// A mesh of a query, and the other one.
+pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
-    fn near(&mut self, clearance: &Clearance) -> Result<QueryResult, sscc::Error> {
-        let x = &mut self.side;
-        let start = Instant::now();
-        let (pairs, near) = match &mut self.other {
-            None => {
-                let found = x.detector.within(&x.x_t0, clearance)?.to_vec();
-                Near::of(found, || x.detector.nearest(&x.x_t0, clearance.rings()))
-            }
-            Some(y) => {
-                let found = x.detector.within_against(&x.x_t0, &mut y.detector, &y.x_t0, clearance)?.to_vec();
-                Near::of(found, || x.detector.nearest_against(&x.x_t0, &mut y.detector, &y.x_t0))
-            }
-        }?;
-        Ok(QueryResult {
-            pairs,
-            times: None,
-            contacts: Contacts::default(),
-            near: Some(near),
-            enclosed: None,
-            is_complete: true,
-            microseconds: start.elapsed().as_secs_f64() * 1e6,
-            statistics: x.detector.statistics(),
-            positions: Vec::new(),
-        })
-    }
-
-    fn continuous(&mut self) -> Result<QueryResult, sscc::Error> {
-        let x = &mut self.side;
-        let start = Instant::now();
-        let impacts = match &mut self.other {
-            Some(y) => x.detector.continuous_against([&x.x_t0, &x.x_t1], &mut y.detector, [&y.x_t0, &y.x_t1]),
-            None => x.detector.continuous(&x.x_t0, &x.x_t1),
-        };
-        let microseconds = start.elapsed().as_secs_f64() * 1e6;
-        let all = impacts?;
-        let kept: Vec<Impact> = earliest_impacts(all, self.request.limit);
-        let is_complete = kept.len() == all.len();
-        Ok(QueryResult {
-            pairs: kept.iter().map(|impact| impact.pair).collect(),
-            times: Some(kept.iter().map(|impact| impact.time).collect()),
-            contacts: Contacts::default(),
-            near: None,
-            enclosed: None,
-            is_complete,
-            microseconds,
-            statistics: x.detector.statistics(),
-            positions: Vec::new(),
-        })
+/// Answers one query at the positions that the sides have read. `is_last`: whether it is the last one, whose contact curves are asked
+/// for.
+pub(super) fn query(
+    request: &Detection,
+    sides: Sides<'_, '_, '_>,
+    is_last: bool,
+) -> Result<QueryResult, sscc::Error> {
+    match (request.is_continuous, &request.clearance) {
+        (true, _) => continuous(request, sides),
+        (false, Some(clearance)) => near(sides, clearance),
+        (false, None) => discrete(request, sides, is_last),
     }
 }
 
+fn discrete(
+    request: &Detection,
+    (x, mut other): Sides<'_, '_, '_>,
+    is_last: bool,
+) -> Result<QueryResult, sscc::Error> {
+    let start = Instant::now();
+    let pairs = match (&mut other, request.limit) {
+        (Some(y), Some(limit)) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
+        (Some(y), None) => x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0),
+        (None, Some(limit)) => x.detector.discrete_at_most(&x.x_t0, limit),
+        (None, None) => x.detector.discrete(&x.x_t0),
+    };
+    let microseconds = start.elapsed().as_secs_f64() * 1e6;
+    let pairs = pairs?.to_vec();
+    let statistics = x.detector.statistics();
+    let ContactOptions { depths, curves } = request.contacts;
+    let options = ContactOptions { depths, curves: curves && is_last };
+    let contacts = Contacts::of(x.surface(), other.as_deref().map(Side::surface), &pairs, options)?;
+    let is_complete = statistics.complete;
+    let positions = Vec::new();
+    Ok(QueryResult {
+        pairs,
+        times: None,
+        contacts,
+        near: None,
+        enclosed: None,
+        is_complete,
+        microseconds,
+        statistics,
+        positions,
+    })
+}
+
+fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryResult, sscc::Error> {
+    let start = Instant::now();
+    let (pairs, near) = match other {
+        None => {
+            let found = x.detector.within(&x.x_t0, clearance)?.to_vec();
+            Near::of(found, || x.detector.nearest(&x.x_t0, clearance.rings()))
+        }
+        Some(y) => {
+            let found = x.detector.within_against(&x.x_t0, &mut y.detector, &y.x_t0, clearance)?.to_vec();
+            Near::of(found, || x.detector.nearest_against(&x.x_t0, &mut y.detector, &y.x_t0))
+        }
+    }?;
+    Ok(QueryResult {
+        pairs,
+        times: None,
+        contacts: Contacts::default(),
+        near: Some(near),
+        enclosed: None,
+        is_complete: true,
+        microseconds: start.elapsed().as_secs_f64() * 1e6,
+        statistics: x.detector.statistics(),
+        positions: Vec::new(),
+    })
+}
+
+fn continuous(request: &Detection, (x, other): Sides<'_, '_, '_>) -> Result<QueryResult, sscc::Error> {
+    let start = Instant::now();
+    let impacts = match other {
+        Some(y) => x.detector.continuous_against([&x.x_t0, &x.x_t1], &mut y.detector, [&y.x_t0, &y.x_t1]),
+        None => x.detector.continuous(&x.x_t0, &x.x_t1),
+    };
+    let microseconds = start.elapsed().as_secs_f64() * 1e6;
+    let all = impacts?;
+    let kept: Vec<Impact> = earliest_impacts(all, request.limit);
+    let is_complete = kept.len() == all.len();
+    Ok(QueryResult {
+        pairs: kept.iter().map(|impact| impact.pair).collect(),
+        times: Some(kept.iter().map(|impact| impact.time).collect()),
+        contacts: Contacts::default(),
+        near: None,
+        enclosed: None,
+        is_complete,
+        microseconds,
+        statistics: x.detector.statistics(),
+        positions: Vec::new(),
+    })
+}
+
 impl<'m, 'w> Side<'m, 'w> {
-    fn new(mesh: &'m MovingMesh<'w>) -> Self {
+    pub fn new(mesh: &'m MovingMesh<'w>) -> Self {
         Self { mesh, detector: mesh.detector.clone(), x_t0: Vec::new(), x_t1: Vec::new() }
     }
 
@@ -177,7 +190,8 @@ impl<'m, 'w> Side<'m, 'w> {
         Surface { faces: self.mesh.mesh.faces(), positions: &self.x_t0 }
     }
 
-    fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
+    /// Reads the positions at a frame, of a motion also those at the next one.
+    pub fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
         self.mesh.positions(frame, &mut self.x_t0)?;
         if is_continuous {
             self.mesh.positions(frame + 1, &mut self.x_t1)?;

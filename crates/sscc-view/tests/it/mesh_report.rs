@@ -46,6 +46,7 @@ fn answer<'a>(
         mesh,
         node: None,
         other_node: None,
+        node_names: [None; 2],
         index,
         time: None,
         pairs,

@@ -16,6 +16,13 @@ pub struct Answer<'a> {
     /// The node of the other mesh, where several show it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_node: Option<usize>,
+    /// The names of both, in a scene at rest and of two nodes; text has them in any case.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node_name: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against_node_name: Option<&'a str>,
+    #[serde(skip)]
+    pub names: [Option<&'a str>; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     pub index: usize,
@@ -105,10 +112,14 @@ impl<'a> Answer<'a> {
 
     /// Takes the values of an answer. `has_files`: whether the run has several files.
     pub fn new(found: &DetectionAnswer<'a>, has_files: bool) -> Self {
+        let has_names = found.time.is_none() || found.other_node.is_some();
         Self {
             file: has_files.then(|| found.file.display().to_string()),
             node: found.node,
             against_node: found.other_node,
+            node_name: has_names.then_some(found.node_names[0]).flatten(),
+            against_node_name: found.node_names[1],
+            names: found.node_names,
             time: found.time,
             index: found.index,
             norm: found.norm,

@@ -50,8 +50,11 @@ pub fn check(args: &Check) -> Result<bool> {
             Err(error) => return Err(error.into()),
         };
         answers += 1;
-        // Pairs of two meshes are never neighbours.
-        if request.against.is_none() && !is_welded(&request, found.mesh) {
+        if found.node.is_some() && matches!(request.motion, MeshMotion::Rest) {
+            printer.set_noun("comparison");
+        }
+        // Pairs of two meshes are never neighbours, and the meshes of nodes are welded.
+        if request.against.is_none() && found.node.is_none() && !is_welded(&request, found.mesh) {
             hint.add(found);
         }
         if let (Some(path), Some(shape)) = (&args.pose, found.shape)
@@ -59,7 +62,9 @@ pub fn check(args: &Check) -> Result<bool> {
         {
             shapes::write_pose(path, found.mesh, shape.x_t0, found.pairs)?;
         }
-        if let Some(path) = &args.report {
+        // A report shows each node by itself.
+        let is_between_nodes = request.against.is_none() && found.other_node.is_some();
+        if let Some(path) = args.report.as_ref().filter(|_| !is_between_nodes) {
             report.add(found).with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
@@ -79,8 +84,7 @@ pub fn check(args: &Check) -> Result<bool> {
 
 /// Whether equal vertices of a mesh are welded, or the user has decided.
 fn is_welded(request: &Detection, mesh: &TriMesh) -> bool {
-    let is_animated = matches!(request.motion, MeshMotion::Animation(_));
-    request.weld.is_some() || is_animated || mesh.has_split_vertices()
+    request.weld.is_some() || mesh.has_split_vertices()
 }
 
 /// Refuses flags for models, and flags that have no effect together.
@@ -111,6 +115,7 @@ fn check_flags(args: &Check) -> Result<()> {
         ("times", motion.times.is_some()),
         ("node", motion.node.is_some()),
         ("weights", motion.weights.is_some()),
+        ("between-nodes", motion.between_nodes),
     ] {
         let has_effect = !is_given || motion.animation.is_some();
         ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");
@@ -138,7 +143,7 @@ fn check_flags(args: &Check) -> Result<()> {
 fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
     let (options, motion) = (&args.options, &args.motion);
     let animated = motion.animation.as_ref().map(|animation| AnimationMotion {
-        animation: animation.clone(),
+        animation: Some(animation.clone()),
         times: match &motion.times {
             Some(times) => Times::List(times.clone()),
             None => motion.fps.map_or_else(Times::default, Times::PerSecond),
@@ -163,6 +168,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
         neighbours: options.neighbours.unwrap_or_default(),
         weld: options.weld.map(|weld| weld == Switch::On),
         ignore_rest: options.ignore_rest,
+        between_nodes: motion.between_nodes,
         groups: load::groups(&options.groups),
         is_continuous: args.continuous,
         limit: args.max_pairs(),

@@ -45,6 +45,11 @@ impl Printer {
         }
     }
 
+    /// Names a query otherwise: the first answer shows that the file is a scene.
+    pub fn set_noun(&mut self, noun: &'static str) {
+        (self.noun, self.summary.noun) = (noun, noun);
+    }
+
     /// Prints the answer to one query. Breaks if further answers have no reader.
     pub fn answer(&mut self, found: &DetectionAnswer<'_>) -> Result<ControlFlow<()>> {
         let answer = Answer::new(found, self.has_files);

@@ -4,7 +4,7 @@ use sscc_sim::{FreeProof, LeftOut, free_sentence};
 
 use super::answer::{Answer, InsideAnswer};
 use super::data_set::FileError;
-use crate::output::{counted, duration, grouped, length};
+use crate::output::{counted, duration, grouped, length, one_line};
 
 /// Maximum number of pairs in the text; `--json` lists more.
 const MAX_LISTED: usize = 10;
@@ -30,8 +30,9 @@ impl Answer<'_> {
     /// Returns the place of the query: file, node, number, time and norm. `noun` names a query.
     fn place(&self, noun: &str) -> String {
         let file = self.file.as_ref().map(|file| format!("{file}  ")).unwrap_or_default();
-        let node = self.node.map(|node| format!("node {node:<4} ")).unwrap_or_default();
-        let against = self.against_node.map(|node| format!("against node {node:<4} ")).unwrap_or_default();
+        let node = named(self.node, self.names[0]).map(|node| format!("{node:<9} ")).unwrap_or_default();
+        let against = named(self.against_node, self.names[1]);
+        let against = against.map(|node| format!("against {node:<9} ")).unwrap_or_default();
         let time = self.time.map(|time| format!("  {time:.4} s")).unwrap_or_default();
         let norm = self.norm.map(|norm| format!("  |z| {:<10}", length(norm))).unwrap_or_default();
         let number = numbered(noun).map(|label| format!("{label} {:>5}", self.index)).unwrap_or_default();
@@ -87,6 +88,12 @@ impl Answer<'_> {
     fn is_root_certified(&self) -> bool {
         self.root_certified == Some(true)
     }
+}
+
+/// Returns a node in words: its number, which selects it, and its name.
+fn named(node: Option<usize>, name: Option<&str>) -> Option<String> {
+    let name = name.map(|name| format!(" {}", one_line(name))).unwrap_or_default();
+    node.map(|node| format!("node {node}{name}"))
 }
 
 /// Returns the word before the number of a query, which counts from 0. Files and nodes have names instead.
@@ -158,7 +165,7 @@ pub fn failure(failed: &FileError) -> String {
 /// Counts and times of all queries of a run, and the worst one.
 pub struct Summary {
     /// The noun for a query: `step`, `configuration`, ...
-    noun: &'static str,
+    pub noun: &'static str,
     root_certified: Option<usize>,
     pub findings: usize,
     /// Whether the answers are about a clearance.
@@ -222,9 +229,10 @@ impl Summary {
     /// Returns an answer's place, its number of pairs and the largest depth.
     fn describe(&self, answer: &Answer<'_>, depth: f64) -> String {
         let number = numbered(self.noun).map(|label| format!("{label} {}", answer.index));
-        let node = answer.node.map(|node| format!("node {node}"));
+        let node = named(answer.node, answer.names[0]);
         let query: Vec<String> = number.into_iter().chain(node).collect();
-        let against = answer.against_node.map(|node| format!("against node {node}"));
+        let against = named(answer.against_node, answer.names[1]);
+        let against = against.map(|node| format!("against {node}"));
         let nodes: Vec<String> = [query.join(" of ")].into_iter().chain(against).collect();
         let place = answer.file.iter().cloned().chain([nodes.join(" ").trim().to_owned()]);
         let place: Vec<String> = place.filter(|part| !part.is_empty()).collect();
