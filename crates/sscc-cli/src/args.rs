@@ -494,8 +494,8 @@ impl Check {
 /// The motion of a mesh without modes.
 #[derive(Debug, Args)]
 pub struct Motion {
-    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, or a folder of meshes with the same
-    /// faces (9.obj before 10.obj)
+    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, or a folder
+    /// of meshes with the same faces (9.obj before 10.obj)
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["trajectory", "q", "animation"])]
     pub frames: Option<PathBuf>,
     /// Another mesh: list the pairs (triangle of MODEL, triangle of this mesh) that collide
@@ -664,7 +664,7 @@ pub struct Load {
 pub struct Fit {
     #[command(flatten)]
     pub model: Model,
-    /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), or a folder of meshes with the same faces
+    /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), a .pc2 point cache, or a folder of meshes with the same faces
     #[arg(value_name = "POSITIONS")]
     pub positions: PathBuf,
     /// The q to write: *.npy of shape (r), of several frames (T, r)

@@ -38,7 +38,7 @@
 //! | groups of triangles: OBJ groups, objects and materials, glTF primitives, nodes and materials | [`read_groups`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
-//! | frames of a given mesh, one by one: `.npy` of positions, a folder of meshes | [`FrameReader`] |
+//! | frames of a given mesh, one by one: `.npy` of positions, a `.pc2` point cache, a folder of meshes | [`FrameReader`] |
 //! | the mesh of any file, without modes, where nodes put it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
 //! | the files of a folder that have a mesh | [`list_mesh_files`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |

@@ -1,4 +1,4 @@
-//! Reads the frames of a given mesh one by one: an array of positions, or a folder of meshes.
+//! Reads the frames of a given mesh one by one: an array of positions, a point cache, or a folder of meshes.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,7 @@ use sscc::{TriMesh, limits};
 
 use super::folder::positions_like;
 use super::frames::frame_files;
+use super::point_cache::PointCache;
 use crate::file::{ending, unsupported};
 use crate::npy::Blocks;
 use crate::{FormatError, IoError};
@@ -28,19 +29,21 @@ pub struct FrameReader {
 
 enum Source {
     Array(Blocks),
+    PointCache(PointCache),
     Folder { files: Vec<PathBuf>, kept: Vec<Option<Vec<DVec3>>> },
 }
 
 impl FrameReader {
     /// Opens the frames of a mesh:
     /// - a `.npy` file of floats or integers, of shape (T, V, 3), or (V, 3) for one frame;
+    /// - a `.pc2` point cache;
     /// - a folder of meshes with the same faces or none, in the natural order of their names (`9.obj` before `10.obj`), as
     ///   of [`read_frames`](crate::read_frames).
     ///
     /// `mesh_path` names the mesh in messages.
     ///
     /// # Errors
-    /// When the path is neither; when the array has no frame, another shape, or is cut off; when the folder has no mesh or
+    /// When the path is none of them; when the array has no frame, another shape, or is cut off; when the folder has no mesh or
     /// more than 10,000.
     pub fn open(path: &Path, mesh: &TriMesh, mesh_path: &Path) -> Result<Self, IoError> {
         let source = if path.is_dir() {
@@ -50,8 +53,12 @@ impl FrameReader {
             let blocks = Blocks::open(path)?;
             check_shape(blocks.shape(), mesh.rest_positions().len()).map_err(|error| error.of(path))?;
             Source::Array(blocks)
+        } else if ending(path) == "pc2" {
+            let cache = PointCache::open(path)?;
+            check_shape(cache.shape(), mesh.rest_positions().len()).map_err(|error| error.of(path))?;
+            Source::PointCache(cache)
         } else {
-            return Err(unsupported(path, "frame", ".npy of shape (T, V, 3), and a folder of meshes"));
+            return Err(unsupported(path, "frame", ".npy of shape (T, V, 3), .pc2, and a folder of meshes"));
         };
         let name = format!("the mesh ({})", mesh_path.file_name().unwrap_or_default().display());
         Ok(Self { path: path.to_owned(), mesh: mesh.clone(), name, source })
@@ -63,6 +70,7 @@ impl FrameReader {
         match &self.source {
             Source::Array(blocks) if blocks.shape().len() == 2 => 1,
             Source::Array(blocks) => blocks.shape()[0],
+            Source::PointCache(cache) => cache.shape()[0],
             Source::Folder { files, .. } => files.len(),
         }
     }
@@ -104,14 +112,14 @@ impl FrameReader {
     }
 
     fn positions(&self, frame: usize) -> Result<Vec<DVec3>, IoError> {
-        let blocks = match &self.source {
+        let length = 3 * self.mesh.rest_positions().len();
+        let numbers = match &self.source {
             Source::Folder { files, .. } => {
                 return positions_like(&files[frame], &self.mesh, "frame", &self.name);
             }
-            Source::Array(blocks) => blocks,
+            Source::Array(blocks) => blocks.read(frame * length, length)?,
+            Source::PointCache(cache) => cache.read(frame * length, length),
         };
-        let length = 3 * self.mesh.rest_positions().len();
-        let numbers = blocks.read(frame * length, length)?;
         let positions: Vec<DVec3> = numbers.as_chunks().0.iter().map(|x| DVec3::from_array(*x)).collect();
         match positions.iter().position(|x| !limits::contains(*x)) {
             Some(vertex) => {
@@ -185,6 +193,29 @@ mod tests {
         // Meshes are kept: their files are not read again.
         std::fs::remove_dir_all(folder.join("frames")).unwrap();
         assert_eq!(all(&readers[0]), all(&readers[1]));
+    }
+
+    #[test]
+    fn point_caches_are_frames() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.PC2");
+        let open = |points: i32, samples: i32, last: f32| {
+            let words = [1, points, 0, 0, samples].map(i32::to_le_bytes);
+            let mut coordinates = vec![0.5_f32; (3 * points * samples) as usize];
+            *coordinates.last_mut().unwrap() = last;
+            let data = coordinates.iter().flat_map(|x| x.to_le_bytes());
+            let bytes: Vec<u8> =
+                b"POINTCACHE2\0".iter().copied().chain(words.into_iter().flatten()).chain(data).collect();
+            std::fs::write(&path, bytes).unwrap();
+            FrameReader::open(&path, &mesh(), "m.obj".as_ref())
+        };
+        let frames = all(&open(3, 2, 2.0).unwrap());
+        assert_eq!(frames.len(), 2);
+        assert_eq!(frames[1], [DVec3::splat(0.5), DVec3::splat(0.5), DVec3::new(0.5, 0.5, 2.0)]);
+        let message = open(4, 2, 0.0).err().unwrap().to_string();
+        assert!(message.ends_with("the frames have 4 vertices, the mesh has 3: are they of another mesh?"));
+        let message = open(3, 2, f32::NAN).unwrap().read(1, &mut Vec::new()).unwrap_err().to_string();
+        assert!(message.contains("x.PC2: frame 1: vertex 2 (counted from 0)"), "{message}");
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod frame_reader;
 mod frames;
 mod mesh_mismatch;
 mod named_modes;
+mod point_cache;
 pub mod vega;
 
 use std::path::Path;
