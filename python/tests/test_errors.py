@@ -93,7 +93,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"neighbours": "all"}, ValueError, "neighbours is 'all': 'exclude' or 'include-one-vertex' or 'include-folded'"),
     ({"neighbours": "include-folded"}, ValueError, "neighbours: include-folded is for discrete queries of meshes"),
     ({"weld": "on"}, TypeError, "weld is a str: True or False was expected"),
-    ({"ignore_rest": -1}, ValueError, "ignore_rest is -1: a whole number of at least 0 was expected"),
+    ({"ignore_rest": -1}, ValueError, "ignore_rest is -1: a whole number from 0 to 4294967295 was expected"),
     ({"ignore_rest": "lips"}, TypeError, "ignore_rest is a str"),
     ({"max_exceptions": -1}, ValueError, "max_exceptions is -1: a whole number of at least 0 was expected"),
     ({"metric": "energy"}, ValueError, "metric: the model's own is 'displacement', not 'energy'"),

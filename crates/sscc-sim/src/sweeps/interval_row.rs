@@ -106,7 +106,7 @@ pub fn interval_table(rows: &[IntervalRow]) -> Vec<String> {
     let free = rows.iter().filter(|row| row.intervals.is_empty()).count();
     let samples = rows.first().map_or(0, |row| row.samples.len());
     table.push(format!(
-        "{}: {free} free, {} not; every weight outside of the intervals is proven free; pairs and depths of {} of each weight",
+        "{}: {free} free, {} not; every weight outside of the intervals is proven free, up to 1e-9 of the range; pairs and depths of {} of each weight",
         counted(rows.len() as u64, "mode"),
         rows.len() - free,
         counted(samples as u64, "sample"),
@@ -159,7 +159,7 @@ mod tests {
                 "jaw\\nOpen     0     1  0.25 to 0.5: up to 2 pairs, depth 0.1250 at 0.5",
                 "                       0.6 to 0.7: up to 1 pair, depth 0.1250 at 0.7; nothing is proven closely outside",
                 "                       0.8 to 0.8: nothing is proven, no sample collides",
-                "2 modes: 1 free, 1 not; every weight outside of the intervals is proven free; pairs and depths of 2 samples of each weight",
+                "2 modes: 1 free, 1 not; every weight outside of the intervals is proven free, up to 1e-9 of the range; pairs and depths of 2 samples of each weight",
             ]
         );
     }

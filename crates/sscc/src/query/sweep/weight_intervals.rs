@@ -13,7 +13,8 @@ pub struct WeightIntervals {
     pub range: ModeRange,
     /// The samples, at equal distances from one end of the range to the other.
     pub samples: Vec<WeightSample>,
-    /// The intervals outside of which the shape is proven free, in ascending order. Two of them have a free sample between them.
+    /// The intervals, in ascending order: outside of them, up to `free_until` and from `free_from` on, the shape is proven free. Two of
+    /// them have a free sample between them.
     pub intervals: Vec<WeightInterval>,
 }
 
@@ -56,8 +57,8 @@ pub(crate) const MAX_SAMPLES: usize = 1 << 20;
 
 impl Query {
     /// Finds for each mode the intervals of its weight over which the shape collides, with all others as in q: at so many
-    /// samples of its range what collides and how deep, and by sweeps ([`Query::sweep`]) where it begins and ends. All
-    /// weights outside of the intervals are proven free. Threads and `progress` as for [`Query::sweep_modes`].
+    /// samples of its range what collides and how deep, and by sweeps ([`Query::sweep`]) where it begins and ends. The shape is
+    /// proven free outside of the intervals, up to their `free_until` and from their `free_from` on. Threads and `progress` as for [`Query::sweep_modes`].
     ///
     /// # Errors
     /// When there are fewer than 2 or more than 2^20 samples; as [`Query::sweep_modes`].
