@@ -51,6 +51,10 @@ pub fn static_configuration(stiffness: &Stiffness, forces: &[f64]) -> Result<Vec
     let (values, vectors) = symmetric_eigen(matrix.as_ref())?;
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let size = forces.iter().map(|f| f * f).sum::<f64>().sqrt();
+    // Beyond it no share of the load could be told.
+    if !size.is_finite() {
+        return Err(ModesError::OutOfRange);
+    }
     let mut q = vec![0.0; rank];
     for (k, value) in values.iter().enumerate() {
         let along: f64 = (0..rank).map(|i| vectors[(i, k)] * forces[i]).sum();
@@ -68,7 +72,10 @@ pub fn static_configuration(stiffness: &Stiffness, forces: &[f64]) -> Result<Vec
 
 /// Least-squares fit of q to displacements of all vertices.
 pub struct DisplacementFit {
+    /// The modes, each divided by its norm, so that their units do not matter.
     modes: Mat<f64>,
+    /// The norm of each mode; 1 where it moves nothing.
+    norms: Vec<f64>,
     /// The pseudo-inverse of `U'U`.
     inverse: Mat<f64>,
 }
@@ -76,7 +83,7 @@ pub struct DisplacementFit {
 /// The q whose displacements are nearest to given ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedConfiguration {
-    /// The q; of several, that of the smallest norm.
+    /// The q; of several, that of the smallest norm, with each mode in units of its own norm.
     pub q: Vec<f64>,
     /// What remains of the displacements: norm of the residual over that of the displacements; 0 for none.
     pub residual: f64,
@@ -94,15 +101,20 @@ impl DisplacementFit {
     /// When the products of the modes are out of range.
     pub fn new(modes: &Modes) -> Result<Self, ModesError> {
         let rank = modes.rank();
-        let modes = Mat::from_fn(3 * modes.vertices(), rank, |row, k| {
-            modes.displacements()[row / 3 * rank + k][row % 3]
-        });
+        let entry = |row: usize, k: usize| modes.displacements()[row / 3 * rank + k][row % 3];
+        let rows = 3 * modes.vertices();
+        let norm = |k: usize| (0..rows).map(|row| entry(row, k).powi(2)).sum::<f64>().sqrt();
+        let norms: Vec<f64> = (0..rank).map(norm).map(|norm| if norm > 0.0 { norm } else { 1.0 }).collect();
+        if norms.iter().any(|norm| !norm.is_finite()) {
+            return Err(ModesError::OutOfRange);
+        }
+        let modes = Mat::from_fn(rows, rank, |row, k| entry(row, k) / norms[k]);
         let (values, vectors) = symmetric_eigen(inner(modes.as_ref(), modes.as_ref()).as_ref())?;
         let largest = values.last().copied().unwrap_or_default();
         let kept: Vec<usize> = (0..rank).filter(|k| values[*k] > DEPENDENT * largest).collect();
         let term = |i: usize, j: usize, k: usize| vectors[(i, k)] * vectors[(j, k)] / values[k];
         let inverse = Mat::from_fn(rank, rank, |i, j| kept.iter().map(|k| term(i, j, *k)).sum());
-        Ok(Self { modes, inverse })
+        Ok(Self { modes, norms, inverse })
     }
 
     /// Fits q to one displacement for each vertex.
@@ -122,7 +134,7 @@ impl DisplacementFit {
             left.copy_from(&given);
             add_product(left.as_mut(), modes, q.as_ref(), -1.0);
         }
-        let q: Vec<f64> = (0..q.nrows()).map(|k| q[(k, 0)]).collect();
+        let q: Vec<f64> = self.norms.iter().enumerate().map(|(k, norm)| q[(k, 0)] / norm).collect();
         let size = norm(given.as_ref());
         let residual = if size > 0.0 { norm(left.as_ref()) / size } else { 0.0 };
         if !(residual.is_finite() && q.iter().all(|q| q.is_finite())) {
@@ -157,6 +169,8 @@ mod tests {
             static_configuration(&diagonal(&[0.0, 2.0]), &[1.0, 1.0]),
             Err(ModesError::NoStaticAnswer)
         );
+        // So large that no share of it could be told.
+        assert_eq!(static_configuration(&diagonal(&[0.0, 2.0]), &[1e200, 1.0]), Err(ModesError::OutOfRange));
         assert!(static_configuration(&diagonal(&[-1.0, 2.0]), &[1.0, 1.0]).is_err());
         assert!(static_configuration(&diagonal(&[1.0, 2.0]), &[1.0]).is_err());
         let modes = Modes::from_matrix(2, 2, |row, k| (2 * row + k) as f64).unwrap();
@@ -179,6 +193,24 @@ mod tests {
         assert!(found.residual < 1e-14 && found.largest < 1e-13);
         assert_eq!(fit.fit(&[DVec3::ZERO; 4]).unwrap().residual, 0.0);
         assert!(fit.fit(&moved[1..]).is_err());
+    }
+
+    #[test]
+    fn units_of_modes_do_not_matter() {
+        let entry = |row: usize, k: usize| ((row * row + 3 * k * row + k) % 7) as f64 - 3.0;
+        for small in [1e-7, 1e-12, 1e12] {
+            let scale = |k: usize| if k == 2 { small } else { 1.0 };
+            let modes = Modes::from_matrix(4, 3, |row, k| entry(row, k) * scale(k)).unwrap();
+            let q = [0.5, -2.0, 1.0 / small];
+            let of = |v: u32| modes.of_vertex(v).iter().zip(q).map(|(u, q)| *u * q).sum::<DVec3>();
+            let moved: Vec<DVec3> = (0..4).map(of).collect();
+            let found = DisplacementFit::new(&modes).unwrap().fit(&moved).unwrap();
+            assert!(
+                found.q.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-12 * b.abs()),
+                "{small}: {found:?}"
+            );
+            assert!(found.residual < 1e-13, "{small}: {found:?}");
+        }
     }
 
     #[test]

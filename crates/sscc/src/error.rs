@@ -182,9 +182,9 @@ pub enum Error {
         /// How many would be accepted.
         most: usize,
     },
-    /// More pairs around those that collide at rest than can be ignored.
+    /// More pairs around given ones than can be ignored.
     #[error(
-        "within {rings} rings of the pairs that collide at rest there are too many to ignore (at most {most}): choose fewer rings"
+        "within {rings} rings of these pairs of triangles there are too many to ignore (at most {most}): choose fewer rings"
     )]
     TooManyIgnored {
         /// Maximum number of ignored pairs.

@@ -1,6 +1,6 @@
 //! `sscc fit`: the q of given positions, by least squares.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use serde::Serialize;
@@ -24,7 +24,8 @@ struct Row {
 }
 
 pub fn run(args: &Fit) -> Result<Outcome> {
-    let inputs: [&Path; 2] = [&args.model.path, &args.positions];
+    let files = [&args.model.path, &args.positions];
+    let inputs: Vec<&Path> = files.into_iter().chain(&args.model.modes).map(PathBuf::as_path).collect();
     load::check_output(&args.output, ".npy", &inputs)?;
     let loaded = load::model(&args.model)?;
     let (mesh, modes) = (loaded.model.mesh(), loaded.model.modes());

@@ -1,5 +1,7 @@
 //! `sscc load`: the q of a load.
 
+use std::path::{Path, PathBuf};
+
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use sscc_io::write_npy;
@@ -23,7 +25,9 @@ struct Report {
 
 pub fn run(args: &Load) -> Result<Outcome> {
     ensure!(!args.force.is_empty() || args.gravity.is_some(), "--force or --gravity is needed");
-    load::check_output(&args.output, ".npy", &[&args.model.path])?;
+    let inputs: Vec<&Path> =
+        [&args.model.path].into_iter().chain(&args.model.modes).map(PathBuf::as_path).collect();
+    load::check_output(&args.output, ".npy", &inputs)?;
     let loaded = load::model(&args.model)?;
     let found = static_answer(&loaded.model, &loaded.info, &args.force, args.gravity);
     let found = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;

@@ -3,9 +3,9 @@
 
 use anyhow::Result;
 use serde::Serialize;
-use sscc::SweepOutcome;
+use sscc::{Certificates, SweepOutcome};
 use sscc_sim::{
-    SweepRequest, combination_table, interval_table, sweep_model, sweep_model_combinations,
+    LeftOut, SweepRequest, combination_table, interval_table, sweep_model, sweep_model_combinations,
     sweep_model_intervals, sweep_table,
 };
 
@@ -32,20 +32,24 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         let found = sweep_model_intervals(&loaded, &certificates, &request, samples, &bar);
         interrupt::check()?;
         let rows = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
-        print(args, &rows, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
+        print(args, &rows, &certificates, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
         return Ok(outcome(rows.iter().all(|row| row.intervals.is_empty())));
     }
     if args.combinations {
         let found = sweep_model_combinations(&loaded, &certificates, &request, &bar);
         interrupt::check()?;
         let found = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
-        print(args, &found.rows, || [vec![ranges.to_string()], combination_table(&found)].concat())?;
+        print(args, &found.rows, &certificates, || {
+            [vec![ranges.to_string()], combination_table(&found)].concat()
+        })?;
         return Ok(outcome(found.rows.is_empty()));
     }
     let swept = sweep_model(&loaded, &certificates, &request, &bar);
     interrupt::check()?;
     let rows = swept.map_err(|error| load::in_file(error.into(), &args.model.path))?;
-    print(args, &rows, || [vec![ranges.to_string()], sweep_table(&rows, "--q, --ignore-rest")].concat())?;
+    print(args, &rows, &certificates, || {
+        [vec![ranges.to_string()], sweep_table(&rows, "--q, --ignore-rest")].concat()
+    })?;
     // The table says so itself.
     if args.json.json && rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
         note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
@@ -53,11 +57,24 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
 }
 
-fn print(args: &Sweep, rows: &[impl Serialize], table: impl Fn() -> Vec<String>) -> Result<()> {
+/// Prints the rows, and which pairs they are apart from, where pairs are ignored.
+fn print(
+    args: &Sweep,
+    rows: &[impl Serialize],
+    certificates: &Certificates,
+    table: impl Fn() -> Vec<String>,
+) -> Result<()> {
     let mut out = Output::new();
+    let left_out = LeftOut::of(certificates.filter());
+    let apart = (left_out.ignored() > 0).then(|| format!("all of it apart from {left_out}"));
     match args.json.json {
         true => rows.iter().try_for_each(|row| out.json(row))?,
-        false => table().into_iter().try_for_each(|line| out.line(line))?,
+        false => table().into_iter().chain(apart.clone()).try_for_each(|line| out.line(line))?,
+    }
+    if args.json.json
+        && let Some(apart) = apart
+    {
+        note(apart);
     }
     out.finish()
 }

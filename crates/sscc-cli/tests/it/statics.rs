@@ -105,3 +105,19 @@ fn loads_and_positions_that_do_not_fit_are_refused() {
     let far = sscc(folder, &["load", MODEL, "-o", "q.npy", "--force", "1:0,0,-5000"]);
     assert!(far.stderr.contains("note: the answer is linear, and "), "{far:?}");
 }
+
+#[test]
+fn modes_are_not_overwritten() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    fs::write(folder.join("bracket.obj"), BRACKET).unwrap();
+    write_npy(&folder.join("modes.npy"), &[24, 1], &[1.0; 24]).unwrap();
+    write_npy(&folder.join("positions.npy"), &[1, 8, 3], &[0.5; 24]).unwrap();
+    let before = fs::read(folder.join("modes.npy")).unwrap();
+    let model = ["bracket.obj", "--modes", "modes.npy"];
+    for (command, more) in [("fit", &["positions.npy"][..]), ("load", &["--force", "0:1,0,0"])] {
+        let run = sscc(folder, &[&[command], &model[..], more, &["-o", "modes.npy"]].concat());
+        assert!(run.refusal().contains("modes.npy: the output is an input"), "{run:?}");
+        assert_eq!(fs::read(folder.join("modes.npy")).unwrap(), before);
+    }
+}

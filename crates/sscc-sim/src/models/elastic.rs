@@ -148,5 +148,10 @@ fn first_of_second_order(
     let corners = solid.vertices().len();
     let middles = edges.iter().zip(corners as u32..).filter(|(edge, _)| edge.iter().all(is_fixed));
     let fixed: Vec<u32> = fixed.iter().copied().chain(middles.map(|(_, v)| v)).collect();
-    Ok(linear_modes(&elevated, &fixed, 1, progress)?.frequencies().first().copied())
+    // It is for a note alone, so only a cancellation ends the run.
+    match linear_modes(&elevated, &fixed, 1, progress) {
+        Ok(modes) => Ok(modes.frequencies().first().copied()),
+        Err(error) if progress.is_cancelled() => Err(error.into()),
+        Err(_) => Ok(None),
+    }
 }

@@ -19,8 +19,9 @@ const MAX_WORK: usize = 1 << 30;
 /// When they are more than 2^22, or take more work than 2^30 pairs.
 pub(crate) fn surroundings(filter: &PairFilter, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
     if rings == 0 {
-        let mut pairs = pairs.to_vec();
+        let mut pairs: Vec<Pair> = pairs.iter().map(|(a, b)| (*a.min(b), *a.max(b))).collect();
         pairs.sort_unstable();
+        pairs.dedup();
         return Ok(pairs);
     }
     let too_many = || Err(Error::TooManyIgnored { most: MAX_PAIRS, rings });
