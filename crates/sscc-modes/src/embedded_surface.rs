@@ -45,7 +45,8 @@ impl EmbeddedSurface {
     /// nearest one. The solid may have gaps and overlaps; a vertex in several parts moves with that of its neighbours.
     ///
     /// # Errors
-    /// When the solid has tetrahedra of second order, a vertex is farther from the solid than a tenth of the longest side of the solid, or the work is cancelled.
+    /// When the solid has tetrahedra of second order, a vertex is farther from the solid than a tenth of the longest side of the
+    /// solid, or the work is cancelled.
     pub fn within(surface: &TriMesh, solid: Solid, progress: &dyn Progress) -> Result<Self, ModesError> {
         if !solid.tets10().is_empty() {
             return Err(ModesError::EmbeddedInSecondOrder);

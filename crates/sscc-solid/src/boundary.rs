@@ -11,7 +11,8 @@ use crate::{Solid, SolidError, VolumeMesh, tets_within};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
     /// Faces that belong to exactly one element, outward, in the order of the elements; faces of cubes are split into
-    /// two triangles, faces of second-order tetrahedra into four, through the middles of their edges. Vertices are those of the solid on the boundary, in their order.
+    /// two triangles, faces of second-order tetrahedra into four, through the middles of their edges. Vertices are those of
+    /// the solid on the boundary, in their order.
     pub mesh: TriMesh,
     /// Vertex of the solid for each vertex of the mesh.
     pub vertices: Vec<u32>,

@@ -12,8 +12,8 @@ use crate::{Material, SolidError};
 /// Minimum of six times the volume of a tetrahedron over its longest edge cubed. Below it, the stiffness is rounding.
 const MIN_RELATIVE_VOLUME: f64 = 1e-10;
 
-/// Elastic solid: tetrahedra (all of first or all of second order) and hexahedra ("cubes") of positive volume, each with a material. Every vertex belongs to
-/// an element.
+/// Elastic solid: tetrahedra (all of first or all of second order) and hexahedra ("cubes") of positive volume, each with a
+/// material. Every vertex belongs to an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     vertices: Vec<DVec3>,

@@ -30,5 +30,5 @@ pub use crate::geometry::{
 pub use crate::hierarchy::{Hierarchy, Node};
 pub use crate::model::{check_metric, vertex_areas};
 pub use crate::posed::{Pose, PosedShape, SweptShape};
-pub use crate::query::ProvenShares;
+pub use crate::query::{ProvenShares, largest_depth};
 pub use crate::random::{next_bits, next_uniform};

@@ -98,7 +98,11 @@ impl CertificateRequest {
             };
             if filter.ignoring_rest(model, rings)?.ignored() != certificates.filter().ignored() {
                 let rings = if rings == 0 { String::new() } else { format!(" of {rings} rings") };
-                return Ok(Some("certified without " + Setting::IgnoreRest + rings + REMEDY));
+                let cause = match certificates.filter().ignored() {
+                    [] => "certified without ",
+                    _ => "certified with other ignored pairs than those of ",
+                };
+                return Ok(Some(cause + Setting::IgnoreRest + rings + REMEDY));
             }
         }
         let exceptions = certificates.exceptions().len();

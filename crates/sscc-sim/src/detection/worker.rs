@@ -85,8 +85,8 @@ impl<'m, 'w> Worker<'m, 'w> {
 /// A mesh of a query, and the other one.
 pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
-/// Answers one query at the positions that the sides have read. `is_last`: whether it is the last one, whose contact curves are asked
-/// for.
+/// Answers one query at the positions that the sides have read. `is_last`: whether it is the last query of the run, the only
+/// one whose contact curves are asked for.
 pub(super) fn query(
     request: &Detection,
     sides: Sides<'_, '_, '_>,

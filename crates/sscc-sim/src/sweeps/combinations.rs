@@ -1,8 +1,8 @@
 //! Pairs of modes that collide together: what neither weight causes alone.
 
 use serde::Serialize;
-use sscc::parts::penetration_triangle_triangle;
-use sscc::{Answer, Certificates, ModeRange, Pair, Progress, Query, ReducedModel};
+use sscc::parts::largest_depth;
+use sscc::{Answer, Certificates, ModeRange, Pair, Progress, Query};
 use sscc_io::LoadedModel;
 
 use super::sweep_model::SweepRequest;
@@ -78,7 +78,7 @@ pub fn sweep_model_combinations(
                 to: modes.map(|mode| ranges[mode].high),
                 count: answer.pairs.len(),
                 new: new.len(),
-                depth: depth(&loaded.model, q, &new),
+                depth: largest_depth(&loaded.model, q, &new),
             });
         }
         progress.report((i * BLOCK + block.len()).min(both.len()), both.len());
@@ -89,15 +89,6 @@ pub fn sweep_model_combinations(
 fn new_pairs<'a>(answer: &'a Answer, known: [&'a Answer; 3]) -> impl Iterator<Item = Pair> + 'a {
     let is_known = move |pair: &Pair| known.iter().any(|answer| answer.pairs.binary_search(pair).is_ok());
     answer.pairs.iter().copied().filter(move |pair| !is_known(pair))
-}
-
-/// Returns the largest penetration depth of these pairs at q.
-fn depth(model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> f64 {
-    let corners = |t: u32| model.mesh().faces()[t as usize].map(|v| model.position(v, q));
-    let depth = |(a, b): &Pair| {
-        penetration_triangle_triangle(&corners(*a), &corners(*b)).map_or(0.0, |found| found.depth)
-    };
-    pairs.iter().map(depth).fold(0.0, f64::max)
 }
 
 /// Returns the combinations as the lines of a table, and a summary.

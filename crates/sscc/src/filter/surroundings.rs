@@ -8,15 +8,17 @@ use crate::Error;
 /// Pairs of the surroundings, at most.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// Pairs that are looked at, at most. Surroundings of neighbouring pairs overlap, so these are many more.
-const MAX_WORK: usize = 1 << 30;
+/// Pairs that are looked at, at most: a few seconds of work. Surroundings of neighbouring pairs overlap, so these are many
+/// more.
+const MAX_WORK: usize = 1 << 28;
 
 /// All pairs of which one triangle lies within that many rings of the first triangle of one of `pairs`, and the other one within as
 /// many of its second. Triangles with a common vertex are one ring apart: around a triangle whose vertices have six edges each there
-/// are 13 within one ring and 37 within two. Pairs that never count are left out, but not of `pairs` themselves where there are no rings. Sorted.
+/// are 13 within one ring and 37 within two. With rings,
+/// pairs that never count are left out. Sorted.
 ///
 /// # Errors
-/// When they are more than 2^22, or take more work than 2^30 pairs.
+/// When they are more than 2^22, or more than 2^28 must be looked at.
 pub(crate) fn surroundings(filter: &PairFilter, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
     if rings == 0 {
         let mut pairs: Vec<Pair> = pairs.iter().map(|(a, b)| (*a.min(b), *a.max(b))).collect();

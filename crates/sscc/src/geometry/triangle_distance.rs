@@ -181,14 +181,26 @@ mod tests {
         Some(used)
     }
 
+    fn vector(random: &mut Numbers) -> DVec3 {
+        DVec3::new(random.signed(), random.signed(), random.signed())
+    }
+
+    /// Checks many pairs of triangles, most of which are apart.
+    fn check_many(seed: u64, pair: impl Fn(&mut Numbers, usize) -> [[DVec3; 3]; 2]) {
+        let random = &mut Numbers(seed);
+        let count = if std::env::var_os("SSCC_LONG").is_some() { 20_000 } else { 400 };
+        let is_apart = |case: &usize| {
+            let [a, b] = pair(random, *case);
+            check(&a, &b, *case).is_some()
+        };
+        let apart = (0..count).filter(is_apart).count();
+        assert!(apart > count / 2, "{apart}");
+    }
+
     /// Edges that cross at small angles and small distances, in any direction, the triangles on both sides.
     #[test]
     fn distances_of_nearly_parallel_edges_are_within_their_error() {
-        let random = &mut Numbers(5);
-        let vector = |random: &mut Numbers| DVec3::new(random.signed(), random.signed(), random.signed());
-        let count = if std::env::var_os("SSCC_LONG").is_some() { 20_000 } else { 400 };
-        let mut apart = 0;
-        for case in 0..count {
+        check_many(5, |random, case| {
             let along = vector(random).normalize();
             let normal = along.cross(vector(random)).normalize();
             let (angle, gap) = (random.power(-13.0, -3.0), random.power(-14.0, -5.0));
@@ -196,33 +208,26 @@ mod tests {
             let at = vector(random);
             let a = [at - along, at + along, at - normal + vector(random) * 0.3];
             let at = at + normal * gap + along * (0.5 * random.signed());
-            let b = [at - turned, at + turned, at + normal + vector(random) * 0.3];
-            apart += usize::from(check(&a, &b, case).is_some());
-        }
-        assert!(apart > count / 2, "{apart}");
+            [a, [at - turned, at + turned, at + normal + vector(random) * 0.3]]
+        });
     }
 
     /// Corners closely above the inside of needles.
     #[test]
     fn distances_to_the_inside_of_needles_are_within_their_error() {
-        let random = &mut Numbers(7);
-        let vector = |random: &mut Numbers| DVec3::new(random.signed(), random.signed(), random.signed());
-        let count = if std::env::var_os("SSCC_LONG").is_some() { 20_000 } else { 400 };
-        let mut apart = 0;
-        for case in 0..count {
+        check_many(7, |random, case| {
             let along = vector(random).normalize();
             let normal = along.cross(vector(random)).normalize();
             let across = along.cross(normal) * random.power(-13.0, -3.0);
-            let a = [DVec3::ZERO, along, along * random.signed().abs() + across].map(|x| x + along * 0.5);
-            let middle = (a[0] + a[1] + a[2]) / 3.0;
-            let above = middle + (a[case % 3] - middle) * random.signed().abs();
+            let needle =
+                [DVec3::ZERO, along, along * random.signed().abs() + across].map(|x| x + along * 0.5);
+            let middle = (needle[0] + needle[1] + needle[2]) / 3.0;
+            let above = middle + (needle[case % 3] - middle) * random.signed().abs();
             let gap = normal * random.power(-14.0, -5.0);
             let far = [(); 2].map(|()| above + normal + vector(random) * 0.3);
-            let b = [above + gap, far[0], far[1]];
-            let (x, y) = if case % 2 == 0 { (&a, &b) } else { (&b, &a) };
-            apart += usize::from(check(x, y, case).is_some());
-        }
-        assert!(apart > count / 2, "{apart}");
+            let other = [above + gap, far[0], far[1]];
+            if case % 2 == 0 { [needle, other] } else { [other, needle] }
+        });
     }
 
     /// Triangles of every kind against exact arithmetic: needles, points, parallel and nearly parallel edges, grids, far from the origin,
@@ -233,7 +238,6 @@ mod tests {
         let count = if std::env::var_os("SSCC_LONG").is_some() { 100_000 } else { 240 };
         let (mut apart, mut touching, mut worst) = (0, 0, 0.0_f64);
         for case in 0..count {
-            let vector = |random: &mut Numbers| DVec3::new(random.signed(), random.signed(), random.signed());
             let thin = [1.0, 1e-3, 1e-8, 1e-10, 3e-11, 1e-11, 1e-13, 0.0][case % 8];
             let far = [0.0, 1.0, 1e-6, 10.0, 1e-12][case % 5];
             let scale = [1.0, 1e-150, 1e50, 3e-5][case / 40 % 4];

@@ -40,4 +40,6 @@ pub use method::Method;
 pub use proven_shares::ProvenShares;
 pub use query::Query;
 pub use resolve::{FreeSamples, ResolveOptions, Resolved};
-pub use sweep::{ModeRange, Sweep, SweepOutcome, WeightInterval, WeightIntervals, WeightSample};
+pub use sweep::{
+    ModeRange, Sweep, SweepOutcome, WeightInterval, WeightIntervals, WeightSample, largest_depth,
+};

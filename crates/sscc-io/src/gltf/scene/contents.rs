@@ -102,6 +102,16 @@ pub fn read_contents(path: &Path) -> Result<Contents, IoError> {
     parse_in(&read_whole(path)?, Some(folder)).map_err(|error| error.of(path))
 }
 
+/// Returns the number of meshes of a glTF file, with or without triangles. Reads no geometry.
+///
+/// # Errors
+/// When the file cannot be read, or is no glTF file of a supported version.
+pub fn count_meshes(path: &Path) -> Result<usize, IoError> {
+    let bytes = read_whole(path)?;
+    let root = glb::split(&bytes).and_then(|chunks| Root::parse(chunks.json));
+    Ok(root.map_err(|error| error.of(path))?.meshes.len())
+}
+
 /// As [`read_contents`], from the bytes of a file without external buffers.
 ///
 /// # Errors

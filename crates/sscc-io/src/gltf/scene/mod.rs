@@ -27,7 +27,8 @@ mod weld;
 pub use animated_scene::AnimatedScene;
 pub use animation::AnimationInfo;
 pub use contents::{
-    AnimationContents, Contents, MeshContents, MeshNodeContents, NamedPart, parse_contents, read_contents,
+    AnimationContents, Contents, MeshContents, MeshNodeContents, NamedPart, count_meshes, parse_contents,
+    read_contents,
 };
 pub use mesh_node::MeshNode;
 pub use place::SkinWeights;

@@ -1,4 +1,5 @@
-//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket; intervals of weights over which it collides.
+//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket; intervals of weights over which it
+//! collides.
 
 mod contact;
 #[allow(clippy::module_inception)] // named after its type, as all files here
@@ -11,4 +12,4 @@ mod work;
 
 pub use sweep::{Sweep, SweepOutcome};
 pub use sweep_modes::ModeRange;
-pub use weight_intervals::{WeightInterval, WeightIntervals, WeightSample};
+pub use weight_intervals::{WeightInterval, WeightIntervals, WeightSample, largest_depth};

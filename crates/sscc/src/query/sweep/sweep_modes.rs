@@ -42,17 +42,18 @@ impl Query {
             let from = range.check(q)?.clamp(low, high);
             ways.extend([high, low].into_iter().filter(|to| *to != from).map(|to| (mode, from, to)));
         }
-        self.for_each_way(q, &ways, threads, progress, |query, at, &(mode, from, to)| {
+        self.map_sweeps(q, &ways, threads, progress, |query, at, &(mode, from, to)| {
             at[mode] = from;
             query.sweep(at, mode, to)
         })
     }
 
-    /// Maps ways through q, a configuration of the model, to their results, in parallel: each with a query and a copy of q of its own.
+    /// Maps sweeps from q, a configuration of the model, to their results, in parallel: each with a query and a copy of q of
+    /// its own.
     ///
     /// # Errors
-    /// That of the first way that has one.
-    pub(super) fn for_each_way<W: Sync, R: Send>(
+    /// That of the first sweep that has one.
+    pub(super) fn map_sweeps<W: Sync, R: Send>(
         &self,
         q: &[f64],
         ways: &[W],

@@ -4,7 +4,7 @@ use super::sweep::{Sweep, SweepOutcome};
 use super::sweep_modes::ModeRange;
 use crate::geometry::penetration_triangle_triangle;
 use crate::query::query::Query;
-use crate::{Error, Pair, Progress};
+use crate::{Error, Pair, Progress, ReducedModel};
 
 /// Where over a range of its weight a mode lets the shape collide.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +13,8 @@ pub struct WeightIntervals {
     pub range: ModeRange,
     /// The samples, at equal distances from one end of the range to the other.
     pub samples: Vec<WeightSample>,
-    /// The intervals, in ascending order: outside of them, up to `free_until` and from `free_from` on, the shape is proven free. Two of
-    /// them have a free sample between them.
+    /// The intervals, in ascending order. Outside of them, up to `free_until` and from `free_from` on, the shape is proven
+    /// free. Two of them have a free sample between them.
     pub intervals: Vec<WeightInterval>,
 }
 
@@ -29,7 +29,7 @@ pub struct WeightSample {
     pub depth: f64,
 }
 
-/// An interval of weights. Every sample inside collides. Between samples it may be free, for weights closer together than those.
+/// An interval of weights. The shape collides at every sample inside; between two samples it may be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightInterval {
     /// Up to this weight the shape is proven free, from the interval before it or the end of the range; none: the
@@ -43,22 +43,32 @@ pub struct WeightInterval {
     pub free_from: Option<f64>,
     /// Whether the shape collides at `from` and at `to`, at most 1e-9 of the way of a sweep from the free weights beside them.
     pub is_exact: bool,
-    /// The deepest of the samples inside and of both ends; of equal ones that with most pairs, then the first.
+    /// The deepest of the weights at which pairs were counted: the samples inside, both ends, and a collision that a sweep
+    /// found beyond an end that is not exact. Of equal depths that with most pairs, then the smallest weight.
     pub deepest: WeightSample,
-    /// Most pairs that collide at any of these.
+    /// The largest number of pairs that collide at any of these.
     pub pairs: usize,
 }
 
-/// The fewest samples: both ends.
-pub(crate) const MIN_SAMPLES: usize = 2;
+/// The smallest number of samples of a mode: both ends of its range.
+const MIN_SAMPLES: usize = 2;
 
-/// The most samples of a mode.
-pub(crate) const MAX_SAMPLES: usize = 1 << 20;
+/// The largest number of samples of a mode.
+const MAX_SAMPLES: usize = 1 << 20;
+
+/// Returns the largest penetration depth (model unit) of these pairs of triangles of a model at q; 0 where they only touch.
+pub fn largest_depth(model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> f64 {
+    let corners = |t: u32| model.mesh().faces()[t as usize].map(|v| model.position(v, q));
+    let depth = |(a, b): &Pair| penetration_triangle_triangle(&corners(*a), &corners(*b));
+    // Colliding pairs have a penetration, which is 0 where they touch.
+    pairs.iter().filter_map(depth).map(|found| found.depth).fold(0.0, f64::max)
+}
 
 impl Query {
     /// Finds for each mode the intervals of its weight over which the shape collides, with all others as in q: at so many
-    /// samples of its range what collides and how deep, and by sweeps ([`Query::sweep`]) where it begins and ends. The shape is
-    /// proven free outside of the intervals, up to their `free_until` and from their `free_from` on. Threads and `progress` as for [`Query::sweep_modes`].
+    /// samples of its range what collides and how deep, and by sweeps ([`Query::sweep`]) where it begins and ends. The shape
+    /// is proven free outside of the intervals, up to their `free_until` and from their `free_from` on. Threads and
+    /// `progress` as for [`Query::sweep_modes`].
     ///
     /// # Errors
     /// When there are fewer than 2 or more than 2^20 samples; as [`Query::sweep_modes`].
@@ -76,9 +86,7 @@ impl Query {
         }
         self.context.model.check_coordinates(q)?;
         ranges.iter().try_for_each(|range| range.check(q).map(|_| ()))?;
-        self.for_each_way(q, ranges, threads, progress, |query, at, range| {
-            query.intervals(at, range, samples)
-        })
+        self.map_sweeps(q, ranges, threads, progress, |query, at, range| query.intervals(at, range, samples))
     }
 
     fn intervals(
@@ -133,26 +141,31 @@ impl Query {
                 }
                 None => begin,
             };
-            let inside = samples
-                .iter()
-                .filter(|sample| (begin.sample().weight..=end.sample().weight).contains(&sample.weight));
-            let all = || inside.clone().chain([begin.sample(), end.sample()]);
-            let deeper = |x: WeightSample, y: &WeightSample| {
-                if (y.depth, y.pairs) > (x.depth, x.pairs) { *y } else { x }
-            };
-            intervals.push(WeightInterval {
-                free_until: begin.free(),
-                from: begin.sample().weight,
-                to: end.sample().weight,
-                free_from: end.free(),
-                is_exact: begin.is_exact() && end.is_exact(),
-                deepest: all().fold(*begin.sample(), deeper),
-                pairs: all().map(|sample| sample.pairs).max().unwrap_or(0),
-            });
+            intervals.push(interval([begin, end], &samples));
             let Some(next) = next else { break };
             at = next;
         }
         Ok(WeightIntervals { range, samples, intervals })
+    }
+}
+
+/// The interval between two ends.
+fn interval([begin, end]: [End; 2], samples: &[WeightSample]) -> WeightInterval {
+    let (from, to) = (begin.sample().weight, end.sample().weight);
+    let found = [begin, end].into_iter().filter_map(|end| end.found());
+    let counted = samples.iter().copied().chain(found).filter(|sample| (from..=to).contains(&sample.weight));
+    let deeper = |x: WeightSample, y: WeightSample| {
+        let is_deeper = (y.depth, y.pairs, x.weight) > (x.depth, x.pairs, y.weight);
+        if is_deeper { y } else { x }
+    };
+    WeightInterval {
+        free_until: begin.free(),
+        from,
+        to,
+        free_from: end.free(),
+        is_exact: begin.is_exact() && end.is_exact(),
+        pairs: counted.clone().map(|sample| sample.pairs).max().unwrap_or(0),
+        deepest: counted.fold(*begin.sample(), deeper),
     }
 }
 
@@ -163,14 +176,15 @@ enum End {
     OfRange(WeightSample),
     /// Found by a sweep: proven free up to the weight, and colliding at the sample.
     Touch { free: f64, sample: WeightSample },
-    /// Found by a sweep that could not decide what is beyond the weight up to which it is free.
-    Undecided(WeightSample),
+    /// Found by a sweep that could not decide what is closely beyond the weight of the sample, up to which it is free; and a
+    /// collision farther on, where it found one.
+    Undecided { sample: WeightSample, hit: Option<WeightSample> },
 }
 
 impl End {
     fn sample(&self) -> &WeightSample {
         match self {
-            Self::OfRange(sample) | Self::Touch { sample, .. } | Self::Undecided(sample) => sample,
+            Self::OfRange(sample) | Self::Touch { sample, .. } | Self::Undecided { sample, .. } => sample,
         }
     }
 
@@ -178,12 +192,20 @@ impl End {
         match self {
             Self::OfRange(_) => None,
             Self::Touch { free, .. } => Some(*free),
-            Self::Undecided(sample) => Some(sample.weight),
+            Self::Undecided { sample, .. } => Some(sample.weight),
+        }
+    }
+
+    /// The sample at which it collides.
+    fn found(&self) -> Option<WeightSample> {
+        match self {
+            Self::OfRange(sample) | Self::Touch { sample, .. } => Some(*sample),
+            Self::Undecided { hit, .. } => *hit,
         }
     }
 
     fn is_exact(&self) -> bool {
-        !matches!(self, Self::Undecided(_))
+        !matches!(self, Self::Undecided { .. })
     }
 }
 
@@ -204,13 +226,8 @@ impl Line<'_> {
     /// The sample at a weight at which these pairs collide.
     fn measured(&mut self, weight: f64, pairs: &[Pair]) -> WeightSample {
         self.q[self.mode] = weight;
-        let model = &self.query.context.model;
-        let corners = |t: u32| model.mesh().faces()[t as usize].map(|v| model.position(v, self.q));
-        // A pair of which only a common vertex and more touches has no depth.
-        let depth = |(a, b): &Pair| {
-            penetration_triangle_triangle(&corners(*a), &corners(*b)).map_or(0.0, |found| found.depth)
-        };
-        WeightSample { weight, pairs: pairs.len(), depth: pairs.iter().map(depth).fold(0.0, f64::max) }
+        let depth = largest_depth(&self.query.context.model, self.q, pairs);
+        WeightSample { weight, pairs: pairs.len(), depth }
     }
 
     /// Sweeps from a free weight towards another one. None: all of it is free.
@@ -221,7 +238,36 @@ impl Line<'_> {
         Ok(match (outcome, first_hit) {
             (SweepOutcome::Free, _) => None,
             (SweepOutcome::Hit, Some(hit)) => Some(End::Touch { free, sample: self.measured(hit, &pairs) }),
-            _ => Some(End::Undecided(WeightSample { weight: free, ..WeightSample::default() })),
+            (outcome, hit) => {
+                // Pairs of a grazing contact do not collide exactly.
+                let hit = hit.filter(|_| outcome != SweepOutcome::WithinTolerance);
+                let sample = WeightSample { weight: free, ..WeightSample::default() };
+                Some(End::Undecided { sample, hit: hit.map(|hit| self.measured(hit, &pairs)) })
+            }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn collisions_beyond_an_undecided_end_count_inside_the_interval() {
+        let undecided = |weight: f64, hit: WeightSample| End::Undecided {
+            sample: WeightSample { weight, ..WeightSample::default() },
+            hit: Some(hit),
+        };
+        let deep = WeightSample { weight: 0.5, pairs: 3, depth: 2.0 };
+        let touch = WeightSample { weight: 0.75, pairs: 1, depth: 0.0 };
+        let end = End::Touch { free: 0.8, sample: touch };
+        let found = interval([undecided(0.25, deep), end], &[touch]);
+        assert_eq!((found.from, found.to, found.is_exact), (0.25, 0.75, false));
+        assert_eq!((found.deepest, found.pairs), (deep, 3));
+        assert_eq!((found.free_until, found.free_from), (Some(0.25), Some(0.8)));
+
+        let outside = WeightSample { weight: 0.875, ..deep };
+        let found = interval([undecided(0.25, outside), end], &[touch]);
+        assert_eq!((found.pairs, found.deepest.depth), (1, 0.0));
     }
 }
