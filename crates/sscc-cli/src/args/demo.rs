@@ -1,0 +1,22 @@
+//! Arguments of `sscc demo`.
+
+use std::path::PathBuf;
+
+use super::values::Json;
+use clap::Args;
+
+/// `sscc demo`
+#[derive(Debug, Args)]
+#[command(
+    help_template = with_examples!(
+        "sscc demo"
+        "sscc demo --out demo"
+    )
+)]
+pub struct Demo {
+    /// Also write the spring, its model, its certificates, the animation and a report to this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub json: Json,
+}

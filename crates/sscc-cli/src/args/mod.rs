@@ -1,0 +1,155 @@
+//! Command-line arguments as typed, and the help texts, in one file for each command. [`commands`](crate::commands)
+//! interprets the arguments.
+
+/// The template of a help page with examples, one command a line. The examples are part of the template because clap
+/// wraps all other text at the terminal's width, and a wrapped command cannot be pasted into a shell.
+macro_rules! with_examples {
+    ($($example:literal)+) => {
+        concat!(
+            "{before-help}{about-with-newline}\n{usage-heading} {usage}\n\n{all-args}\n\nExamples:",
+            $("\n  ", $example,)+
+            "{after-help}"
+        )
+    };
+}
+
+mod audit;
+mod bench;
+mod certify;
+mod check;
+mod demo;
+mod fit;
+mod info;
+mod load;
+mod model;
+mod modes;
+mod motion;
+mod resolve;
+mod simulate;
+mod sweep;
+mod values;
+mod view;
+
+use std::ffi::OsString;
+
+use clap::{Parser, Subcommand};
+
+pub use audit::Audit;
+pub use bench::Bench;
+pub use certify::Certify;
+pub use check::{At, Check};
+pub use demo::Demo;
+pub use fit::Fit;
+pub use info::Info;
+pub use load::Load;
+pub use model::{Groups, Model, Options, Scheme, Switch, Threads};
+pub use modes::{Modes, ModesKind};
+pub use motion::Weights;
+pub use resolve::Resolve;
+pub use simulate::Simulate;
+pub use sweep::Sweep;
+pub use view::View;
+
+/// Exact self-collision detection for deformable triangle meshes.
+///
+/// A mesh deforms by modes: at q its shape is x = p + U q. `sscc certify` computes certificates once. `sscc check` then
+/// answers whether the shape collides with itself at q. For the guarantee see docs/guarantees.md in the repository.
+#[derive(Debug, Parser)]
+#[command(
+    name = "sscc",
+    version,
+    propagate_version = true,
+    max_term_width = 100,
+    help_template = with_examples!(
+        "sscc demo --out demo"
+        "sscc certify demo/spring.model.safetensors -o spring.sscc.safetensors"
+        "sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors --trajectory demo/spring.npy"
+    ),
+    after_help = "Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a violation, 2 error, \
+        130 interrupted."
+)]
+pub struct Cli {
+    /// The subcommand.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Certify and animate an embedded spring, and check every frame by three methods
+    Demo(Demo),
+    /// Compute deformation modes of a surface, a solid or an animation, and write a model file
+    Modes(Modes),
+    /// Compute the certificates of a model, and write them to a file
+    Certify(Certify),
+    /// Check whether a model collides with itself at q, or a mesh as it is, in frames, in an animation or against another
+    /// mesh, and list the colliding triangle pairs
+    Check(Box<Check>),
+    /// Find for each mode or morph target the first weight at which the shape touches itself
+    Sweep(Box<Sweep>),
+    /// Find a free q near each colliding q of a model
+    Resolve(Box<Resolve>),
+    /// Compute the q of a load: the linear static answer of a model with stiffness
+    Load(Load),
+    /// Compute the q whose shape is nearest to given positions of all vertices
+    Fit(Fit),
+    /// Search for collisions that refute certificates, and measure how tight their radii are
+    Audit(Audit),
+    /// Show the contents of a model, certificate, mesh, solid or glTF file
+    Info(Info),
+    /// Simulate the bodies of a scene with contact and friction, and write their motion
+    Simulate(Simulate),
+    /// Measure queries by every method, and by another library for comparison
+    Bench(Bench),
+    /// Show a model in the browser (modes, collisions and certified radii, live), or the report of a folder
+    View(View),
+}
+
+/// Joins `--weld on` and `--weld off` to one argument. The value of `--weld` is optional, so the parser would take a word
+/// after it for the name of a file.
+pub fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut has_ended = false;
+    for word in typed {
+        let is_value = word == "on" || word == "off";
+        match joined.last_mut() {
+            Some(last) if !has_ended && is_value && last == "--weld" => {
+                last.push("=");
+                last.push(word);
+            }
+            _ => {
+                has_ended |= word == "--";
+                joined.push(word);
+            }
+        }
+    }
+    joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_value_of_weld_may_follow_a_blank() {
+        let weld = |words: &str| {
+            let words = with_joined_switches(words.split(' ').map(OsString::from));
+            match Cli::try_parse_from(words).map(|cli| cli.command) {
+                Ok(Command::Check(check)) => Some((check.options.weld, check.meshes)),
+                _ => None,
+            }
+        };
+        assert_eq!(weld("sscc check a.obj --weld off"), Some((Some(Switch::Off), vec![])));
+        assert_eq!(weld("sscc check --weld on a.obj"), Some((Some(Switch::On), vec![])));
+        assert_eq!(weld("sscc check --weld=off a.obj"), Some((Some(Switch::Off), vec![])));
+        assert_eq!(weld("sscc check a.obj --weld b.obj"), Some((Some(Switch::On), vec!["b.obj".into()])));
+        assert_eq!(weld("sscc check a.obj -- off"), Some((None, vec!["off".into()])));
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}
