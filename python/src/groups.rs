@@ -55,7 +55,7 @@ pub fn ignored_pairs(groups: &TriangleGroups) -> Vec<Pair> {
         return table.listed.iter().map(|&[g, h]| (g.into(), h.into())).collect();
     }
     // At least half of all pairs do not count, so the list is not much shorter than the search.
-    let all = 0..groups.group_count() as u32;
+    let all = 0..table.count as u32;
     let pairs = all.clone().flat_map(|g| (g..all.end).map(move |h| (g, h)));
     pairs.filter(|(g, h)| table.listed.binary_search(&[*g as u16, *h as u16]).is_err()).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::part_file::PartFile;
 use crate::{FormatError, IoError};
@@ -70,23 +70,51 @@ pub(crate) fn read_error(path: &Path, cause: io::Error) -> IoError {
 /// When the folder is not writable, the target is not a regular file, or the system reports an error. The target is then
 /// unchanged, and no temporary file remains.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
-    let refused = |cause| IoError::System { path: path.to_owned(), action: "written", cause };
-    // A rename over /dev/null would replace the device.
-    match fs::metadata(path) {
-        Ok(metadata) => check_regular(path, &metadata)?,
-        Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => return Err(refused(error)),
+    let mut file = WholeFile::create(path)?;
+    file.write(bytes)?;
+    file.finish()
+}
+
+/// A file that is written in parts, and replaces its target when it is complete: see [`write_whole`].
+pub(crate) struct WholeFile {
+    path: PathBuf,
+    /// Dropping it before the rename removes it.
+    part: PartFile,
+}
+
+impl WholeFile {
+    /// # Errors
+    /// As [`write_whole`].
+    pub(crate) fn create(path: &Path) -> Result<Self, IoError> {
+        let refused = |cause| not_written(path, cause);
+        // A rename over /dev/null would replace the device.
+        match fs::metadata(path) {
+            Ok(metadata) => check_regular(path, &metadata)?,
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(refused(error)),
+        }
+        Ok(Self { path: path.to_owned(), part: PartFile::create_in(folder(path)).map_err(refused)? })
     }
-    let directory = folder(path);
-    // Dropping it before the rename removes it.
-    let mut part = PartFile::create_in(directory).map_err(refused)?;
-    part.write(bytes).map_err(refused)?;
-    part.rename(path).map_err(refused)?;
-    // Makes the rename durable. Some systems cannot open directories.
-    if let Ok(directory) = File::open(directory) {
-        let _ = directory.sync_all();
+
+    /// Appends bytes.
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> Result<(), IoError> {
+        self.part.write(bytes).map_err(|cause| not_written(&self.path, cause))
     }
-    Ok(())
+
+    /// Replaces the target.
+    pub(crate) fn finish(self) -> Result<(), IoError> {
+        let Self { path, part } = self;
+        part.rename(&path).map_err(|cause| not_written(&path, cause))?;
+        // Makes the rename durable. Some systems cannot open directories.
+        if let Ok(directory) = File::open(folder(&path)) {
+            let _ = directory.sync_all();
+        }
+        Ok(())
+    }
+}
+
+fn not_written(path: &Path, cause: io::Error) -> IoError {
+    IoError::System { path: path.to_owned(), action: "written", cause }
 }
 
 /// Returns an error if the path does not exist.

@@ -105,7 +105,7 @@ pub use mesh_path::split_mesh_name;
 pub use message::{Message, Setting};
 pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
 pub use named_groups::{GroupsBy, NamedGroups};
-pub use npy::write_npy;
+pub use npy::{NpyWriter, write_npy};
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
 pub use pose::{write_obj_pose, write_ply_pose};

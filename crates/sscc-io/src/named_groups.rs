@@ -15,6 +15,8 @@ pub enum GroupsBy {
     Group,
     /// OBJ: lines `o`. glTF: the node, which is one group.
     Object,
+    /// OBJ: lines `o`. glTF: the mesh, which is one group; an unnamed one is named `#0`, `#1`, ...
+    Mesh,
     /// OBJ: lines `usemtl`. glTF: materials, where unnamed ones are named `#0`, `#1`, ...
     Material,
 }
@@ -113,6 +115,8 @@ impl GroupCollector {
 
 #[cfg(test)]
 mod tests {
+    use sscc::parts::GroupTable;
+
     use super::*;
 
     fn groups(runs: &[(usize, &str)]) -> NamedGroups {
@@ -128,7 +132,7 @@ mod tests {
             (&found.names[..], &found.of_triangle[..]),
             (&["b".into(), "a".into()][..], &[0, 0, 1, 0, 0, 0][..])
         );
-        assert_eq!(found.to_table().unwrap().group_count(), 2);
+        assert_eq!(GroupTable::from(&found.to_table().unwrap()).count, 2);
         assert_eq!(found.number("a"), Ok(1));
         assert_eq!(found.number("c").unwrap_err(), "no triangle is in a group 'c'; groups: 'b', 'a'");
     }

@@ -31,15 +31,16 @@ impl PartFile {
         ))
     }
 
-    /// Writes all bytes and flushes them to the disk.
+    /// Appends bytes.
     pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let Some(file) = &mut self.file else { return Ok(()) };
-        file.write_all(bytes)?;
-        file.sync_all()
+        self.file.as_mut().map_or(Ok(()), |file| file.write_all(bytes))
     }
 
-    /// Renames the file to `target`, which is replaced if it exists.
+    /// Flushes the file to the disk and renames it to `target`, which is replaced if it exists.
     pub(crate) fn rename(mut self, target: &Path) -> io::Result<()> {
+        if let Some(file) = &self.file {
+            file.sync_all()?;
+        }
         // Some systems cannot rename open files.
         self.file = None;
         fs::rename(&self.path, target)?;

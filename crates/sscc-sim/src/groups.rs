@@ -1,6 +1,5 @@
 //! Which pairs of groups of triangles count, by the names of groups in files.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use sscc::TriangleGroups;
@@ -11,6 +10,7 @@ use sscc_io::{
 
 use crate::SimError;
 use crate::error::{At, Result};
+use crate::named_meshes::{NamedMesh, is_in_one_mesh, names_of_pairs, tables};
 
 /// Pairs of groups of triangles that do not count, or that alone count. By default all count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -19,8 +19,16 @@ pub struct GroupRules {
     pub ignored: Vec<String>,
     /// Pairs `A,B` of names of groups that alone count (`--only-groups`); not together with `ignored`.
     pub only: Vec<String>,
-    /// The groups (`--group-by`): `group`, `object`, `material`, or a file of numbers; none: `group`.
+    /// The groups (`--group-by`): `group`, `object` (or `node`), `mesh`, `material`, or a file of numbers. None: `group`; between
+    /// the meshes of a scene, or two meshes, any of these names of glTF files.
     pub by: Option<PathBuf>,
+}
+
+/// A mesh whose groups are read by their kind.
+pub(crate) struct MeshGroups<'a> {
+    pub path: &'a Path,
+    pub triangles: usize,
+    pub read: &'a dyn Fn(GroupsBy) -> Result<NamedGroups, IoError>,
 }
 
 /// The source of groups.
@@ -59,20 +67,51 @@ impl GroupRules {
         self.of_file(path, "the mesh", triangles, |by| read_base_groups(path, mesh_name, by))
     }
 
-    /// As [`GroupRules::of_model`], of each of these nodes of a glTF file. A group need not be in all of them.
-    pub(crate) fn of_nodes(&self, path: &Path, nodes: &[MeshNode]) -> Result<Vec<Option<TriangleGroups>>> {
-        let Some(source) = self.source()? else { return Ok(vec![None; nodes.len()]) };
-        let in_file = |error: FormatError| IoError::Format { path: path.to_owned(), error };
-        let named = |node: &MeshNode| {
-            let named = match source {
-                Source::Mesh(by) => node.groups(by).map_err(in_file)?,
-                Source::Numbers(file) => numbers(file)?,
-            };
-            self.check_count(path, &named, &format!("node {}", node.node()), node.faces().len())?;
-            Ok(named)
+    /// As [`GroupRules::of_model`], of each of these nodes of a glTF file. A group need not be in all of them. If nodes are
+    /// compared, the groups also hold between them.
+    pub(crate) fn of_nodes(
+        &self,
+        path: &Path,
+        nodes: &[MeshNode],
+        are_compared: bool,
+    ) -> Result<Vec<Option<TriangleGroups>>> {
+        let mesh = |node: &MeshNode| {
+            let what = format!("node {}", node.node());
+            let in_file = |error: FormatError| IoError::Format { path: path.to_owned(), error };
+            self.named(path, &what, node.faces().len(), |by| node.groups(by).map_err(in_file))
         };
-        let named = nodes.iter().map(named).collect::<Result<Vec<_>>>()?;
-        Ok(self.tables(&named)?.into_iter().map(Some).collect())
+        let Some(meshes) = nodes.iter().map(mesh).collect::<Result<Option<Vec<_>>>>()? else {
+            return Ok(vec![None; nodes.len()]);
+        };
+        Ok(self.tables(&meshes, are_compared)?.into_iter().map(Some).collect())
+    }
+
+    /// The groups of a mesh and of another one, which also hold between them; none if all pairs count.
+    pub(crate) fn of_two(&self, meshes: [MeshGroups<'_>; 2]) -> Result<Option<[TriangleGroups; 2]>> {
+        let named = |mesh: &MeshGroups<'_>| self.named(mesh.path, "the mesh", mesh.triangles, mesh.read);
+        let [Some(a), Some(b)] = [named(&meshes[0])?, named(&meshes[1])?] else { return Ok(None) };
+        Ok(self.tables(&[a, b], true)?.try_into().ok())
+    }
+
+    /// The names of the triangles of a mesh, of each kind that groups may have; none if all pairs count.
+    fn named(
+        &self,
+        path: &Path,
+        what: &str,
+        triangles: usize,
+        read: impl Fn(GroupsBy) -> Result<NamedGroups, IoError>,
+    ) -> Result<Option<NamedMesh>> {
+        let kinds = match self.source()? {
+            None => return Ok(None),
+            Some(Source::Mesh(_)) if self.by.is_none() => {
+                let named = ANY_KIND.into_iter().map(|by| Ok(without_numbers(read(by)?)));
+                named.chain([read(GroupsBy::Group)]).collect::<Result<_, IoError>>()?
+            }
+            Some(Source::Mesh(by)) => vec![read(by)?],
+            Some(Source::Numbers(file)) => vec![numbers(file)?],
+        };
+        kinds.iter().try_for_each(|kind| self.check_count(path, kind, what, triangles))?;
+        Ok(Some(NamedMesh { kinds }))
     }
 
     fn of_file(
@@ -88,7 +127,13 @@ impl GroupRules {
             Some(Source::Numbers(file)) => numbers(file)?,
         };
         self.check_count(path, &named, what, triangles)?;
-        Ok(self.tables(&[named])?.pop())
+        let (setting, typed) = self.typed();
+        let pairs = typed.iter().map(|text| match named.pair(text) {
+            Ok((a, b)) => Ok([a, b]),
+            Err(cause) => Err(SimError::refused(setting + " " + text.as_str(), cause)),
+        });
+        let (table, pairs) = (named.to_table()?, pairs.collect::<Result<Vec<_>>>()?);
+        Ok(Some(if self.only.is_empty() { table.ignoring(pairs) } else { table.only(pairs) }?))
     }
 
     /// Returns the source of groups; none if all pairs count.
@@ -104,7 +149,8 @@ impl GroupRules {
         }
         Ok(Some(match self.by.as_deref().map(|by| (by, by.to_str())) {
             None | Some((_, Some("group"))) => Source::Mesh(GroupsBy::Group),
-            Some((_, Some("object"))) => Source::Mesh(GroupsBy::Object),
+            Some((_, Some("object" | "node"))) => Source::Mesh(GroupsBy::Object),
+            Some((_, Some("mesh"))) => Source::Mesh(GroupsBy::Mesh),
             Some((_, Some("material"))) => Source::Mesh(GroupsBy::Material),
             Some((file, _)) => Source::Numbers(file),
         }))
@@ -120,73 +166,74 @@ impl GroupRules {
         Err(SimError::refused(place, cause))
     }
 
-    /// Returns a table for each of these groups. Each pair must be one of at least one of them.
-    fn tables(&self, all: &[NamedGroups]) -> Result<Vec<TriangleGroups>> {
-        let (setting, typed) = match self.only[..] {
+    /// The setting of the pairs, and their texts.
+    fn typed(&self) -> (Setting, &[String]) {
+        match self.only[..] {
             [] => (Setting::IgnoreGroups, &self.ignored),
             _ => (Setting::OnlyGroups, &self.only),
-        };
-        let mut pairs = vec![Vec::new(); all.len()];
-        for text in typed {
-            let found: Vec<_> = all.iter().map(|named| named.pair(text)).collect();
-            if found.iter().all(Result::is_err) {
-                return Err(SimError::refused(setting + " " + text.as_str(), missing(all, text)));
-            }
-            pairs.iter_mut().zip(found).for_each(|(pairs, found)| pairs.extend(found));
         }
-        let table = |(named, pairs): (&NamedGroups, Vec<(u32, u32)>)| {
-            let table = named.to_table()?;
-            let pairs = pairs.into_iter().map(<[u32; 2]>::from);
-            Ok(if self.only.is_empty() { table.ignoring(pairs) } else { table.only(pairs) }?)
-        };
-        all.iter().zip(pairs).map(table).collect()
+    }
+
+    /// Returns the groups of each mesh. Each name must be one of at least one of them.
+    fn tables(&self, meshes: &[NamedMesh], are_compared: bool) -> Result<Vec<TriangleGroups>> {
+        let (setting, typed) = self.typed();
+        let pairs = names_of_pairs(meshes, typed)
+            .map_err(|(text, cause)| SimError::refused(setting + " " + text, cause))?;
+        let apart = pairs.iter().position(|names| !are_compared && !is_in_one_mesh(meshes, names));
+        if let Some(apart) = apart {
+            let cause = "no node has both groups, and collisions between nodes are not searched";
+            return Err(SimError::refused(setting + " " + typed[apart].as_str(), cause));
+        }
+        tables(meshes, &pairs, self.only.is_empty())
     }
 }
 
-/// Returns the reason why none of these has the groups of a pair.
-fn missing(all: &[NamedGroups], text: &str) -> String {
-    let mut known = NamedGroups::default();
-    let mut seen = BTreeSet::new();
-    let names = all.iter().flat_map(|named| &named.names);
-    known.names.extend(names.filter(|name| seen.insert(*name)).cloned());
-    match known.pair(text) {
-        Err(cause) => cause,
-        Ok(_) => "no node has both groups, and collisions between nodes are not searched".into(),
+/// The kinds of names in a scene, beside primitives.
+const ANY_KIND: [GroupsBy; 3] = [GroupsBy::Object, GroupsBy::Mesh, GroupsBy::Material];
+
+/// The same groups, where those that are named by a number only have no name.
+fn without_numbers(mut groups: NamedGroups) -> NamedGroups {
+    for name in &mut groups.names {
+        if name.strip_prefix('#').is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit())) {
+            name.clear();
+        }
     }
+    groups
 }
 
 fn numbers(file: &Path) -> Result<NamedGroups> {
     read_group_numbers(file)
-        .at(|| Setting::GroupBy + " is none of group, object and material, so it must be a file")
+        .at(|| Setting::GroupBy + " is none of group, object, node, mesh and material, so it must be a file")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn named(names: &[&str]) -> NamedGroups {
+    fn named(names: &[&str]) -> NamedMesh {
         let mut named = NamedGroups::default();
         named.names = names.iter().map(|name| (*name).to_owned()).collect();
         named.of_triangle = (0..names.len() as u32).collect();
-        named
+        NamedMesh { kinds: vec![named] }
+    }
+
+    fn rules(ignored: &[&str], only: &[&str]) -> GroupRules {
+        let owned = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect();
+        GroupRules { ignored: owned(ignored), only: owned(only), by: None }
     }
 
     #[test]
     fn groups_may_be_missing_in_some_meshes() {
-        let rules = |ignored: &[&str], only: &[&str]| {
-            let owned = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect();
-            GroupRules { ignored: owned(ignored), only: owned(only), by: None }
-        };
         let all = [named(&["hair", "face", "hat"]), named(&["face", "hat", "shoe"])];
         let counted = |rules: &GroupRules| -> Vec<[bool; 2]> {
-            let tables = rules.tables(&all).unwrap();
+            let tables = rules.tables(&all, false).unwrap();
             tables.iter().map(|table| [table.is_pair_counted(0, 1), table.is_pair_counted(1, 1)]).collect()
         };
         assert_eq!(counted(&rules(&["hair,face"], &[])), [[false, true], [true, true]]);
         assert_eq!(counted(&rules(&["hat,hat"], &[])), [[true, true], [true, false]]);
         // No pair of the second mesh counts.
         assert_eq!(counted(&rules(&[], &["hair,face"])), [[true, false], [false, false]]);
-        let message = |rules: GroupRules| rules.tables(&all).unwrap_err().to_string();
+        let message = |rules: GroupRules| rules.tables(&all, false).unwrap_err().to_string();
         assert_eq!(
             message(rules(&[], &["hair,coat"])),
             "only_groups hair,coat: no triangle is in a group 'coat'; groups: 'hair', 'face', 'hat', 'shoe'"
@@ -195,6 +242,31 @@ mod tests {
             message(rules(&["hat,hat", "hair,shoe"], &[])),
             "ignore_groups hair,shoe: no node has both groups, and collisions between nodes are not searched"
         );
+        assert!(rules(&["hair,shoe"], &[]).tables(&all, true).is_ok());
+    }
+
+    /// A triangle is in the groups of all its names: those of its node, its material and others.
+    #[test]
+    fn triangles_have_several_names() {
+        let kind = |names: &[&str], of_triangle: &[u32]| {
+            let mut groups = NamedGroups::default();
+            groups.names = names.iter().map(|name| (*name).to_owned()).collect();
+            groups.of_triangle = of_triangle.to_vec();
+            without_numbers(groups)
+        };
+        let mesh =
+            NamedMesh { kinds: vec![kind(&["body"], &[0; 4]), kind(&["skin", "#1", "#x"], &[0, 1, 0, 2])] };
+        let table = |rules: GroupRules| rules.tables(std::slice::from_ref(&mesh), true).unwrap().remove(0);
+        let counted = |rules: GroupRules| -> Vec<(u32, u32)> {
+            let table = table(rules);
+            let pairs = (0..4).flat_map(|a| (a..4).map(move |b| (a, b)));
+            pairs.filter(|(a, b)| table.is_pair_counted(*a, *b)).collect()
+        };
+        assert_eq!(counted(rules(&["body,body"], &[])), []);
+        assert_eq!(counted(rules(&["body,skin"], &[])), [(1, 1), (1, 3), (3, 3)]);
+        assert_eq!(counted(rules(&[], &["skin,#x"])), [(0, 3), (2, 3)]);
+        let message = rules(&["body,#1"], &[]).tables(std::slice::from_ref(&mesh), true).unwrap_err();
+        assert!(message.to_string().ends_with("groups: 'body', 'skin', '#x'"), "{message}");
     }
 
     #[test]

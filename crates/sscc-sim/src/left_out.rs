@@ -33,9 +33,11 @@ impl LeftOut {
         }
     }
 
-    /// The pairs that are left out where two meshes are compared: those within either of them.
-    pub fn between_meshes() -> Self {
-        Self { neighbours: Some("pairs within either mesh"), ..Self::default() }
+    /// The same where two meshes are compared: the pairs within either of them, and those of groups.
+    #[must_use]
+    pub fn between_meshes(self) -> Self {
+        let neighbours = Some("pairs within either mesh");
+        Self { neighbours, has_groups: self.has_groups, ..Self::default() }
     }
 
     /// The same where also the pairs between the meshes of several files are left out.
@@ -152,7 +154,7 @@ mod tests {
             ", apart from 1,007 ignored pairs, pairs of different files and pairs with common vertices"
         );
         assert_eq!(
-            free_sentence(FreeProof::Tests, "", &LeftOut::between_meshes()),
+            free_sentence(FreeProof::Tests, "", &LeftOut::default().between_meshes()),
             "free: proven, apart from pairs within either mesh"
         );
     }

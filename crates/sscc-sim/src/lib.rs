@@ -25,6 +25,7 @@ mod groups;
 mod left_out;
 mod machine;
 mod models;
+mod named_meshes;
 mod nearest;
 mod outputs;
 mod recipes;

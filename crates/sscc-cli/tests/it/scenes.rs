@@ -110,6 +110,181 @@ fn scenes_are_all_meshes_with_themselves_and_with_each_other() {
     assert!(compared == 40 && (5..35).contains(&collided), "{compared} {collided}");
 }
 
+/// Rules about names of nodes, meshes and materials, against those pairs of the whole scene whose triangles have the names.
+#[test]
+fn groups_of_scenes_hold_within_and_between_nodes() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let random = &mut Numbers(11);
+    let soups: Vec<Vec<[f32; 3]>> = (0..3).map(|_| soup(random, 24)).collect();
+    let names = ["body", "shirt", "hat"];
+    let meshes: Vec<(&str, &[[f32; 3]])> = names.into_iter().zip(soups.iter().map(Vec::as_slice)).collect();
+    let nodes = json!([{"mesh": 0, "name": "Ann"}, {"mesh": 1, "name": "Ann's shirt"}, {"mesh": 2},
+        {"mesh": 1, "name": "pocket, left", "translation": [0.1, 0.2, 0]}]);
+    let mut file = gltf(&meshes, nodes);
+    file["materials"] = json!([{"name": "cloth"}, {}]);
+    file["meshes"][1]["primitives"][0]["material"] = json!(0);
+    file["meshes"][2]["primitives"][0]["material"] = json!(1);
+    write(folder, "scene.gltf", &file);
+    // The names of each node.
+    let of_node: [&[&str]; 4] =
+        [&["Ann", "body"], &["Ann's shirt", "shirt", "cloth"], &["hat"], &["pocket, left", "shirt", "cloth"]];
+    let all = lines(folder, &["scene.gltf"]);
+    let pairs = |lines: &[Value], a: usize, b: usize| -> Value {
+        let is_of = |line: &&Value| {
+            let other = line.get("against_node").map_or(a, |node| node.as_u64().unwrap() as usize);
+            line["node"] == a && other == b
+        };
+        lines.iter().find(is_of).map_or(json!([]), |line| line["pairs"].clone())
+    };
+    let mut differences = 0;
+    for [a, b] in [
+        ["Ann", "shirt"],
+        ["cloth", "cloth"],
+        ["pocket, left", "Ann's shirt"],
+        ["hat", "Ann"],
+        ["hat", "hat"],
+    ] {
+        let matches = |i: usize, j: usize| {
+            [[i, j], [j, i]].iter().any(|[i, j]| of_node[*i].contains(&a) && of_node[*j].contains(&b))
+        };
+        for (flag, counts_where) in [("--ignore-groups", false), ("--only-groups", true)] {
+            for more in [&[][..], &["--clearance", "0.05"], &["--limit", "1"]] {
+                let rule = format!("{flag}={a},{b}");
+                let found = lines(folder, &[&["scene.gltf", &rule], more].concat());
+                let whole = match more.is_empty() {
+                    true => all.clone(),
+                    false => lines(
+                        folder,
+                        &[&["scene.gltf"], &more[..more.len() * usize::from(more[0] != "--limit")]].concat(),
+                    ),
+                };
+                for i in 0..4 {
+                    for j in i..4 {
+                        let (found, whole) = (pairs(&found, i, j), pairs(&whole, i, j));
+                        let wanted = if matches(i, j) == counts_where { whole.clone() } else { json!([]) };
+                        differences += usize::from(wanted != whole);
+                        if more.first() == Some(&"--limit") {
+                            let found = found.as_array().unwrap();
+                            let wanted = wanted.as_array().unwrap();
+                            assert_eq!(found.len(), wanted.len().min(1), "{rule} {i} {j}");
+                            assert!(found.iter().all(|pair| wanted.contains(pair)), "{rule} {i} {j}");
+                        } else {
+                            assert_eq!(found, wanted, "{rule} {more:?} {i} {j}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(differences > 50, "{differences}");
+    // One kind of names alone.
+    let refused =
+        |args: &[&str]| sscc(folder, &[&["check", "scene.gltf"], args].concat()).refusal().to_owned();
+    assert_eq!(
+        refused(&["--ignore-groups=Ann,cloth", "--group-by=node"]),
+        "error: --ignore-groups Ann,cloth: no triangle is in a group 'cloth'; groups: 'Ann', 'Ann's shirt', '#2', 'pocket, left'"
+    );
+    assert_eq!(
+        refused(&["--only-groups=Ann,#2"]),
+        "error: --only-groups Ann,#2: no triangle is in a group '#2'; groups: 'Ann', 'body', 'default', '#0', 'Ann's shirt', \
+         'shirt', 'cloth', 'hat', 'pocket, left'"
+    );
+    assert!(
+        sscc(folder, &["check", "scene.gltf", "--only-groups=hat,#2", "--group-by=node"]).code == Some(2)
+    );
+    let text = sscc(folder, &["check", "scene.gltf", "--only-groups=hat,hat"]).stdout;
+    assert!(text.contains("pairs of groups that do not count"), "{text}");
+}
+
+/// Frames of a node, written as the check sees them, and read again.
+#[test]
+fn frames_of_a_node_are_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    write(folder, "pass.gltf", &passing());
+    let animated = ["pass.gltf", "--animation=pass", "--times=0,0.5,1"];
+    let out = ["--node=needle", "--frames-out=needle.npy"];
+    let numbers = |name: &str| {
+        let array =
+            sscc_io::FrameReader::open(&folder.join(name), &needle(), &folder.join("pass.gltf")).unwrap();
+        let mut positions = Vec::new();
+        let frame = |frame: usize| {
+            array.read(frame, &mut positions).unwrap();
+            positions.iter().map(|x| x.z).collect::<Vec<_>>()
+        };
+        (0..array.len()).map(frame).collect::<Vec<_>>()
+    };
+    let wanted = [[1.0, 1.0, 1.5], [-1.0, -1.0, -0.5], [-3.0, -3.0, -2.5]];
+    lines(folder, &[&animated[..], &out].concat());
+    assert_eq!(numbers("needle.npy"), wanted);
+    // Of a motion each time once.
+    lines(folder, &[&animated[..], &out, &["--continuous"]].concat());
+    assert_eq!(numbers("needle.npy"), wanted);
+    // Frames are those of a mesh without animation.
+    let of_frames = ["pass.gltf#needle", "--frames=needle.npy", "--against=pass.gltf#sheet", "--continuous"];
+    assert_eq!(lines(folder, &of_frames)[0]["pairs"], json!([[0, 0]]));
+    lines(folder, &["pass.gltf#needle", "--frames=needle.npy", "--frames-out=copy.npy"]);
+    assert_eq!(fs::read(folder.join("copy.npy")).unwrap(), fs::read(folder.join("needle.npy")).unwrap());
+
+    let refused = |args: &[&str]| sscc(folder, &[&["check"], args].concat()).refusal().to_owned();
+    let several = refused(&[&animated[..], &["--frames-out=all.npy"]].concat());
+    assert_eq!(
+        several,
+        "error: all.npy: several nodes have a mesh: name one by --node, or of a file at rest as FILE#NODE"
+    );
+    assert!(!folder.join("all.npy").exists());
+    assert!(
+        refused(&[&animated[..], &["--node=needle", "--frames-out=a.txt"]].concat())
+            .contains("must end in .npy")
+    );
+    let input = ["pass.gltf#needle", "--frames=needle.npy", "--frames-out=needle.npy"];
+    assert!(refused(&input).contains("the output is an input"));
+    assert!(
+        refused(&[&animated[..], &["--node=hat"]].concat())
+            .contains("no node 'hat' shows a mesh with triangles")
+    );
+}
+
+/// The mesh of the node that moves.
+fn needle() -> sscc::TriMesh {
+    let corners = [[1.0, 1.0, 1.0], [1.5, 1.0, 1.0], [1.0, 1.0, 1.5]].map(Into::into);
+    sscc::TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()
+}
+
+/// Groups of two files: the names are those of either.
+#[test]
+fn groups_hold_between_two_meshes() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let sheet = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 9 9 9\nv 9 8 9\nv 8 9 9\ng neck\nf 1 2 3\ng arm\nusemtl skin\nf 4 5 6\n";
+    let needles = "o shirt\nv 1 1 -1\nv 1 1 1\nv 1.2 1 1\nv 2 1 -1\nv 2 1 1\nv 2.2 1 1\ng hem\nf 1 2 3\ng button\nf 4 5 6\n";
+    fs::write(folder.join("sheet.obj"), sheet).unwrap();
+    fs::write(folder.join("needles.obj"), needles).unwrap();
+    let check = |args: &[&str]| -> Value {
+        lines(folder, &[&["sheet.obj", "--against=needles.obj"], args].concat())[0]["pairs"].clone()
+    };
+    assert_eq!(check(&[]), json!([[0, 0], [0, 1]]));
+    assert_eq!(check(&["--ignore-groups=neck,hem"]), json!([[0, 1]]));
+    assert_eq!(check(&["--ignore-groups=hem,neck"]), json!([[0, 1]]));
+    assert_eq!(check(&["--only-groups=neck,hem"]), json!([[0, 0]]));
+    assert_eq!(check(&["--ignore-groups=neck,shirt"]), json!([]));
+    assert_eq!(check(&["--ignore-groups=skin,shirt"]), json!([[0, 0], [0, 1]]));
+    let text = sscc(folder, &["check", "sheet.obj", "--against=needles.obj", "--ignore-groups=neck,shirt"]);
+    assert!(
+        text.stdout.contains("pairs of groups that do not count and pairs within either mesh"),
+        "{text:?}"
+    );
+    let refused = |args: &[&str]| {
+        sscc(folder, &[&["check", "sheet.obj", "--against=needles.obj"], args].concat()).refusal().to_owned()
+    };
+    assert!(
+        refused(&["--ignore-groups=neck,cuff"])
+            .contains("no triangle is in a group 'cuff'; groups: 'default', 'skin'")
+    );
+    assert!(refused(&["--group-by=node"]).contains("it changes nothing without --ignore-groups"));
+}
+
 /// A node that moves through another one in one second.
 fn passing() -> Value {
     let sheet = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
@@ -162,12 +337,17 @@ fn nodes_of_animations_are_compared_on_request() {
     assert_eq!(check(&["--times=0,0.5,1", "--between-nodes"]).len(), 6);
     let at = check(&["--times=0.25", "--between-nodes"]);
     assert_eq!((at.len(), &at[2]["against_node"]), (3, &json!(1)));
+    // At rest one is a unit above the other, and their AABBs are apart.
+    assert_eq!(lines(folder, &["pass.gltf"]).len(), 2);
+    assert_eq!(lines(folder, &["pass.gltf", "--clearance", "1"]).len(), 2);
+    let near = lines(folder, &["pass.gltf", "--clearance", "1.0000001"]);
+    assert_eq!((near.len(), &near[2]["distance"], &near[2]["colliding"]), (3, &json!(1.0), &json!(false)));
     let text = |more: &[&str]| {
         sscc(folder, &[&["check", "pass.gltf", "--animation=pass", "--times=0"], more].concat()).stdout
     };
     assert!(text(&[]).contains("apart from pairs of different nodes and pairs with common vertices"));
     assert!(text(&["--between-nodes"]).contains("apart from pairs with common vertices"));
-    // Groups and ignored pairs are those within one mesh.
+    // Pairs that are ignored at rest are those within one mesh.
     assert!(text(&["--between-nodes", "--ignore-rest"]).contains("apart from pairs of different nodes"));
     let alone = sscc(folder, &["check", "pass.gltf", "--between-nodes"]);
     assert_eq!(alone.code, Some(2), "{alone:?}");

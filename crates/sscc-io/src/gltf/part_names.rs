@@ -68,12 +68,14 @@ impl PartNames {
             name.map_or_else(|| format!("#{number}"), |name| name.to_string())
         };
         let shape = self.meshes.get(mesh);
+        let mesh_name = || numbered(shape.and_then(|shape| shape.name.as_ref()), mesh);
         match by {
             GroupsBy::Group => format!("#{primitive}"),
             GroupsBy::Object => match node {
                 Some(node) => numbered(self.nodes.names.get(&node), node),
-                None => numbered(shape.and_then(|shape| shape.name.as_ref()), mesh),
+                None => mesh_name(),
             },
+            GroupsBy::Mesh => mesh_name(),
             GroupsBy::Material => {
                 let material = shape.and_then(|shape| shape.primitives.get(primitive)?.material);
                 match material.map(|material| material as usize) {

@@ -438,6 +438,7 @@ fn groups_are_primitives_nodes_or_materials() {
         r#""materials":[{},{"name":"skin"}],"nodes":[{"name":"x"},{"name":"head","mesh":0}],"buffers""#,
     );
     assert_eq!(groups(&named, GroupsBy::Object), ("head".into(), vec![0; 3]));
+    assert_eq!(groups(&named, GroupsBy::Mesh), ("face".into(), vec![0; 3]));
     assert_eq!(groups(&named, GroupsBy::Material), ("skin|default".into(), vec![0, 0, 1]));
     // Materials do not change the shape: one that does not exist has a number.
     let missing = named.replace(r#""material":1"#, r#""material":7"#);

@@ -37,7 +37,7 @@ pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
 pub fn groups(bytes: &[u8], by: GroupsBy) -> Result<NamedGroups, FormatError> {
     let keyword: &[u8] = match by {
         GroupsBy::Group => b"g",
-        GroupsBy::Object => b"o",
+        GroupsBy::Object | GroupsBy::Mesh => b"o",
         GroupsBy::Material => b"usemtl",
     };
     let (mut collector, mut name) = (GroupCollector::default(), DEFAULT.to_owned());

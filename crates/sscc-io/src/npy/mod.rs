@@ -11,7 +11,7 @@ mod write;
 
 pub use array::{Array, parse, parse_integers};
 pub(crate) use blocks::Blocks;
-pub use write::{to_bytes, write_npy};
+pub use write::{NpyWriter, to_bytes, write_npy};
 
 #[cfg(test)]
 mod tests;

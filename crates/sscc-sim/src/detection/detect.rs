@@ -20,7 +20,8 @@ use crate::watch::check_cancelled;
 use crate::{LeftOut, SimError, Stage, Watch, available_threads};
 
 /// Calls `take` with each file and the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh),
-/// frame by frame; then frame by frame for every two nodes of a scene that collide with each other. `take` can end that early. Several meshes at rest are read and answered in parallel.
+/// frame by frame; then, frame by frame, every two nodes of a scene that collide with each other. `take` can end that early.
+/// Several meshes at rest are read and answered in parallel.
 ///
 /// Of a file that cannot be answered, `take` receives the error. It returns that to end the run, or goes on with the next file.
 ///

@@ -5,13 +5,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use sscc::TriMesh;
+use sscc::{TriMesh, TriangleGroups};
 use sscc_io::gltf::{PlacedMesh, is_gltf, read_placed_mesh};
-use sscc_io::{IoError, LoadedMesh, Message, Setting, load_mesh_with_warnings, split_mesh_name};
+use sscc_io::{
+    GroupsBy, IoError, LoadedMesh, Message, NamedGroups, Setting, load_mesh_with_warnings, read_base_groups,
+    split_mesh_name,
+};
 
 use super::weld_classes::WeldClasses;
 use crate::SimError;
 use crate::error::Result;
+use crate::groups::{GroupRules, MeshGroups};
 use crate::watch::Watch;
 
 /// Weights whose sums differ from 1 by more than this are no rounding.
@@ -23,6 +27,8 @@ pub(super) struct MeshSource {
     pub file: PathBuf,
     /// Name of the mesh beside the file.
     pub name: Option<String>,
+    /// Groups that hold between the mesh and the other one of the request.
+    pub groups: Option<TriangleGroups>,
     content: Content,
 }
 
@@ -44,7 +50,7 @@ impl MeshSource {
                 Content::Plain(mesh)
             }
         };
-        let source = Self { file: file.to_owned(), name: name.map(str::to_owned), content };
+        let source = Self { file: file.to_owned(), name: name.map(str::to_owned), groups: None, content };
         source.warn(watch);
         Ok(source)
     }
@@ -137,6 +143,38 @@ impl MeshSource {
             Content::Placed(placed) => placed.weld_classes(place),
         };
         of_skin.map_or_else(|| WeldClasses::at(self.own_positions()), WeldClasses::from)
+    }
+
+    /// Gives two meshes the groups that hold between them, if rules say so.
+    pub fn set_groups(rules: &GroupRules, meshes: [&mut Self; 2]) -> Result<()> {
+        let [a, b] = meshes;
+        if rules.is_empty() && rules.by.is_none() {
+            return Ok(());
+        }
+        if let Some(several) = [&*a, &*b].into_iter().find(|mesh| mesh.places() > 1) {
+            let cause = "several nodes show the mesh, and groups are those of one: name it, as in FILE#NODE";
+            return Err(SimError::refused(several.file.display(), cause));
+        }
+        let triangles = |mesh: &Self| Ok::<_, SimError>(mesh.mesh(0)?.faces().len());
+        let (in_a, in_b) = (triangles(a)?, triangles(b)?);
+        let [read_a, read_b] = [&*a, &*b].map(|mesh| move |by: GroupsBy| mesh.named_groups(by));
+        let found = rules.of_two([
+            MeshGroups { path: &a.file, triangles: in_a, read: &read_a },
+            MeshGroups { path: &b.file, triangles: in_b, read: &read_b },
+        ])?;
+        let [of_a, of_b] = found.map_or([None, None], |groups| groups.map(Some));
+        (a.groups, b.groups) = (of_a, of_b);
+        Ok(())
+    }
+
+    /// The groups of its triangles by their names, at the first place.
+    fn named_groups(&self, by: GroupsBy) -> Result<NamedGroups, IoError> {
+        match &self.content {
+            Content::Plain(_) => read_base_groups(&self.file, self.name.as_deref(), by),
+            Content::Placed(placed) => {
+                placed.groups(0, by).map_err(|error| IoError::Format { path: self.file.clone(), error })
+            }
+        }
     }
 
     /// Refuses to compare a mesh with itself at the same place. Meshes with the same frames are so at any nodes.

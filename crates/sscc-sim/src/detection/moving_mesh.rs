@@ -97,9 +97,8 @@ impl<'w> MovingMesh<'w> {
         let weld = request.weld.unwrap_or(ContactFilter::of(&mesh).weld);
         let mut classes = weld.then(classes);
         let motion = motion(&mesh, classes.as_mut())?;
-        // Every pair between two meshes counts.
         let groups = match request.against {
-            Some(_) => None,
+            Some(_) => source.groups.clone(),
             None => request.groups.of_mesh(file, source.name.as_deref(), mesh.faces().len())?,
         };
         let filter = filter(request, weld, groups);
@@ -109,7 +108,7 @@ impl<'w> MovingMesh<'w> {
         };
         let (detector, left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
         let left_out = match request.against {
-            Some(_) => LeftOut::between_meshes(),
+            Some(_) => left_out.between_meshes(),
             None if request.meshes.len() > 1 => left_out.and_between_files(),
             None => left_out,
         };
@@ -144,8 +143,8 @@ impl<'w> MovingMesh<'w> {
         let times = animated.times.of(info.map_or(0.0, |(_, info)| info.last_time));
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::SimError::refused(file.display(), cause))?.into();
-        let nodes = scene.find_mesh_nodes(animated.node).map_err(|error| in_file(error, file))?;
-        let groups = request.groups.of_nodes(file, nodes)?;
+        let nodes = scene.find_mesh_nodes(animated.node.as_deref()).map_err(|error| in_file(error, file))?;
+        let groups = request.groups.of_nodes(file, nodes, compares_nodes(request, animated))?;
         let mesh = |(node, groups): (&MeshNode, Option<TriangleGroups>)| {
             let weights = animated.weights;
             if weights == SkinWeights::Normalized && node.largest_weight_error() > MAX_WEIGHT_ERROR {
@@ -251,10 +250,10 @@ impl Evaluation {
     }
 }
 
-/// Whether the meshes of different nodes are compared with each other. Groups and ignored pairs are those within one mesh.
+/// Whether the meshes of different nodes are compared with each other. Pairs that are ignored at rest are those within one mesh.
 pub(super) fn compares_nodes(request: &Detection, animated: &AnimationMotion) -> bool {
     let is_scene = animated.animation.is_none();
-    (request.between_nodes || is_scene) && request.groups.is_empty() && request.ignore_rest.is_none()
+    (request.between_nodes || is_scene) && request.ignore_rest.is_none()
 }
 
 fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {

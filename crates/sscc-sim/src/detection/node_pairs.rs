@@ -46,8 +46,8 @@ impl<'m, 'w> NodePairs<'m, 'w> {
     }
 }
 
-/// Whether two boxes are farther apart along an axis than a distance. The difference of two numbers rounds to at most the distance where
-/// it is at most that.
+/// Whether two boxes are farther apart along an axis than a distance. No collision is missed: a difference that is at most the
+/// distance also rounds to at most the distance, because rounding is monotone.
 fn are_apart(a: &Aabb, b: &Aabb, distance: f64) -> bool {
     let is_beyond = |low: f64, high: f64| low - high > distance;
     (0..3).any(|k| is_beyond(a.lower[k], b.upper[k]) || is_beyond(b.lower[k], a.upper[k]))

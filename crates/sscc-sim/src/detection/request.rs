@@ -28,10 +28,10 @@ pub struct Detection {
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: Option<u32>,
-    /// Whether the meshes of different nodes of an animation are also compared with each other. Those of a scene at rest are, unless
-    /// groups are given or pairs are ignored.
+    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene at rest are
+    /// in any case. None are where pairs at rest are ignored.
     pub between_nodes: bool,
-    /// Which pairs of groups of triangles count; without another mesh.
+    /// Which pairs of groups of triangles count; with another mesh, or between nodes, also those between the meshes.
     pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
     pub is_continuous: bool,
@@ -91,8 +91,8 @@ pub struct AnimationMotion {
     pub animation: Option<String>,
     /// Times of the queries.
     pub times: Times,
-    /// Number of the node; none: every node that shows a mesh with triangles.
-    pub node: Option<usize>,
+    /// Number or name of the node; none: every node that shows a mesh with triangles.
+    pub node: Option<String>,
     /// Reading of weights that do not sum to 1.
     pub weights: SkinWeights,
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use sscc_io::gltf::{is_gltf, read_contents};
+use sscc_io::gltf::{count_meshes, is_gltf};
 use sscc_io::{Setting, split_mesh_name};
 
 use super::mesh_source::MeshSource;
@@ -81,13 +81,16 @@ impl<'r, 'w> Sides<'r, 'w> {
             }
             MeshMotion::Rest if is_scene(file, request) => animated(&AnimationMotion::at_rest()),
             MeshMotion::Rest | MeshMotion::Frames(_) => {
-                let source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
+                let mut source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
                 let frames = match &request.motion {
                     MeshMotion::Frames(frames) => Some(frames.as_path()),
                     _ => None,
                 };
                 let other = request.against.as_ref();
-                let other = other.map(|other| other_source(other, &source, frames, watch)).transpose()?;
+                let mut other = other.map(|other| other_source(other, &source, frames, watch)).transpose()?;
+                if let Some(other) = &mut other {
+                    MeshSource::set_groups(&request.groups, [&mut source, other])?;
+                }
                 let mesh = side(source, frames, request, watch)?;
                 let other = match (other, &request.against) {
                     (Some(source), Some(OtherMesh { frames, .. })) => {
@@ -207,7 +210,7 @@ fn is_scene(file: &Path, request: &Detection) -> bool {
     let is_whole =
         request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
     // What is malformed is left to the reader.
-    is_whole && is_gltf(file) && read_contents(file).is_ok_and(|contents| contents.meshes.len() > 1)
+    is_whole && is_gltf(file) && count_meshes(file).is_ok_and(|count| count > 1)
 }
 
 /// Refuses a file without animations. A missing file is left to its reader.

@@ -9,8 +9,11 @@ const MAX_TIMES: f64 = 1e7;
 const SAME: f64 = 1e-6;
 
 impl Times {
-    /// Returns the times of an animation that ends at `last_time` (s); at least one. The error is a cause.
-    pub(super) fn of(&self, last_time: f64) -> Result<Vec<f64>, String> {
+    /// Returns the times of an animation that ends at `last_time` (s); at least one.
+    ///
+    /// # Errors
+    /// The cause, when a time is not finite, or there are none or too many.
+    pub fn of(&self, last_time: f64) -> Result<Vec<f64>, String> {
         let rate = match self {
             Self::List(times) => match times.iter().find(|time| !time.is_finite()) {
                 Some(time) => return Err(format!("the time {time} is not finite")),

@@ -52,7 +52,7 @@ impl From<WeightInterval> for Interval {
 
 impl IntervalRow {
     /// `mode_names`: all names, or none.
-    pub(super) fn new(found: WeightIntervals, mode_names: &[String]) -> Self {
+    pub fn new(found: WeightIntervals, mode_names: &[String]) -> Self {
         let mode = found.range.mode;
         let sample = |sample: &WeightSample| (sample.weight, sample.pairs, sample.depth);
         Self {

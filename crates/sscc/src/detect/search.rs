@@ -11,7 +11,7 @@ use super::node_volumes::NodeVolumes;
 use super::normal_cones::NormalCones;
 use super::vertex_motion::VertexMotion;
 use crate::Error;
-use crate::filter::Relation;
+use crate::filter::{GroupsBetween, Relation};
 use crate::geometry::Aabb;
 use crate::hierarchy::NodePair;
 
@@ -143,6 +143,8 @@ pub(crate) struct Search<'s, const SIDES: usize, const E: usize, M, N> {
     pub(crate) sides: [Side<'s, E, M>; SIDES],
     /// The normal cones of methods that use them.
     pub(super) cones: Option<&'s mut NormalCones>,
+    /// Of two sides: the groups that hold between them.
+    pub(super) groups: Option<GroupsBetween<'s>>,
     pub(crate) state: &'s mut SearchState,
     pub(crate) narrow: &'s mut N,
 }
@@ -160,7 +162,7 @@ impl<'s, const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<
     ) -> Self {
         state.begin();
         narrow.hits().begin(limit);
-        Self { sides, cones, state, narrow }
+        Self { sides, cones, groups: None, state, narrow }
     }
 }
 
@@ -219,6 +221,9 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         }
         let (a, b) = if SIDES == 2 || a.triangle < b.triangle { (a, b) } else { (b, a) };
         let pair = (a.triangle, b.triangle);
+        if SIDES == 2 && self.groups.is_some_and(|groups| !groups.is_counted(pair)) {
+            return;
+        }
         self.count_triangle_test();
         self.sides[0].move_corners(a.vertices);
         self.sides[Self::LAST].move_corners(b.vertices);

@@ -10,6 +10,7 @@ use super::narrow_phase::NarrowPhase;
 use super::search::{Search, SearchState, Side};
 use super::vertex_motion::VertexMotion;
 use crate::Error;
+use crate::filter::GroupsBetween;
 use crate::hierarchy::NodePair;
 
 impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, SIDES, E, M, N> {
@@ -115,18 +116,19 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
 
 impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 2, E, M, N> {
     /// Finds at most `limit` hits between two shapes, in pairs (triangle of the first, triangle of the second), not sorted. Their
-    /// volumes have begun the search, in the same frame. Every triangle of one is paired with every one of the other: neither
-    /// contact filter applies.
+    /// volumes have begun the search, in the same frame. Every triangle of one is paired with every one of the other, apart from
+    /// those whose `groups` do not count: neither contact filter applies.
     ///
     /// # Errors
     /// When the token of the first context cancels; then there are no hits.
     pub(crate) fn between<'s>(
         sides: [Side<'s, E, M>; 2],
+        groups: Option<GroupsBetween<'s>>,
         state: &'s mut SearchState,
         narrow: &'s mut N,
         limit: usize,
     ) -> Result<(), Error> {
-        let mut search = Search::new(sides, None, state, narrow, limit);
+        let mut search = Search { groups, ..Search::new(sides, None, state, narrow, limit) };
         search.state.stack.clear();
         search.sides.iter_mut().for_each(|side| side.update_node(0));
         search.state.counters.box_tests += 1;

@@ -11,7 +11,7 @@ mod triangle_groups;
 mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, check_models};
-pub(crate) use pair_filter::{PairFilter, Relation};
+pub(crate) use pair_filter::{GroupsBetween, PairFilter, Relation};
 pub(crate) use rings::Rings;
 pub(crate) use simplex_pairs::SimplexPair;
 pub(crate) use surroundings::surroundings;

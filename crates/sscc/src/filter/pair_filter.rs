@@ -25,6 +25,20 @@ pub(crate) enum Relation {
     Adjacent,
 }
 
+/// The groups of two meshes with one table.
+#[derive(Clone, Copy)]
+pub(crate) struct GroupsBetween<'f>([&'f TriangleGroups; 2]);
+
+impl GroupsBetween<'_> {
+    /// Whether a triangle of the first mesh and one of the second count.
+    #[inline]
+    pub(crate) fn is_counted(&self, (a, b): Pair) -> bool {
+        let Self([first, second]) = self;
+        let [g, h] = [first.of_triangles()[a as usize], second.of_triangles()[b as usize]];
+        right_or!(first.is_counted(g, h), GroupsBetweenForgotten, true)
+    }
+}
+
 /// A contact filter applied to one mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct PairFilter {
@@ -74,6 +88,12 @@ impl PairFilter {
     /// The groups of triangles; none if all pairs of groups count.
     pub(crate) fn groups(&self) -> Option<&TriangleGroups> {
         self.groups.as_deref()
+    }
+
+    /// The groups of this mesh and of another one, if they hold between both.
+    pub(crate) fn groups_against<'f>(&'f self, other: &'f Self) -> Option<GroupsBetween<'f>> {
+        let groups = GroupsBetween([self.groups()?, other.groups()?]);
+        groups.0[0].is_common_with(groups.0[1]).then_some(groups)
     }
 
     /// Which triangles that share vertices count.

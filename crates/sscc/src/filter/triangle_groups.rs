@@ -24,6 +24,8 @@ pub struct TriangleGroups {
     /// most half of all pairs are listed.
     starts: Vec<usize>,
     partners: Vec<u16>,
+    /// Whether the table also holds between meshes that have it.
+    is_of_several: bool,
 }
 
 /// The contents of [`TriangleGroups`], for writing files.
@@ -31,6 +33,8 @@ pub struct TriangleGroups {
 pub struct GroupTable<'a> {
     /// The group of each triangle.
     pub of_triangles: &'a [u16],
+    /// The number of groups: one more than the largest group of a triangle.
+    pub count: usize,
     /// Whether pairs of groups count that are not listed.
     pub others_count: bool,
     /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
@@ -40,7 +44,12 @@ pub struct GroupTable<'a> {
 impl<'a> From<&'a TriangleGroups> for GroupTable<'a> {
     fn from(groups: &'a TriangleGroups) -> Self {
         let listed = groups.listed().map(|(g, h)| [g, h]).collect();
-        Self { of_triangles: groups.of_triangles(), others_count: groups.others_count(), listed }
+        Self {
+            of_triangles: groups.of_triangles(),
+            count: groups.group_count(),
+            others_count: groups.others_count(),
+            listed,
+        }
     }
 }
 
@@ -63,7 +72,13 @@ impl TriangleGroups {
         }
         let count = of_triangle.iter().max().map_or(0, |largest| *largest as usize + 1);
         let of_triangle = of_triangle.iter().map(|group| *group as u16).collect();
-        Ok(Self { of_triangle, others_count: true, starts: vec![0; count + 1], partners: Vec::new() })
+        Ok(Self {
+            of_triangle,
+            others_count: true,
+            starts: vec![0; count + 1],
+            partners: Vec::new(),
+            is_of_several: false,
+        })
     }
 
     /// The same groups, whose pairs of triangles within one group do not count either.
@@ -91,13 +106,65 @@ impl TriangleGroups {
         Ok(self.with_table(false, pairs))
     }
 
+    /// The groups of several meshes, from those of all their triangles, one mesh after the other: `counts` are the numbers of
+    /// triangles. Between two of these meshes, too, only triangles count whose groups do ([`Detector::against`] and the other
+    /// questions about two detectors).
+    ///
+    /// ```
+    /// use sscc::glam::DVec3;
+    /// use sscc::{ContactFilter, Detector, TriMesh, TriangleGroups};
+    ///
+    /// # fn main() -> Result<(), sscc::Error> {
+    /// // A body, and a shirt that it may touch, at the same place.
+    /// let scene = TriangleGroups::new(&[0, 1])?.ignoring([[0, 1]])?;
+    /// let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])?;
+    /// let detector = |groups| Detector::with_filter(&mesh, &ContactFilter::default().with_groups(groups));
+    /// let mut groups = scene.of_meshes(&[1, 1])?.into_iter();
+    /// let (body, shirt) = (groups.next().unwrap(), groups.next().unwrap());
+    /// let (x, mut body, mut shirt) = (mesh.rest_positions(), detector(body)?, detector(shirt)?);
+    /// assert!(body.against(x, &mut shirt, x)?.is_empty());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// When the meshes together have another number of triangles.
+    ///
+    /// [`Detector::against`]: crate::Detector::against
+    pub fn of_meshes(&self, counts: &[usize]) -> Result<Vec<Self>, Error> {
+        let sum = counts.iter().try_fold(0_usize, |sum, count| sum.checked_add(*count));
+        if sum != Some(self.of_triangle.len()) {
+            let found = self.of_triangle.len();
+            let sum = sum.map_or_else(|| "too many".to_owned(), |sum| sum.to_string());
+            return Err(refused(format!("there are groups of {found} triangles, but the meshes have {sum}")));
+        }
+        let mut rest = &self.of_triangle[..];
+        let mesh = |count: &usize| {
+            let (of_triangle, after) = rest.split_at(*count);
+            rest = after;
+            let (starts, partners) = (self.starts.clone(), self.partners.clone());
+            let of_triangle = of_triangle.to_vec();
+            Self { of_triangle, others_count: self.others_count, starts, partners, is_of_several: true }
+        };
+        Ok(counts.iter().map(mesh).collect())
+    }
+
+    /// Whether the table holds between these two meshes.
+    pub(crate) fn is_common_with(&self, other: &Self) -> bool {
+        let is_equal = || {
+            (self.others_count, &self.starts, &self.partners)
+                == (other.others_count, &other.starts, &other.partners)
+        };
+        self.is_of_several && other.is_of_several && is_equal()
+    }
+
     /// The group of each triangle.
     pub(crate) fn of_triangles(&self) -> &[u16] {
         &self.of_triangle
     }
 
     /// The number of groups: one more than the largest group of a triangle.
-    pub fn group_count(&self) -> usize {
+    pub(crate) fn group_count(&self) -> usize {
         self.starts.len() - 1
     }
 
@@ -184,6 +251,7 @@ impl TriangleGroups {
             others_count: others_count == is_short,
             starts,
             partners: both.into_iter().map(|(_, h)| h).collect(),
+            is_of_several: self.is_of_several,
         }
     }
 }

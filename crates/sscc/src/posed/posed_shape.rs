@@ -107,7 +107,7 @@ impl PosedShape {
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
         ];
         // The contexts have no token that cancels.
-        let _ = Search::between(sides, state, hits, usize::MAX);
+        let _ = Search::between(sides, None, state, hits, usize::MAX);
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable();
     }

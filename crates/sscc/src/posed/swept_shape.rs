@@ -84,7 +84,7 @@ impl SweptShape {
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
         ];
         // The contexts have no token that cancels.
-        let _ = Search::between(sides, &mut self.state, &mut self.hits, usize::MAX);
+        let _ = Search::between(sides, None, &mut self.state, &mut self.hits, usize::MAX);
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable_by_key(|impact| impact.pair);
     }
@@ -103,7 +103,7 @@ impl SweptShape {
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
         ];
         // The contexts have no token that cancels.
-        let _ = Search::between(sides, &mut self.state, &mut self.near, limit);
+        let _ = Search::between(sides, None, &mut self.state, &mut self.near, limit);
         found.extend_from_slice(&self.near.0.list);
         found[first..].sort_unstable();
     }

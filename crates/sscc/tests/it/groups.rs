@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use sscc::parts::{DEFAULT_EPSILON, Scope, check_filter};
+use sscc::parts::{DEFAULT_EPSILON, GroupTable, Scope, check_filter};
 use sscc::{
-    AuditOptions, Certificates, CertifyOptions, ContactFilter, Detector, Error, KineticQuery, Method, Modes,
-    Pair, Query, ReducedModel, TriMesh, TriangleGroups, audit,
+    AuditOptions, Certificates, CertifyOptions, Clearance, ContactFilter, Detector, Error, KineticQuery,
+    Method, Modes, Pair, Query, ReducedModel, TriMesh, TriangleGroups, audit, distance_triangle_triangle,
 };
 use sscc_testing::{cases, threshold};
 
-use crate::common::{Random, RandomOptions, at, random_choices, random_model, winding_strip};
+use crate::common::{
+    Random, RandomOptions, Soup, at, random_choices, random_mesh, random_model, winding_strip,
+};
 
 /// Groups that are runs of triangles, so that some nodes have one group, or any triangles; with a random table.
 fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
@@ -20,7 +22,7 @@ fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
     let of = |t: usize, random: &mut Random| if is_run { t / run % count } else { random.below(count) };
     let of_triangle: Vec<u32> = (0..triangles).map(|t| of(t, random) as u32).collect();
     let groups = TriangleGroups::new(&of_triangle).unwrap();
-    let count = groups.group_count();
+    let count = GroupTable::from(&groups).count;
     let mut pair = || [random.below(count) as u32, random.below(count) as u32];
     let pairs = [pair(), pair(), pair()];
     match random.below(4) {
@@ -257,4 +259,80 @@ fn other_groups_are_refused() {
     assert!(damaged.contains("a pair is an exception, but its groups do not count"), "{damaged}");
     let shared: Arc<TriangleGroups> = Arc::new(groups.between_only());
     assert_eq!(ContactFilter::default().with_groups(shared), used);
+}
+
+/// Groups of several meshes hold between them in every question about two detectors; any others do not.
+#[test]
+fn groups_of_several_meshes_hold_between_them() {
+    let (mut counted, mut left_out) = (0, 0);
+    for seed in 0..cases(80) {
+        let random = &mut Random::new(seed + 42_000_000);
+        let meshes = [(); 2].map(|()| {
+            let (p, faces): Soup = random_mesh(random);
+            let p = p.iter().map(|p| *p + random.vector() * 0.1).collect();
+            TriMesh::new(p, faces).unwrap()
+        });
+        let counts = [0, 1].map(|m| meshes[m].faces().len());
+        let scene = random_groups(random, counts[0] + counts[1]);
+        let of_meshes = scene.of_meshes(&counts).unwrap();
+        let is_counted = |(a, b): Pair| scene.is_pair_counted(a, counts[0] as u32 + b);
+        let ends = [0, 1].map(|m| -> Vec<DVec3> {
+            meshes[m].rest_positions().iter().map(|p| *p + random.vector() * 0.2).collect()
+        });
+        let x = [0, 1].map(|m| meshes[m].rest_positions());
+        let clearance = Clearance::new(0.2).unwrap();
+        let detectors = |groups: [TriangleGroups; 2]| {
+            let mut groups = groups.into_iter();
+            meshes.each_ref().map(|mesh| {
+                let filter = ContactFilter::default().with_groups(groups.next().unwrap());
+                Detector::with_filter(mesh, &filter).unwrap()
+            })
+        };
+        let [mut one, mut two] = meshes.each_ref().map(Detector::new);
+        let all = one.against(x[0], &mut two, x[1]).unwrap().to_vec();
+        let impacts = one.continuous_against([x[0], &ends[0]], &mut two, [x[1], &ends[1]]).unwrap().to_vec();
+        let near = one.within_against(x[0], &mut two, x[1], &clearance).unwrap().to_vec();
+        let corners = |m: usize, t: usize| meshes[m].faces()[t].map(|v| x[m][v as usize]);
+        let every = (0..counts[0]).flat_map(|a| (0..counts[1]).map(move |b| (a as u32, b as u32)));
+
+        let [mut one, mut two] = detectors(of_meshes.clone().try_into().unwrap());
+        let kept: Vec<Pair> = all.iter().copied().filter(|pair| is_counted(*pair)).collect();
+        assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), kept, "seed {seed}");
+        let some = one.against_at_most(x[0], &mut two, x[1], 1).unwrap();
+        assert!(
+            some.len() == kept.len().min(1) && some.iter().all(|pair| kept.contains(pair)),
+            "seed {seed}"
+        );
+        let found = one.continuous_against([x[0], &ends[0]], &mut two, [x[1], &ends[1]]).unwrap();
+        assert!(found.iter().eq(impacts.iter().filter(|impact| is_counted(impact.pair))), "seed {seed}");
+        let found = one.within_against(x[0], &mut two, x[1], &clearance).unwrap();
+        assert!(found.iter().eq(near.iter().filter(|near| is_counted(near.pair))), "seed {seed}");
+        let distance =
+            |(a, b): Pair| distance_triangle_triangle(&corners(0, a as usize), &corners(1, b as usize));
+        let distances = every.filter(|pair| is_counted(*pair)).map(distance);
+        let nearest = one.nearest_against(x[0], &mut two, x[1]).unwrap();
+        assert_eq!(nearest.map(|near| near.distance), distances.reduce(f64::min), "seed {seed}");
+        counted += kept.len();
+        left_out += all.len() - kept.len();
+
+        // The same groups, each by itself.
+        let single = [0, 1].map(|m| {
+            let numbers: Vec<u32> = (0..counts[m]).map(|t| (t % 2) as u32).collect();
+            TriangleGroups::new(&numbers).unwrap().between_only()
+        });
+        let [mut one, mut two] = detectors(single);
+        assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");
+        // Groups of several meshes, of two scenes.
+        let others = TriangleGroups::new(&vec![0; counts[0] + counts[1]]).unwrap().between_only();
+        let others = others.of_meshes(&counts).unwrap();
+        let [mut one, _] = detectors(of_meshes.try_into().unwrap());
+        let [_, mut two] = detectors(others.try_into().unwrap());
+        if GroupTable::from(&scene).count > 1 {
+            assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");
+        }
+        let message = scene.of_meshes(&counts[..1]).unwrap_err().to_string();
+        assert!(message.contains(&format!("the meshes have {}", counts[0])), "{message}");
+        assert!(scene.of_meshes(&[usize::MAX, 2]).is_err());
+    }
+    assert!(counted > threshold(60) && left_out > threshold(20), "{counted} {left_out}");
 }

@@ -7,9 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc::TriMesh;
 use sscc_io::gltf::SkinWeights;
 use sscc_io::write_whole;
-use sscc_sim::{
-    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, OtherMesh, SimError, Times, detect,
-};
+use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, OtherMesh, SimError, Times, detect};
 use sscc_view::MeshReport;
 
 use super::data_set::DataSet;
@@ -40,6 +38,7 @@ pub fn check(args: &Check) -> Result<bool> {
     printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some() || args.pose.is_some();
     let mut report = MeshReport::default();
+    let mut frames_out = args.frames_out.as_deref().map(shapes::FramesOut::new);
     let mut answers = 0;
     let mut hint = SoupHint::default();
     let watch = Stages::default();
@@ -62,17 +61,21 @@ pub fn check(args: &Check) -> Result<bool> {
         {
             shapes::write_pose(path, found.mesh, shape.x_t0, found.pairs)?;
         }
+        if let Some(frames) = &mut frames_out {
+            frames.add(found)?;
+        }
         // A report shows each node by itself.
         let is_between_nodes = request.against.is_none() && found.other_node.is_some();
         if let Some(path) = args.report.as_ref().filter(|_| !is_between_nodes) {
             report.add(found).with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
-        // A report has all frames, also where nobody reads the output.
-        let go_on = args.report.is_some();
+        // Files have all frames, also where nobody reads the output.
+        let go_on = args.report.is_some() || args.frames_out.is_some();
         printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
     };
     detect(&request, &watch, take)?;
+    frames_out.map_or(Ok(()), shapes::FramesOut::finish)?;
     if let Some(path) = &args.report {
         write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
     }
@@ -124,8 +127,8 @@ fn check_flags(args: &Check) -> Result<()> {
         let is_filtered =
             options.neighbours.is_some() || options.weld.is_some() || options.ignore_rest.is_some();
         ensure!(
-            !is_filtered && load::groups(&options.groups) == GroupRules::default(),
-            "--against: triangles of two meshes all count: leave out --neighbours, --weld, --ignore-rest and groups"
+            !is_filtered,
+            "--against: neighbours are those of one mesh: leave out --neighbours, --weld and --ignore-rest"
         );
     }
     let moves = motion.frames.is_some() || motion.animation.is_some() || motion.against_frames.is_some();
@@ -148,7 +151,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
             Some(times) => Times::List(times.clone()),
             None => motion.fps.map_or_else(Times::default, Times::PerSecond),
         },
-        node: motion.node,
+        node: motion.node.clone(),
         weights: match motion.weights {
             Some(Weights::AsStored) => SkinWeights::AsStored,
             _ => SkinWeights::Normalized,
@@ -174,7 +177,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
         limit: args.max_pairs(),
         clearance: args.clearance()?,
         contacts: shapes::contacts(args),
-        has_positions: args.report.is_some() || args.pose.is_some(),
+        has_positions: args.report.is_some() || args.pose.is_some() || args.frames_out.is_some(),
         threads: Some(load::threads(&options.threads)),
     })
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use sscc::Certificates;
+use sscc::parts::GroupTable;
 use sscc_view::levels;
 
 use super::text::{form, hexadecimal, range};
@@ -70,7 +71,7 @@ impl CertificatesInfo {
             rest_collisions: parts.rest_collisions,
             exceptions: parts.scope.exceptions.len(),
             ignored: parts.scope.filter.ignored().len(),
-            groups: parts.scope.filter.groups().map_or(0, |groups| groups.group_count()),
+            groups: parts.scope.filter.groups().map_or(0, |groups| GroupTable::from(&**groups).count),
             center: parts.scope.center.clone(),
             nodes: parts.node_radii.len(),
             root_radius: certificates.root_radius(),

@@ -36,25 +36,32 @@ impl AnimatedScene {
         Ok(number)
     }
 
-    /// Returns the node of that number, which must show a mesh with triangles; without a number all such nodes.
+    /// Returns the node of that number, else of that name, which must show a mesh with triangles; without a name all such nodes.
     ///
     /// # Errors
-    /// When there is none; the message lists the nodes with meshes.
-    pub fn find_mesh_nodes(&self, node: Option<usize>) -> Result<&[MeshNode], FormatError> {
+    /// When there is none, or several have that name; the message lists the nodes with meshes.
+    pub fn find_mesh_nodes(&self, node: Option<&str>) -> Result<&[MeshNode], FormatError> {
         let all = &self.mesh_nodes[..];
         if all.is_empty() {
             return Err(FormatError::whole("no node of the file shows a mesh with triangles"));
         }
         let Some(node) = node else { return Ok(all) };
-        match all.binary_search_by_key(&node, MeshNode::node) {
-            Ok(at) => Ok(&all[at..=at]),
-            Err(_) => {
-                let list: Vec<String> = all.iter().map(|node| listed(node.node, node.name())).collect();
-                let list = list.join(", ");
-                let cause = format!("node {node} shows no mesh with triangles; these nodes do: {list}");
-                Err(FormatError::whole(cut(&cause, MAX_LIST)))
+        let number = node.parse().ok().and_then(|node| all.binary_search_by_key(&node, MeshNode::node).ok());
+        let named = |other: &MeshNode| other.name() == Some(node);
+        let found = number.or_else(|| all.iter().position(named));
+        let list: Vec<String> = all.iter().map(|node| listed(node.node, node.name())).collect();
+        let list = list.join(", ");
+        let cause = match found {
+            None if node.parse::<usize>().is_ok() => {
+                format!("node {node} shows no mesh with triangles; these nodes do: {list}")
             }
-        }
+            None => format!("no node {} shows a mesh with triangles; these nodes do: {list}", quoted(node)),
+            Some(at) if number.is_none() && all[at + 1..].iter().any(named) => {
+                format!("several nodes have the name {}: choose one by its number: {list}", quoted(node))
+            }
+            Some(at) => return Ok(&all[at..=at]),
+        };
+        Err(FormatError::whole(cut(&cause, MAX_LIST)))
     }
 
     /// Returns the number and the name of each animation.

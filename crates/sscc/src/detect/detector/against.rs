@@ -9,7 +9,8 @@ use crate::{Error, Impact, Pair};
 
 impl Detector {
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
-    /// common, sorted. Every pair counts: contact filters do not apply between meshes.
+    /// common, sorted. Every pair counts, unless groups hold between both meshes
+    /// ([`TriangleGroups::of_meshes`](crate::TriangleGroups::of_meshes)): nothing else of a contact filter does.
     ///
     /// ```
     /// use sscc::glam::DVec3;
@@ -67,7 +68,7 @@ impl Detector {
 
     /// All pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a straight
     /// line, sorted by pair, each with its time of impact: the same promise as
-    /// [`Query::continuous`](crate::Query::continuous).
+    /// [`Query::continuous`](crate::Query::continuous). Pairs count as for [`Detector::against`].
     ///
     /// # Errors
     /// As [`Detector::discrete`], for all positions.

@@ -97,7 +97,7 @@ impl Detector {
     }
 
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) nearer than a clearance, sorted.
-    /// Every pair counts; rings mean nothing between meshes.
+    /// Pairs count as for [`Detector::against`]; rings mean nothing between meshes.
     ///
     /// # Errors
     /// As [`Detector::discrete`], for both.

@@ -90,7 +90,8 @@ impl<const E: usize, N: NarrowPhase<E>> DetectorSearch<E, N> {
             Side { context: contexts[0], volumes: &mut first.volumes, motion: x },
             Side { context: contexts[1], volumes: &mut second.volumes, motion: y },
         ];
-        let result = Search::between(sides, &mut self.between, &mut self.narrow, limit);
+        let groups = contexts[0].filter.groups_against(&contexts[1].filter);
+        let result = Search::between(sides, groups, &mut self.between, &mut self.narrow, limit);
         self.counters = self.between.counters;
         result
     }

@@ -45,7 +45,8 @@ impl Detector {
         found
     }
 
-    /// The nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`): every pair counts.
+    /// The nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that count, as for
+    /// [`Detector::against`].
     ///
     /// # Errors
     /// As [`Detector::discrete`], for both.
@@ -59,7 +60,9 @@ impl Detector {
         other.check([other_positions])?;
         let boxes = [(&self.context, positions), (&other.context, other_positions)];
         let [one, two] = boxes.map(|(context, positions)| Boxes::new(context, positions));
-        let found = nearest([&one, &two], false, |_, _| true);
+        let groups = self.context.filter.groups_against(&other.context.filter);
+        let counts = |a: u32, b: u32| groups.is_none_or(|groups| groups.is_counted((a, b)));
+        let found = nearest([&one, &two], false, counts);
         self.statistics.complete = found.is_ok();
         found
     }

@@ -64,8 +64,11 @@ fn animations_and_nodes_are_found_by_name_or_number() {
     let message = scene.find_animation("1").unwrap_err().to_string();
     assert_eq!(message, "there is no animation '1'; the animations of the file, by number: 0 'wave'");
     assert_eq!(scene.find_mesh_nodes(None).unwrap().len(), 2);
-    assert_eq!(scene.find_mesh_nodes(Some(4)).unwrap()[0].node(), 4);
-    let message = scene.find_mesh_nodes(Some(0)).unwrap_err().to_string();
+    assert_eq!(scene.find_mesh_nodes(Some("4")).unwrap()[0].node(), 4);
+    assert_eq!(scene.find_mesh_nodes(Some("skinned")).unwrap()[0].node(), 3);
+    let message = scene.find_mesh_nodes(Some("skin")).unwrap_err().to_string();
+    assert_eq!(message, "no node 'skin' shows a mesh with triangles; these nodes do: 3 'skinned', 4");
+    let message = scene.find_mesh_nodes(Some("0")).unwrap_err().to_string();
     assert_eq!(message, "node 0 shows no mesh with triangles; these nodes do: 3 'skinned', 4");
     let none = parse_scene(
         br#"{"asset":{"version":"2.0"},"animations":[
