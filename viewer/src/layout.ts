@@ -17,16 +17,23 @@ export class Layout {
     private readonly buttons = h("div", { class: "buttons" });
     private readonly heading = h("h1", {}, "sscc");
     private readonly subtitle = h("p", { class: "subtitle" });
-    private readonly message = h("p", { class: "message", role: "status", hidden: true });
+    private readonly text = h("span", {});
+    private readonly dismiss = h(
+        "button",
+        { type: "button", class: "small", "aria-label": "dismiss the message", onclick: () => this.say("") },
+        "×",
+    );
+    /** In place of the subtitle, where it covers nothing. */
+    private readonly message = h("p", { class: "message", role: "status", hidden: true }, this.text, this.dismiss);
+    private isWrong = false;
     private readonly tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "panels" });
     private readonly panel = h("aside", { class: "panel" }, this.tabs);
     private timer = 0;
 
     constructor(root: HTMLElement) {
         root.append(
-            h("header", {}, h("div", { class: "titles" }, this.heading, this.subtitle), this.buttons),
+            h("header", {}, h("div", { class: "titles" }, this.heading, this.subtitle, this.message), this.buttons),
             h("main", {}, h("div", { class: "left" }, this.stage, this.below), this.panel),
-            this.message,
         );
     }
 
@@ -42,13 +49,22 @@ export class Layout {
         return button;
     }
 
+    /** Shows a message. A result stays for some seconds, an error until its cause is gone: see `settle`. */
     say(message: string, wrong = false): void {
         clearTimeout(this.timer);
-        this.message.textContent = message;
+        this.isWrong = wrong;
+        this.text.textContent = message;
         this.message.hidden = message === "";
+        this.subtitle.hidden = message !== "";
+        this.dismiss.hidden = !wrong;
         this.message.classList.toggle("wrong", wrong);
         this.message.setAttribute("role", wrong ? "alert" : "status");
         if (!wrong) this.timer = window.setTimeout(() => this.say(""), 7000);
+    }
+
+    /** Removes an error, because another shape is displayed or the server answers again. */
+    settle(): void {
+        if (this.isWrong) this.say("");
     }
 
     /** Shows the tab of this name. */

@@ -18,6 +18,8 @@ export class ModeRow {
     readonly number: HTMLInputElement;
     /** The column of first collisions: see sweeps.ts. */
     readonly first = h("span", { class: "first" });
+    /** The marks of collisions along the slider: see intervals.ts. */
+    readonly marks = h("span", { class: "marks" });
     private readonly vibrating: HTMLButtonElement;
     private readonly range: readonly [number, number];
 
@@ -66,7 +68,7 @@ export class ModeRow {
             h(
                 "div",
                 { class: "mode-controls" },
-                this.slider,
+                h("span", { class: "slide" }, this.slider, this.marks),
                 this.number,
                 this.vibrating,
                 toCollision &&

@@ -3,6 +3,7 @@
 import { toFirstCollision, vibrate, vibrationName } from "./along";
 import { type App, attempt } from "./app";
 import { count, h } from "./dom";
+import { intervalSearch, showMarks } from "./intervals";
 import { loadQ } from "./load-q";
 import { ModeRow } from "./mode-row";
 import { randomDirection } from "./random-direction";
@@ -36,7 +37,6 @@ export class ModesPanel {
             ? new Sweeps(
                   app,
                   this.rows,
-                  this.list,
                   () => this.named(),
                   () => this.refilter(),
               )
@@ -48,6 +48,9 @@ export class ModesPanel {
             title: "show only modes whose names have all of these words (/)",
             oninput: () => this.refilter(),
         });
+        const marks = app.checker ? intervalSearch(app, this.rows, () => this.named()) : null;
+        if (shape.model.intervals)
+            showMarks(app, this.rows, shape.model.intervals, Float64Array.from(shape.model.default_q));
         this.element = h(
             "div",
             { class: "modes" },
@@ -58,7 +61,7 @@ export class ModesPanel {
                 "Drag a slider, or type any weight; a double click resets it. ~ vibrates the mode",
                 app.checker ? ", ⇥ moves along it to the first self-collision." : ".",
             ),
-            h("div", { class: "find" }, this.filter, this.found, this.sweeps?.element ?? null),
+            h("div", { class: "find" }, this.filter, this.found, this.sweeps?.element ?? null, marks),
             this.list,
         );
         pose.onChange(() => this.update());

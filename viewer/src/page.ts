@@ -76,6 +76,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         stage?.draw();
     };
     pose.onChange(() => {
+        layout.settle();
         if (checker && checker.lastSerial < pose.serial) void checker.check(pose.q, pose.serial);
         player.explore();
         shared.body?.setQ(0, pose.q);

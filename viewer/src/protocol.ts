@@ -40,6 +40,8 @@ export interface Model {
     nodes: number;
     levels: Level[];
     extremal: { name: string; q: number[] }[];
+    /** The intervals of each mode about default_q, in a report of a sweep. */
+    intervals?: Intervals[];
 }
 
 export interface Axis {
@@ -162,6 +164,30 @@ export interface Sweep {
     count: number;
     /** What is unusual about the result. */
     note: string | null;
+}
+
+/** An interval of weights over which the shape collides at every sample. */
+export interface Interval {
+    from: number;
+    to: number;
+    free_until: number | null;
+    free_from: number | null;
+    /** Whether it collides at both ends. */
+    exact: boolean;
+    pairs: number;
+    depth: number;
+    /** The weight of that depth. */
+    deepest: number;
+}
+
+/** The intervals of one mode; every weight outside of them is proven free. */
+export interface Intervals {
+    name: string;
+    from: number;
+    to: number;
+    intervals: Interval[];
+    /** Weight, pairs and largest depth of each sample. */
+    samples: [number, number, number][];
 }
 
 export interface Nodes {

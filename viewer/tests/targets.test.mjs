@@ -93,6 +93,37 @@ test("first collisions are found row by row, for the modes of the filter", () =>
         assert.deepEqual(await page.locator(".mode:visible .mode-name").allInnerTexts(), [BEHIND, WITHIN]);
     }));
 
+test("collisions are marked along the sliders, with their depths", () =>
+    look(async (page) => {
+        await filter(page, "the ball wall");
+        // Also from a shape that collides.
+        await show(page, [0, 0.4]);
+        await page.getByRole("button", { name: "Mark collisions" }).click();
+        await page.waitForFunction(() => document.querySelectorAll(".collision-marks").length === 2);
+        const marks = page.locator(".interval");
+        assert.equal(await marks.count(), 2);
+        const titles = await marks.evaluateAll((all) => all.map((mark) => mark.title));
+        // The first mode collides over all of its range, because of the second weight.
+        assert.match(titles[0], /^collides from 0 to 1\.000: up to \d+ pairs, depth /);
+        assert.match(titles[1], /^collides from 0\.2500 to 0\.5500: up to \d+ pairs, depth /);
+        assert.deepEqual(await nameless(page), []);
+        // The mark stands where the slider has these weights.
+        const [slider, mark] = await Promise.all(
+            [page.locator(".mode:visible input[type=range]").nth(1), marks.nth(1)].map((e) => e.boundingBox()),
+        );
+        const share = (mark.x - slider.x) / slider.width;
+        assert.ok(share > 0.2 && share < 0.3, String(share));
+        await marks.nth(1).click();
+        const weights = await q(page);
+        assert.ok(weights[1] > 0.25 && weights[0] === 0);
+        // Pale where other weights than its own have changed.
+        await show(page, [0.1, 0.4]);
+        const opacities = await page
+            .locator(".marks:not(:empty)")
+            .evaluateAll((all) => all.map((e) => Number(getComputedStyle(e).opacity)));
+        assert.deepEqual(opacities, [1, 0.45]);
+    }));
+
 test("a search can be stopped, and is refused from a shape that collides", () =>
     look(async (page) => {
         // The server never answers the third row.

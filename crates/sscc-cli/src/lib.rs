@@ -8,6 +8,7 @@ mod flags;
 mod interrupt;
 mod load;
 mod meter;
+mod model_scene;
 mod outcome;
 mod output;
 mod progress;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::{FreeProof, LeftOut, SweepRange, free_sentence};
+use sscc_sim::{FreeProof, IntervalRow, LeftOut, SweepRange, free_sentence};
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};
@@ -33,7 +33,7 @@ pub(crate) struct ReducedFacts {
     /// The weight of each mode at which it has moved some vertex by half the diagonal of the AABB.
     limits: Vec<f64>,
     /// The ranges of the sliders, and of sweeps.
-    ranges: Vec<[f64; 2]>,
+    pub(crate) ranges: Vec<[f64; 2]>,
     root_radius: f64,
     global_radius: f64,
     /// The limit of the pair tree: below it the pair tree contains every node pair that can collide. `None` if the pair
@@ -45,6 +45,9 @@ pub(crate) struct ReducedFacts {
     nodes: usize,
     levels: Vec<Level>,
     extremal: Vec<Extremal>,
+    /// The intervals of each mode about `default_q`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) intervals: Option<Vec<IntervalRow>>,
 }
 
 /// The sentences for a shape that is free, by what proves it.
@@ -86,6 +89,7 @@ impl ReducedFacts {
             nodes: certificates.parts().hierarchy.nodes().len(),
             levels: levels(certificates),
             extremal: extremal(model, certificates),
+            intervals: None,
         }
     }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
+use sscc_sim::IntervalRow;
 
 use crate::reduced_facts::{ModelDetails, ReducedFacts};
 use crate::{Arrays, Playback, Plot, ViewError};
@@ -112,6 +113,17 @@ impl ModelScene {
             bounds: Bounds { min: min.to_array(), max: max.to_array() },
             reduced: Some(reduced),
         })
+    }
+
+    /// The same, with the intervals of collision of all modes about the initial q, which the page marks along the sliders. Their
+    /// ranges are those of the sliders.
+    #[must_use]
+    pub fn with_intervals(mut self, intervals: Vec<IntervalRow>) -> Self {
+        if let Some(reduced) = &mut self.reduced {
+            reduced.ranges = intervals.iter().map(|row| [row.from, row.to]).collect();
+            reduced.intervals = Some(intervals);
+        }
+        self
     }
 
     /// Returns the description of a mesh without modes, and adds its arrays, whose names end in `-INDEX`.

@@ -1,17 +1,23 @@
 //! `sscc sweep`: for each mode the first weight at which the shape touches itself, or all intervals in which it collides;
 //! combinations of two modes.
 
-use anyhow::Result;
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 use sscc::{Certificates, SweepOutcome};
+use sscc_io::{LoadedModel, write_whole};
 use sscc_sim::{
-    LeftOut, SweepRequest, combination_table, interval_table, sweep_model, sweep_model_combinations,
-    sweep_model_intervals, sweep_table,
+    IntervalRow, LeftOut, SweepRequest, combination_table, interval_table, sweep_model,
+    sweep_model_combinations, sweep_model_intervals, sweep_table,
 };
 
+use sscc_view::{Axis, MAX_REPORT_BYTES, Plot, Report, Scene, Series};
+
 use crate::args::Sweep;
+use crate::model_scene::model_scene;
 use crate::outcome::Outcome;
-use crate::output::{Output, note};
+use crate::output::{Output, file_name, note};
 use crate::progress::Bar;
 use crate::{interrupt, load};
 
@@ -21,6 +27,9 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let Sweep { q, range, pose, .. } = args;
     let request = SweepRequest { q: q.clone(), range: range.clone(), pose: pose.clone(), threads };
     // Refused before certificates are computed.
+    if let Some(report) = &args.report {
+        load::check_output(report, ".html", &[&args.model.path])?;
+    }
     request.prepare(&loaded, &vec![0.0; loaded.model.rank()])?;
     let ranges = request.ranges(&loaded)?;
     let certificates = match &args.certificates {
@@ -29,9 +38,13 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     };
     let bar = Bar::new("sweeping");
     if let Some(samples) = args.intervals {
-        let found = sweep_model_intervals(&loaded, &certificates, &request, samples, &bar);
+        let found = sweep_model_intervals(&loaded, &certificates, &request, samples as usize, &bar);
         interrupt::check()?;
         let rows = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
+        if let Some(report) = &args.report {
+            let (q, _) = request.prepare(&loaded, certificates.center())?;
+            write_report(report, &args.model.path, &loaded, &certificates, (q, &rows))?;
+        }
         print(args, &rows, &certificates, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
         return Ok(outcome(rows.iter().all(|row| row.intervals.is_empty())));
     }
@@ -57,7 +70,47 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
 }
 
-/// Prints the rows, and which pairs they are apart from, where pairs are ignored.
+/// Writes the page with the model at q, its intervals along the sliders, and the curve of the depth over each weight.
+fn write_report(
+    report: &Path,
+    model: &Path,
+    loaded: &LoadedModel,
+    certificates: &Certificates,
+    (q, rows): (Vec<f64>, &[IntervalRow]),
+) -> Result<()> {
+    let in_report = || report.display().to_string();
+    let name = file_name(model);
+    let (described, arrays) = model_scene(loaded, certificates, &name, Some(q)).with_context(in_report)?;
+    let mut scene = Scene::new(&name);
+    scene.models.push(described.with_intervals(rows.to_vec()));
+    let colliding = rows.iter().filter(|row| !row.intervals.is_empty());
+    scene.plots.extend(colliding.clone().map(|row| Plot {
+        title: format!("penetration depth, {}", row.name),
+        x: Axis::linear("weight"),
+        y: Axis::linear("depth (model unit)"),
+        series: vec![Series::new(
+            "largest depth of a pair",
+            row.samples.iter().map(|(x, _, depth)| [*x, *depth]),
+        )],
+    }));
+    let free = rows.len() - colliding.count();
+    scene.summary = vec![
+        ("modes".into(), rows.len().to_string()),
+        ("free over their whole range".into(), free.to_string()),
+        ("samples of each weight".into(), rows.first().map_or(0, |row| row.samples.len()).to_string()),
+        ("not tested".into(), LeftOut::of(certificates.filter()).to_string()),
+    ];
+    let html = Report { scene, arrays }.html().with_context(in_report)?;
+    ensure!(
+        html.len() as u64 <= MAX_REPORT_BYTES,
+        "{}: the page would have more than {} MiB: sweep a model with fewer vertices or modes, or see sscc view",
+        report.display(),
+        MAX_REPORT_BYTES >> 20
+    );
+    Ok(write_whole(report, html.as_bytes())?)
+}
+
+/// Prints the rows, and the pairs that no sweep tested, where pairs are ignored.
 fn print(
     args: &Sweep,
     rows: &[impl Serialize],
@@ -66,15 +119,15 @@ fn print(
 ) -> Result<()> {
     let mut out = Output::new();
     let left_out = LeftOut::of(certificates.filter());
-    let apart = (left_out.ignored() > 0).then(|| format!("all of it apart from {left_out}"));
+    let untested = (left_out.ignored() > 0).then(|| format!("not tested: {left_out}"));
     match args.json.json {
         true => rows.iter().try_for_each(|row| out.json(row))?,
-        false => table().into_iter().chain(apart.clone()).try_for_each(|line| out.line(line))?,
+        false => table().into_iter().chain(untested.clone()).try_for_each(|line| out.line(line))?,
     }
     if args.json.json
-        && let Some(apart) = apart
+        && let Some(untested) = untested
     {
-        note(apart);
+        note(untested);
     }
     out.finish()
 }

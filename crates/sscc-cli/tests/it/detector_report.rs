@@ -7,7 +7,7 @@ use std::process::Stdio;
 use serde_json::{Value, json};
 use sscc_io::write_npy;
 
-use crate::common::{command, files, sscc};
+use crate::common::{command, files, page_data, sscc};
 use crate::detector::folder;
 
 /// Runs with `--report`; returns the scene of the report.
@@ -20,9 +20,7 @@ fn scene(folder: &Path, args: &[&str]) -> Value {
     let pairs = |lines: Vec<Value>| lines.iter().map(|line| line["pairs"].clone()).collect::<Vec<_>>();
     assert_eq!(pairs(run.json()), pairs(without.json()));
     let html = fs::read_to_string(folder.join("report.html")).unwrap();
-    let (_, data) = html.split_once("id=\"sscc-report\">").unwrap();
-    let mut data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
-    data["scene"].take()
+    page_data(&html)["scene"].take()
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use crate::common::{Run, files, keys, sorted, sscc, strips};
+use serde_json::json;
+
+use crate::common::{Run, files, keys, page_data, sorted, sscc, strips};
 
 const MODEL: &str = "strips.model.safetensors";
 const CERTIFICATES: &str = "strips.sscc.safetensors";
@@ -78,15 +80,40 @@ fn intervals_are_listed_for_each_weight() {
     let table = swept(&["--range=-2,3", "--intervals"]);
     assert!(table.stdout.contains("101 samples of each weight\n"), "{table:?}");
     assert_eq!(swept(&["--range=0,0.5", "--intervals=3"]).code, Some(0));
-    for (count, message) in [("1", "the number of samples is 1"), ("9999999999", "it must be from 2 to 2^20")]
-    {
+    for count in ["0", "1", "1048577", "9999999999", "many"] {
         let refused = swept(&[&format!("--intervals={count}")]);
-        assert!(refused.refusal().contains(message), "{refused:?}");
+        assert!(refused.code == Some(2) && refused.stderr.contains("--intervals"), "{refused:?}");
     }
     assert_eq!(swept(&["--intervals", "--pose", "poses"]).code, Some(2));
 }
 
 /// Two strips that each come half of the way.
+#[test]
+fn a_report_marks_the_intervals() {
+    let directory = strips();
+    let folder = directory.path();
+    let swept =
+        |more: &[&str]| sscc(folder, &[&["sweep", MODEL, "--certificates", CERTIFICATES][..], more].concat());
+    let run = swept(&["--range=-2,3", "--intervals=6", "--report", "out.html", "--q=0.5,0.25", "--json"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(1), ""), "{run:?}");
+    let html = fs::read_to_string(folder.join("out.html")).unwrap();
+    let scene = &page_data(&html)["scene"];
+    let described = &scene["models"][0];
+    assert_eq!(described["intervals"], json!(run.json()));
+    assert_eq!(
+        (&described["ranges"], &described["default_q"]),
+        (&json!([[-2.0, 3.0], [-2.0, 3.0]]), &json!([0.5, 0.25]))
+    );
+    // A curve for each weight that collides.
+    let plots = scene["plots"].as_array().unwrap();
+    assert_eq!(plots.len(), run.json().iter().filter(|row| row["intervals"] != json!([])).count());
+    assert_eq!(plots[0]["series"][0]["x"].as_array().unwrap().len(), 6);
+    assert!(swept(&["--report", "out.html"]).refusal().contains("--intervals"));
+    assert!(swept(&["--intervals", "--report", "out.txt"]).refusal().contains("must end in .html"));
+    let own = swept(&["--intervals", "--report", MODEL]);
+    assert!(own.refusal().contains("must end in .html"), "{own:?}");
+}
+
 #[test]
 fn combinations_collide_where_one_weight_does_not() {
     let directory = strips();
@@ -109,7 +136,7 @@ fn combinations_collide_where_one_weight_does_not() {
         for row in rows {
             assert_eq!(keys(&row), sorted("names, to, count, new, depth"));
             assert_eq!((&row["count"], &row["new"]), (&both.len().into(), &new.into()), "{row}");
-            assert_eq!(row["names"], serde_json::json!(["0", "1"]));
+            assert_eq!(row["names"], json!(["0", "1"]));
         }
         let table = swept(range, &[]);
         let end = "1 combination of two modes: ";
@@ -169,7 +196,7 @@ fn principal_components_go_to_three_standard_deviations() {
     };
     assert_eq!(ends(&["p.model.safetensors"]), [3.0, -3.0]);
     let info = sscc(folder, &["info", "p.model.safetensors", "--json"]).json().remove(0);
-    assert_eq!(info["deviations"], serde_json::json!([1.0]));
+    assert_eq!(info["deviations"], json!([1.0]));
     let info = sscc(folder, &["info", "p.model.safetensors"]).stdout;
     assert!(info.contains("\ndeviations     1.000 (standard deviations of q)\n"), "{info}");
     // The same component of unit length.

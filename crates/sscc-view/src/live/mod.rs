@@ -4,6 +4,7 @@ mod animation;
 mod cancellation;
 mod check;
 mod collision;
+mod intervals;
 mod nodes;
 mod sweep;
 
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sscc::{CancelToken, Certificates, Method, Query, ReducedModel};
+use sscc_sim::IntervalRow;
 
 use crate::{Arrays, Scene, ViewError};
 use cancellation::{Cancellation, MAX_SECONDS};
@@ -21,6 +23,7 @@ use nodes::ORDER;
 pub use animation::AnimationRequest;
 pub use check::{CheckAnswer, CheckRequest};
 pub use collision::{DirectionAnswer, DirectionRequest};
+pub use intervals::IntervalsRequest;
 pub use nodes::{BoxesAnswer, BoxesRequest, NodesAnswer};
 pub use sweep::{SweepAnswer, SweepRequest};
 
@@ -155,6 +158,20 @@ impl Live {
     pub fn sweep(&self, request: &SweepRequest, client: &CancelToken) -> Result<Vec<SweepAnswer>, ViewError> {
         self.newest(&self.newest_sweep, &self.sweeps, client, |query, cancellation| {
             sweep::sweep(query, request, cancellation)
+        })
+    }
+
+    /// Returns the intervals of one mode's weight over which the shape collides. The search ends as [`Live::sweep`].
+    ///
+    /// # Errors
+    /// As [`Live::sweep`].
+    pub fn intervals(
+        &self,
+        request: &IntervalsRequest,
+        client: &CancelToken,
+    ) -> Result<IntervalRow, ViewError> {
+        self.newest(&self.newest_sweep, &self.sweeps, client, |query, cancellation| {
+            intervals::intervals(query, request, cancellation)
         })
     }
 

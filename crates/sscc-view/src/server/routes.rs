@@ -88,6 +88,9 @@ impl<'a> Content<'a> {
             "/api/sweep" => {
                 post(MAX_BODY_BYTES, |request, client| Ok(Response::json(&live.sweep(&request, client)?)))
             }
+            "/api/intervals" => {
+                post(MAX_BODY_BYTES, |request, client| Ok(Response::json(&live.intervals(&request, client)?)))
+            }
             "/api/boxes" => post(MAX_BODY_BYTES, |request, _| Ok(Response::json(&live.boxes(&request)?))),
             "/api/glb" => {
                 post(MAX_MOTION_BYTES, |request, _| Ok(Response::binary(live.animation(&request)?)))

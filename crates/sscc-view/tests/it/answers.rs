@@ -123,6 +123,43 @@ fn sweeps_of_modes_are_those_of_the_core() {
 }
 
 #[test]
+fn intervals_of_modes_are_those_of_the_core() {
+    let (model, certificates) = strips();
+    let query = Query::new(&model, &certificates).unwrap();
+    let q = [0.25, 0.5, 0.1];
+    with_server(|client| {
+        for (mode, range, count) in [(0, [-1.0, 1.5], 1), (1, [0.0, 1.0], 0), (2, [-2.0, 2.0], 1)] {
+            let request = json!({"q": q, "mode": mode, "range": range}).to_string();
+            let reply = client.post("/api/intervals", &request);
+            assert_eq!(reply.status, 200, "{reply:?}");
+            let answer = reply.json();
+            let ranges = [ModeRange { mode, low: range[0], high: range[1] }];
+            let found = query.sweep_intervals(&q, &ranges, 101, None, &()).unwrap().remove(0);
+            assert_eq!(found.intervals.len(), count, "{found:?}");
+            assert_eq!(answer["samples"].as_array().unwrap().len(), 101);
+            let ends = |key: &str| -> Vec<Value> {
+                answer["intervals"].as_array().unwrap().iter().map(|found| found[key].clone()).collect()
+            };
+            assert_eq!(
+                json!(ends("from")),
+                json!(found.intervals.iter().map(|i| i.from).collect::<Vec<_>>())
+            );
+            assert_eq!(
+                json!(ends("free_from")),
+                json!(found.intervals.iter().map(|i| i.free_from).collect::<Vec<_>>())
+            );
+        }
+        for bad in [
+            json!({"q": q, "mode": 9, "range": [0.0, 1.0]}),
+            json!({"q": [0.0], "mode": 0, "range": [0.0, 1.0]}),
+            json!({"q": q, "mode": 0, "range": [1.0, 0.0]}),
+        ] {
+            assert_eq!(client.post("/api/intervals", &bad.to_string()).status, 400);
+        }
+    });
+}
+
+#[test]
 fn sliders_of_named_modes_are_weights_from_0_to_1() {
     let (model, certificates) = strips();
     let ranges = |names: &[&str]| {

@@ -6,14 +6,12 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use sscc::MetricKind;
 use sscc_io::LoadedModel;
-use sscc_modes::mode_frequencies;
-use sscc_view::{
-    Arrays, Live, MAX_REPORT_BYTES, ModelDetails, ModelScene, Plot, Report, Scene, Server, metric_comparison,
-};
+use sscc_view::{Live, MAX_REPORT_BYTES, Plot, Report, Scene, Server, metric_comparison};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt;
 use crate::load;
+use crate::model_scene::model_scene;
 use crate::outcome::Outcome;
 use crate::output::{Output, file_name, note};
 use crate::progress::Bar;
@@ -34,19 +32,11 @@ pub fn run(args: &View) -> Result<Outcome> {
     };
     let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
     let server = bind(args)?;
-    let details = ModelDetails {
-        frequencies: loaded.info.elasticity.as_ref().and_then(|known| mode_frequencies(known.stiffness())),
-        mode_names: loaded.mode_names.clone(),
-        deviations: loaded.info.deviations.clone(),
-        default_q: loaded.default_q.clone(),
-    };
     let name = file_name(path);
     let in_model = || path.display().to_string();
-    let mut arrays = Arrays::default();
+    let (described, arrays) = model_scene(&loaded, &certificates, &name, None).with_context(in_model)?;
     let mut scene = Scene::new(&name);
-    scene
-        .models
-        .push(ModelScene::new(0, &name, model, &certificates, details, &mut arrays).with_context(in_model)?);
+    scene.models.push(described);
     scene.plots.extend(comparison);
     let live = Live::new(model, &certificates, scene, arrays, Some(interrupt::token().clone()))
         .with_context(in_model)?;

@@ -110,6 +110,12 @@ fn obj() -> String {
     vertices.concat() + &faces.concat()
 }
 
+/// The data of a report.
+pub fn page_data(html: &str) -> Value {
+    let (_, data) = html.split_once("id=\"sscc-report\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
+}
+
 /// Returns the files of a folder, sorted.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();

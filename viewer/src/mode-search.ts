@@ -1,0 +1,128 @@
+/**
+ * A search over modes, one request each, the other weights being those displayed when it began: its button, its state, and
+ * its results. Rows show them; they are pale while other weights are displayed.
+ */
+import { type App, attempt } from "./app";
+import { h } from "./dom";
+import type { ModeRow } from "./mode-row";
+import { RequestError } from "./source";
+
+/** What a search asks, and how its results are shown. */
+export interface SearchKind<T> {
+    /** The path of the request. */
+    path: string;
+    label: string;
+    title: string;
+    /** What follows the number of modes that are done, as in "searched". */
+    done: string;
+    /** Where a row shows the result. */
+    cell(row: ModeRow): HTMLElement;
+    /** The content of that place. */
+    show(mode: number, result: T, base: Float64Array): (Node | string)[];
+    /** Refuses to begin, by an error. */
+    check(): void;
+}
+
+export class ModeSearch<T> {
+    readonly button = h("button", { type: "button", onclick: () => this.toggle() });
+    readonly state = h("p", { class: "hint", role: "status", hidden: true });
+    readonly results = new Map<number, T | null>();
+    /** The q of all results. */
+    private base: Float64Array;
+    private running: AbortController | null = null;
+
+    constructor(
+        private readonly app: App,
+        private readonly rows: ModeRow[],
+        /** The modes to search. */
+        private readonly listed: () => number[],
+        private readonly kind: SearchKind<T>,
+        /** Called when results have changed. */
+        private readonly changed: () => void,
+    ) {
+        this.base = app.pose.q.slice();
+        app.pose.onChange(() => this.compare());
+        this.showState("");
+    }
+
+    private toggle(): void {
+        if (this.running) this.running.abort();
+        else void attempt(this.app, () => this.run());
+    }
+
+    private async run(): Promise<void> {
+        const { app, kind } = this;
+        app.motion.stop();
+        kind.check();
+        if (app.pose.q.some((weight, k) => weight !== this.base[k])) this.clear();
+        this.base = app.pose.q.slice();
+        this.compare();
+        const modes = this.listed().filter((mode) => !this.results.has(mode));
+        const running = new AbortController();
+        this.running = running;
+        let done = 0;
+        try {
+            for (const mode of modes) {
+                this.showState(`${done} of ${modes.length} modes ${kind.done}`);
+                kind.cell(this.rows[mode]).textContent = "…";
+                await this.ask(mode, running.signal);
+                done++;
+            }
+            this.showState("");
+        } catch (error) {
+            if (!running.signal.aborted) throw error;
+        } finally {
+            for (const mode of modes) if (!this.results.has(mode)) kind.cell(this.rows[mode]).replaceChildren();
+            this.running = null;
+            this.showState(done < modes.length ? `stopped after ${done} of ${modes.length} modes` : "");
+        }
+    }
+
+    private async ask(mode: number, signal: AbortSignal): Promise<void> {
+        const { app, kind } = this;
+        const request = { q: [...this.base], mode, range: app.shape.range(mode) };
+        let content: (Node | string)[];
+        try {
+            const found = await app.source.ask<T>(kind.path, request, signal);
+            this.results.set(mode, found);
+            content = kind.show(mode, found, this.base);
+        } catch (error) {
+            // A search that takes too long has no result; the others may have one.
+            if (!(error instanceof RequestError) || !error.message.includes("no result within")) throw error;
+            this.results.set(mode, null);
+            content = [h("span", { title: error.message }, "no result")];
+        }
+        kind.cell(this.rows[mode]).replaceChildren(...content);
+        this.changed();
+    }
+
+    private clear(): void {
+        this.results.clear();
+        for (const row of this.rows) this.kind.cell(row).replaceChildren();
+        this.changed();
+    }
+
+    /** Results hold where all weights but that of their mode are those of the search. Others are shown pale. */
+    private compare(): void {
+        const { q } = this.app.pose;
+        let [changed, last] = [0, -1];
+        for (let k = 0; k < q.length; k++) {
+            if (q[k] === this.base[k]) continue;
+            changed++;
+            last = k;
+        }
+        for (const mode of this.results.keys())
+            this.kind
+                .cell(this.rows[mode])
+                .classList.toggle("stale", changed > 1 || (changed === 1 && last !== mode));
+        const isStale = changed > 0 && this.results.size > 0;
+        if (!this.running) this.showState(isStale ? "pale: found with other weights than those displayed" : "");
+    }
+
+    private showState(text: string): void {
+        this.button.textContent = this.running ? "Stop" : this.kind.label;
+        this.button.title = this.running ? "stop the search" : this.kind.title;
+        this.state.textContent = text;
+        this.state.hidden = text === "";
+    }
+}
