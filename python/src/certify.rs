@@ -115,7 +115,7 @@ pub fn certify(
 }
 
 /// Returns the rings around pairs that collide at rest: True for these pairs alone, or a number of rings.
-fn rest_rings(typed: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u32>> {
+pub fn rest_rings(typed: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u32>> {
     if let Some(Ok(is_ignored)) = typed.map(|typed| typed.extract::<bool>()) {
         return Ok(is_ignored.then_some(0));
     }

@@ -27,6 +27,7 @@ mod modes;
 mod pool;
 mod positions;
 mod resolve;
+mod scene;
 mod shards;
 mod simulate;
 mod sweeps;
@@ -65,6 +66,8 @@ mod _sscc {
 
     #[pymodule_export]
     use super::modes::{_elastic, _pca, _polynomial};
+    #[pymodule_export]
+    use super::scene::{_check_scene, _scene_contents, _scene_positions};
     #[pymodule_export]
     use super::simulate::_simulate;
 

@@ -29,6 +29,7 @@ from sscc._sscc import (
     self_intersections,
 )
 from sscc._resolve import FreeSamples, Resolved
+from sscc._scene import Scene, SceneAnimation, SceneAnswer, SceneNode
 from sscc._simulate import Simulation, simulate
 from sscc._sweep import Interval, Intervals, Sweep
 from sscc.simulators import from_mujoco, from_simplicits, from_sofa
@@ -50,6 +51,10 @@ __all__ = [
     "KineticQuery",
     "Model",
     "Resolved",
+    "Scene",
+    "SceneAnimation",
+    "SceneAnswer",
+    "SceneNode",
     "Simulation",
     "Sweep",
     "__version__",

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sscc._curve import Curve
 from sscc._resolve import FreeSamples, Resolved
+from sscc._scene import SceneAnswer
 from sscc._sweep import Intervals, Sweep
 
 __version__: str
@@ -661,6 +662,28 @@ def _simulate(
     cache: _Path | None,
     threads: int | None,
 ) -> tuple[str, str, list[str]]: ...
+def _scene_contents(
+    path: _Path,
+) -> tuple[list[tuple[int, str | None, str | None, int, int]], list[tuple[str | None, float]]]: ...
+def _scene_positions(
+    path: _Path, node: str | None, animation: str | None, times: ArrayLike | None, fps: float | None
+) -> _F64: ...
+def _check_scene(
+    path: _Path,
+    animation: str | None,
+    times: ArrayLike | None,
+    fps: float | None,
+    node: str | None,
+    between_nodes: bool,
+    continuous: bool,
+    clearance: float | None,
+    groups: tuple[list[str], list[str], str | bytes | None],
+    neighbours: str | None,
+    ignore_rest: int | bool | None,
+    limit: int | None,
+    threads: int | None,
+    progress: _Progress,
+) -> list[SceneAnswer]: ...
 
 # Used by sscc.batch.
 

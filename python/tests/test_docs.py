@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from conftest import PROJECT
+from scenes import character
 
 
 def blocks(page: str) -> list[str]:
@@ -19,6 +20,7 @@ def blocks(page: str) -> list[str]:
 @pytest.mark.usefixtures("mujoco")
 def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    character(tmp_path)
     found = blocks("docs/python.md")
     assert len(found) > 5
     names: dict[str, Any] = {}

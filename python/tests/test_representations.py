@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 import sscc
+from scenes import character
 from shapes import samples, torus, two_triangles
 
 #: A line that is longer wraps more than once in a usual terminal.
 LIMIT = 200
 
 
-def instances(model: sscc.Model, certs: sscc.Certificates) -> dict[str, list[object]]:
+def instances(
+    model: sscc.Model, certs: sscc.Certificates, scene: sscc.Scene
+) -> dict[str, list[object]]:
     """Small, large and unusual objects of each class."""
     vertices, faces, modes = torus(24, 12, 6)
     draws = samples(500, 6, 0.4)
@@ -52,6 +55,10 @@ def instances(model: sscc.Model, certs: sscc.Certificates) -> dict[str, list[obj
             touching.resolve([-1.0], all=True),
             sscc.Resolved(True, np.zeros(5000), 1e-300, 1e300),
         ],
+        "Scene": [scene],
+        "SceneAnimation": [*scene.animations, sscc.SceneAnimation(None, 0.0)],
+        "SceneAnswer": [*scene.check("wave", times=[0.0, 0.5]), *scene.check(clearance=0.5)],
+        "SceneNode": [*scene.nodes],
         "Simulation": [
             sscc.Simulation(
                 {"scene": long_name, "steps": 10**9, "colliding_steps": 3}, Path("/" + "folder/" * 200), [Path("a")] * 9
@@ -67,9 +74,11 @@ def instances(model: sscc.Model, certs: sscc.Certificates) -> dict[str, list[obj
     }
 
 
-def test_each_class_has_a_representation_of_one_line(model: sscc.Model, certs: sscc.Certificates) -> None:
+def test_each_class_has_a_representation_of_one_line(
+    model: sscc.Model, certs: sscc.Certificates, tmp_path: Path
+) -> None:
     classes = {name for name in sscc.__all__ if inspect.isclass(getattr(sscc, name))}
-    made = instances(model, certs)
+    made = instances(model, certs, sscc.Scene.load(character(tmp_path)))
     assert classes == set(made), "each public class has instances here"
     for name, objects in made.items():
         for thing in objects:

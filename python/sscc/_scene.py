@@ -1,0 +1,200 @@
+"""Scenes of glTF files: every mesh with itself and with the others, as a player shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sscc._sscc import _check_scene, _scene_contents, _scene_positions
+from sscc._text import counted, number, quoted
+
+
+class SceneNode(NamedTuple):
+    """A node that shows a mesh with triangles."""
+
+    node: int
+    """Its number in the file."""
+    name: str | None
+    """Its name. Names may repeat."""
+    mesh: str | None
+    """The name of its mesh."""
+    vertices: int
+    triangles: int
+
+    def __repr__(self) -> str:
+        name = "" if self.name is None else f" {quoted(self.name)}"
+        return f"<sscc.SceneNode: {self.node}{name}, {counted(self.triangles, 'triangle')}>"
+
+
+class SceneAnimation(NamedTuple):
+    """An animation."""
+
+    name: str | None
+    duration: float
+    """The time of its last key frame (s)."""
+
+    def __repr__(self) -> str:
+        name = "without a name" if self.name is None else quoted(self.name)
+        return f"<sscc.SceneAnimation: {name}, {number(self.duration)} s>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneAnswer:
+    """The result of one node at one time, or of two nodes: ``against_node`` is then the other one."""
+
+    node: int
+    """The node, by its number."""
+    node_name: str | None
+    against_node: int | None
+    """The other node; None: the mesh of ``node`` with itself."""
+    against_node_name: str | None
+    index: int
+    """The number of the time; of continuous queries that of the start."""
+    time: float | None
+    """The time (s); None: the scene as it is stored."""
+    pairs: NDArray[np.uint32]
+    """Pairs that collide, or are nearer than the clearance: (n, 2), sorted, read-only. Of two nodes (triangle of
+    ``node``, triangle of ``against_node``)."""
+    times: NDArray[np.float64] | None
+    """The time of impact (0 to 1) of each pair, of continuous queries."""
+    distances: NDArray[np.float64] | None
+    """The distance of each pair, with a clearance."""
+    distance: float | None
+    """The smallest distance, with a clearance; None: no pair counts."""
+    complete: bool
+    """Whether all pairs are listed."""
+
+    @property
+    def colliding(self) -> bool:
+        """Whether any pair collides; with a clearance: whether one has distance 0."""
+        return len(self.pairs) > 0 if self.distances is None else bool((self.distances == 0).any())
+
+    def __repr__(self) -> str:
+        def named(node: int | None, name: str | None) -> str:
+            return f"node {node}" if name is None else f"node {node} {quoted(name)}"
+
+        place = named(self.node, self.node_name)
+        if self.against_node is not None:
+            place += f" against {named(self.against_node, self.against_node_name)}"
+        at = "" if self.time is None else f" at {number(self.time)} s"
+        found = counted(len(self.pairs), "pair") if len(self.pairs) else "free"
+        return f"<sscc.SceneAnswer: {place}{at}: {found}>"
+
+
+class Scene:
+    """A glTF file (``.glb``, ``.gltf``, ``.vrm``): meshes at nodes, and animations that move them.
+
+    >>> scene = sscc.Scene.load("character.glb")
+    >>> [answer for answer in scene.check(animation="wave", fps=10) if answer.colliding]
+    """
+
+    path: Path
+    nodes: list[SceneNode]
+    animations: list[SceneAnimation]
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        nodes, animations = _scene_contents(path)
+        self.path = Path(path)
+        self.nodes = [SceneNode(*node) for node in nodes]
+        self.animations = [SceneAnimation(*animation) for animation in animations]
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Scene:
+        """Reads what is in a file. Raises FileNotFoundError, OSError, ValueError."""
+        return cls(path)
+
+    def __repr__(self) -> str:
+        nodes = counted(len(self.nodes), "node")
+        animations = counted(len(self.animations), "animation")
+        return f"<sscc.Scene: {quoted(self.path)}, {nodes} with a mesh, {animations}>"
+
+    def check(
+        self,
+        animation: str | int | None = None,
+        *,
+        times: ArrayLike | None = None,
+        fps: float | None = None,
+        node: str | int | None = None,
+        between_nodes: bool | None = None,
+        continuous: bool = False,
+        clearance: float | None = None,
+        ignore_groups: Iterable[str] = (),
+        only_groups: Iterable[str] = (),
+        group_by: str | PathLike[str] | None = None,
+        neighbours: Literal["exclude", "include-one-vertex", "include-folded"] | None = None,
+        ignore_rest: int | bool | None = None,
+        limit: int | None = None,
+        threads: int | None = None,
+        progress: bool | Callable[[float], object] | None = None,
+    ) -> list[SceneAnswer]:
+        """Checks every mesh with itself and with the others, as ``sscc check`` does.
+
+        animation: its name or number; None: the scene as it is stored.
+        times, fps: when the animation is checked (s; times a second); None: 30 times a second.
+        node: the name or number of the only node; None: all.
+        between_nodes: whether two nodes are compared with each other; None: yes, unless pairs at rest are ignored.
+        continuous: from each time to the next, every vertex on a straight line.
+        clearance: find pairs nearer than this in place of those that collide.
+        ignore_groups, only_groups: pairs "A,B" of names of nodes, meshes and materials that do not count, or alone
+            count. group_by: "node", "mesh", "material", "group" (primitives) or a file of numbers; None: any name.
+        ignore_rest: True: pairs that collide at rest do not count; a number: nor those within so many rings of them.
+        limit: the most pairs of each answer.
+
+        One answer for each node and time; then, time by time, one for each two nodes that collide (or are near). Raises
+        FileNotFoundError, OSError, ValueError, TypeError.
+        """
+        if between_nodes and ignore_rest not in (None, False):
+            raise ValueError("ignore_rest is about pairs within one mesh: leave out between_nodes")
+        if continuous and animation is None:
+            raise ValueError("continuous: a scene at rest has no motion: give an animation")
+        only, ignored = _pairs(only_groups, "only_groups"), _pairs(ignore_groups, "ignore_groups")
+        if only and ignored:
+            raise ValueError("give ignore_groups or only_groups, not both")
+        return _check_scene(
+            self.path,
+            _name(animation, "animation"),
+            times,
+            fps,
+            _name(node, "node"),
+            True if between_nodes is None else between_nodes,
+            continuous,
+            clearance,
+            (ignored, only, None if group_by is None else fspath(group_by)),
+            neighbours,
+            ignore_rest,
+            limit,
+            threads,
+            progress,
+        )
+
+    def positions(
+        self,
+        node: str | int,
+        animation: str | int | None = None,
+        *,
+        times: ArrayLike | None = None,
+        fps: float | None = None,
+    ) -> NDArray[np.float64]:
+        """The positions of a node's mesh at each time, as a player shows them: (T, V, 3)."""
+        return _scene_positions(self.path, _name(node, "node"), _name(animation, "animation"), times, fps)
+
+
+def _name(name: str | int | None, argument: str) -> str | None:
+    if name is None or isinstance(name, str):
+        return name
+    if isinstance(name, bool) or not isinstance(name, (int, np.integer)):
+        raise TypeError(f"{argument} is a {type(name).__name__}: a name or a number was expected")
+    return str(int(name))
+
+
+def _pairs(pairs: Iterable[str], argument: str) -> list[str]:
+    found = [pairs] if isinstance(pairs, str) else list(pairs)
+    if not all(isinstance(pair, str) for pair in found):
+        raise TypeError(f'{argument}: texts "A,B" were expected')
+    return found
