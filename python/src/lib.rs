@@ -24,6 +24,7 @@ mod metric;
 mod model;
 mod model_methods;
 mod modes;
+mod polygons;
 mod pool;
 mod positions;
 mod resolve;
@@ -66,6 +67,8 @@ mod _sscc {
 
     #[pymodule_export]
     use super::modes::{_elastic, _pca, _polynomial};
+    #[pymodule_export]
+    use super::polygons::_triangulated;
     #[pymodule_export]
     use super::scene::{_check_scene, _scene_contents, _scene_positions};
     #[pymodule_export]

@@ -33,6 +33,7 @@ from sscc._scene import Scene, SceneAnimation, SceneAnswer, SceneNode
 from sscc._simulate import Simulation, simulate
 from sscc._sweep import Interval, Intervals, Sweep
 from sscc.simulators import from_mujoco, from_simplicits, from_sofa
+from sscc.usd import UsdMesh, from_usd
 
 __all__ = [
     "Answer",
@@ -57,10 +58,12 @@ __all__ = [
     "SceneNode",
     "Simulation",
     "Sweep",
+    "UsdMesh",
     "__version__",
     "from_mujoco",
     "from_simplicits",
     "from_sofa",
+    "from_usd",
     "modes",
     "self_intersections",
     "simulate",

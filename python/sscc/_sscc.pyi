@@ -662,6 +662,9 @@ def _simulate(
     cache: _Path | None,
     threads: int | None,
 ) -> tuple[str, str, list[str]]: ...
+def _triangulated(
+    place: str, counts: ArrayLike, corners: ArrayLike, positions: ArrayLike
+) -> tuple[_U32, list[str]]: ...
 def _scene_contents(
     path: _Path,
 ) -> tuple[list[tuple[int, str | None, str | None, int, int]], list[tuple[str | None, float]]]: ...

@@ -41,6 +41,12 @@ def mujoco(request: pytest.FixtureRequest) -> None:
     needs(request, "mujoco")
 
 
+@pytest.fixture
+def usd(request: pytest.FixtureRequest) -> None:
+    """Needs the package usd-core."""
+    needs(request, "pxr")
+
+
 def needs(request: pytest.FixtureRequest, module: str) -> None:
     """Skips a test if a module is not installed."""
     if importlib.util.find_spec(module) is None:

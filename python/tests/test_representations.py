@@ -71,6 +71,7 @@ def instances(
             sscc.Sweep(66, long_name, 0.0, 1.0, 0.1, None, no_pairs, "nothing is proven beyond"),
             sscc.Sweep(66, long_name, 0.0, 1.0, None, 0.0, no_pairs, "it collides at the start"),
         ],
+        "UsdMesh": [sscc.UsdMesh(long_name, np.zeros((0, 3), np.uint32), np.zeros((1, 0, 3)), np.zeros(1))],
     }
 
 

@@ -35,6 +35,9 @@ pub enum Error {
     /// The data of the report cannot be written.
     #[error("the report cannot be written: {0}")]
     Page(#[from] serde_json::Error),
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    View(#[from] sscc_view::ViewError),
     /// The thread of a simulation cannot be started.
     #[error("the thread of a simulation cannot be started: {0}")]
     Thread(#[from] rayon::ThreadPoolBuildError),

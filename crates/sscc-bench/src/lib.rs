@@ -9,6 +9,7 @@
 
 pub mod demo;
 mod error;
+mod figures;
 mod measure;
 mod methods;
 mod paper;
@@ -21,6 +22,7 @@ mod scenarios;
 mod setup;
 
 pub use error::Error;
+pub use figures::{Figure, FigureRecord};
 pub use paper::PaperTable;
 pub use plots::BenchPage;
 pub use random::Random;
@@ -28,5 +30,6 @@ pub use record::{Means, Record};
 pub use scenarios::{
     BenchModel, Exponents, GROWTH_RANK, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, KineticRecord,
     ListedScenario, ModelsScenario, SCENE_STEPS, Scenario, SceneMeasurement, measure_scene, plot_norms,
+    plot_scenes,
 };
 pub use setup::Setup;

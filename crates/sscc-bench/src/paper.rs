@@ -132,6 +132,7 @@ fn table_1(records: &[Record]) -> Vec<String> {
             record.simulation_speedup.unwrap_or(f64::NAN),
             ms("parry") / full
         ));
+        lines.extend(substitute(record));
         if let Some(row) = TABLE_1.iter().find(|row| row.name == record.scenario) {
             lines.push(format!(
                 "  {PAPER:<24}{:>10}{:>14}{:>10}{:>10}{:>12}{:>9.1}x{:>11.1}x",
@@ -162,7 +163,16 @@ fn table_2(record: &Record) -> Vec<String> {
         lines.push(line(row.name, traditional, full, traditional / full));
         lines.push(line(PAPER, row.traditional, row.certified, row.speedup));
     }
+    lines.extend(substitute(record));
     lines
+}
+
+/// A line that names the shape which replaces that of a scene: under `--quick`, or without files of the models.
+fn substitute(record: &Record) -> Option<String> {
+    record.is_substitute.then(|| {
+        let triangles = grouped(record.triangles as u64);
+        format!("    not the shape of {}: {}, {triangles} triangles", record.scenario, record.source)
+    })
 }
 
 fn table_3(record: &Record) -> Vec<String> {
@@ -183,5 +193,6 @@ fn table_3(record: &Record) -> Vec<String> {
         let (own, dynamics, ground, penalty) = (row.own, row.dynamics, row.ground, row.penalty);
         lines.push(format!("  {PAPER:<24}{own:>10}{dynamics:>16}{ground:>10}{penalty:>10}"));
     }
+    lines.extend(substitute(record));
     lines
 }

@@ -21,6 +21,9 @@ pub struct Record {
     /// Note on a replaced model or on missing strata.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// Whether another shape replaces that of the scenario: under `--quick`, or without its file.
+    #[serde(skip)]
+    pub is_substitute: bool,
     /// The largest displacement in percent of half the diagonal of the AABB.
     pub share: f64,
     /// The largest `|z|` over the root's radius, where this is what scales the motion.
@@ -161,6 +164,7 @@ impl Record {
             scenario,
             model: model.name.clone(),
             source: model.source.clone(),
+            is_substitute: model.note.is_some(),
             note: notes(model.note.clone(), strata.missing()),
             share,
             times_root: None,

@@ -4,6 +4,7 @@ use sscc_sim::{OWN_AMPLITUDE_SCENES, SHIPPED, Scene, nearest};
 
 use super::models::ModelsScenario;
 use crate::error::Error;
+use crate::figures::Figure;
 use crate::paper::PaperTable;
 
 /// A scenario of the benches.
@@ -15,6 +16,8 @@ pub enum Scenario {
     Growth,
     /// Motions in small steps: see [`KineticBench`](crate::KineticBench).
     Kinetic,
+    /// Diagrams of the paper.
+    Figure(Figure),
     /// Scenes that come with the program, see [`measure_scene`](crate::measure_scene).
     Scenes {
         /// Their names and texts.
@@ -34,11 +37,36 @@ pub struct ListedScenario {
 }
 
 /// Scenarios other than single scenes.
-const OTHERS: [(&str, Scenario, &str); 8] = [
+const OTHERS: [(&str, Scenario, &str); 13] = [
     (
         "amplitudes",
         Scenario::Models(ModelsScenario::Amplitudes),
         "bunny, dragon and spring at random q, displaced by 0.5 to 40%",
+    ),
+    (
+        "figure7",
+        Scenario::Figure(Figure::RadiiOfLevels),
+        "the radii of each level of the bunny's hierarchy, the paper's Figure 7",
+    ),
+    (
+        "figure9",
+        Scenario::Figure(Figure::MetricsOverModes),
+        "the spring's root radius under two metrics, the paper's Figure 9",
+    ),
+    (
+        "figure11",
+        Scenario::Figure(Figure::ExtremalShapes),
+        "the bunny at its root's radius along the first modes, the paper's Figure 11",
+    ),
+    (
+        "figure12",
+        Scenario::Scenes { scenes: &[SHIPPED[1]], table: None },
+        "bunny16, the cost of each step, the paper's Figure 12",
+    ),
+    (
+        "figure14",
+        Scenario::Figure(Figure::GeometricModes),
+        "the dragon at its root's radius, polynomials and vibrations, the paper's Figure 14",
     ),
     ("growth", Scenario::Growth, "springs of 4,000 to a million triangles"),
     ("kinetic", Scenario::Kinetic, "a spring that vibrates, 44,100 steps per second: kinetic queries"),

@@ -17,4 +17,4 @@ pub use kinetic::{KineticBench, KineticRecord};
 pub use list::{ListedScenario, Scenario};
 pub use models::{BenchModel, ModelsScenario};
 pub use norms::plot_norms;
-pub use scene::{SCENE_STEPS, SceneMeasurement, measure_scene};
+pub use scene::{SCENE_STEPS, SceneMeasurement, measure_scene, plot_scenes};

@@ -8,13 +8,16 @@ use sscc_view::Plot;
 
 use crate::error::Error;
 use crate::measure::{Kinds, Step, compare, time_kinetic};
-use crate::plots::cost_over_time;
+use crate::plots::{Line, SvgPlot, YAxis, cost_over_time, stacked};
 use crate::record::{Record, SceneTotals};
 use crate::sampling::{Counts, Stratum, blocks, evenly_spread, half_diagonal, largest_displacement};
 use crate::setup::Setup;
 
 /// Number of states among which the largest displacement is searched.
 const DISPLACEMENTS: usize = 100;
+
+/// Colours of the lines of a plot.
+const COLORS: [&str; 3] = ["#cc6600", "#0066cc", "#009966"];
 
 /// Default number of measured steps of a scene.
 pub const SCENE_STEPS: usize = 100;
@@ -65,6 +68,26 @@ pub fn measure_scene(
     let (objects, totals) = (scene.bodies.len(), Some(totals(&history)));
     let record = Record::new(name.into(), share, &model, &comparison, objects, totals);
     Ok(SceneMeasurement { record, costs })
+}
+
+/// Returns a plot of the costs of scenes, as SVG: those of each step over time, as in the paper's Figure 12.
+pub fn plot_scenes(costs: &[Plot]) -> String {
+    stacked(&costs.iter().map(svg_plot).collect::<Vec<_>>())
+}
+
+fn svg_plot(plot: &Plot) -> SvgPlot<'_> {
+    let lines = plot.series.iter().zip(COLORS);
+    let lines = lines.map(|(series, color)| {
+        let points = series.x.iter().zip(&series.y).map(|(x, y)| [*x, *y]).collect();
+        Line { label: &series.name, color, points }
+    });
+    SvgPlot {
+        title: plot.title.clone(),
+        x_label: &plot.x.label,
+        y_label: &plot.y.label,
+        y_axis: YAxis::Logarithmic,
+        lines: lines.collect(),
+    }
 }
 
 /// Returns the motion of the whole scene, simulated on one thread or read from the cache.

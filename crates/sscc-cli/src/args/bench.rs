@@ -11,6 +11,7 @@ use clap::Args;
     help_template = with_examples!(
         "sscc bench --list"
         "sscc bench amplitudes --models models/"
+        "sscc bench figure7 --models models/ --plot figure7.svg"
         "sscc bench amplitudes --only spring --samples 4"
         "sscc bench bunny128 --steps 50 --json"
     ),
@@ -41,7 +42,7 @@ pub struct Bench {
     /// Replace every model by a spring of 4,000 triangles, to test the bench in seconds
     #[arg(long)]
     pub quick: bool,
-    /// Growth and norms: also plot the results
+    /// Figures, scenes, growth and norms: also plot the results
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
     /// Scenes, amplitudes, mixed, norms and growth: also write the results as a page in one file

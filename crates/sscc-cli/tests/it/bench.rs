@@ -231,11 +231,59 @@ fn measurements() {
     // The table has the paper's rows beside ours.
     let run = bench(folder.path(), &["table3", "--quick", "--steps", "10"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    for part in
-        ["means are of the whole scene: ", "Table 3, ours and the paper's (spring", "    the paper", "<0.01"]
-    {
+    for part in [
+        "means are of the whole scene: ",
+        "Table 3, ours and the paper's (spring",
+        "    the paper",
+        "<0.01",
+        "    not the shape of spring: embedded spring, 4,000 triangles",
+    ] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
     }
+}
+
+/// The diagrams of the paper, with a small spring in place of its shapes.
+#[test]
+fn figures_are_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let figure = |name: &str| {
+        let plot = format!("{name}.svg");
+        let run = bench(folder, &[name, "--quick", "--json", "--plot", &plot]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        (run.json().remove(0), fs::read_to_string(folder.join(plot)).unwrap())
+    };
+    let rows = |record: &Value| record["rows"].as_array().unwrap().clone();
+    let column = |record: &Value, key: &str| -> Vec<f64> {
+        rows(record).iter().map(|row| row[key].as_f64().unwrap()).collect()
+    };
+    let (levels, svg) = figure("figure7");
+    assert_eq!(keys(&levels), sorted("scenario, source, note, rows"));
+    assert_eq!(column(&levels, "level")[..3], [0.0, 1.0, 2.0]);
+    let medians = column(&levels, "median");
+    assert!(medians.len() > 3 && medians.last() > medians.first(), "{medians:?}");
+    assert!(svg.starts_with("<svg") && svg.matches("<polyline").count() == 2);
+
+    let (metrics, svg) = figure("figure9");
+    assert_eq!(column(&metrics, "modes"), [5.0, 10.0, 20.0]);
+    let [energy, displacement] = ["energy_mm", "displacement_mm"].map(|key| column(&metrics, key));
+    assert!(energy.iter().zip(&displacement).all(|(e, d)| *e > 0.0 && *d > 0.0));
+    // More modes cost less under the energy metric: the paper's point.
+    assert!(energy[2] / energy[0] > displacement[2] / displacement[0], "{energy:?} {displacement:?}");
+    assert_eq!(svg.matches("<polyline").count(), 2);
+
+    for name in ["figure11", "figure14"] {
+        let (record, svg) = figure(name);
+        assert_eq!(column(&record, "mode"), [0.0, 1.0, 2.0, 3.0]);
+        let count = if name == "figure11" { 1 } else { 2 };
+        assert_eq!(svg.matches("data:image/png;base64,").count(), count);
+        let text = bench(folder, &[name, "--quick"]);
+        assert!(text.stdout.contains("note: --quick: a spring of 4,000 triangles"), "{text:?}");
+    }
+    let run = bench(folder, &["spring-gentle", "--quick", "--steps", "20", "--plot", "costs.svg"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let svg = fs::read_to_string(folder.join("costs.svg")).unwrap();
+    assert!(svg.contains("Cost over time: spring-gentle") && svg.matches("<polyline").count() == 3, "{svg}");
 }
 
 #[test]
@@ -272,7 +320,10 @@ fn refusals() {
         (&["kinetic", "--only", "spring"], "--only is for amplitudes, mixed, norms and growth"),
         (&["spring", "--samples", "2"], "--samples is for amplitudes, mixed, norms and growth"),
         (&["growth", "--steps", "2"], "--steps is for scenes and kinetic"),
-        (&["amplitudes", "--plot", "a.svg"], "--plot is for growth and norms"),
+        (&["amplitudes", "--plot", "a.svg"], "--plot is for figures, scenes, growth and norms"),
+        (&["figure7", "--steps", "2"], "--steps is for scenes and kinetic"),
+        (&["figure7", "--only", "bunny"], "--only is for amplitudes"),
+        (&["figure7", "--plot", "a.png"], "a.png: the name of the output must end in .svg"),
         (&["growth", "--quick"], "--quick is not for growth"),
         (&[], "SCENARIO"),
     ] {

@@ -372,6 +372,22 @@ fn scenes_without_meshes_are_refused_in_one_line() {
     assert_eq!((found.len(), &found[0]["node"]), (1, &json!(1)));
 }
 
+/// An extension that shows a mesh at many places is named: its instances are not compared.
+#[test]
+fn instances_are_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let instanced = json!({"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {}}}});
+    write(folder, "one.gltf", &gltf(&[("a", &triangle)], json!([instanced])));
+    write(folder, "two.gltf", &gltf(&[("a", &triangle), ("b", &triangle)], json!([{"mesh": 1}, instanced])));
+    for (file, node) in [("one.gltf", 0), ("two.gltf", 1)] {
+        let run = sscc(folder, &["check", file]);
+        let note = format!("warning: {file}: nodes[{node}]: the extension EXT_mesh_gpu_instancing");
+        assert!(run.stderr.starts_with(&note) && run.stderr.lines().count() == 1, "{run:?}");
+    }
+}
+
 /// The robot of many parts: each two nodes as frames of their own, by the detector between files.
 #[test]
 fn published_scenes_are_compared_part_by_part() {

@@ -11,8 +11,10 @@ mod fan;
 mod plane;
 mod simple;
 mod soup;
+mod triangulate;
 mod triangulation;
 mod work;
 
 pub(crate) use collector::Polygons;
 pub(crate) use soup::Soup;
+pub use triangulate::triangulate;

@@ -62,6 +62,7 @@ impl MeshSource {
         if placed.node(0).is_none() {
             warn("no node shows the mesh: it is checked in its own coordinates");
         }
+        placed.notes().iter().for_each(|note| warn(note));
         let error = placed.largest_weight_error();
         if error > MAX_WEIGHT_ERROR {
             warn(&format!(

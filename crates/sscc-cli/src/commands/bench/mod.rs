@@ -1,5 +1,6 @@
 //! `sscc bench`: runs the scenarios of `sscc-bench`, and prints their records.
 
+mod figure;
 mod growth;
 mod kinetic;
 mod printer;
@@ -59,23 +60,26 @@ fn list() -> anyhow::Result<Outcome> {
 
 /// Refuses flags that have no meaning for the scenario.
 fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
+    let is_figure = matches!(scenario, Scenario::Figure(_));
     let has_steps = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);
+    let has_samples = !has_steps && !is_figure;
+    ensure!(has_steps || args.steps.is_none(), "--steps is for scenes and kinetic");
     ensure!(
-        has_steps || args.steps.is_none(),
-        "--steps is for scenes and kinetic; amplitudes, mixed, norms and growth have --samples"
-    );
-    ensure!(
-        !has_steps || args.samples.is_none(),
+        has_samples || args.samples.is_none(),
         "--samples is for amplitudes, mixed, norms and growth; scenes and kinetic have --steps"
     );
     ensure!(
-        !has_steps || args.only.is_none(),
+        has_samples || args.only.is_none(),
         "--only is for amplitudes, mixed, norms and growth: a scene is one model"
     );
     let is_growth = matches!(scenario, Scenario::Growth);
     let is_norms = matches!(scenario, Scenario::Models(ModelsScenario::Norms));
-    ensure!(is_growth || is_norms || args.plot.is_none(), "--plot is for growth and norms");
-    let has_page = !matches!(scenario, Scenario::Kinetic);
+    let has_plot = is_figure || is_growth || is_norms || matches!(scenario, Scenario::Scenes { .. });
+    ensure!(has_plot || args.plot.is_none(), "--plot is for figures, scenes, growth and norms");
+    if let Some(plot) = &args.plot {
+        load::check_output(plot, ".svg", &[])?;
+    }
+    let has_page = !is_figure && !matches!(scenario, Scenario::Kinetic);
     ensure!(has_page || args.report.is_none(), "--report is for scenes, amplitudes, mixed, norms and growth");
     ensure!(
         !is_growth || !args.quick,

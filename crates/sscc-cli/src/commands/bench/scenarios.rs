@@ -2,11 +2,12 @@
 
 use anyhow::{Context, Result, ensure};
 use sscc_bench::{
-    GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, ModelsScenario, PaperTable, SCENE_STEPS, Scenario,
-    Setup, measure_scene, plot_norms,
+    Figure, GROWTH_SIZES, GrowthRecord, GrowthSize, KineticBench, ModelsScenario, PaperTable, SCENE_STEPS,
+    Scenario, Setup, measure_scene, plot_norms, plot_scenes,
 };
 use sscc_io::write_whole;
 
+use super::figure::figure_lines;
 use super::printer::Printer;
 use super::{growth, kinetic};
 use crate::args::Bench;
@@ -17,6 +18,7 @@ pub fn run(scenario: Scenario, args: &Bench, setup: &Setup<'_>, printer: &mut Pr
         Scenario::Models(scenario) => models(scenario, args, setup, printer),
         Scenario::Growth => growth(args, setup, printer),
         Scenario::Kinetic => kinetic(args, setup, printer),
+        Scenario::Figure(figure) => figure_of_paper(figure, args, setup, printer),
         Scenario::Scenes { scenes, table } => scenes_with_table(scenes, table, args, setup, printer),
     }
 }
@@ -56,6 +58,17 @@ fn growth(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> 
     printer.lines(growth::exponent_lines(&growth.exponents))
 }
 
+fn figure_of_paper(figure: Figure, args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
+    let record = figure.make(setup)?;
+    if let Some(path) = &args.plot {
+        write_whole(path, record.svg.as_bytes())?;
+    }
+    if printer.is_json {
+        return printer.out.json(&record);
+    }
+    printer.lines(figure_lines(&record))
+}
+
 fn kinetic(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()> {
     let bench = KineticBench::new(*setup)?;
     let steps = args.steps.map_or(KineticBench::STEPS, |steps| steps as usize);
@@ -87,15 +100,19 @@ fn scenes_with_table(
     printer: &mut Printer,
 ) -> Result<()> {
     let steps = args.steps.map_or(SCENE_STEPS, |steps| steps as usize);
-    let mut records = Vec::new();
+    let (mut records, mut costs) = (Vec::new(), Vec::new());
     for (name, text) in scenes {
         let measured = measure_scene(setup, name, text, steps).with_context(|| (*name).to_owned())?;
+        costs.push(measured.costs.clone());
         printer.page.add_costs(measured.costs);
         printer.print(std::slice::from_ref(&measured.record))?;
         records.push(measured.record);
-        if printer.is_over() {
+        if printer.is_over() && args.plot.is_none() {
             return Ok(());
         }
+    }
+    if let Some(path) = &args.plot {
+        write_whole(path, plot_scenes(&costs).as_bytes())?;
     }
     match table {
         Some(table) if !printer.is_json => printer.lines(table.lines(&records)),

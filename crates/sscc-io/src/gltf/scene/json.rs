@@ -73,6 +73,26 @@ pub(super) struct Node {
     pub scale: Option<Box<[f64; 3]>>,
     #[serde(default, deserialize_with = "or_default")]
     pub weights: Box<[f64]>,
+    extensions: Option<Box<NodeExtensions>>,
+}
+
+/// The extensions of a node that change where a mesh is shown.
+#[derive(Deserialize)]
+struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    instancing: Option<IgnoredAny>,
+}
+
+impl Node {
+    /// A note on a node whose mesh an extension shows at many places.
+    pub fn instancing_note(&self, node: usize) -> Option<String> {
+        self.extensions.as_ref()?.instancing.as_ref().map(|_| {
+            format!(
+                "nodes[{node}]: the extension EXT_mesh_gpu_instancing shows its mesh at many places; it is not evaluated, \
+                 so that instances are not compared with anything"
+            )
+        })
+    }
 }
 
 /// The same mesh as in the structure for meshes, with the attributes of its skin alone.

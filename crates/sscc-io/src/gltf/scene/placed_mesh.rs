@@ -38,6 +38,7 @@ pub struct PlacedMesh {
     /// World transforms of all nodes.
     world: Vec<DMat4>,
     names: PartNames,
+    notes: Vec<String>,
 }
 
 /// Reads a mesh: that of this name (`#3` is the fourth), else the one at the only node of this name, at this node alone;
@@ -121,17 +122,23 @@ fn parse_in(
         check_joints(influences, (number, &skin), index, &place)?;
         skins.insert(number, skin);
     }
+    let notes = shown.iter().filter_map(|node| placed.nodes[*node].instancing_note(*node)).collect();
     let shown = shown.into_iter().map(|node| (node, skin_of(&node))).collect();
     // Most of the memory of a file of empty nodes.
     drop(placed);
     let (world, names) = (nodes.world_transforms(&[]), PartNames::parse(chunks.json)?);
-    Ok(PlacedMesh { mesh: index, shape, nodes: shown, skins, world, names })
+    Ok(PlacedMesh { mesh: index, shape, nodes: shown, skins, world, names, notes })
 }
 
 impl PlacedMesh {
     /// Index of the mesh in the file.
     pub fn mesh(&self) -> usize {
         self.mesh
+    }
+
+    /// What of the nodes was not evaluated: one line each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Number of places, at least 1.

@@ -71,7 +71,10 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     });
     let (animations, infos) = animations.unzip();
     let shown: BTreeSet<usize> = mesh_nodes.iter().map(|mesh_node| mesh_node.mesh).collect();
-    let notes = shown.into_iter().flat_map(|mesh| morph::notes(&root.meshes[mesh], mesh)).collect();
+    let of_meshes = shown.into_iter().flat_map(|mesh| morph::notes(&root.meshes[mesh], mesh));
+    let numbers = mesh_nodes.iter().map(|mesh_node| mesh_node.node);
+    let of_nodes = numbers.filter_map(|node| scene.nodes[node].instancing_note(node));
+    let notes = of_meshes.chain(of_nodes).collect();
     Ok(AnimatedScene { nodes, mesh_nodes, skins, animations, infos, notes })
 }
 

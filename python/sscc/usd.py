@@ -1,0 +1,116 @@
+"""Meshes of USD files at each time sample: ``from_usd``. Needs the package usd-core."""
+
+from __future__ import annotations
+
+import re
+from os import PathLike, fspath
+from typing import Any, NamedTuple
+from warnings import warn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sscc._sscc import _triangulated
+from sscc._text import counted, quoted
+
+__all__ = ["UsdMesh", "from_usd"]
+
+
+class UsdMesh(NamedTuple):
+    """A mesh of a USD file, as its stage shows it."""
+
+    name: str
+    """The path of its prim."""
+    faces: NDArray[np.uint32]
+    """Triangles (F, 3). Polygons are cut as in OBJ files."""
+    frames: NDArray[np.float64]
+    """Positions in the coordinates of the stage, (T, V, 3)."""
+    times: NDArray[np.float64]
+    """The time of each frame (s); one, 0, for a mesh that does not move."""
+
+    def __repr__(self) -> str:
+        sizes = f"{counted(len(self.faces), 'triangle')}, {counted(len(self.times), 'frame')}"
+        return f"<sscc.UsdMesh: {quoted(self.name)}, {sizes}>"
+
+
+def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
+    """The mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
+
+    prim: the path of a prim of type Mesh; None: the only one. Skins are evaluated. Files of Alembic can be read where the
+    installed USD has the plugin for them.
+
+    >>> mesh = sscc.from_usd("cloth.usda")
+    >>> sscc.Detector(mesh.faces, mesh.frames[0]).check_many(mesh.frames).colliding
+
+    ``numpy.save("frames.npy", mesh.frames)`` writes what ``sscc check --frames`` reads. Raises ImportError without the package
+    usd-core, FileNotFoundError, ValueError.
+    """
+    try:
+        from pxr import Usd, UsdGeom, UsdSkel
+    except ImportError as missing:
+        raise ImportError("sscc.from_usd needs usd-core, which is not installed: pip install usd-core") from missing
+    place = fspath(path)
+    with open(place, "rb"):
+        pass
+    try:
+        stage = Usd.Stage.Open(place)
+    except Exception as error:
+        causes = re.findall(r": '(.*)'", str(error)) or ["it is malformed"]
+        raise ValueError(f"{place}: USD cannot read it: {causes[-1]}") from error
+    per_second = stage.GetTimeCodesPerSecond()
+    # Skins are written into a layer of this session, not into the file. Times of layers with another rate are scaled.
+    stage.GetSessionLayer().timeCodesPerSecond = per_second
+    stage.SetEditTarget(stage.GetSessionLayer())
+    UsdSkel.BakeSkinning(stage.Traverse())
+    meshes = {str(found.GetPath()): UsdGeom.Mesh(found) for found in stage.Traverse() if found.IsA(UsdGeom.Mesh)}
+    if not meshes:
+        raise ValueError(f"{place}: it has no prim of type Mesh")
+    if prim is None and len(meshes) > 1:
+        raise ValueError(f"{place}: it has {len(meshes)} meshes: name one by prim: {_listed(meshes)}")
+    name = next(iter(meshes)) if prim is None else str(prim)
+    if name not in meshes:
+        raise ValueError(f"{place}: there is no mesh {quoted(name)}; there are {_listed(meshes)}")
+    return _mesh(f"{place}: {name}", name, meshes[name], per_second)
+
+
+def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:
+    from pxr import Usd, UsdGeom
+
+    counts, corners = mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
+    if counts.GetNumTimeSamples() > 1 or corners.GetNumTimeSamples() > 1:
+        raise ValueError(f"{place}: its faces change over time: a mesh with the same faces at all times was expected")
+    points = mesh.GetPointsAttr()
+    samples = set(points.GetTimeSamples())
+    ancestor = mesh.GetPrim()
+    while ancestor and not ancestor.IsPseudoRoot():
+        samples |= set(UsdGeom.Xformable(ancestor).GetTimeSamples()) if ancestor.IsA(UsdGeom.Xformable) else set()
+        ancestor = ancestor.GetParent()
+    times = sorted(samples) or [0.0]
+    frames: list[NDArray[np.float64]] = []
+    for time in times:
+        code = Usd.TimeCode(time)
+        values = points.Get(code)
+        if values is None:
+            raise ValueError(f"{place}: it has no points at time code {time:g}")
+        x = np.asarray(values, dtype=np.float64).reshape(-1, 3)
+        if frames and len(x) != len(frames[0]):
+            raise ValueError(f"{place}: it has {len(frames[0])} points at first, {len(x)} at time code {time:g}")
+        matrix = np.asarray(mesh.ComputeLocalToWorldTransform(code), dtype=np.float64)
+        frames.append(x @ matrix[:3, :3] + matrix[3, :3])
+    first = Usd.TimeCode(times[0])
+    faces = _triangles(place, counts.Get(first), corners.Get(first), frames[0])
+    return UsdMesh(name, faces, np.array(frames), np.array(times) / per_second)
+
+
+def _triangles(place: str, counts: Any, corners: Any, rest: NDArray[np.float64]) -> NDArray[np.uint32]:
+    """Polygons cut as all readers of the package do."""
+    counts, corners = (np.asarray(() if found is None else found, dtype=np.int64) for found in (counts, corners))
+    faces, warnings = _triangulated(place, counts, corners, rest)
+    for text in warnings:
+        warn(text, stacklevel=4)
+    return faces
+
+
+def _listed(meshes: dict[str, Any]) -> str:
+    names = [quoted(name) for name in list(meshes)[:10]]
+    return ", ".join(names) + (", ..." if len(meshes) > 10 else "")
