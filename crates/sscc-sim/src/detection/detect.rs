@@ -1,6 +1,6 @@
 //! Answers all queries of a request.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::path::Path;
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use super::mesh_source::MeshSource;
 use super::moving_mesh::MovingMesh;
 use super::node_pairs::NodePairs;
 use super::request::{Detection, MeshMotion};
-use super::sides::Sides;
+use super::sides::{Sides, is_scene};
 use super::worker::{QueryResult, Worker};
 use crate::error::Result;
 use crate::watch::check_cancelled;
@@ -39,11 +39,20 @@ pub fn detect<E: From<SimError>>(
 ) -> Result<(), E> {
     check_request(request)?;
     let is_at_rest = matches!(request.motion, MeshMotion::Rest) && request.against.is_none();
-    if is_at_rest && request.meshes.len() > 1 && !request.is_continuous {
-        return at_rest(request, watch, take).map(drop);
-    }
-    for (number, file) in request.meshes.iter().enumerate() {
-        let is_last = number + 1 == request.meshes.len();
+    let is_parallel = is_at_rest && request.meshes.len() > 1 && !request.is_continuous;
+    let mut number = 0;
+    while number < request.meshes.len() {
+        if is_parallel {
+            // Scenes are answered by themselves, all other files between them in parallel.
+            let meshes = request.meshes[number..].iter().take_while(|file| !is_scene(file, request)).count();
+            if at_rest(number..number + meshes, request, watch, &mut take)?.is_break() {
+                return Ok(());
+            }
+            number += meshes;
+        }
+        let Some(file) = request.meshes.get(number) else { break };
+        number += 1;
+        let is_last = number == request.meshes.len();
         let taken = match in_motion(file, is_last, request, watch, |found| take(file, Ok(found))) {
             Ok(taken) => taken,
             Err(Failure::File(error)) => {
@@ -129,15 +138,21 @@ fn in_motion<E>(
     )
 }
 
-/// Answers several meshes at rest, each on one thread.
+/// Answers several meshes at rest, by their numbers, each on one thread.
 fn at_rest<E: From<SimError>>(
+    meshes: Range<usize>,
     request: &Detection,
     watch: &dyn Watch,
-    mut take: impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
+    take: &mut impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
+    if meshes.is_empty() {
+        return Ok(ControlFlow::Continue(()));
+    }
     watch.begin(Stage::Detection);
     let count = request.meshes.len();
+    let first = meshes.start;
     let work = |(): &mut (), index: usize| {
+        let index = first + index;
         let source = MeshSource::read(&request.meshes[index], request.mesh_name.as_deref(), watch)?;
         source.warn_of_other_places(watch);
         let mesh = MovingMesh::at_rest(&source, 0, request, watch)?;
@@ -147,11 +162,12 @@ fn at_rest<E: From<SimError>>(
         Ok((mesh.mesh, mesh.left_out, found))
     };
     in_order(
-        count,
+        meshes.len(),
         request.threads.unwrap_or_else(available_threads),
         || (),
         work,
         |index, result: Result<_>| {
+            let index = first + index;
             check_cancelled(watch)?;
             let file = &request.meshes[index];
             let taken = match result {

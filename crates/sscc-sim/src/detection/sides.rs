@@ -206,7 +206,7 @@ fn side<'w>(
 }
 
 /// Whether a file is checked as a scene: it is glTF, has several meshes, and the request names none.
-fn is_scene(file: &Path, request: &Detection) -> bool {
+pub(super) fn is_scene(file: &Path, request: &Detection) -> bool {
     let is_whole =
         request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
     // What is malformed is left to the reader.
