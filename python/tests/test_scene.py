@@ -38,6 +38,7 @@ def test_nodes_are_checked_with_each_other(scene: sscc.Scene) -> None:
     assert between.pairs.tolist() == [[0, 0]] and between.colliding and between.complete
     assert not between.pairs.flags.writeable
     assert len(scene.check(0, times=[0.6], between_nodes=False)) == 2
+    assert len(scene.check(clearance=1.25, between_nodes=False)) == 2
     assert [answer.node for answer in scene.check("wave", times=[0.6], node="shirt")] == [2]
     assert [answer.node for answer in scene.check("wave", times=[0.6], node=2)] == [2]
 

@@ -87,13 +87,17 @@ fn row(name: &str, mesh: TriMesh) -> Result<()> {
     let turned: Vec<DVec3> =
         rest.iter().map(|x| DMat3::from_rotation_x(0.7) * *x + DVec3::X * 0.05 * size).collect();
     let mut other = Detector::new(&mesh);
-    let peers = [
+    let mut peers = [
         Peer::new(BvhBuildStrategy::Binned, &mesh, &rest),
         Peer::new(BvhBuildStrategy::Binned, &mesh, &turned),
     ];
     let (two, crossing) = {
         let ours = || Ok(detector.against(&rest, &mut other, &turned)?.to_vec());
-        let parry = || Ok(peers[0].refitted(&rest).with(&peers[1].refitted(&turned)));
+        let parry = || {
+            peers[0].refit(&rest);
+            peers[1].refit(&turned);
+            Ok(peers[0].with(&peers[1]))
+        };
         interleaved(&mut [&mut { ours }, &mut { parry }])?
     };
     let parry = shot[1].min(shot[2]);

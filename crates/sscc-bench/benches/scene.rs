@@ -28,7 +28,9 @@ use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, SimError
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-const FRAMES: usize = 10;
+const FRAMES: usize = 11;
+
+const REPETITIONS: usize = 5;
 
 /// The pairs of each frame and two nodes, or one.
 type Found = BTreeMap<(usize, usize, usize), Vec<Pair>>;
@@ -37,24 +39,19 @@ fn main() -> Result<()> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("scene.gltf");
     std::fs::write(&path, scene().to_string())?;
-    let (mut ours, mut ours_s) = (Found::new(), Vec::new());
-    let (mut parry, mut parry_s) = (Found::new(), Vec::new());
-    // Without the time of reading and building: that of one frame less.
-    let seconds = |times: &[f64], found: &mut Found| -> Result<f64> {
-        let start = Instant::now();
-        check(&path, times, found)?;
-        Ok(start.elapsed().as_secs_f64())
-    };
-    for frame in 0..FRAMES {
-        let time = frame as f64 / FRAMES as f64;
-        let once = seconds(&[time], &mut Found::new())?;
-        let mut twice = Found::new();
-        let two = seconds(&[time, time], &mut twice)?;
-        ours_s.push(two - once);
-        ours.extend(
-            twice.into_iter().filter(|((at, ..), _)| *at == 0).map(|((_, a, b), p)| ((frame, a, b), p)),
-        );
-        parry_s.push(peer(&path, frame, time, &mut parry)?);
+    let times: Vec<f64> = (0..FRAMES).map(|frame| frame as f64 / FRAMES as f64).collect();
+    let (mut ours, mut parry) = (Found::new(), Found::new());
+    let (mut ours_s, mut parry_s) = (Vec::new(), Vec::new());
+    for _ in 0..REPETITIONS {
+        let mut seconds = |times: &[f64]| -> Result<f64> {
+            let start = Instant::now();
+            check(&path, times, &mut ours)?;
+            Ok(start.elapsed().as_secs_f64())
+        };
+        // Reading and building take as long for one time.
+        let (once, all) = (seconds(&times[..1])?, seconds(&times)?);
+        ours_s.push((all - once) / (FRAMES - 1) as f64);
+        parry_s.push(peer(&path, &times, &mut parry)?);
     }
     assert!(ours == parry, "the answers differ");
     let pairs: usize = ours.values().map(Vec::len).sum();
@@ -93,31 +90,33 @@ fn check(path: &Path, times: &[f64], all: &mut Found) -> Result<()> {
     Ok(detect(&request, &(), take)?)
 }
 
-/// Answers the same by parry at one time; returns the seconds.
-fn peer(path: &Path, frame: usize, time: f64, all: &mut Found) -> Result<f64> {
+/// Answers the same by parry; returns the seconds of a frame, without reading and building.
+fn peer(path: &Path, times: &[f64], all: &mut Found) -> Result<f64> {
     let scene = read_scene(path)?;
-    let pose = scene.pose(Some(0), time)?;
-    let mut bodies = Vec::new();
+    let mut meshes = Vec::new();
     for node in scene.mesh_nodes() {
-        let mut positions = Vec::new();
-        pose.positions(node.node(), SkinWeights::Normalized, &mut positions)?;
-        bodies.push((TriMesh::new(node.rest_positions().to_vec(), node.faces().to_vec())?, positions));
+        meshes.push(TriMesh::new(node.rest_positions().to_vec(), node.faces().to_vec())?);
     }
-    let built: Vec<Peer<'_>> = bodies
-        .iter()
-        .map(|(mesh, _)| Peer::new(BvhBuildStrategy::Binned, mesh, mesh.rest_positions()))
-        .collect();
-    let start = Instant::now();
-    let peers: Vec<Peer<'_>> =
-        built.iter().zip(&bodies).map(|(peer, (_, positions))| peer.refitted(positions)).collect();
-    let mut found = Vec::new();
-    for (a, one) in peers.iter().enumerate() {
-        found.push(((frame, a, a), one.with_itself()));
-        found.extend((a + 1..peers.len()).map(|b| ((frame, a, b), one.with(&peers[b]))));
+    let build = |mesh| Peer::new(BvhBuildStrategy::Binned, mesh, mesh.rest_positions());
+    let mut peers: Vec<Peer<'_>> = meshes.iter().map(build).collect();
+    let mut seconds = 0.0;
+    for (frame, time) in times.iter().enumerate() {
+        let pose = scene.pose(Some(0), *time)?;
+        let mut positions = vec![Vec::new(); meshes.len()];
+        for (node, positions) in scene.mesh_nodes().iter().zip(&mut positions) {
+            pose.positions(node.node(), SkinWeights::Normalized, positions)?;
+        }
+        let start = Instant::now();
+        peers.iter_mut().zip(&positions).for_each(|(peer, positions)| peer.refit(positions));
+        let mut found = Vec::new();
+        for (a, one) in peers.iter().enumerate() {
+            found.push(((frame, a, a), one.with_itself()));
+            found.extend((a + 1..peers.len()).map(|b| ((frame, a, b), one.with(&peers[b]))));
+        }
+        seconds += start.elapsed().as_secs_f64();
+        all.extend(found.into_iter().filter(|(_, pairs)| !pairs.is_empty()));
     }
-    let seconds = start.elapsed().as_secs_f64();
-    all.extend(found.into_iter().filter(|(_, pairs)| !pairs.is_empty()));
-    Ok(seconds)
+    Ok(seconds / times.len() as f64)
 }
 
 /// The scene as a glTF file.

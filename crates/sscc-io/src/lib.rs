@@ -86,6 +86,7 @@ mod polygons;
 mod pose;
 pub mod solid;
 mod text;
+mod triangulate;
 mod vertex_numbers;
 mod wav;
 
@@ -108,8 +109,8 @@ pub use named_groups::{GroupsBy, NamedGroups};
 pub use npy::{NpyWriter, write_npy};
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
 pub use numbers::{Rows, read_matrix, read_rows, read_vector};
-pub use polygons::triangulate;
 pub use pose::{write_obj_pose, write_ply_pose};
 pub use solid::{VolumeOrSurface, read_volume_mesh, read_volume_or_surface};
+pub use triangulate::triangulate;
 pub use vertex_numbers::read_vertex_numbers;
 pub use wav::{WavFormat, wav_to_bytes, write_wav};

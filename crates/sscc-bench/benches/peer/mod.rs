@@ -7,7 +7,6 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use sscc::{Pair, TriMesh, intersect_triangle_triangle};
 
 /// parry's BVH of a mesh at some positions.
-#[derive(Clone)]
 pub struct Peer<'a> {
     bvh: Bvh,
     corners: Vec<[DVec3; 3]>,
@@ -23,15 +22,13 @@ impl<'a> Peer<'a> {
         Self { bvh: Bvh::from_leaves(strategy, &leaves), corners, faces: mesh.faces() }
     }
 
-    /// The same BVH, refitted to these positions.
-    pub fn refitted(&self, positions: &[DVec3]) -> Self {
-        let mut this = self.clone();
-        for (t, face) in this.faces.iter().enumerate() {
-            this.corners[t] = face.map(|v| positions[v as usize]);
-            let _ = this.bvh.insert_or_update_partially(bounds(&this.corners[t]), t as u32, 0.0);
+    /// Refits the BVH to these positions.
+    pub fn refit(&mut self, positions: &[DVec3]) {
+        for (t, face) in self.faces.iter().enumerate() {
+            self.corners[t] = face.map(|v| positions[v as usize]);
+            let _ = self.bvh.insert_or_update_partially(bounds(&self.corners[t]), t as u32, 0.0);
         }
-        this.bvh.refit_without_opt();
-        this
+        self.bvh.refit_without_opt();
     }
 
     /// The colliding pairs of the mesh with itself, without neighbours, sorted.

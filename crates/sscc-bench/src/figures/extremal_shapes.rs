@@ -3,11 +3,11 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use sscc::ReducedModel;
 use sscc_sim::{CertifiedModel, ModesSpec, Recipe, Shape};
 use sscc_view::{Picture, ViewError};
 
-use super::FigureRecord;
+use super::figure_record::FigureRecord;
+use super::mode_displacements::largest_displacements;
 use crate::error::Error;
 use crate::record::Means;
 use crate::sampling::half_diagonal;
@@ -43,16 +43,6 @@ pub fn of_polynomials(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     let svg = pictures(&[("quadratic polynomials", &polynomials), ("vibrations", &vibrations)])?;
     let (source, note) = (polynomials.source, polynomials.note);
     Ok(FigureRecord { scenario: "figure14", source, note, rows, svg })
-}
-
-/// The largest displacement of a vertex by each mode at weight 1 (model unit).
-pub(super) fn largest_displacements(model: &ReducedModel) -> Vec<f64> {
-    let modes = model.modes();
-    let mut largest = vec![0.0_f64; modes.rank()];
-    for of_vertex in modes.displacements().chunks(modes.rank()) {
-        largest.iter_mut().zip(of_vertex).for_each(|(most, u)| *most = most.max(u.length()));
-    }
-    largest
 }
 
 /// The largest displacement at the root's radius along each mode alone, in percent of half the AABB's diagonal.

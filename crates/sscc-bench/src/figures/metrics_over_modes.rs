@@ -6,8 +6,8 @@
 use sscc::{Certificates, CertifyOptions, Metric, Modes, ReducedModel};
 use sscc_sim::{ModesSpec, Recipe, Shape};
 
-use super::FigureRecord;
-use super::extremal_shapes::largest_displacements;
+use super::figure_record::FigureRecord;
+use super::mode_displacements::largest_displacements;
 use crate::error::Error;
 use crate::plots::{Line, SvgPlot, YAxis};
 use crate::record::Means;

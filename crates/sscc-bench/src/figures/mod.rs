@@ -1,13 +1,14 @@
 //! Diagrams of the paper's figures from our certificates. Figure 12 is a plot of the scene `bunny16`.
 
 mod extremal_shapes;
+mod figure_record;
 mod metrics_over_modes;
+mod mode_displacements;
 mod radii_of_levels;
 
-use serde::Serialize;
+pub use figure_record::FigureRecord;
 
 use crate::error::Error;
-use crate::record::Means;
 use crate::setup::Setup;
 
 /// A figure of the paper.
@@ -21,22 +22,6 @@ pub enum Figure {
     ExtremalShapes,
     /// Figure 14: the same, of quadratic polynomials and of vibrations.
     GeometricModes,
-}
-
-/// The numbers of a figure, and its picture. In JSON without the picture.
-#[derive(Clone, Debug, Serialize)]
-pub struct FigureRecord {
-    /// The name of the scenario.
-    pub scenario: &'static str,
-    /// Its model, and where the shape comes from.
-    pub source: String,
-    /// A note for people, for example on an embedded shape in place of a file.
-    pub note: Option<String>,
-    /// The numbers, row by row.
-    pub rows: Vec<Means>,
-    /// The figure as an SVG element.
-    #[serde(skip)]
-    pub svg: String,
 }
 
 impl Figure {

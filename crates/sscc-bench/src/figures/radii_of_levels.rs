@@ -4,7 +4,7 @@ use sscc::{Certificates, CertifyOptions};
 use sscc_sim::{ModesSpec, Recipe, Shape};
 use sscc_view::{Level, levels};
 
-use super::FigureRecord;
+use super::figure_record::FigureRecord;
 use crate::error::Error;
 use crate::plots::{Line, SvgPlot, YAxis};
 use crate::record::Means;

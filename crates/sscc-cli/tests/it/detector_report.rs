@@ -50,7 +50,7 @@ fn reports_have_every_frame_of_every_body() {
             (&json!([0.0, 0.5, 1.0]), &json!("frame_and_time"))
         );
         let names = playback["bodies"].as_array().unwrap().iter().map(|body| body["name"].clone());
-        assert_eq!(names.collect::<Vec<_>>(), ["node 1", "node 2"]);
+        assert_eq!(names.collect::<Vec<_>>(), ["node 1", "node 2 moved"]);
         let last = u8::from(continuous.is_empty());
         assert_eq!(playback["bodies"][1]["pairs"], json!([1, 1, last]));
     }

@@ -11,10 +11,8 @@ mod fan;
 mod plane;
 mod simple;
 mod soup;
-mod triangulate;
 mod triangulation;
 mod work;
 
 pub(crate) use collector::Polygons;
 pub(crate) use soup::Soup;
-pub use triangulate::triangulate;

@@ -11,7 +11,7 @@ use sscc_io::gltf::{AnimatedScene, MeshNode, SkinWeights, read_scene};
 use sscc_io::{FormatError, FrameReader, IoError};
 
 use super::mesh_source::{MAX_WEIGHT_ERROR, MeshSource};
-use super::request::{AnimationMotion, Detection};
+use super::request::{AnimationMotion, Detection, MeshMotion};
 use super::weld_classes::WeldClasses;
 use crate::LeftOut;
 use crate::error::{At, Result};
@@ -144,7 +144,7 @@ impl<'w> MovingMesh<'w> {
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::SimError::refused(file.display(), cause))?.into();
         let nodes = scene.find_mesh_nodes(animated.node.as_deref()).map_err(|error| in_file(error, file))?;
-        let groups = request.groups.of_nodes(file, nodes, compares_nodes(request, animated))?;
+        let groups = request.groups.of_nodes(file, nodes, compares_nodes(request))?;
         let mesh = |(node, groups): (&MeshNode, Option<TriangleGroups>)| {
             let weights = animated.weights;
             if weights == SkinWeights::Normalized && node.largest_weight_error() > MAX_WEIGHT_ERROR {
@@ -162,7 +162,7 @@ impl<'w> MovingMesh<'w> {
             };
             let filter = filter(request, is_welded, groups);
             let (detector, mut left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
-            if nodes.len() > 1 && !compares_nodes(request, animated) {
+            if nodes.len() > 1 && !compares_nodes(request) {
                 left_out = left_out.and_between_nodes();
             }
             if request.meshes.len() > 1 {
@@ -251,8 +251,8 @@ impl Evaluation {
 }
 
 /// Whether the meshes of different nodes are compared with each other. Pairs that are ignored at rest are those within one mesh.
-pub(super) fn compares_nodes(request: &Detection, animated: &AnimationMotion) -> bool {
-    let is_scene = animated.animation.is_none();
+pub(super) fn compares_nodes(request: &Detection) -> bool {
+    let is_scene = matches!(request.motion, MeshMotion::Rest);
     (request.between_nodes || is_scene) && request.ignore_rest.is_none()
 }
 

@@ -71,7 +71,7 @@ impl<'r, 'w> Sides<'r, 'w> {
         let animated = |animated: &AnimationMotion| {
             let meshes = MovingMesh::animated(file, animated, request, watch)?;
             let mesh = Side::Moving(meshes.into_iter().map(Arc::new).collect());
-            let compares_nodes = compares_nodes(request, animated);
+            let compares_nodes = compares_nodes(request);
             Ok(Self { compares_nodes, ..Self::new(file, mesh, None, request, watch)? })
         };
         match &request.motion {

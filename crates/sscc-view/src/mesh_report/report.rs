@@ -93,12 +93,13 @@ impl MeshReport {
         self.is_continuous = answer.times.is_some();
         self.is_between = answer.other.is_some();
         self.left_out = std::mem::take(&mut self.left_out).and(answer.left_out);
-        let nodes = [answer.node, answer.other_node];
+        let nodes = [answer.node, answer.other_node].into_iter().zip(answer.node_names);
         for (shape, node) in [shape].into_iter().chain(answer.other).zip(nodes) {
             let file = one_line(&file_name(shape.file));
             let name = match node {
-                Some(node) => format!("node {node}"),
-                None => file.clone(),
+                (Some(node), Some(name)) => format!("node {node} {}", one_line(name)),
+                (Some(node), None) => format!("node {node}"),
+                (None, _) => file.clone(),
             };
             if !self.files.contains(&file) || self.is_between {
                 self.files.push(file);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Polygons;
+use crate::polygons::Polygons;
 use crate::{FormatError, LoadedMesh, Place};
 
 /// Returns the mesh of polygons: `counts` has the number of corners of each, `corners` their vertices, one polygon after the
