@@ -149,8 +149,10 @@ class Scene:
         One answer for each node and time; then, time by time, one for each two nodes that collide (or are near). Raises
         FileNotFoundError, OSError, ValueError, TypeError.
         """
-        if between_nodes and ignore_rest not in (None, False):
+        if between_nodes and ignore_rest is not None and ignore_rest is not False:
             raise ValueError("ignore_rest is about pairs within one mesh: leave out between_nodes")
+        if clearance is not None and neighbours is not None:
+            raise ValueError("clearance: triangles with a common vertex never count: leave out neighbours")
         if continuous and animation is None:
             raise ValueError("continuous: a scene at rest has no motion: give an animation")
         only, ignored = _pairs(only_groups, "only_groups"), _pairs(ignore_groups, "ignore_groups")

@@ -36,7 +36,8 @@ class UsdMesh(NamedTuple):
 def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
     """The mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
 
-    prim: the path of a prim of type Mesh; None: the only one. Skins are evaluated. Files of Alembic can be read where the
+    prim: the path of a prim of type Mesh; None: the only one. Skins are evaluated. A subdivision
+        surface is its control mesh. Files of Alembic can be read where the
     installed USD has the plugin for them.
 
     >>> mesh = sscc.from_usd("cloth.usda")
@@ -61,7 +62,11 @@ def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
     # Skins are written into a layer of this session, not into the file. Times of layers with another rate are scaled.
     stage.GetSessionLayer().timeCodesPerSecond = per_second
     stage.SetEditTarget(stage.GetSessionLayer())
+    _make_instances_plain(stage)
     UsdSkel.BakeSkinning(stage.Traverse())
+    for found in stage.Traverse():
+        if found.IsA(UsdGeom.PointInstancer):
+            warn(f"{place}: {found.GetPath()}: a PointInstancer is not evaluated: its instances are left out", stacklevel=2)
     meshes = {str(found.GetPath()): UsdGeom.Mesh(found) for found in stage.Traverse() if found.IsA(UsdGeom.Mesh)}
     if not meshes:
         raise ValueError(f"{place}: it has no prim of type Mesh")
@@ -70,7 +75,18 @@ def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
     name = next(iter(meshes)) if prim is None else str(prim)
     if name not in meshes:
         raise ValueError(f"{place}: there is no mesh {quoted(name)}; there are {_listed(meshes)}")
+    prim_of_mesh = meshes[name].GetPrim()
+    is_skinned = UsdSkel.BindingAPI(prim_of_mesh).GetJointIndicesAttr().HasAuthoredValue()
+    if is_skinned and stage.GetSessionLayer().GetAttributeAtPath(f"{name}.points") is None:
+        raise ValueError(f"{place}: {name}: USD cannot evaluate its skin")
     return _mesh(f"{place}: {name}", name, meshes[name], per_second)
+
+
+def _make_instances_plain(stage: Any) -> None:
+    """Makes the prims of instances editable, in the layer of the session."""
+    while instances := [prim for prim in stage.Traverse() if prim.IsInstance()]:
+        for prim in instances:
+            prim.SetInstanceable(False)
 
 
 def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:

@@ -122,4 +122,28 @@ def SkelRoot "Root" {
 """
     mesh = sscc.from_usd(write(tmp_path, skinned))
     assert mesh.times.tolist() == [0, 1]
+    # A skin that cannot be evaluated is no mesh at rest.
+    for bad in [
+        skinned.replace("        uniform matrix4d[] bindTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))]\n", ""),
+        skinned.replace("jointIndices = [0, 0, 0]", "jointIndices = [0, 0, 7]"),
+        skinned.replace("jointWeights = [1, 1, 1]", "jointWeights = [1, 1]"),
+    ]:
+        assert bad != skinned
+        with pytest.raises(ValueError, match=r"/Root/M: USD cannot evaluate its skin"):
+            sscc.from_usd(write(tmp_path, bad, f"bad{len(bad)}.usda"))
     assert np.allclose(mesh.frames[:, :, 2], [[0, 0, 0], [3, 3, 3]])
+
+
+def test_instances_are_meshes(tmp_path: Path) -> None:
+    mesh = 'def Mesh "m" {\nint[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\npoint3f[] points = [(0,0,0), (1,0,0), (0,1,0)]\n}'
+    instance = (
+        'def Xform "I" (\ninstanceable = true\nreferences = </P>\n)\n'
+        '{\ndouble3 xformOp:translate = (0, 0, 5)\nuniform token[] xformOpOrder = ["xformOp:translate"]\n}'
+    )
+    path = write(tmp_path, f'#usda 1.0\ndef Xform "P" {{\n{mesh}\n}}\n{instance}\n')
+    with pytest.raises(ValueError, match="it has 2 meshes: name one by prim: '/P/m', '/I/m'"):
+        sscc.from_usd(path)
+    assert sscc.from_usd(path, "/I/m").frames[0, :, 2].tolist() == [5, 5, 5]
+    instancer = f'#usda 1.0\n{mesh}\ndef PointInstancer "many" {{\n}}\n'
+    with pytest.warns(UserWarning, match="/many: a PointInstancer is not evaluated"):
+        sscc.from_usd(write(tmp_path, instancer, "b.usda"))

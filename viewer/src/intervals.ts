@@ -2,7 +2,7 @@
 import type { App } from "./app";
 import { count, digits, h, svg } from "./dom";
 import type { ModeRow } from "./mode-row";
-import { ModeSearch } from "./mode-search";
+import { fade, ModeSearch } from "./mode-search";
 import type { Intervals } from "./protocol";
 
 const WIDTH = 1000;
@@ -30,15 +30,32 @@ export function intervalSearch(app: App, rows: ModeRow[], listed: () => number[]
 
 /** Shows the intervals that a report has, which were found with these other weights. */
 export function showMarks(app: App, rows: ModeRow[], all: Intervals[], base: Float64Array): void {
-    for (const [mode, found] of all.entries()) rows[mode]?.marks.replaceChildren(marks(app, mode, found, base));
+    const modes = [...all.keys()].filter((mode) => mode < rows.length);
+    for (const mode of modes) rows[mode].marks.replaceChildren(marks(app, mode, all[mode], base));
+    app.pose.onChange(() => fade(app, base, modes, (mode) => rows[mode].marks));
+}
+
+/** At most about two samples for each unit of the width: the first and the deepest of each stretch. */
+function thinned(samples: Intervals["samples"]): Intervals["samples"] {
+    const step = Math.max(1, Math.ceil(samples.length / WIDTH));
+    if (step === 1) return samples;
+    const kept: Intervals["samples"] = [];
+    for (let i = 0; i < samples.length; i += step) {
+        const stretch = samples.slice(i, i + step);
+        const deepest = stretch.reduce((a, b) => (b[2] > a[2] ? b : a));
+        kept.push(...(deepest === stretch[0] ? [deepest] : [stretch[0], deepest]));
+    }
+    return kept;
 }
 
 /** The marks of one mode along its slider: where it collides, and the depth at each sample. A click shows the deepest weight. */
 function marks(app: App, mode: number, found: Intervals, base: Float64Array): HTMLElement {
     const [low, high] = app.shape.range(mode);
     const x = (weight: number): number => (WIDTH * (weight - low)) / (high - low);
-    const depths = found.samples.map(([, , depth]) => depth);
-    const deepest = Math.max(...depths, ...found.intervals.map((interval) => interval.depth));
+    const deepest = [
+        ...found.samples.map(([, , depth]) => depth),
+        ...found.intervals.map(({ depth }) => depth),
+    ].reduce((most, depth) => Math.max(most, depth), 0);
     const picture = svg("svg", {
         viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
         preserveAspectRatio: "none",
@@ -51,7 +68,7 @@ function marks(app: App, mode: number, found: Intervals, base: Float64Array): HT
         );
     }
     if (deepest > 0) {
-        const points = found.samples.map(
+        const points = thinned(found.samples).map(
             ([weight, , depth]) =>
                 `${x(weight).toFixed(1)} ${(HEIGHT - 1 - ((HEIGHT - 2) * depth) / deepest).toFixed(1)}`,
         );
@@ -62,7 +79,7 @@ function marks(app: App, mode: number, found: Intervals, base: Float64Array): HT
         return h("span", { class: "free-marks", title: `${name}: proven free from ${low} to ${high}` }, picture);
     const buttons = found.intervals.map(({ from, to, pairs, depth, deepest, exact }) => {
         const where = `collides from ${digits(from)} to ${digits(to)}: up to ${count(pairs, "pair")}, depth ${digits(depth)} at ${digits(deepest)}`;
-        const text = exact ? where : `${where}; nothing is proven closely outside`;
+        const text = exact ? where : `${where}; not decided closely inside its ends`;
         const at = (100 * (x(from) + x(to))) / 2 / WIDTH;
         const width = Math.max(1, (100 * (x(to) - x(from))) / WIDTH);
         const show = (): void => {

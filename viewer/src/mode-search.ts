@@ -23,6 +23,29 @@ export interface SearchKind<T> {
     check(): void;
 }
 
+/** Shows results pale that were found with other weights than those displayed, but for that of their mode. Returns whether any are. */
+export function fade(
+    app: App,
+    base: Float64Array,
+    modes: Iterable<number>,
+    cell: (mode: number) => HTMLElement,
+): boolean {
+    const { q } = app.pose;
+    let [changed, last] = [0, -1];
+    for (let k = 0; k < q.length; k++) {
+        if (q[k] === base[k]) continue;
+        changed++;
+        last = k;
+    }
+    let isStale = false;
+    for (const mode of modes) {
+        const isPale = changed > 1 || (changed === 1 && last !== mode);
+        cell(mode).classList.toggle("stale", isPale);
+        isStale ||= isPale;
+    }
+    return isStale;
+}
+
 export class ModeSearch<T> {
     readonly button = h("button", { type: "button", onclick: () => this.toggle() });
     readonly state = h("p", { class: "hint", role: "status", hidden: true });
@@ -68,13 +91,13 @@ export class ModeSearch<T> {
                 await this.ask(mode, running.signal);
                 done++;
             }
-            this.showState("");
         } catch (error) {
             if (!running.signal.aborted) throw error;
         } finally {
             for (const mode of modes) if (!this.results.has(mode)) kind.cell(this.rows[mode]).replaceChildren();
             this.running = null;
-            this.showState(done < modes.length ? `stopped after ${done} of ${modes.length} modes` : "");
+            if (done < modes.length) this.showState(`stopped after ${done} of ${modes.length} modes`);
+            else this.compare();
         }
     }
 
@@ -93,29 +116,23 @@ export class ModeSearch<T> {
             content = [h("span", { title: error.message }, "no result")];
         }
         kind.cell(this.rows[mode]).replaceChildren(...content);
+        this.compare();
         this.changed();
     }
 
     private clear(): void {
         this.results.clear();
-        for (const row of this.rows) this.kind.cell(row).replaceChildren();
+        for (const row of this.rows) {
+            this.kind.cell(row).replaceChildren();
+            this.kind.cell(row).classList.remove("stale");
+        }
         this.changed();
     }
 
     /** Results hold where all weights but that of their mode are those of the search. Others are shown pale. */
     private compare(): void {
-        const { q } = this.app.pose;
-        let [changed, last] = [0, -1];
-        for (let k = 0; k < q.length; k++) {
-            if (q[k] === this.base[k]) continue;
-            changed++;
-            last = k;
-        }
-        for (const mode of this.results.keys())
-            this.kind
-                .cell(this.rows[mode])
-                .classList.toggle("stale", changed > 1 || (changed === 1 && last !== mode));
-        const isStale = changed > 0 && this.results.size > 0;
+        const modes = this.results.keys();
+        const isStale = fade(this.app, this.base, modes, (mode) => this.kind.cell(this.rows[mode]));
         if (!this.running) this.showState(isStale ? "pale: found with other weights than those displayed" : "");
     }
 

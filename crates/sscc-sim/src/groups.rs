@@ -104,7 +104,7 @@ impl GroupRules {
         let kinds = match self.source()? {
             None => return Ok(None),
             Some(Source::Mesh(_)) if self.by.is_none() => {
-                let named = ANY_KIND.into_iter().map(|by| Ok(without_numbers(read(by)?)));
+                let named = ANY_KIND.into_iter().map(|by| Ok(with_own_names(read(by)?)));
                 named.chain([read(GroupsBy::Group)]).collect::<Result<_, IoError>>()?
             }
             Some(Source::Mesh(by)) => vec![read(by)?],
@@ -177,6 +177,10 @@ impl GroupRules {
     /// Returns the groups of each mesh. Each name must be one of at least one of them.
     fn tables(&self, meshes: &[NamedMesh], are_compared: bool) -> Result<Vec<TriangleGroups>> {
         let (setting, typed) = self.typed();
+        if let (Some(Source::Numbers(file)), true) = (self.source()?, are_compared && meshes.len() > 1) {
+            let cause = "its numbers are those of one mesh: between several, groups have names";
+            return Err(SimError::refused(file.display(), cause));
+        }
         let pairs = names_of_pairs(meshes, typed)
             .map_err(|(text, cause)| SimError::refused(setting + " " + text, cause))?;
         let apart = pairs.iter().position(|names| !are_compared && !is_in_one_mesh(meshes, names));
@@ -191,10 +195,11 @@ impl GroupRules {
 /// The kinds of names in a scene, beside primitives.
 const ANY_KIND: [GroupsBy; 3] = [GroupsBy::Object, GroupsBy::Mesh, GroupsBy::Material];
 
-/// The same groups, where those that are named by a number only have no name.
-fn without_numbers(mut groups: NamedGroups) -> NamedGroups {
+/// The same groups, where those without a name of their own have none: they are named by a number, or `default`.
+fn with_own_names(mut groups: NamedGroups) -> NamedGroups {
     for name in &mut groups.names {
-        if name.strip_prefix('#').is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit())) {
+        let is_number = |rest: &str| rest.bytes().all(|byte| byte.is_ascii_digit());
+        if name == "default" || name.strip_prefix('#').is_some_and(is_number) {
             name.clear();
         }
     }
@@ -252,7 +257,7 @@ mod tests {
             let mut groups = NamedGroups::default();
             groups.names = names.iter().map(|name| (*name).to_owned()).collect();
             groups.of_triangle = of_triangle.to_vec();
-            without_numbers(groups)
+            with_own_names(groups)
         };
         let mesh =
             NamedMesh { kinds: vec![kind(&["body"], &[0; 4]), kind(&["skin", "#1", "#x"], &[0, 1, 0, 2])] };

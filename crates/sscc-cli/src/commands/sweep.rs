@@ -41,11 +41,11 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         let found = sweep_model_intervals(&loaded, &certificates, &request, samples as usize, &bar);
         interrupt::check()?;
         let rows = found.map_err(|error| load::in_file(error.into(), &args.model.path))?;
+        print(args, &rows, &certificates, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
         if let Some(report) = &args.report {
             let (q, _) = request.prepare(&loaded, certificates.center())?;
             write_report(report, &args.model.path, &loaded, &certificates, (q, &rows))?;
         }
-        print(args, &rows, &certificates, || [vec![ranges.to_string()], interval_table(&rows)].concat())?;
         return Ok(outcome(rows.iter().all(|row| row.intervals.is_empty())));
     }
     if args.combinations {

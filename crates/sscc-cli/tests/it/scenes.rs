@@ -187,7 +187,7 @@ fn groups_of_scenes_hold_within_and_between_nodes() {
     );
     assert_eq!(
         refused(&["--only-groups=Ann,#2"]),
-        "error: --only-groups Ann,#2: no triangle is in a group '#2'; groups: 'Ann', 'body', 'default', '#0', 'Ann's shirt', \
+        "error: --only-groups Ann,#2: no triangle is in a group '#2'; groups: 'Ann', 'body', '#0', 'Ann's shirt', \
          'shirt', 'cloth', 'hat', 'pocket, left'"
     );
     assert!(
@@ -280,8 +280,13 @@ fn groups_hold_between_two_meshes() {
     };
     assert!(
         refused(&["--ignore-groups=neck,cuff"])
-            .contains("no triangle is in a group 'cuff'; groups: 'default', 'skin'")
+            .contains("no triangle is in a group 'cuff'; groups: 'skin', ")
     );
+    // What no line "g" names is in the group "default"; the lack of a material is no name.
+    assert_eq!(check(&["--ignore-groups=arm,hem"]), json!([[0, 0], [0, 1]]));
+    fs::write(folder.join("n.txt"), "0 1").unwrap();
+    let numbers = refused(&["--group-by=n.txt", "--ignore-groups=0,1"]);
+    assert!(numbers.contains("n.txt: its numbers are those of one mesh"), "{numbers}");
     assert!(refused(&["--group-by=node"]).contains("it changes nothing without --ignore-groups"));
 }
 

@@ -1,6 +1,6 @@
 //! Answers all queries of a request.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec3;
@@ -39,33 +39,34 @@ pub fn detect<E: From<SimError>>(
 ) -> Result<(), E> {
     check_request(request)?;
     let is_at_rest = matches!(request.motion, MeshMotion::Rest) && request.against.is_none();
-    let is_parallel = is_at_rest && request.meshes.len() > 1 && !request.is_continuous;
-    let mut number = 0;
-    while number < request.meshes.len() {
-        if is_parallel {
-            // Scenes are answered by themselves, all other files between them in parallel.
-            let meshes = request.meshes[number..].iter().take_while(|file| !is_scene(file, request)).count();
-            if at_rest(number..number + meshes, request, watch, &mut take)?.is_break() {
-                return Ok(());
-            }
-            number += meshes;
-        }
-        let Some(file) = request.meshes.get(number) else { break };
-        number += 1;
-        let is_last = number == request.meshes.len();
-        let taken = match in_motion(file, is_last, request, watch, |found| take(file, Ok(found))) {
-            Ok(taken) => taken,
-            Err(Failure::File(error)) => {
-                check_cancelled(watch)?;
-                take(file, Err(error))?
-            }
-            Err(Failure::Run(error)) => return Err(error),
-        };
-        if taken.is_break() {
+    if is_at_rest && request.meshes.len() > 1 && !request.is_continuous {
+        return at_rest(request, watch, take).map(drop);
+    }
+    for (number, file) in request.meshes.iter().enumerate() {
+        let is_last = number + 1 == request.meshes.len();
+        if by_itself(file, is_last, request, watch, &mut take)?.is_break() {
             return Ok(());
         }
     }
     Ok(())
+}
+
+/// Answers the queries of one file, in parallel; `take` receives its error.
+fn by_itself<E: From<SimError>>(
+    file: &Path,
+    is_last: bool,
+    request: &Detection,
+    watch: &dyn Watch,
+    take: &mut impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, E> {
+    match in_motion(file, is_last, request, watch, |found| take(file, Ok(found))) {
+        Ok(taken) => Ok(taken),
+        Err(Failure::File(error)) => {
+            check_cancelled(watch)?;
+            take(file, Err(error))
+        }
+        Err(Failure::Run(error)) => Err(error),
+    }
 }
 
 /// An error that ends a file, or the whole run.
@@ -138,40 +139,37 @@ fn in_motion<E>(
     )
 }
 
-/// Answers several meshes at rest, by their numbers, each on one thread.
+/// Answers several files at rest, each on one thread; scenes by themselves, in their turn.
 fn at_rest<E: From<SimError>>(
-    meshes: Range<usize>,
     request: &Detection,
     watch: &dyn Watch,
-    take: &mut impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
+    mut take: impl FnMut(&Path, Result<&DetectionAnswer<'_>>) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
-    if meshes.is_empty() {
-        return Ok(ControlFlow::Continue(()));
-    }
     watch.begin(Stage::Detection);
     let count = request.meshes.len();
-    let first = meshes.start;
     let work = |(): &mut (), index: usize| {
-        let index = first + index;
-        let source = MeshSource::read(&request.meshes[index], request.mesh_name.as_deref(), watch)?;
+        let file = &request.meshes[index];
+        if is_scene(file, request) {
+            return Ok(None);
+        }
+        let source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
         source.warn_of_other_places(watch);
         let mesh = MovingMesh::at_rest(&source, 0, request, watch)?;
         let last = (index + 1 == count).then_some(0);
         let found = Worker::new(request, &mesh, None, last).answer(0)?;
         // Its detector is no longer needed: it is far larger than the mesh.
-        Ok((mesh.mesh, mesh.left_out, found))
+        Ok(Some((mesh.mesh, mesh.left_out, found)))
     };
     in_order(
-        meshes.len(),
+        count,
         request.threads.unwrap_or_else(available_threads),
         || (),
         work,
         |index, result: Result<_>| {
-            let index = first + index;
             check_cancelled(watch)?;
             let file = &request.meshes[index];
             let taken = match result {
-                Ok((mesh, left_out, found)) => {
+                Ok(Some((mesh, left_out, found))) => {
                     let mesh = AnswerSource {
                         file,
                         mesh: &mesh,
@@ -182,6 +180,8 @@ fn at_rest<E: From<SimError>>(
                     };
                     take(file, Ok(&answer(mesh, None, 0, (&found, request.clearance), [1, 1])))
                 }
+                // A scene.
+                Ok(None) => by_itself(file, index + 1 == count, request, watch, &mut take),
                 Err(error) => take(file, Err(error)),
             }?;
             watch.report(index + 1, count);

@@ -109,8 +109,12 @@ impl<'w> MovingMesh<'w> {
         let (detector, left_out) = detector(&mesh, filter, request, watch, make).in_file(file)?;
         let left_out = match request.against {
             Some(_) => left_out.between_meshes(),
-            None if request.meshes.len() > 1 => left_out.and_between_files(),
-            None => left_out,
+            None => {
+                // Frames are at no node.
+                let is_shown_again = matches!(motion, Motion::Rest) && source.places() > 1;
+                let left_out = if is_shown_again { left_out.and_between_nodes() } else { left_out };
+                if request.meshes.len() > 1 { left_out.and_between_files() } else { left_out }
+            }
         };
         // Frames are at no node.
         let is_placed = request.against.is_some() && matches!(motion, Motion::Rest);

@@ -38,8 +38,10 @@ pub struct Live {
     long: Mutex<Long>,
     cancel: Option<CancelToken>,
     sweeps: Mutex<Query>,
+    intervals: Mutex<Query>,
     searches: Newest,
     newest_sweep: Newest,
+    newest_intervals: Newest,
 }
 
 /// The number of the newest request of a kind; older ones are cancelled.
@@ -81,8 +83,8 @@ impl Live {
         arrays.add_u32(ORDER, certificates.parts().hierarchy.order().iter().copied());
         let query = Query::new(model, certificates)?.cancelled_by(cancel.clone());
         let long = Mutex::new(Long { certified: query.clone(), traditional: None });
-        let [checks, sweeps] = [query.clone(), query].map(Mutex::new);
-        let [searches, newest_sweep] = [Newest::default(), Newest::default()];
+        let [checks, sweeps, intervals] = [query.clone(), query.clone(), query].map(Mutex::new);
+        let [searches, newest_sweep, newest_intervals] = [(); 3].map(|()| Newest::default());
         Ok(Self {
             model: model.clone(),
             certificates: certificates.clone(),
@@ -92,8 +94,10 @@ impl Live {
             long,
             cancel,
             sweeps,
+            intervals,
             searches,
             newest_sweep,
+            newest_intervals,
         })
     }
 
@@ -170,7 +174,7 @@ impl Live {
         request: &IntervalsRequest,
         client: &CancelToken,
     ) -> Result<IntervalRow, ViewError> {
-        self.newest(&self.newest_sweep, &self.sweeps, client, |query, cancellation| {
+        self.newest(&self.newest_intervals, &self.intervals, client, |query, cancellation| {
             intervals::intervals(query, request, cancellation)
         })
     }

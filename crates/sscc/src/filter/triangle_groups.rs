@@ -1,5 +1,7 @@
 //! Groups of triangles, and a table of the pairs of groups that count.
 
+use std::sync::Arc;
+
 use crate::Error;
 
 /// The group of each triangle, and which pairs of groups count: two triangles count only if the pair of their groups
@@ -24,8 +26,8 @@ pub struct TriangleGroups {
     /// most half of all pairs are listed.
     starts: Vec<usize>,
     partners: Vec<u16>,
-    /// Whether the table also holds between meshes that have it.
-    is_of_several: bool,
+    /// Shared by the meshes between which the table also holds.
+    scene: Option<Arc<()>>,
 }
 
 /// The contents of [`TriangleGroups`], for writing files.
@@ -77,7 +79,7 @@ impl TriangleGroups {
             others_count: true,
             starts: vec![0; count + 1],
             partners: Vec::new(),
-            is_of_several: false,
+            scene: None,
         })
     }
 
@@ -138,24 +140,20 @@ impl TriangleGroups {
             let sum = sum.map_or_else(|| "too many".to_owned(), |sum| sum.to_string());
             return Err(refused(format!("there are groups of {found} triangles, but the meshes have {sum}")));
         }
-        let mut rest = &self.of_triangle[..];
+        let (mut rest, scene) = (&self.of_triangle[..], Some(Arc::new(())));
         let mesh = |count: &usize| {
             let (of_triangle, after) = rest.split_at(*count);
             rest = after;
             let (starts, partners) = (self.starts.clone(), self.partners.clone());
             let of_triangle = of_triangle.to_vec();
-            Self { of_triangle, others_count: self.others_count, starts, partners, is_of_several: true }
+            Self { of_triangle, others_count: self.others_count, starts, partners, scene: scene.clone() }
         };
         Ok(counts.iter().map(mesh).collect())
     }
 
     /// Whether the table holds between these two meshes.
     pub(crate) fn is_common_with(&self, other: &Self) -> bool {
-        let is_equal = || {
-            (self.others_count, &self.starts, &self.partners)
-                == (other.others_count, &other.starts, &other.partners)
-        };
-        self.is_of_several && other.is_of_several && is_equal()
+        self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(|(one, two)| Arc::ptr_eq(one, two))
     }
 
     /// The group of each triangle.
@@ -251,7 +249,7 @@ impl TriangleGroups {
             others_count: others_count == is_short,
             starts,
             partners: both.into_iter().map(|(_, h)| h).collect(),
-            is_of_several: self.is_of_several,
+            scene: self.scene,
         }
     }
 }

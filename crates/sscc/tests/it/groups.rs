@@ -330,6 +330,10 @@ fn groups_of_several_meshes_hold_between_them() {
         if GroupTable::from(&scene).count > 1 {
             assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");
         }
+        // The same groups, made again: other meshes.
+        let [mut one, _] = detectors(scene.of_meshes(&counts).unwrap().try_into().unwrap());
+        let [_, mut two] = detectors(scene.of_meshes(&counts).unwrap().try_into().unwrap());
+        assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");
         let message = scene.of_meshes(&counts[..1]).unwrap_err().to_string();
         assert!(message.contains(&format!("the meshes have {}", counts[0])), "{message}");
         assert!(scene.of_meshes(&[usize::MAX, 2]).is_err());

@@ -42,6 +42,7 @@ impl DataSet {
                 ("against", args.motion.against.is_some()),
                 ("pose", args.pose.is_some()),
                 ("report", args.report.is_some()),
+                ("frames-out", args.frames_out.is_some()),
             ] {
                 ensure!(!is_given, "{}: --{flag} is for one mesh: name a file of the folder", path.display());
             }
