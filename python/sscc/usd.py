@@ -77,9 +77,14 @@ def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
         raise ValueError(f"{place}: there is no mesh {quoted(name)}; there are {_listed(meshes)}")
     prim_of_mesh = meshes[name].GetPrim()
     is_skinned = UsdSkel.BindingAPI(prim_of_mesh).GetJointIndicesAttr().HasAuthoredValue()
-    if is_skinned and stage.GetSessionLayer().GetAttributeAtPath(f"{name}.points") is None:
+    if is_skinned and not _has_values(stage.GetSessionLayer(), f"{name}.points"):
         raise ValueError(f"{place}: {name}: USD cannot evaluate its skin")
     return _mesh(f"{place}: {name}", name, meshes[name], per_second)
+
+
+def _has_values(layer: Any, path: str) -> bool:
+    attribute = layer.GetAttributeAtPath(path)
+    return attribute is not None and (attribute.default is not None or len(layer.ListTimeSamplesForPath(path)) > 0)
 
 
 def _make_instances_plain(stage: Any) -> None:
