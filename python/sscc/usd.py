@@ -36,9 +36,10 @@ class UsdMesh(NamedTuple):
 def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
     """The mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
 
-    prim: the path of a prim of type Mesh; None: the only one. Skins are evaluated. A subdivision
-        surface is its control mesh. Files of Alembic can be read where the
-    installed USD has the plugin for them.
+    prim: the path of a prim of type Mesh; None: the only one.
+
+    Skins and instances are evaluated, instances of a PointInstancer are not. A subdivision surface is its control mesh. Files
+    of Alembic can be read where the installed USD has the plugin for them.
 
     >>> mesh = sscc.from_usd("cloth.usda")
     >>> sscc.Detector(mesh.faces, mesh.frames[0]).check_many(mesh.frames).colliding

@@ -114,6 +114,7 @@ impl GroupRules {
         Ok(Some(NamedMesh { kinds }))
     }
 
+    /// The groups of one file. They keep their numbers, which certificates store.
     fn of_file(
         &self,
         path: &Path,

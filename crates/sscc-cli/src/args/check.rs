@@ -94,7 +94,7 @@ pub struct Check {
     pub report: Option<PathBuf>,
     /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), which --frames reads.
     /// Of an animation that moves several nodes, with --node
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "meshes", "against"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "meshes", "against"])]
     pub frames_out: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,

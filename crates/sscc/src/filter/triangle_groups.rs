@@ -17,7 +17,7 @@ use crate::Error;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct TriangleGroups {
     of_triangle: Vec<u16>,
     /// Whether a pair of groups that is not listed counts. A listed one is the opposite.
@@ -54,6 +54,17 @@ impl<'a> From<&'a TriangleGroups> for GroupTable<'a> {
         }
     }
 }
+
+/// Whether the groups hold between meshes is no part of the value: files do not store it.
+impl PartialEq for TriangleGroups {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { of_triangle, others_count, starts, partners, scene: _ } = self;
+        (of_triangle, others_count, starts, partners)
+            == (&other.of_triangle, &other.others_count, &other.starts, &other.partners)
+    }
+}
+
+impl Eq for TriangleGroups {}
 
 impl TriangleGroups {
     /// The maximum number of groups: a triangle stores its group in 16 bits.
@@ -153,7 +164,8 @@ impl TriangleGroups {
 
     /// Whether the table holds between these two meshes.
     pub(crate) fn is_common_with(&self, other: &Self) -> bool {
-        self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(|(one, two)| Arc::ptr_eq(one, two))
+        let is_same = |(one, two)| right_or!(Arc::ptr_eq(one, two), GroupsOfOtherScenes, true);
+        self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(is_same)
     }
 
     /// The group of each triangle.

@@ -10,6 +10,8 @@ mutants! {
     GroupsForgotten: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// Between two meshes, pairs of groups are forgotten: all count.
     GroupsBetweenForgotten: CaughtBy("it groups::groups_of_several_meshes_hold_between_them");
+    /// Groups of two scenes hold between a mesh of the one and a mesh of the other.
+    GroupsOfOtherScenes: CaughtBy("it groups::groups_of_several_meshes_hold_between_them");
     /// A node has the group of its first part.
     NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
     /// Vertices that are welded at rest are taken to be at one position always.

@@ -11,6 +11,7 @@ use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, OtherMes
 use sscc_view::MeshReport;
 
 use super::data_set::DataSet;
+use super::frames_out::FramesOut;
 use super::printer::Printer;
 use super::shapes;
 use super::soup_hint::SoupHint;
@@ -38,7 +39,7 @@ pub fn check(args: &Check) -> Result<bool> {
     printer.only_colliding = args.only.is_colliding();
     printer.needs_last = args.curves.is_some() || args.pose.is_some();
     let mut report = MeshReport::default();
-    let mut frames_out = args.frames_out.as_deref().map(shapes::FramesOut::new);
+    let mut frames_out = args.frames_out.as_deref().map(FramesOut::new);
     let mut answers = 0;
     let mut hint = SoupHint::default();
     let watch = Stages::default();
@@ -75,7 +76,7 @@ pub fn check(args: &Check) -> Result<bool> {
         printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
     };
     detect(&request, &watch, take)?;
-    frames_out.map_or(Ok(()), shapes::FramesOut::finish)?;
+    frames_out.map_or(Ok(()), FramesOut::finish)?;
     if let Some(path) = &args.report {
         write_whole(path, report.html().with_context(|| path.display().to_string())?.as_bytes())?;
     }

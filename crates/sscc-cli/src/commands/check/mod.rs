@@ -2,6 +2,7 @@
 
 mod answer;
 mod data_set;
+mod frames_out;
 mod meshes;
 mod printer;
 mod shapes;

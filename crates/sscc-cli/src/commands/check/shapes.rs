@@ -1,4 +1,4 @@
-//! Writes shapes (`--pose`), frames (`--frames-out`) and contact curves (`--curves`).
+//! Writes shapes (`--pose`) and contact curves (`--curves`).
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
-use sscc_io::{LoadedModel, NpyWriter, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
+use sscc_io::{LoadedModel, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
 use sscc_sim::{ContactOptions, DetectionAnswer};
 
 use crate::args::Check;
@@ -53,47 +53,6 @@ pub fn write_pose(path: &Path, mesh: &TriMesh, positions: &[DVec3], pairs: &[Pai
     }
     let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
     Ok(write(path, mesh, positions, &colliding)?)
-}
-
-/// The frames of one mesh, written as answers come (`--frames-out`).
-pub struct FramesOut<'a> {
-    path: &'a Path,
-    writer: Option<NpyWriter>,
-}
-
-impl<'a> FramesOut<'a> {
-    pub fn new(path: &'a Path) -> Self {
-        Self { path, writer: None }
-    }
-
-    /// Writes the frame of an answer; that of the last one also where it ends.
-    pub fn add(&mut self, found: &DetectionAnswer<'_>) -> Result<()> {
-        let Some(shape) = found.shape else { return Ok(()) };
-        let each = found.frames - usize::from(!shape.x_t1.is_empty());
-        let writer = match &mut self.writer {
-            Some(writer) => writer,
-            writer => {
-                ensure!(
-                    found.queries == each,
-                    "{}: several nodes have a mesh: name one by --node, or of a file at rest as FILE#NODE",
-                    self.path.display()
-                );
-                let shape = [found.frames, found.mesh.rest_positions().len(), 3];
-                writer.insert(NpyWriter::create(self.path, &shape)?)
-            }
-        };
-        let is_last = found.index + 1 == each;
-        for frame in [Some(shape.x_t0), is_last.then_some(shape.x_t1)].into_iter().flatten() {
-            let values: Vec<f64> = frame.iter().flat_map(|x| x.to_array()).collect();
-            writer.push(&values)?;
-        }
-        Ok(())
-    }
-
-    /// Completes the file.
-    pub fn finish(self) -> Result<()> {
-        self.writer.map_or(Ok(()), NpyWriter::finish).map_err(Into::into)
-    }
 }
 
 /// Writes the contact curves of an answer about a model, where the file puts the model. With a skin, which has no single
