@@ -276,7 +276,7 @@ fn groups_of_several_meshes_hold_between_them() {
         let scene = random_groups(random, counts[0] + counts[1]);
         let of_meshes = scene.of_meshes(&counts).unwrap();
         // Files do not store that groups hold between meshes: the value is the same.
-        assert_eq!(scene.of_meshes(&[counts[0] + counts[1]]).unwrap(), [scene.clone()], "seed {seed}");
+        assert_eq!(scene.of_meshes(&[counts[0] + counts[1]]).unwrap()[0], scene, "seed {seed}");
         let is_counted = |(a, b): Pair| scene.is_pair_counted(a, counts[0] as u32 + b);
         let ends = [0, 1].map(|m| -> Vec<DVec3> {
             meshes[m].rest_positions().iter().map(|p| *p + random.vector() * 0.2).collect()
