@@ -62,8 +62,8 @@ pub struct Options {
     /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
-    /// Memory for local certificates of the scheme full, in bytes for each triangle, beside what the pair tree leaves of its own;
-    /// 0: none [default: 64]
+    /// Memory for local certificates of the scheme full, in bytes for each triangle, together with what the pair tree
+    /// leaves of its own and less 10 to 14 for the BVH and its radii; 0: none [default: 64]
     #[arg(long, value_name = "BYTES")]
     pub local_budget: Option<u32>,
     /// How far radii of the scheme full may reach, in units of the paper's global radius, at least 1; they end before where

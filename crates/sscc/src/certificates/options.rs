@@ -72,8 +72,9 @@ impl CertifyOptions {
         /// radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
         /// since the tree takes most of the time. 64 by default.
         budget: usize,
-        /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of the mesh, beside what the
-        /// pair tree leaves of its own. Nodes that few modes move come first, of those the largest. There are none where they cover less than 0.6 of
+        /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of the mesh. Together with
+        /// [`budget`](Self::budget) it also pays for the hierarchy and its radii (10 to 14 bytes a triangle), so by default certificates take at
+        /// most 128 bytes a triangle; what the pair tree leaves is used here. Nodes that few modes move come first, of those the largest. There are none where they cover less than 0.6 of
         /// all triangles. 0: none; they take about as long as the radii, which suits
         /// certificates that serve a few queries only. 64 by default.
         local_budget: usize,

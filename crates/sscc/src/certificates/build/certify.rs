@@ -8,6 +8,7 @@ use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
 use crate::certificates::pair_tree::{PairEntry, PairTree};
 use crate::certificates::{CertificateParts, Certificates, CertifyOptions, LocalCertificates};
+use crate::hierarchy::{Hierarchy, Node};
 use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
@@ -53,6 +54,14 @@ impl CertifiedRadii {
         Ok(Self { radii, pair_tree })
     }
 
+    /// Bytes of the hierarchy, the radii of its nodes and the pair tree in a file: each node has a radius, a state of one byte
+    /// and a start in the pair tree.
+    fn bytes(&self, hierarchy: &Hierarchy) -> usize {
+        let node = size_of::<Node>() + size_of::<f64>() + size_of::<u8>() + size_of::<u32>();
+        let order = size_of_val(hierarchy.order());
+        hierarchy.nodes().len() * node + order + self.pair_tree.len() * size_of::<PairEntry>()
+    }
+
     /// The certificates of the model that was prepared, with local certificates, which are computed on the threads of the current pool.
     pub(crate) fn into_certificates(
         self,
@@ -60,12 +69,12 @@ impl CertifiedRadii {
         options: &CertifyOptions,
         preparation: Preparation,
     ) -> Certificates {
-        let tree_bytes = self.pair_tree.len() * size_of::<PairEntry>();
         let local = if options.local_budget == 0 {
             LocalCertificates::default()
         } else {
-            let bytes = |budget: usize| budget.saturating_mul(model.mesh().faces().len());
-            let left = bytes(options.budget.saturating_add(options.local_budget)).saturating_sub(tree_bytes);
+            let both = options.budget.saturating_add(options.local_budget);
+            let bytes = both.saturating_mul(model.mesh().faces().len());
+            let left = bytes.saturating_sub(self.bytes(&preparation.hierarchy));
             preparation.local_certificates(model, left)
         };
         let Preparation { digest, scope, hierarchy, rest_collisions, epsilon, .. } = preparation;

@@ -217,7 +217,11 @@ fn what_is_computed_is_accepted() {
         // Neighbours are listed by one of the two, also where the root is as small as a bucket.
         let children = parts.hierarchy.nodes()[0].child_count as usize;
         assert!(budget == 0 || parts.local.list_nodes.len() + 1 >= children, "{quads} quads");
-        assert!(parts.local.bytes() <= (64 + budget) * 2 * quads + 8, "{quads} quads");
+        // Both budgets pay for all certificates, the hierarchy included.
+        let (nodes, order) = (parts.hierarchy.nodes(), parts.hierarchy.order());
+        let stored = size_of_val(nodes) + size_of_val(order) + size_of_val(&*parts.node_radii);
+        let all = stored + 5 * nodes.len() + parts.pair_tree.bytes() + parts.local.bytes();
+        assert!(budget == 0 || all <= (64 + budget) * 2 * quads + 8, "{quads} quads: {all}");
     }
 }
 
