@@ -125,10 +125,12 @@ fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), FormatError> {
 }
 
 /// Returns an error if an element that is skipped may have faces: lists of integers whose name is that of vertex numbers.
+/// Scanners also write lists of texture coordinates for each face (`texture_vertex_indices`), which name no vertices.
 fn check_without_faces(element: &Element) -> Result<(), FormatError> {
     let is_list = |p: &Property| match p.kind {
         Kind::List { item, .. } => {
-            item.range().is_some() && (p.name.contains("vert") || p.name.contains("ind"))
+            let is_named = p.name.contains("vert") || p.name.contains("ind");
+            item.range().is_some() && is_named && !p.name.starts_with("tex")
         }
         Kind::Number(_) => false,
     };

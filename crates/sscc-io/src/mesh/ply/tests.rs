@@ -243,6 +243,8 @@ fn elements_with_unknown_faces_are_refused() {
         Ok(1)
     );
     assert_eq!(message("element a 1\nproperty list uchar float vertex_weights", "2 .5 .5\n3 0 1 2\n"), Ok(1));
+    let texture = "element multi_texture_face 1\nproperty list uchar int texture_vertex_indices";
+    assert_eq!(message(texture, "3 7 8 9\n3 0 1 2\n"), Ok(1));
     let two = "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar int vertex_index";
     let refused = parse(with_element(two, "3 0 1 2 3 3 4 5\n").as_bytes()).unwrap_err().to_string();
     assert_eq!(refused, "line 7: the element 'face' has two lists of corners: remove one of them");
