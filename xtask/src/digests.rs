@@ -29,9 +29,7 @@ fn compare(write: bool) -> Result<(), String> {
     if write {
         return fs::write(&path, found).map_err(|error| format!("{RECORD}: {error}"));
     }
-    // A checkout on Windows may have other ends of lines.
-    let record =
-        fs::read_to_string(&path).map_err(|error| format!("{RECORD}: {error}"))?.replace("\r\n", "\n");
+    let record = fs::read_to_string(&path).map_err(|error| format!("{RECORD}: {error}"))?;
     match found.lines().zip(record.lines()).find(|(found, record)| found != record) {
         Some((found, record)) => Err(format!("{RECORD} has '{}', found '{}'", record.trim(), found.trim())),
         None if found.lines().count() != record.lines().count() => {

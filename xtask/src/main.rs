@@ -43,7 +43,7 @@ const TASKS: [Task; 16] = [
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),
     ("extension", "[WHEEL ...]: packs the add-on of Blender", extension::run),
     ("msrv", "the oldest versions of Rust that crates state", msrv::run),
-    ("deny", "[checks]: licences and sources of dependencies", deny::run),
+    ("deny", "licences and sources of dependencies", deny::run),
     ("help", "this list", help),
 ];
 
@@ -64,4 +64,29 @@ fn help(_: &[String]) -> ExitCode {
     eprintln!("Usage: cargo xtask TASK");
     TASKS.iter().for_each(|(name, purpose, _)| eprintln!("  {name:<10} {purpose}"));
     ExitCode::from(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use crate::{TASKS, program::root};
+
+    #[test]
+    fn workflows_call_tasks_alone() {
+        let mut calls = 0;
+        for file in fs::read_dir(root().join(".github/workflows")).unwrap() {
+            let text = fs::read_to_string(file.unwrap().path()).unwrap();
+            for line in
+                text.lines().filter_map(|line| line.trim().trim_start_matches("- ").strip_prefix("run: "))
+            {
+                let task = line.strip_prefix("cargo xtask ").and_then(|rest| rest.split(' ').next());
+                let is_task = task.is_some_and(|task| TASKS.iter().any(|(name, ..)| *name == task));
+                assert!(is_task || line == "cargo install --locked cargo-deny", "{line}");
+                calls += usize::from(is_task);
+            }
+            assert!(!text.contains("run: |"), "steps of several lines are not checked");
+        }
+        assert!(calls > 8);
+    }
 }
