@@ -56,7 +56,7 @@ fn build_and_check() -> Result<(), String> {
         "twine refuses the metadata",
     )?;
     let abi3 = programs(&tools).join("abi3audit");
-    succeed(Command::new(abi3).args(["--strict", "--report"]).arg(&wheel), "the wheel is not abi3")?;
+    succeed(Command::new(abi3).args(["--strict", "--summary"]).arg(&wheel), "the wheel is not abi3")?;
     if cfg!(target_os = "linux") {
         succeed(
             Command::new(&python).args(["-m", "auditwheel", "show"]).arg(&wheel),
