@@ -111,6 +111,13 @@ fn simulation_loop() {
     assert!(line(&text, "one comparison").contains(" of 316 steps"));
 }
 
+/// The same bytes everywhere, on this machine too.
+#[test]
+fn digests() {
+    let (text, _) = run("digests", NONE);
+    assert_eq!(text, include_str!("../../docs/records/digests.txt"), "cargo xtask digests");
+}
+
 #[test]
 fn errors_are_one_line() {
     for (example, arguments) in

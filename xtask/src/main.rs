@@ -1,45 +1,92 @@
-//! Tasks of the project.
-//!
-//! `cargo xtask test` runs all tests and lists the skipped ones. `cargo xtask python` runs those of the Python package.
-//! `cargo xtask page` builds the page, and with `--test` runs its tests. `cargo xtask mutants` checks that the tests of
-//! the core catch wrong variants of it. `cargo xtask layers` checks the order of crates and modules. `cargo xtask lines` counts
-//! the lines of the product, `cargo xtask public` the public items of the core.
+//! Tasks of the project: `cargo xtask` lists them. Workflows and `.ci/run` call nothing else.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod deny;
+mod digests;
+mod environment;
+mod extension;
+mod kept_list;
 mod layers;
 mod lines;
+mod lint;
+mod msrv;
 mod mutants;
+mod package;
+mod packages;
 mod page;
 mod program;
 mod public;
 mod python;
+mod serial;
 mod sources;
 mod tally;
 mod test;
+mod wheel;
 
 use std::process::ExitCode;
 
+/// A task: its name, its arguments and its purpose, and what runs it.
+type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
+
+const TASKS: [Task; 16] = [
+    ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
+    ("python", "[arguments for pytest]: tests of the Python package", python::run),
+    ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
+    ("serial", "tests of the core without threads", serial::run),
+    ("lint", "formatting, lints, documentation", lint::run),
+    ("layers", "the order of crates, modules and files", layers::run),
+    ("lines", "counts the lines of the product", lines::run),
+    ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
+    ("mutants", "[names]: the tests catch wrong variants of the core", mutants::run),
+    ("digests", "[--write]: the same bytes on every machine", digests::run),
+    ("package", "[--verify]: packs the crates that are published", package::run),
+    ("wheel", "builds and checks the wheel and the source distribution", wheel::run),
+    ("extension", "[WHEEL ...]: packs the add-on of Blender", extension::run),
+    ("msrv", "the oldest versions of Rust that crates state", msrv::run),
+    ("deny", "licences and sources of dependencies", deny::run),
+    ("help", "this list", help),
+];
+
 fn main() -> ExitCode {
-    let mut args = std::env::args().skip(1);
-    match args.next().as_deref() {
-        Some("test") => test::run(args.collect()),
-        Some("python") => python::run(args.collect()),
-        Some("layers") => layers::run(&args.collect::<Vec<_>>()),
-        Some("lines") => lines::run(&args.collect::<Vec<_>>()),
-        Some("public") => public::run(&args.collect::<Vec<_>>()),
-        Some("mutants") => mutants::run(&args.collect::<Vec<_>>()),
-        Some("page") => page::run(&args.collect::<Vec<_>>()),
-        Some(other) => {
-            eprintln!(
-                "error: no task '{other}'; there are: test, python, page, layers, lines, public, mutants"
-            );
-            ExitCode::from(2)
-        }
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some((name, rest)) = arguments.split_first() else { return help(&[]) };
+    match TASKS.iter().find(|task| task.0 == name) {
+        Some((_, _, run)) => run(rest),
         None => {
-            eprintln!(
-                "Usage: cargo xtask test [arguments for cargo test]\n       cargo xtask python [arguments for pytest]\n       cargo xtask page [--write | --test]\n       cargo xtask layers\n       cargo xtask lines\n       cargo xtask public [--list]\n       cargo xtask mutants [names]"
-            );
+            let names: Vec<&str> = TASKS.iter().map(|task| task.0).collect();
+            eprintln!("error: no task '{name}'; there are: {}", names.join(", "));
             ExitCode::from(2)
         }
+    }
+}
+
+fn help(_: &[String]) -> ExitCode {
+    eprintln!("Usage: cargo xtask TASK");
+    TASKS.iter().for_each(|(name, purpose, _)| eprintln!("  {name:<10} {purpose}"));
+    ExitCode::from(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use crate::{TASKS, program::root};
+
+    #[test]
+    fn workflows_call_tasks_alone() {
+        let mut calls = 0;
+        for file in fs::read_dir(root().join(".github/workflows")).unwrap() {
+            let text = fs::read_to_string(file.unwrap().path()).unwrap();
+            for line in
+                text.lines().filter_map(|line| line.trim().trim_start_matches("- ").strip_prefix("run: "))
+            {
+                let task = line.strip_prefix("cargo xtask ").and_then(|rest| rest.split(' ').next());
+                let is_task = task.is_some_and(|task| TASKS.iter().any(|(name, ..)| *name == task));
+                assert!(is_task || line == "cargo install --locked cargo-deny", "{line}");
+                calls += usize::from(is_task);
+            }
+            assert!(!text.contains("run: |"), "steps of several lines are not checked");
+        }
+        assert!(calls > 8);
     }
 }

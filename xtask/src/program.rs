@@ -3,7 +3,8 @@
 use std::env;
 use std::fs;
 use std::io::{self, BufRead, BufReader, Write};
-use std::process::{Command, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
 
 /// Returns the cargo that started this program.
 pub fn cargo() -> Command {
@@ -37,4 +38,46 @@ pub fn run_and_forward(command: &mut Command, mut each: impl FnMut(&str)) -> io:
         }
     }
     Ok(child.wait()?.success())
+}
+
+/// The root of the workspace.
+pub fn root() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    // Without the verbatim prefix of Windows, which few programs understand.
+    fs::canonicalize(&root).ok().filter(|_| !cfg!(windows)).unwrap_or(root)
+}
+
+/// Runs a command to its end. The error is `failure`.
+pub fn succeed(command: &mut Command, failure: &str) -> Result<(), String> {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(format!("{failure} (see above)")),
+        Err(error) => Err(format!("{failure}: {error}")),
+    }
+}
+
+/// Runs a command, and returns its output as text. The error is `failure`.
+pub fn output(command: &mut Command, failure: &str) -> Result<String, String> {
+    let output = command.stderr(Stdio::inherit()).output().map_err(|error| format!("{failure}: {error}"))?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(format!("{failure} (see above)")),
+    }
+}
+
+/// The exit code of a task: an error is one line on standard error.
+pub fn exit_code(result: Result<(), String>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(line) => {
+            eprintln!("error: {line}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Returns the exit code of wrong arguments.
+pub fn usage(line: &str) -> ExitCode {
+    eprintln!("Usage: cargo xtask {line}");
+    ExitCode::from(2)
 }

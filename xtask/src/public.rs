@@ -4,6 +4,9 @@
 //! those of the module `parts`. Not counted: modules, fields of variants, implementations of traits, what other crates define,
 //! and what is hidden from the documentation. By this rule there were 387 at commit 1fcad41, `parts` included, which did not exist.
 //!
+//! The items are compared with the list in [`LIST`], which has a reason for each item at the root: a change of the public
+//! surface is a change of that file.
+//!
 //! rustdoc's JSON lists the items. Its format is unstable, so its version is checked.
 
 use std::collections::BTreeSet;
@@ -13,7 +16,8 @@ use std::process::ExitCode;
 
 use serde_json::Value;
 
-use crate::program::cargo;
+use crate::kept_list::{self, KeptList};
+use crate::program::{cargo, exit_code, root, usage};
 
 /// The version of rustdoc's JSON that is read here.
 const FORMAT: u64 = 57;
@@ -21,15 +25,20 @@ const FORMAT: u64 = 57;
 /// The maximum number of items outside of `parts`: 260, and those of distances and of intervals of weights.
 const MAX_ITEMS: usize = 260 + 21 + 19;
 
-/// Prints the items of each type, and their sums. With `--list` also their names. Fails where there are more than
-/// [`MAX_ITEMS`].
+/// The kept list, below the root of the workspace.
+const LIST: &str = "crates/sscc/public-items.txt";
+
+/// Prints the sums of the items, with `--list` also their names. Fails where they differ from the kept list, which
+/// `--write` writes anew, and where there are more than [`MAX_ITEMS`].
 pub fn run(arguments: &[String]) -> ExitCode {
-    let is_listed = match arguments {
-        [] => false,
-        [flag] if flag == "--list" => true,
+    let (is_listed, is_written) = match arguments {
+        [] => (false, false),
+        [flag] if flag == "--list" => (true, false),
+        [flag] if flag == "--write" => (false, true),
         _ => {
-            eprintln!("Usage: cargo xtask public [--list]    (counts the public items of the core)");
-            return ExitCode::from(2);
+            return usage(
+                "public [--list | --write]    (compares the public items of the core with the kept list)",
+            );
         }
     };
     let json = match documentation() {
@@ -55,7 +64,33 @@ pub fn run(arguments: &[String]) -> ExitCode {
         }
     }
     println!("{outside:>7}  outside of parts, at most {MAX_ITEMS}\n{inside:>7}  in parts");
-    if outside <= MAX_ITEMS { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if outside > MAX_ITEMS {
+        return ExitCode::FAILURE;
+    }
+    exit_code(compare(&items.found, is_written))
+}
+
+/// Compares the items with the kept list, or writes it.
+fn compare(found: &[Vec<String>], is_written: bool) -> Result<(), String> {
+    let path = root().join(LIST);
+    let text = fs::read_to_string(&path).map_err(|error| format!("{LIST}: {error}"))?;
+    let mut items = kept_list::Items::new();
+    for names in found {
+        let [name, members @ ..] = &names[..] else { continue };
+        let mut members = members.to_vec();
+        members.sort();
+        items.insert(name.clone(), members);
+    }
+    let list = KeptList::parse(&text);
+    if is_written {
+        return fs::write(&path, list.updated(&items)).map_err(|error| format!("{LIST}: {error}"));
+    }
+    let differences = list.differences(&items);
+    differences.iter().for_each(|line| println!("{line}"));
+    match differences.is_empty() {
+        true => Ok(()),
+        false => Err(format!("{LIST} differs (see above); after a review: cargo xtask public --write")),
+    }
 }
 
 /// Runs rustdoc, and returns its JSON.

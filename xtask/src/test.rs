@@ -14,9 +14,9 @@ use crate::tally::{SkipLog, Tally};
 use crate::{page, python};
 
 /// Runs all tests; with arguments for `cargo test`, those of the crates only.
-pub fn run(arguments: Vec<String>) -> ExitCode {
+pub fn run(arguments: &[String]) -> ExitCode {
     let log = SkipLog::new();
-    let mut tally = cargo_test(&arguments, log.path());
+    let mut tally = cargo_test(arguments, log.path());
     if arguments.is_empty() {
         let path = log.path();
         tally += thread::scope(|scope| {

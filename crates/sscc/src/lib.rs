@@ -35,8 +35,9 @@
 //!
 //! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`parts::Hierarchy`] and
 //! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and no query, detector or
-//! body has a lifetime: keep them where they are used. This crate reads no files, knows no clock and prints nothing. Positions are vectors of
-//! [`glam`], which it re-exports.
+//! body has a lifetime: keep them where they are used. This crate reads no files, knows no clock and prints nothing. It needs `std`;
+//! without the feature `parallel` (on by default) it starts no thread and does not need rayon, and gives the same bits. Positions are
+//! vectors of [`glam`], which it re-exports.
 //!
 //! # Any mesh
 //!

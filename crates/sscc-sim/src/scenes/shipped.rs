@@ -8,18 +8,18 @@ use crate::nearest::nearest;
 
 /// Names and texts of the scenes of the paper's Table 1: the Earth's gravity, and materials that exist.
 pub const SHIPPED: [(&str, &str); 5] = [
-    ("spring", include_str!("../../../../scenes/spring.toml")),
-    ("bunny16", include_str!("../../../../scenes/bunny16.toml")),
-    ("bunny128", include_str!("../../../../scenes/bunny128.toml")),
-    ("dragon-nonlinear", include_str!("../../../../scenes/dragon-nonlinear.toml")),
-    ("dragon-polynomial", include_str!("../../../../scenes/dragon-polynomial.toml")),
+    ("spring", include_str!("../../scenes/spring.toml")),
+    ("bunny16", include_str!("../../scenes/bunny16.toml")),
+    ("bunny128", include_str!("../../scenes/bunny128.toml")),
+    ("dragon-nonlinear", include_str!("../../scenes/dragon-nonlinear.toml")),
+    ("dragon-polynomial", include_str!("../../scenes/dragon-polynomial.toml")),
 ];
 
 /// Names and texts of scenes made for the method: so gentle that most steps are within the root's radius, in a metric
 /// measured in their own motion.
 pub const OWN_AMPLITUDE_SCENES: [(&str, &str); 2] = [
-    ("spring-gentle", include_str!("../../../../scenes/spring-gentle.toml")),
-    ("bunny16-gentle", include_str!("../../../../scenes/bunny16-gentle.toml")),
+    ("spring-gentle", include_str!("../../scenes/spring-gentle.toml")),
+    ("bunny16-gentle", include_str!("../../scenes/bunny16-gentle.toml")),
 ];
 
 /// Reads a scene: a file, or a scene that comes with the program by its name.

@@ -1,0 +1,125 @@
+//! Prints a digest of the certificates, and one of the answers, of five small models that are made in code. They are the same
+//! on every machine: `cargo xtask digests` compares them with `docs/records/digests.txt`.
+//!
+//! `cargo run --release -p sscc-examples --example digests`
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use glam::DVec3;
+use sscc::{
+    Certificates, CertifyOptions, ContactFilter, KineticQuery, Modes, Neighbours, Query, ReducedModel,
+    TriMesh,
+};
+use sscc_examples::{exit_code, mouth_glb};
+use sscc_io::container::certificates_to_bytes;
+use sscc_modes::polynomial_modes;
+use sscc_modes::shapes::spring_of;
+
+/// Number of q at which each model is queried, in a motion from q to q.
+const SAMPLES: usize = 24;
+
+fn main() -> ExitCode {
+    exit_code(run())
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let mouth = sscc_io::load_model(&mouth_glb(folder.path())?, None)?.0;
+    let options = CertifyOptions::default;
+    let touching = ContactFilter::new(Neighbours::IncludeOneVertex);
+    let dense = ReducedModel::new(spring_of(60, 6), polynomial_modes(&spring_of(60, 6))?)?;
+    for (name, model, options, reach) in [
+        // One mode for each wave along the axis.
+        ("waves", waves(spring_of(100, 8), 6)?, options(), 0.3),
+        // All modes move all vertices, and a dense metric would not differ from the area's.
+        ("polynomials", dense, options(), 0.1),
+        // Morph targets of single precision, with seams that are welded.
+        ("mouth", mouth, options(), 1.0),
+        // Each vertex is moved by few modes, as in a skin.
+        ("strips", strips(0.2)?, options(), 0.5),
+        // Strips that cross at rest: exceptions; pairs with a common vertex count.
+        ("crossing", strips(0.0)?, options().filter(touching), 0.5),
+    ] {
+        let certificates = Certificates::compute(&model, &options, &())?;
+        let bytes = certificates_to_bytes(&certificates)?;
+        let (answers, colliding) = answers(&model, &certificates, reach)?;
+        println!(
+            "{name}: {} triangles, {} modes, {colliding} of {SAMPLES} collide\n  certificates {}\n  answers      {}",
+            model.mesh().faces().len(),
+            model.rank(),
+            blake3::hash(&bytes),
+            answers.finalize()
+        );
+    }
+    Ok(())
+}
+
+/// Hashes pairs and times of all kinds of queries. Returns the number of q that collide, too.
+fn answers(
+    model: &ReducedModel,
+    certificates: &Certificates,
+    reach: f64,
+) -> Result<(blake3::Hasher, usize), Box<dyn Error>> {
+    let mut query = Query::new(model, certificates)?;
+    let mut kinetic = KineticQuery::new(model, certificates)?;
+    let (mut hash, mut colliding) = (blake3::Hasher::new(), 0);
+    let mut before = vec![0.0; model.rank()];
+    for sample in 0..SAMPLES {
+        let share = sample as f64 / SAMPLES as f64;
+        let q: Vec<f64> =
+            (0..model.rank()).map(|k| reach * share * libm::sin((k * k + 1) as f64 + 2.0 * share)).collect();
+        let pairs = query.discrete(&q)?.to_vec();
+        colliding += usize::from(!pairs.is_empty());
+        assert_eq!(pairs, kinetic.discrete(&q)?, "two methods differ");
+        let mut add = |bytes: &[u8]| _ = hash.update(bytes);
+        pairs.iter().for_each(|&(a, b)| add(&[a.to_le_bytes(), b.to_le_bytes()].concat()));
+        add(&query.safe_scale(&q)?.to_le_bytes());
+        for impact in query.continuous(&before, &q)? {
+            add(&impact.pair.0.to_le_bytes());
+            add(&impact.pair.1.to_le_bytes());
+            add(&impact.time.to_le_bytes());
+        }
+        before = q;
+    }
+    Ok((hash, colliding))
+}
+
+/// A mesh with modes that are waves along z.
+fn waves(mesh: TriMesh, rank: usize) -> Result<ReducedModel, sscc::Error> {
+    let displacements = mesh.rest_positions().iter().flat_map(|p| {
+        (0..rank).map(|k| {
+            let axis = DVec3::AXES[k % 3];
+            axis * libm::sin((k + 2) as f64 * p.z + k as f64)
+        })
+    });
+    let modes = Modes::new(rank, displacements.collect())?;
+    ReducedModel::new(mesh, modes)
+}
+
+/// Five strips above each other, which bend by a mode of their own, and at the height 0 cross each other.
+fn strips(height: f64) -> Result<ReducedModel, sscc::Error> {
+    const LENGTH: u32 = 24;
+    const STRIPS: u32 = 5;
+    let (mut positions, mut faces, mut displacements) = (Vec::new(), Vec::new(), Vec::new());
+    for strip in 0..STRIPS {
+        let first = positions.len() as u32;
+        let turn = libm::sincos(0.6 * f64::from(strip));
+        for i in 0..=LENGTH {
+            for j in 0..2 {
+                let (x, y) = (f64::from(i) / f64::from(LENGTH) - 0.45, 0.1 * f64::from(j) - 0.03);
+                let tilt = 0.02 * y * f64::from(strip);
+                let z = height * f64::from(strip) + tilt;
+                positions.push(DVec3::new(turn.1 * x - turn.0 * y, turn.0 * x + turn.1 * y, z));
+                displacements
+                    .extend((0..STRIPS).map(|k| DVec3::Z * if k == strip { x * x - 0.1 } else { 0.0 }));
+            }
+        }
+        for i in 0..LENGTH {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|corner| first + 2 * i + corner);
+            faces.extend([[a, b, c], [b, d, c]]);
+        }
+    }
+    ReducedModel::new(TriMesh::new(positions, faces)?, Modes::new(STRIPS as usize, displacements)?)
+}
