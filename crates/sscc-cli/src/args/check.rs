@@ -92,8 +92,8 @@ pub struct Check {
     /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
     pub report: Option<PathBuf>,
-    /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), which --frames reads.
-    /// Of an animation that moves several nodes, with --node
+    /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), or .pvd
+    /// with .vtu files for ParaView, which have the time of each frame and mark colliding triangles; --frames reads both. Of an animation that moves several nodes, with --node
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "meshes", "against"])]
     pub frames_out: Option<PathBuf>,
     #[command(flatten)]

@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 /// The motion of a mesh without modes.
 #[derive(Debug, Args)]
 pub struct Motion {
-    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, or a folder
-    /// of meshes with the same faces (9.obj before 10.obj)
+    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, a .pvd collection
+    /// of .vtu files, or a folder of meshes with the same faces (9.obj before 10.obj)
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["trajectory", "q", "animation"])]
     pub frames: Option<PathBuf>,
     /// Another mesh: list the pairs (triangle of MODEL, triangle of this mesh) that collide

@@ -34,3 +34,4 @@ mod simulate;
 mod statics;
 mod sweep;
 mod view;
+mod vtk;
