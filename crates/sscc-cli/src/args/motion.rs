@@ -36,8 +36,8 @@ pub struct Motion {
     )]
     pub times: Option<Vec<f64>>,
     /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. A glTF file with
-    /// several meshes is compared so without --animation, too
-    #[arg(long, requires = "animation")]
+    /// several meshes that is not animated is compared so in any case
+    #[arg(long, conflicts_with_all = ["trajectory", "q", "frames", "against"])]
     pub between_nodes: bool,
     /// Check the mesh at this node only, by its name or its number in the file [default: every node with a mesh]
     #[arg(long, value_name = "NODE", requires = "animation")]

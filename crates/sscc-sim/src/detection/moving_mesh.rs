@@ -256,10 +256,10 @@ impl Evaluation {
     }
 }
 
-/// Whether the meshes of different nodes are compared with each other. Pairs that are ignored at rest are those within one mesh.
+/// Whether the meshes of different nodes are compared with each other.
 pub(super) fn compares_nodes(request: &Detection) -> bool {
     let is_scene = matches!(request.motion, MeshMotion::Rest);
-    (request.between_nodes || is_scene) && request.ignore_rest.is_none()
+    request.between_nodes || is_scene
 }
 
 fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {

@@ -28,8 +28,9 @@ pub struct Detection {
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: Option<u32>,
-    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene at rest are
-    /// in any case. None are where pairs at rest are ignored.
+    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene of several
+    /// meshes at rest are in any case. Where pairs at rest are ignored, so are the pairs of different nodes that collide at the first
+    /// time, and those around them.
     pub between_nodes: bool,
     /// Which pairs of groups of triangles count; with another mesh, or between nodes, also those between the meshes.
     pub groups: GroupRules,

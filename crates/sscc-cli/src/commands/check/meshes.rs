@@ -67,10 +67,10 @@ pub fn check(args: &Check) -> Result<bool> {
         if let Some(frames) = &mut frames_out {
             frames.add(found)?;
         }
-        // A report shows each node by itself.
-        let is_between_nodes = request.against.is_none() && found.other_node.is_some();
-        if let Some(path) = args.report.as_ref().filter(|_| !is_between_nodes) {
-            report.add(found).with_context(|| path.display().to_string())?;
+        if let Some(path) = &args.report {
+            let is_between_nodes = request.against.is_none() && found.other_node.is_some();
+            let added = if is_between_nodes { report.add_between_nodes(found) } else { report.add(found) };
+            added.with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
         // Files have all frames, also where nobody reads the output.
@@ -137,7 +137,6 @@ fn check_flags(args: &Check) -> Result<()> {
         ("times", motion.times.is_some()),
         ("node", motion.node.is_some()),
         ("weights", motion.weights.is_some()),
-        ("between-nodes", motion.between_nodes),
     ] {
         let has_effect = !is_given || motion.animation.is_some();
         ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");

@@ -4,8 +4,16 @@ use glam::DVec3;
 
 use super::super::builder::Builder;
 use super::super::volume_or_surface::VolumeOrSurface;
-use super::grid::Cells;
 use crate::{FormatError, Place};
+
+/// The cells of a grid, by their types of VTK.
+#[derive(Default)]
+pub(super) struct Cells {
+    pub types: Vec<u64>,
+    /// End of each cell in `connectivity`.
+    pub ends: Vec<u64>,
+    pub connectivity: Vec<u64>,
+}
 
 /// Builds the solid, or the surface of a grid without solid cells.
 pub(super) fn build(points: Vec<DVec3>, cells: &Cells) -> Result<VolumeOrSurface, FormatError> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use super::super::volume_or_surface::VolumeOrSurface;
-use super::cells;
+use super::cells::{self, Cells};
 use crate::FormatError;
 use crate::error::quoted;
 
@@ -14,15 +14,6 @@ pub(crate) struct Grid {
     pub(super) cells: Cells,
     /// Name and vectors of the point data that moves the points.
     pub(super) displacement: Option<(String, Vec<DVec3>)>,
-}
-
-/// The cells of a grid, by their types of VTK.
-#[derive(Default)]
-pub(super) struct Cells {
-    pub types: Vec<u64>,
-    /// End of each cell in `connectivity`.
-    pub ends: Vec<u64>,
-    pub connectivity: Vec<u64>,
 }
 
 impl Grid {

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::super::words::Words;
+use super::cells::Cells;
 use super::displacement::Displacement;
-use super::grid::{Cells, Grid};
+use super::grid::Grid;
 use super::legacy_numbers::{Kind, Numbers};
 use crate::FormatError;
 use crate::error::quoted;

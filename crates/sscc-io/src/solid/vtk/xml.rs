@@ -4,9 +4,10 @@ use glam::DVec3;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
+use super::cells::Cells;
 use super::data::Layout;
 use super::displacement::Displacement;
-use super::grid::{Cells, Grid};
+use super::grid::Grid;
 use super::xml_arrays::{Array, Data, Decoder};
 use crate::FormatError;
 use crate::allowance::Allowance;

@@ -13,8 +13,10 @@ mod enclosed;
 mod given_motion;
 mod nearest;
 mod statistics;
+mod surroundings;
 
 pub use clearance::Clearance;
 pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
 pub use enclosed::Enclosed;
+pub use surroundings::surroundings_between_meshes;
