@@ -89,6 +89,9 @@ pub struct Check {
     /// Add the penetration depth of each pair, and the direction in which its second triangle leaves the first
     #[arg(long, conflicts_with = "continuous")]
     pub depths: bool,
+    /// With --against: add the volume that both meshes share, and the diameter of the largest ball inside of both; both must be closed
+    #[arg(long, requires = "against", conflicts_with_all = ["continuous", "clearance"])]
+    pub penetration: bool,
     /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
     pub report: Option<PathBuf>,

@@ -20,6 +20,7 @@ mod info;
 mod interrupt;
 mod left_out;
 mod modes;
+mod penetration;
 mod picture;
 mod places;
 mod readers;

@@ -235,6 +235,7 @@ fn answer<'a>(
         curves: found.contacts.curves.as_ref(),
         near: clearance.zip(found.near.as_ref()),
         enclosed: found.enclosed,
+        body_penetration: found.penetration,
         is_complete: found.is_complete,
         microseconds: found.microseconds,
         norm: None,

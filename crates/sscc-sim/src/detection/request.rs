@@ -41,6 +41,8 @@ pub struct Detection {
     pub limit: Option<usize>,
     /// Asks for the pairs nearer than this, with their distances, in place of those that collide. For discrete queries without a limit.
     pub clearance: Option<Clearance>,
+    /// Asks of two meshes, both closed, for the volume that they share and the largest ball inside of both. For discrete queries.
+    pub penetration: bool,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
     /// Whether answers have the positions of each frame, as reports need them.
@@ -65,6 +67,7 @@ impl Default for Detection {
             is_continuous: false,
             limit: None,
             clearance: None,
+            penetration: false,
             contacts: ContactOptions::default(),
             has_positions: false,
             threads: None,

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use sscc::parts::Surface;
-use sscc::{Clearance, Detector, Enclosed, Impact, Pair, Statistics};
+use sscc::{BodyPenetration, Clearance, Detector, Enclosed, Impact, Pair, Statistics};
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
@@ -37,6 +37,7 @@ pub(super) struct QueryResult {
     pub contacts: Contacts,
     pub near: Option<Near>,
     pub enclosed: Option<[Enclosed; 2]>,
+    pub penetration: Option<BodyPenetration>,
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: Statistics,
@@ -102,6 +103,11 @@ impl<'m, 'w> Worker<'m, 'w> {
             let enclosed = x.detector.enclosed(&x.x_t0, &mut y.detector, &y.x_t0);
             found.enclosed = Some(enclosed.at(|| mesh.place(frame))?);
         }
+        if let (Some(y), true, false) = (&mut self.other, self.request.penetration, is_continuous) {
+            let x = &mut self.side;
+            let body = x.detector.penetration(&x.x_t0, &mut y.detector, &y.x_t0);
+            found.penetration = Some(body.at(|| mesh.place(frame))?);
+        }
         if self.request.has_positions {
             let sides = [&self.side].into_iter().chain(&self.other);
             found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
@@ -155,6 +161,7 @@ fn discrete(
         contacts,
         near: None,
         enclosed: None,
+        penetration: None,
         is_complete,
         microseconds,
         statistics,
@@ -180,6 +187,7 @@ fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryRes
         contacts: Contacts::default(),
         near: Some(near),
         enclosed: None,
+        penetration: None,
         is_complete: true,
         microseconds: start.elapsed().as_secs_f64() * 1e6,
         statistics: x.detector.statistics(),
@@ -203,6 +211,7 @@ fn continuous(limit: Option<usize>, (x, other): Sides<'_, '_, '_>) -> Result<Que
         contacts: Contacts::default(),
         near: None,
         enclosed: None,
+        penetration: None,
         is_complete,
         microseconds,
         statistics: x.detector.statistics(),

@@ -202,6 +202,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
         is_continuous: args.continuous,
         limit: args.max_pairs(),
         clearance: args.clearance()?,
+        penetration: args.penetration,
         contacts: shapes::contacts(args),
         has_positions: args.report.is_some() || args.pose.is_some() || args.frames_out.is_some(),
         threads: Some(load::threads(&options.threads)),

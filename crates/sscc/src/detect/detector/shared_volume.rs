@@ -21,10 +21,8 @@ pub(super) fn shared_volume(
     if aabbs[0].is_disjoint(&aabbs[1]) {
         return Ok((0.0, 0.0));
     }
-    let shared = Aabb {
-        lower: aabbs[0].lower.max(aabbs[1].lower),
-        upper: aabbs[0].upper.min(aabbs[1].upper),
-    };
+    let shared =
+        Aabb { lower: aabbs[0].lower.max(aabbs[1].lower), upper: aabbs[0].upper.min(aabbs[1].upper) };
     let center = shared.center();
     let direction = meshes.map(|mesh| direction(mesh, center));
     // Only triangles over the shared box have a partner.
@@ -37,7 +35,9 @@ pub(super) fn shared_volume(
         let span = if is_of_a { &a[at_a] } else { &b[at_b] };
         let (own, others) = if is_of_a { (&mut open_a, &mut open_b) } else { (&mut open_b, &mut open_a) };
         others.retain(|other| other.upper.x >= span.lower.x);
-        for other in others.iter().filter(|other| other.lower.y <= span.upper.y && span.lower.y <= other.upper.y) {
+        for other in
+            others.iter().filter(|other| other.lower.y <= span.upper.y && span.lower.y <= other.upper.y)
+        {
             let (x, y) = if is_of_a { (span, *other) } else { (*other, span) };
             let term = overlap_integral(&x.corners, &y.corners);
             sum += term.value;
@@ -62,9 +62,8 @@ struct Span {
 
 /// Returns the triangles over the box, in the order of their smallest x.
 fn spans(mesh: &[[DVec3; 3]], shared: &Aabb, center: DVec3) -> Vec<Span> {
-    let is_over = |aabb: &Aabb| {
-        (0..2).all(|k| aabb.lower[k] <= shared.upper[k] && shared.lower[k] <= aabb.upper[k])
-    };
+    let is_over =
+        |aabb: &Aabb| (0..2).all(|k| aabb.lower[k] <= shared.upper[k] && shared.lower[k] <= aabb.upper[k]);
     let over = mesh.iter().filter(|corners| is_over(&Aabb::of_triangle(**corners)));
     let mut spans: Vec<Span> = over
         .map(|corners| {
