@@ -319,6 +319,23 @@ impl Detector {
         Ok(((one.inside, one.components), (two.inside, two.components)))
     }
 
+    fn penetration<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+        other: &Bound<'py, PyAny>,
+        other_positions: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let other = as_detector(other)?;
+        let [x, y] = named_both(positions, other_positions)?;
+        let ask = |detector: &mut sscc::Detector, other: &mut sscc::Detector| {
+            detector.penetration(&x.points, other, &y.points)
+        };
+        let found = self.ask_both(py, &[&x], other, &[&y], ask)?;
+        let class = py.import("sscc._penetration")?.getattr("BodyPenetration")?;
+        class.call1((found.volume, found.volume_error, found.depth, found.depth_error))
+    }
+
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         table(py, 3, self.pool.mesh.faces.as_flattened().to_vec())

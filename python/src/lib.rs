@@ -32,6 +32,7 @@ mod scene;
 mod shards;
 mod simulate;
 mod sweeps;
+mod watching;
 
 use pyo3::prelude::*;
 

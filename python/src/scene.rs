@@ -2,17 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
 use numpy::{PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use sscc::{CancelToken, Clearance, Pair, Progress};
+use sscc::{Clearance, Pair};
 use sscc_io::gltf::{AnimatedScene, SkinWeights, read_scene};
 use sscc_io::{FormatError, IoError};
 use sscc_sim::{
-    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, SimError, Stage, Times, Watch,
-    detect,
+    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, SimError, Times, detect,
 };
 
 use crate::arguments::{self, choice, count, neighbours_by_name, number, switch};
@@ -21,6 +19,7 @@ use crate::certify::rest_rings;
 use crate::errors::{file, refused_simulation, room, value, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
+use crate::watching::Watching;
 
 /// Times a second, where neither they nor times are given.
 const RATE: f64 = 30.0;
@@ -169,13 +168,13 @@ pub fn _check_scene<'py>(
     request.motion =
         MeshMotion::Animation(AnimationMotion { animation, times, node, weights: SkinWeights::Normalized });
     let (found, warnings) = run_borrowing(py, progress, "checking", |progress| {
-        let watch = Watching { progress, warnings: Mutex::default() };
+        let watch = Watching::all(progress);
         let mut kept = Vec::new();
         let found = detect(&request, &watch, |_, found| {
             kept.push(Kept::of(found?));
             Ok::<_, SimError>(ControlFlow::Continue(()))
         });
-        (found.map(|()| kept), watch.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
+        (found.map(|()| kept), watch.notes())
     })?;
     warn(py, &warnings)?;
     let class = py.import("sscc._scene")?.getattr("SceneAnswer")?;
@@ -199,28 +198,4 @@ pub fn _check_scene<'py>(
         ))
     });
     PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
-}
-
-/// Passes on progress, and collects warnings.
-struct Watching<'a> {
-    progress: &'a dyn Progress,
-    warnings: Mutex<Vec<String>>,
-}
-
-impl Progress for Watching<'_> {
-    fn report(&self, done: usize, total: usize) {
-        self.progress.report(done, total);
-    }
-
-    fn cancel_token(&self) -> Option<&CancelToken> {
-        self.progress.cancel_token()
-    }
-}
-
-impl Watch for Watching<'_> {
-    fn begin(&self, _: Stage) {}
-
-    fn note(&self, note: &str) {
-        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
-    }
 }

@@ -1,18 +1,16 @@
 //! The part of `sscc.simulate` in Rust: its arguments, and the files that it writes.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
-use sscc::{CancelToken, Progress};
-use sscc_sim::{Outputs, Request, SimError, Stage, Watch, simulate};
+use sscc_sim::{Outputs, Request, SimError, simulate};
 use sscc_view::simulation_report;
 
 use crate::arguments::{count, path, switch};
 use crate::errors::{refused_simulation, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
+use crate::watching::Watching;
 
 /// Simulates a scene; returns its summary (JSON), the folder and the files in it.
 #[pyfunction]
@@ -38,49 +36,20 @@ pub fn _simulate(
         threads: pool::threads(threads)?,
     };
     let (written, notes) = run_borrowing(py, None, "simulating", |progress| {
-        let steps = Steps { progress, are_simulated: AtomicBool::new(false), notes: Mutex::default() };
+        let steps = Watching::steps(progress);
         let written = simulated(&request, &steps);
-        (written, steps.notes.into_inner().unwrap_or_else(PoisonError::into_inner))
+        (written, steps.notes())
     })?;
     warn(py, &notes)?;
     written.map_err(|error| refused_simulation(&error))
 }
 
 /// Simulates a scene and writes all files.
-fn simulated(request: &Request, steps: &Steps<'_>) -> Result<(String, PathBuf, Vec<PathBuf>), SimError> {
+fn simulated(request: &Request, steps: &Watching<'_>) -> Result<(String, PathBuf, Vec<PathBuf>), SimError> {
     let run = simulate(request, steps)?;
     let mut outputs = Outputs::write(&run);
     outputs.add_report(simulation_report(&run, steps));
     let written = (run.summary.to_json(), run.folder.clone(), outputs.files());
     outputs.finish(run)?;
     Ok(written)
-}
-
-/// Reports the progress of steps only, so that the share done never decreases; collects notes.
-struct Steps<'a> {
-    progress: &'a dyn Progress,
-    are_simulated: AtomicBool,
-    notes: Mutex<Vec<String>>,
-}
-
-impl Progress for Steps<'_> {
-    fn report(&self, done: usize, total: usize) {
-        if self.are_simulated.load(Ordering::Relaxed) {
-            self.progress.report(done, total);
-        }
-    }
-
-    fn cancel_token(&self) -> Option<&CancelToken> {
-        self.progress.cancel_token()
-    }
-}
-
-impl Watch for Steps<'_> {
-    fn begin(&self, stage: Stage) {
-        self.are_simulated.store(matches!(stage, Stage::Steps { .. }), Ordering::Relaxed);
-    }
-
-    fn note(&self, note: &str) {
-        self.notes.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
-    }
 }

@@ -28,6 +28,7 @@ from sscc._sscc import (
     __version__,
     self_intersections,
 )
+from sscc._penetration import BodyPenetration
 from sscc._resolve import FreeSamples, Resolved
 from sscc._scene import Scene, SceneAnimation, SceneAnswer, SceneNode
 from sscc._simulate import Simulation, simulate
@@ -36,6 +37,7 @@ from sscc.simulators import from_mujoco, from_simplicits, from_sofa
 from sscc.usd import UsdMesh, from_usd
 
 __all__ = [
+    "BodyPenetration",
     "Answer",
     "Batch",
     "Certificates",

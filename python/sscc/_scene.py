@@ -138,19 +138,18 @@ class Scene:
         animation: its name or number; None: the scene as it is stored.
         times, fps: when the animation is checked (s; times a second); None: 30 times a second.
         node: the name or number of the only node; None: all.
-        between_nodes: whether two nodes are compared with each other; None: yes, unless pairs at rest are ignored.
+        between_nodes: whether two nodes are compared with each other; None: yes.
         continuous: from each time to the next, every vertex on a straight line.
         clearance: find pairs nearer than this in place of those that collide.
         ignore_groups, only_groups: pairs "A,B" of names of nodes, meshes and materials that do not count, or alone
             count. group_by: "node", "mesh", "material", "group" (primitives) or a file of numbers; None: any name.
-        ignore_rest: True: pairs that collide at rest do not count; a number: nor those within so many rings of them.
+        ignore_rest: True: pairs that collide at rest do not count, nor pairs of two nodes that collide at the first time; a
+            number: nor those within so many rings of them.
         limit: the most pairs of each answer.
 
         One answer for each node and time; then, time by time, one for each two nodes that collide (or are near). Raises
         FileNotFoundError, OSError, ValueError, TypeError.
         """
-        if between_nodes and ignore_rest is not None and ignore_rest is not False:
-            raise ValueError("ignore_rest is about pairs within one mesh: leave out between_nodes")
         if clearance is not None and neighbours is not None:
             raise ValueError("clearance: triangles with a common vertex never count: leave out neighbours")
         if continuous and animation is None:

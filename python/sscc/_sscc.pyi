@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sscc._curve import Curve
+from sscc._penetration import BodyPenetration
 from sscc._resolve import FreeSamples, Resolved
 from sscc._scene import SceneAnswer
 from sscc._sweep import Intervals, Sweep
@@ -508,6 +509,10 @@ class Detector:
         the other one inside this mesh. It holds where ``against`` finds no pair. Only closed components have an inside;
         others can be inside of them.
         """
+    def penetration(
+        self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
+    ) -> BodyPenetration:
+        """The volume that both meshes share, and the diameter of the largest ball inside of both. Both must be closed."""
     @property
     def faces(self) -> _U32:
         """Vertex numbers, (F, 3); a copy."""

@@ -559,6 +559,19 @@ def test_invalid_options_are_refused() -> None:
         check_refused(call, error, message)
 
 
+def test_bodies_share_a_volume() -> None:
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    faces = [triangle for a, b, c, d in quads for triangle in ([a, b, c], [a, c, d])]
+    box = sscc.Detector(faces)
+    found = box.penetration(corners, sscc.Detector(faces), corners + [0.75, 0.5, 0])
+    assert abs(found.volume - 0.125) <= found.volume_error < 1e-12
+    assert found.depth <= 0.25 <= found.depth + found.depth_error + 1e-8
+    assert box.penetration(corners, box, corners + 2) == (0, 0, 0, 0)
+    with pytest.raises(ValueError, match="the second mesh is open"):
+        box.penetration(corners, sscc.Detector(faces[1:]), corners)
+
+
 def test_near_pairs_and_the_nearest_one() -> None:
     detector = sscc.Detector([[0, 1, 2], [3, 4, 5]], X)
     pairs, distances = detector.within(X, 1.5)

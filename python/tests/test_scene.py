@@ -79,8 +79,6 @@ def test_bad_arguments_are_named(scene: sscc.Scene, tmp_path: Path) -> None:
         (lambda: scene.check(clearance=0.0), "clearance"),
         (lambda: scene.check("wave", clearance=1.0, continuous=True), "leave out continuous"),
         (lambda: scene.check(ignore_groups=["a,b"], only_groups=["a,b"]), "not both"),
-        (lambda: scene.check("wave", between_nodes=True, ignore_rest=True), "leave out between_nodes"),
-        (lambda: scene.check("wave", between_nodes=True, ignore_rest=0), "leave out between_nodes"),
         (lambda: scene.check(clearance=1.0, neighbours="exclude"), "leave out neighbours"),
         (lambda: scene.positions("light"), "no node 'light' shows a mesh"),
     ]

@@ -54,8 +54,9 @@ export class ContactsPanel {
     private show(): void {
         const bodies = this.player.meshes?.data.bodies ?? [];
         const several = bodies.length > 1 && !this.player.meshes?.contacts?.isBetween;
-        const text = ({ bodies: [body], pair, time }: Contact): string => {
-            const name = several ? `${bodies[body].name}: ` : "";
+        const text = ({ bodies: [body, second], pair, time }: Contact): string => {
+            const other = body === second ? "" : ` – ${bodies[second].name}`;
+            const name = several ? `${bodies[body].name}${other}: ` : "";
             return `${name}${pair[0]} – ${pair[1]}${time === null ? "" : ` at ${time.toFixed(4)}`}`;
         };
         const rows = this.contacts.slice(0, this.rows).map((contact, i) => {

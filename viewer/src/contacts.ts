@@ -16,6 +16,7 @@ export class Contacts {
         private readonly offsets: Uint32Array,
         private readonly pairs: Uint32Array,
         private readonly times: Float32Array | null,
+        private readonly seconds: Uint32Array | null,
         readonly isBetween: boolean,
         private readonly curveOffsets: Uint32Array,
         private readonly segments: Float32Array,
@@ -26,10 +27,11 @@ export class Contacts {
         const { contacts, curves } = data;
         if (!contacts) return null;
         const none = new ArrayBuffer(0);
-        const [offsets, pairs, times, curveOffsets, segments] = await Promise.all([
+        const [offsets, pairs, times, seconds, curveOffsets, segments] = await Promise.all([
             source.array(contacts.offsets),
             source.array(contacts.pairs),
             contacts.times === null ? null : source.array(contacts.times),
+            contacts.seconds ? source.array(contacts.seconds) : null,
             curves ? source.array(curves.offsets) : none,
             curves ? source.array(curves.segments) : none,
         ]);
@@ -38,6 +40,7 @@ export class Contacts {
             new Uint32Array(offsets),
             new Uint32Array(pairs),
             times && new Float32Array(times),
+            seconds && new Uint32Array(seconds),
             contacts.is_between,
             new Uint32Array(curveOffsets),
             new Float32Array(segments),
@@ -54,7 +57,7 @@ export class Contacts {
             const [from, to] = this.range(frame, body);
             for (let i = from; i < to; i++)
                 found.push({
-                    bodies: [body, this.isBetween ? 1 : body],
+                    bodies: [body, this.second(i, body)],
                     pair: [this.pairs[2 * i], this.pairs[2 * i + 1]],
                     time: this.times?.[i] ?? null,
                 });
@@ -71,9 +74,18 @@ export class Contacts {
 
     /** The colliding triangles of a body; a triangle of several pairs occurs several times. */
     triangles(frame: number, body: number): Uint32Array {
-        const [from, to] = this.range(frame, this.isBetween ? 0 : body);
-        const list = this.pairs.subarray(2 * from, 2 * to);
-        return this.isBetween ? list.filter((_, i) => i % 2 === body) : list;
+        if (!this.isBetween && !this.seconds) {
+            const [from, to] = this.range(frame, body);
+            return this.pairs.subarray(2 * from, 2 * to);
+        }
+        const found: number[] = [];
+        for (const { bodies, pair } of this.of(frame)) found.push(...pair.filter((_, side) => bodies[side] === body));
+        return Uint32Array.from(found);
+    }
+
+    /** The body of the second triangle of a pair of a body's list. */
+    private second(pair: number, body: number): number {
+        return this.seconds ? this.seconds[pair] : this.isBetween ? 1 : body;
     }
 
     /** Segments of two points each. */

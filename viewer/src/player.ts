@@ -49,7 +49,7 @@ export class Player {
             data.sound === null ? null : new Blob([await app.source.array(data.sound)], { type: "audio/wav" });
         const { pairs, since } = this.recorded;
         const { clock, contacts } = data;
-        const contact = contacts?.is_between ? "contact" : "self-contact";
+        const contact = contacts?.is_between || contacts?.seconds ? "contact" : "self-contact";
         this.open({ times: data.times, pairs, since, sound, clock, contact, show: (frame) => this.show(frame) });
         this.enterPlayback();
     }

@@ -47,7 +47,8 @@ export class PlotsPanel {
         const { scene } = app;
         const pairs = scene.playback?.bodies.flatMap((b) => (b.pairs ? [b.pairs] : [])) ?? [];
         const spans = contactSpans(scene.playback?.times ?? [], pairs, scene.playback?.pairs_since ?? null);
-        const noun = scene.playback?.contacts?.is_between ? "contact" : "self-contact";
+        const contacts = scene.playback?.contacts;
+        const noun = contacts?.is_between || contacts?.seconds ? "contact" : "self-contact";
         const overTime = scene.playback?.costs ?? null;
         const all = [
             ...(overTime ? [overTime] : []),

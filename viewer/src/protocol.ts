@@ -82,7 +82,9 @@ export interface ContactsData {
     pairs: string;
     /** Times of impact from 0 to 1, of a continuous check. */
     times: string | null;
-    /** Whether the second triangles belong to the second body, else to the body of the list. */
+    /** The body of each second triangle, where some pairs are of two bodies; earlier versions have none. */
+    seconds?: string | null;
+    /** Whether the second triangles belong to the second body, else, without `seconds`, to the body of the list. */
     is_between: boolean;
 }
 

@@ -79,6 +79,8 @@ pub enum Place {
     Line(usize),
     /// Offset in bytes from the beginning.
     Byte(usize),
+    /// Cell of a grid, counted from 0.
+    Cell(usize),
     /// Tensor of a container, by name.
     Tensor(String),
     /// Text entry of a container, by key.
@@ -93,6 +95,7 @@ impl fmt::Display for Place {
             Self::Whole => Ok(()),
             Self::Line(line) => write!(f, "line {line}: "),
             Self::Byte(byte) => write!(f, "byte {byte}: "),
+            Self::Cell(cell) => write!(f, "cell {cell} (counted from 0): "),
             Self::Tensor(name) => write!(f, "tensor {}: ", quoted(name)),
             Self::Key(name) => write!(f, "metadata {}: ", quoted(name)),
             Self::Part(name) => write!(f, "{}: ", cut(name, 80)),

@@ -38,7 +38,7 @@
 //! | groups of triangles: OBJ groups, objects and materials, glTF primitives, nodes and materials | [`read_groups`] |
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
-//! | frames of a given mesh, one by one: `.npy` of positions, a `.pc2` point cache, a folder of meshes | [`FrameReader`] |
+//! | frames of a given mesh, one by one: `.npy` of positions, a `.pc2` point cache, VTK's `.vtu`, `.vtk` and `.pvd`, a folder of meshes | [`FrameReader`] |
 //! | the mesh of any file, without modes, where nodes put it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
 //! | the files of a folder that have a mesh | [`list_mesh_files`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
@@ -48,7 +48,7 @@
 //! | models and certificates | [`container`] |
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
 //! | animation: mesh, modes and q(t) as glTF | [`gltf::write_animation`] |
-//! | a pose with its colliding triangles marked | [`write_ply_pose`], [`write_obj_pose`] |
+//! | a pose with its colliding triangles marked; frames of such poses for ParaView | [`write_ply_pose`], [`write_obj_pose`], [`write_vtu_pose`]; [`VtkFramesWriter`] |
 //! | contact curves as polylines | [`write_ply_curves`], [`write_obj_curves`] |
 //!
 //! STL and glTF split vertices along seams. Their readers say so ([`sscc::TriMesh::has_split_vertices`]), and detectors and
@@ -88,6 +88,7 @@ pub mod solid;
 mod text;
 mod triangulate;
 mod vertex_numbers;
+mod vtk_writer;
 mod wav;
 
 pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
@@ -104,7 +105,7 @@ pub use mesh_files::list_mesh_files;
 pub use mesh_modes::read_modes_for;
 pub use mesh_path::split_mesh_name;
 pub use message::{Message, Setting};
-pub use modes::{FrameReader, Frames, NamedModes, read_frames, read_modes};
+pub use modes::{FrameReader, Frames, NamedModes, is_collection, read_frames, read_modes};
 pub use named_groups::{GroupsBy, NamedGroups};
 pub use npy::{NpyWriter, write_npy};
 pub use npz::{NamedArray, NpzModel, read_npz_model, write_npz};
@@ -113,4 +114,5 @@ pub use pose::{write_obj_pose, write_ply_pose};
 pub use solid::{VolumeOrSurface, read_volume_mesh, read_volume_or_surface};
 pub use triangulate::triangulate;
 pub use vertex_numbers::read_vertex_numbers;
+pub use vtk_writer::{VtkFramesWriter, write_vtu_pose};
 pub use wav::{WavFormat, wav_to_bytes, write_wav};

@@ -7,13 +7,15 @@ use sscc::{ReducedModel, TriMesh};
 use crate::file::{check_exists, ending, unsupported};
 use crate::mesh::{is_mesh_name, read_mesh_with_warnings};
 use crate::mesh_path::named_file;
+use crate::modes::{is_collection, read_collection};
+use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::solid::{is_solid_name, read_volume_or_surface};
 use crate::{
     IoError, ModelInfo, NamedModes, NpzModel, Setting, gltf, read_model, read_modes_for, read_npz_model,
 };
 
 /// Endings of the files that have a mesh.
-const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf, .vrm; models: \
+const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk; glTF: .glb, .gltf, .vrm; models: \
                          .npz, .model.safetensors";
 
 /// Options for loading a model.
@@ -135,7 +137,7 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
             Err(IoError::request(path, "a mesh has no modes: add " + Setting::Modes + advice))
         }
         (_, Some(modes_path)) => {
-            let LoadedMesh { mesh, warnings } = load_mesh_with_warnings(path, None)?;
+            let LoadedMesh { mesh, warnings } = load_rest_mesh(path)?;
             let modes = read_modes_for(modes_path, &mesh, path)?;
             let provenance = format!("mesh {}, modes {}", name(path), name(modes_path));
             Ok(LoadedModel { warnings, ..assemble(modes_path, mesh, modes, provenance)? })
@@ -145,11 +147,14 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
 
 /// Loads a mesh at rest from a file of any format: a mesh file, a glTF file at the first place of its mesh
 /// ([`gltf::read_placed_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
-/// vertices of the file, in a Medit or gmsh file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`](crate::split_mesh_name)) names
+/// vertices of the file, in a Medit, gmsh or VTK file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`](crate::split_mesh_name)) names
 /// the mesh as `mesh_name` does.
 ///
+/// A grid of VTK is deformed by its displacements ([`Displacement::ByName`]), or by the point data that `mesh_name` names; an
+/// empty name: by none. Of a `.pvd` collection this is its first file.
+///
 /// # Errors
-/// When a mesh is named for a file other than glTF, or twice; when the file cannot be read or is malformed, or has no
+/// When a mesh is named for a file other than glTF and VTK, or twice; when the file cannot be read or is malformed, or has no
 /// triangles.
 pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoError> {
     load_mesh_with_warnings(path, mesh_name).map(|loaded| loaded.mesh)
@@ -163,6 +168,9 @@ pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<L
     let (file, mesh_name) = named_file(path, mesh_name)?;
     let path = file.as_path();
     let format = ending(path);
+    if is_vtk_name(path) || is_collection(path) {
+        return load_grid(path, &Displacement::of_name(mesh_name.as_deref()));
+    }
     if mesh_name.is_some() && !gltf::is_gltf(path) {
         check_exists(path)?;
         return Err(named_mesh_error(path));
@@ -181,6 +189,22 @@ pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<L
         _ => return Err(unsupported(path, "mesh", SUPPORTED)),
     };
     Ok(LoadedMesh { mesh, warnings })
+}
+
+/// Loads the surface of a grid of VTK, or of the first one of a collection.
+fn load_grid(path: &Path, displacement: &Displacement) -> Result<LoadedMesh, IoError> {
+    let first = match is_collection(path) {
+        true => Some(read_collection(path)?.swap_remove(0).file),
+        false => None,
+    };
+    let path = first.as_deref().unwrap_or(path);
+    let (mesh, warnings) = read_surface(path, displacement)?;
+    Ok(LoadedMesh { mesh, warnings })
+}
+
+/// As [`load_mesh_with_warnings`], of a grid of VTK at rest, without its displacements.
+fn load_rest_mesh(path: &Path) -> Result<LoadedMesh, IoError> {
+    if is_vtk_name(path) { load_grid(path, &Displacement::None) } else { load_mesh_with_warnings(path, None) }
 }
 
 /// Returns the error for a named mesh of a file that has only one.

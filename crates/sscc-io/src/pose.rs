@@ -24,7 +24,7 @@ pub fn write_obj_pose(
     positions: &[DVec3],
     colliding: &[bool],
 ) -> Result<(), IoError> {
-    check(path, mesh, positions, colliding)?;
+    check_pose(path, mesh, positions, colliding)?;
     write_whole(path, obj(mesh, positions, colliding).as_bytes())
 }
 
@@ -38,11 +38,16 @@ pub fn write_ply_pose(
     positions: &[DVec3],
     colliding: &[bool],
 ) -> Result<(), IoError> {
-    check(path, mesh, positions, colliding)?;
+    check_pose(path, mesh, positions, colliding)?;
     write_whole(path, &ply(mesh, positions, colliding))
 }
 
-fn check(path: &Path, mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> Result<(), IoError> {
+pub(crate) fn check_pose(
+    path: &Path,
+    mesh: &TriMesh,
+    positions: &[DVec3],
+    colliding: &[bool],
+) -> Result<(), IoError> {
     let (vertices, faces) = (mesh.rest_positions().len(), mesh.faces().len());
     let cause = if positions.len() != vertices {
         format!("{} positions for {vertices} vertices", positions.len())

@@ -5,7 +5,7 @@
 
 use allocation_counter::measure;
 use proptest::prelude::*;
-use sscc_io::solid::{gmsh, medit, tetgen, vega};
+use sscc_io::solid::{gmsh, medit, tetgen, vega, vtk};
 use sscc_io::{FormatError, VolumeOrSurface, parse_reduced_forces};
 use sscc_solid::VolumeMesh;
 
@@ -43,6 +43,7 @@ fn parse_all(bytes: &[u8]) {
     check(gmsh::parse(bytes));
     check_any(medit::parse_any(bytes));
     check_any(gmsh::parse_any(bytes));
+    check_any(vtk::parse_any(bytes));
     match tetgen::parse_nodes(bytes) {
         Ok(nodes) => check(tetgen::parse(&nodes, ELE)),
         Err(error) => check(Err(error)),
@@ -55,6 +56,14 @@ fn parse_all(bytes: &[u8]) {
 
 const NODE: &[u8] = b"4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n";
 const ELE: &[u8] = b"1 4 1\n0 0 1 2 3 5\n";
+
+const VTU: &[u8] = b"<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\" 4 \" NumberOfCells=\" 1 \"><Cells>\
+    <DataArray type=\"Int64\" Name=\"connectivity\" > 0 1 2 3 </DataArray><DataArray type=\"Int64\" Name=\"offsets\" > 4 </DataArray>\
+    <DataArray type=\"UInt8\" Name=\"types\" > 10 </DataArray></Cells><Points><DataArray type=\"Float64\" NumberOfComponents=\" 3 \" >\
+    0 0 0 1 0 0 0 1 0 0 0 1 </DataArray></Points></Piece></UnstructuredGrid></VTKFile>";
+const VTK: &[u8] = b"# vtk DataFile Version 5.1\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n\
+    CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nFIELD f 1\n\
+    U 3 4 double\n0 0 0 0 0 0 0 0 0 0 0 1\n";
 
 /// Small valid files.
 fn seeds() -> Vec<Vec<u8>> {
@@ -93,7 +102,8 @@ fn seeds() -> Vec<Vec<u8>> {
     let cubic = [&[1, 0, 0, 0].repeat(4)[..], &[0; 24]].concat();
     let (medit, v4) = (medit.as_bytes().to_vec(), v4.as_bytes().to_vec());
     let (v2, second_order) = (v2.into_bytes(), second_order.into_bytes());
-    vec![medit, vega.into_bytes(), v2, v4, binary, NODE.to_vec(), ELE.to_vec(), cubic, second_order]
+    let (vtu, vtk) = (VTU.to_vec(), VTK.to_vec());
+    vec![medit, vega.into_bytes(), v2, v4, binary, NODE.to_vec(), ELE.to_vec(), cubic, second_order, vtu, vtk]
 }
 
 #[test]
@@ -106,6 +116,8 @@ fn seeds_are_valid() {
         gmsh::parse(&seeds[3]),
         gmsh::parse(&seeds[4]),
         tetgen::parse(&tetgen::parse_nodes(&seeds[5]).unwrap(), &seeds[6]),
+        vtk::parse(&seeds[9]),
+        vtk::parse(&seeds[10]),
     ];
     for mesh in meshes {
         let mesh = mesh.unwrap();
@@ -148,7 +160,7 @@ proptest! {
 
     #[test]
     fn damaged_files(
-        seed in 0_usize..8,
+        seed in 0_usize..11,
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         cut in any::<prop::sample::Index>(),
         whole: bool,
@@ -165,7 +177,7 @@ proptest! {
     /// Exchanged numbers, which damage of single bytes seldom produces.
     #[test]
     fn exchanged_numbers(
-        seed in 0_usize..7,
+        seed in 0_usize..11,
         at in prop::collection::vec(any::<prop::sample::Index>(), 1..4),
         number in prop::sample::select(vec!["0", "1", "2", "5", "15", "-1", "4294967296", "18446744073709551615"]),
     ) {
@@ -234,6 +246,12 @@ fn long_files_use_little_memory() {
         format!("{groups}$PhysicalNames\n100000\n{}", numbered("3 @ \"\"\n")),
         format!("{groups}$Entities\n0 0 0 100000\n{}", numbered("@ 0 0 0 0 0 0 1 1 0\n")),
         format!("{groups}{}", many("$A\n$EndA\n")),
+        String::from_utf8_lossy(VTU).replace("<Cells>", &format!("{}<Cells>", many("<a/>"))),
+        String::from_utf8_lossy(VTU).replace("<Cells>", &format!("{}<Cells>", many("<a>"))),
+        String::from_utf8_lossy(VTU)
+            .replace("0 1 2 3", &many("0 "))
+            .replace("> 4 <", "> 100000 <")
+            .replace("> 10 <", "> 7 <"),
     ] {
         let peak = peak(|| parse_all(text.as_bytes()));
         assert!(peak < 50 * text.len() as u64, "{peak} for {}: {}", text.len(), &text[..60]);

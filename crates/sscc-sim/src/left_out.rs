@@ -65,6 +65,13 @@ impl LeftOut {
         self
     }
 
+    /// The same with so many more pairs that are ignored one by one.
+    #[must_use]
+    pub fn and_ignored(mut self, pairs: usize) -> Self {
+        self.ignored += pairs;
+        self
+    }
+
     /// The number of pairs that are ignored one by one.
     pub fn ignored(&self) -> usize {
         self.ignored

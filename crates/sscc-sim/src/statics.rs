@@ -23,7 +23,8 @@ pub struct StaticAnswer {
 /// mass: see [`static_configuration`].
 ///
 /// # Errors
-/// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static answer.
+/// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static answer, or one that no
+/// query takes.
 pub fn static_answer(
     model: &ReducedModel,
     info: &ModelInfo,
@@ -43,6 +44,10 @@ pub fn static_answer(
         generalized.iter_mut().zip(&mass.moments).for_each(|(sum, moment)| *sum += moment.dot(gravity));
     }
     let q = static_configuration(elasticity.stiffness(), &generalized)?;
+    if model.check_coordinates(&q).is_err() {
+        let cause = "its vertices would be beyond 2^200, where no shape is checked; give smaller forces";
+        return Err(SimError::refused("the load has no answer that is a shape", cause));
+    }
     let displacement = |v: u32| -> f64 {
         model.modes().of_vertex(v).iter().zip(&q).map(|(u, q)| *u * *q).sum::<DVec3>().length()
     };

@@ -107,6 +107,17 @@ pub enum SolidError {
         /// Its corners.
         corners: [u32; 4],
     },
+    /// The nodes in the middles of the edges of a tetrahedron are exchanged, or in the order of another format.
+    #[error(
+        "the second-order tetrahedron {tet} (counted from 0, corners {corners:?}) has nodes of its edges in another order than those of \
+         its format: each is nearer to the middle of another edge; exchange them"
+    )]
+    ExchangedMiddles {
+        /// The tetrahedron, from 0.
+        tet: usize,
+        /// Its corners.
+        corners: [u32; 4],
+    },
     /// Only some tetrahedra are of second order, so the mesh has gaps at their edges.
     #[error(
         "{second_order} of {tets} tetrahedra are of second order: mesh the whole solid in first or in second order"

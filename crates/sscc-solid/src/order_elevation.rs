@@ -89,7 +89,33 @@ mod tests {
         );
         let mut other = middles.clone();
         other[1].swap(0, 2);
-        assert!(message(vertices.clone(), &other).contains("in its middle: merge"));
+        let exchanged = message(vertices.clone(), &other);
+        assert!(
+            exchanged.starts_with("the second-order tetrahedron 1 (counted from 0, corners"),
+            "{exchanged}"
+        );
+        assert!(
+            exchanged.ends_with("each is nearer to the middle of another edge; exchange them"),
+            "{exchanged}"
+        );
+        // In every tetrahedron, as in files of another format: no edge has two nodes, but elements are inverted.
+        let all: Vec<_> = middles.iter().map(|m| [m[0], m[1], m[2], m[3], m[5], m[4]]).collect();
+        let alone = Solid::with_middles(
+            vertices.clone(),
+            solid.tets()[..1].to_vec(),
+            &all[..1],
+            vec![],
+            vec![Material::default()],
+            vec![0],
+        );
+        let alone = alone.map(drop).unwrap_err().to_string();
+        assert!(alone.contains("exchange them") || alone.contains("belongs to no element"), "{alone}");
+        // An edge with two nodes at one place.
+        let (mut doubled, mut others) = (vertices.clone(), middles.clone());
+        let shared = others[1].iter_mut().find(|m| middles[0].contains(m)).unwrap();
+        doubled.push(vertices[*shared as usize]);
+        *shared = vertices.len() as u32;
+        assert!(message(doubled, &others).contains("in its middle: merge"));
         let mut coincident = vertices.clone();
         coincident[middles[0][0] as usize] = DVec3::X;
         let inverted = message(coincident, &middles);

@@ -28,6 +28,17 @@ pub(crate) fn middle(a: usize, b: usize) -> usize {
     4 + EDGES.iter().position(|edge| edge.contains(&a) && edge.contains(&b)).unwrap_or_default()
 }
 
+/// Whether at least two middle nodes are nearer to the middle of another edge than to that of their own: then they are in another
+/// order, or exchanged.
+pub(crate) fn has_exchanged_middles(nodes: &[DVec3; 10]) -> bool {
+    let middles = EDGES.map(|[a, b]| 0.5 * nodes[a] + 0.5 * nodes[b]);
+    let is_elsewhere = |k: usize| {
+        let distance = |edge: usize| nodes[4 + k].distance_squared(middles[edge]);
+        (0..6).any(|edge| distance(edge) < distance(k))
+    };
+    (0..6).filter(|k| is_elsewhere(*k)).count() >= 2
+}
+
 /// Returns the integration points of an element.
 pub(crate) fn points(nodes: &[DVec3; 10]) -> Vec<IntegrationPoint> {
     // The reference tetrahedron has a volume of a sixth.

@@ -58,7 +58,12 @@ impl Solid {
         materials: Vec<Material>,
         element_material: Vec<u32>,
     ) -> Result<Self, SolidError> {
-        check_middles(&tets, middles)?;
+        check_middles(&tets, middles).map_err(|error| match error {
+            SolidError::DifferentMiddles { .. } => {
+                exchanged_middles(&vertices, &tets, middles).unwrap_or(error)
+            }
+            error => error,
+        })?;
         let nodes = |(tet, middles): (&[u32; 4], &[u32; 6])| {
             std::array::from_fn(|k| if k < 4 { tet[k] } else { middles[k - 4] })
         };
@@ -138,7 +143,13 @@ impl Solid {
         }
         for (tet, nodes) in tets10.iter().enumerate() {
             if second_order::is_inverted(&nodes.map(|v| vertices[v as usize])) {
-                return Err(SolidError::InvertedSecondOrderTet { tet, corners: tets[tet] });
+                let corners = tets[tet];
+                return Err(
+                    match second_order::has_exchanged_middles(&nodes.map(|v| vertices[v as usize])) {
+                        true => SolidError::ExchangedMiddles { tet, corners },
+                        false => SolidError::InvertedSecondOrderTet { tet, corners },
+                    },
+                );
             }
         }
         for (cube, corners) in cubes.iter().enumerate() {
@@ -201,6 +212,19 @@ impl Solid {
 }
 
 /// Returns an error unless there are no middles, or six for each tetrahedron, one for each edge.
+/// Returns the error for the first tetrahedron whose middle nodes are exchanged, if there is one.
+fn exchanged_middles(vertices: &[DVec3], tets: &[[u32; 4]], middles: &[[u32; 6]]) -> Option<SolidError> {
+    let is_exchanged = |(tet, middles): (&[u32; 4], &[u32; 6])| {
+        let mut nodes = [DVec3::ZERO; 10];
+        for (node, vertex) in nodes.iter_mut().zip(tet.iter().chain(middles)) {
+            *node = *vertices.get(*vertex as usize)?;
+        }
+        second_order::has_exchanged_middles(&nodes).then_some(())
+    };
+    let tet = tets.iter().zip(middles).position(|nodes| is_exchanged(nodes).is_some())?;
+    Some(SolidError::ExchangedMiddles { tet, corners: tets[tet] })
+}
+
 fn check_middles(tets: &[[u32; 4]], middles: &[[u32; 6]]) -> Result<(), SolidError> {
     if !middles.is_empty() && middles.len() != tets.len() {
         return Err(SolidError::MixedOrders { tets: tets.len(), second_order: middles.len() });

@@ -92,7 +92,10 @@ pub struct Contacts {
     pub pairs: String,
     /// Name of the array of times of impact (0 to 1), one for each pair, of a continuous check.
     pub times: Option<String>,
-    /// Whether the second triangle of each pair belongs to the second body. Otherwise it belongs to the body of the list.
+    /// Name of the array of the body of the second triangle of each pair, where some are pairs of different bodies.
+    pub seconds: Option<String>,
+    /// Whether the second triangle of each pair belongs to the second body. Otherwise, and without `seconds`, it belongs to the
+    /// body of the list.
     pub is_between: bool,
 }
 

@@ -56,6 +56,15 @@ pub enum Error {
         /// How many triangles there are.
         triangles: usize,
     },
+    /// A mesh without an inside, where the volume of bodies is asked for.
+    #[error(
+        "the {} mesh is open, so it has no inside and no volume: close its holes, and make its triangles face the same side",
+        if *is_second { "second" } else { "first" }
+    )]
+    OpenMesh {
+        /// Whether it is the second mesh.
+        is_second: bool,
+    },
     /// Folded neighbours where only distances can be bounded.
     #[error(
         "include-folded is for discrete queries of meshes without modes: triangles with a common edge have distance 0 in \

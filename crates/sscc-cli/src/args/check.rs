@@ -89,11 +89,14 @@ pub struct Check {
     /// Add the penetration depth of each pair, and the direction in which its second triangle leaves the first
     #[arg(long, conflicts_with = "continuous")]
     pub depths: bool,
+    /// With --against: add the volume that both meshes share, and the diameter of the largest ball inside of both; both must be closed
+    #[arg(long, requires = "against", conflicts_with_all = ["continuous", "clearance"])]
+    pub penetration: bool,
     /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
     pub report: Option<PathBuf>,
-    /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), which --frames reads.
-    /// Of an animation that moves several nodes, with --node
+    /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), or .pvd
+    /// with .vtu files for ParaView, which have the time of each frame and mark colliding triangles; --frames reads both. Of an animation that moves several nodes, with --node
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "meshes", "against"])]
     pub frames_out: Option<PathBuf>,
     #[command(flatten)]

@@ -17,7 +17,7 @@ use clap::Args;
 pub struct Fit {
     #[command(flatten)]
     pub model: Model,
-    /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), a .pc2 point cache, or a folder of meshes with the same faces
+    /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), a .pc2 point cache, deformed .vtu, .vtk or .pvd, or a folder of meshes with the same faces
     #[arg(value_name = "POSITIONS")]
     pub positions: PathBuf,
     /// The q to write: *.npy of shape (r), of several frames (T, r)

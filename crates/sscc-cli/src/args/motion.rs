@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 /// The motion of a mesh without modes.
 #[derive(Debug, Args)]
 pub struct Motion {
-    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, or a folder
-    /// of meshes with the same faces (9.obj before 10.obj)
+    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, a .pvd collection
+    /// of .vtu files, or a folder of meshes with the same faces (9.obj before 10.obj)
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["trajectory", "q", "animation"])]
     pub frames: Option<PathBuf>,
     /// Another mesh: list the pairs (triangle of MODEL, triangle of this mesh) that collide
@@ -36,8 +36,8 @@ pub struct Motion {
     )]
     pub times: Option<Vec<f64>>,
     /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. A glTF file with
-    /// several meshes is compared so without --animation, too
-    #[arg(long, requires = "animation")]
+    /// several meshes that is not animated is compared so in any case
+    #[arg(long, conflicts_with_all = ["trajectory", "q", "frames", "against"])]
     pub between_nodes: bool,
     /// Check the mesh at this node only, by its name or its number in the file [default: every node with a mesh]
     #[arg(long, value_name = "NODE", requires = "animation")]

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use serde_json::{Value, json};
 use sscc_testing::models;
 
-use crate::common::sscc;
+use crate::common::{page_data, sscc};
 use crate::places::gltf;
 
 /// Pseudo-random numbers in (-1, 1).
@@ -293,11 +293,15 @@ fn groups_hold_between_two_meshes() {
 /// A node that moves through another one in one second.
 fn passing() -> Value {
     let sheet = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-    let needle = [[1.0, 1.0, 1.0], [1.5, 1.0, 1.0], [1.0, 1.0, 1.5]];
+    moving(&sheet, &[[1.0, 1.0, 1.0], [1.5, 1.0, 1.0], [1.0, 1.0, 1.5]], [0.0, 0.0, -4.0])
+}
+
+/// A sheet, and a needle that is shifted in one second.
+fn moving(sheet: &[[f32; 3]], needle: &[[f32; 3]], [x, y, z]: [f32; 3]) -> Value {
     let nodes = json!([{"mesh": 0, "name": "sheet"}, {"mesh": 1, "name": "needle"}]);
-    let mut file = gltf(&[("sheet", &sheet), ("needle", &needle)], nodes);
+    let mut file = gltf(&[("sheet", sheet), ("needle", needle)], nodes);
     let floats = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-    let bytes = [floats(&[0.0, 1.0]), floats(&[0.0, 0.0, 0.0, 0.0, 0.0, -4.0])].concat();
+    let bytes = [floats(&[0.0, 1.0]), floats(&[0.0, 0.0, 0.0, x, y, z])].concat();
     let add = |list: &mut Value, items: Value| {
         list.as_array_mut().unwrap().extend(items.as_array().unwrap().clone())
     };
@@ -352,10 +356,83 @@ fn nodes_of_animations_are_compared_on_request() {
     };
     assert!(text(&[]).contains("apart from pairs of different nodes and pairs with common vertices"));
     assert!(text(&["--between-nodes"]).contains("apart from pairs with common vertices"));
-    // Pairs that are ignored at rest are those within one mesh.
-    assert!(text(&["--between-nodes", "--ignore-rest"]).contains("apart from pairs of different nodes"));
-    let alone = sscc(folder, &["check", "pass.gltf", "--between-nodes"]);
-    assert_eq!(alone.code, Some(2), "{alone:?}");
+    assert_eq!(lines(folder, &["pass.gltf", "--between-nodes"]), lines(folder, &["pass.gltf"]));
+}
+
+/// Pairs of two nodes that collide at the first time, and those around them, do not count at any time.
+#[test]
+fn pairs_of_nodes_at_the_first_time_are_ignored() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [4.0, 4.0, 0.0]];
+    let sheet = [0, 1, 2, 1, 3, 2].map(|corner: usize| corners[corner]);
+    let needle = [[1.0, 1.0, -0.5], [1.25, 1.0, 0.5], [1.0, 1.25, 0.5]];
+    write(folder, "drag.gltf", &moving(&sheet, &needle, [2.0, 2.0, 0.0]));
+    let check = |more: &[&str]| {
+        let args = ["drag.gltf", "--animation=pass", "--times=0,1", "--between-nodes"];
+        let found = lines(folder, &[&args[..], more].concat());
+        let between = found.iter().filter(|line| line.get("against_node").is_some());
+        let between = between.map(|line| json!([line["index"], line["pairs"]])).collect::<Vec<_>>();
+        (between, found[0]["ignored"].clone())
+    };
+    let (first, second) = (json!([0, [[0, 0]]]), json!([1, [[1, 0]]]));
+    assert_eq!(check(&[]), (vec![first, second.clone()], json!(null)));
+    for more in [&["--ignore-rest"][..], &["--ignore-rest", "--limit=1"], &["--ignore-rest", "--first"]] {
+        assert_eq!(check(more), (vec![second.clone()], json!(1)), "{more:?}");
+    }
+    assert_eq!(check(&["--ignore-rest=1"]), (vec![], json!(2)));
+    let near = check(&["--ignore-rest", "--clearance=0.125"]);
+    assert_eq!(near, (vec![second], json!(1)));
+    // On its way it touches both.
+    assert_eq!(check(&["--continuous"]).0, [json!([0, [[0, 0], [1, 0]]])]);
+    assert_eq!(check(&["--continuous", "--ignore-rest"]).0, [json!([0, [[1, 0]]])]);
+    assert_eq!(check(&["--continuous", "--ignore-rest=1"]).0, [json!(null); 0]);
+    let text = sscc(
+        folder,
+        &["check", "drag.gltf", "--animation=pass", "--times=0,1", "--between-nodes", "--ignore-rest=1"],
+    );
+    assert!(
+        text.stdout.contains("free, apart from 2 ignored pairs and pairs with common vertices"),
+        "{text:?}"
+    );
+    // A report shows the pairs of the nodes.
+    let report = ["--report=drag.html"];
+    assert_eq!(check(&report).0.len(), 2);
+    let data = page_data(&fs::read_to_string(folder.join("drag.html")).unwrap());
+    let playback = &data["scene"]["playback"];
+    assert_eq!(playback["bodies"][0]["pairs"], json!([1, 1]), "{playback}");
+    let numbers = |name: &Value| -> Vec<u32> {
+        let bytes = BASE64.decode(data["arrays"][name.as_str().unwrap()].as_str().unwrap()).unwrap();
+        bytes.chunks_exact(4).map(|chunk| u32::from_le_bytes(chunk.try_into().unwrap())).collect()
+    };
+    let contacts = &playback["contacts"];
+    assert_eq!(numbers(&contacts["offsets"]), [0, 1, 1, 2, 2]);
+    assert_eq!(numbers(&contacts["pairs"]), [0, 0, 1, 0]);
+    assert_eq!(numbers(&contacts["seconds"]), [1, 1]);
+    assert_eq!(numbers(&playback["curves"]["offsets"])[2], 2);
+}
+
+/// A mesh at two nodes is one mesh, whose nodes are compared on request.
+#[test]
+fn nodes_of_one_mesh_are_compared_on_request() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let triangle = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+    let nodes = json!([{"mesh": 0, "name": "a"}, {"mesh": 0, "name": "b", "translation": [1, 1, 0]}]);
+    write(folder, "two.gltf", &gltf(&[("mesh", &triangle)], nodes));
+    assert_eq!(lines(folder, &["two.gltf"]).len(), 1);
+    let found = lines(folder, &["two.gltf", "--between-nodes"]);
+    assert_eq!(
+        (found.len(), &found[2]["pairs"], &found[2]["against_node_name"]),
+        (3, &json!([[0, 0]]), &json!("b"))
+    );
+    fs::write(folder.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let refused = |args: &[&str]| sscc(folder, &[&["check"], args, &["--between-nodes"]].concat());
+    let cause =
+        "error: a.obj: only the nodes of a .glb, .gltf or .vrm as a whole are compared with each other";
+    assert_eq!(refused(&["a.obj"]).refusal(), cause);
+    assert!(refused(&["a.obj", "two.gltf"]).stderr.contains("a.obj: only the nodes"));
+    assert!(refused(&["two.gltf#a"]).refusal().contains("as a whole"));
 }
 
 #[test]

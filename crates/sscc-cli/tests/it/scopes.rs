@@ -243,7 +243,13 @@ fn flags_must_not_contradict_certificates() {
     certify(folder, &model, &["--ignore-rest=1"], "t.sscc.safetensors");
     assert_eq!(run("--ignore-rest=1").code, Some(0));
     let refused = run("--ignore-rest");
-    assert!(refused.refusal().contains("certified with other ignored pairs than those of --ignore-rest"));
+    assert!(
+        refused.refusal().contains("certified with --ignore-rest of 1 ring, not with --ignore-rest; leave")
+    );
+    let refused = run("--ignore-rest=2");
+    let named =
+        "certified with --ignore-rest of 1 ring, not with --ignore-rest of 2 rings; leave the flag out";
+    assert!(refused.refusal().contains(named), "{refused:?}");
 }
 
 /// The two strips in groups of their own.

@@ -90,6 +90,10 @@ fn loads_and_positions_that_do_not_fit_are_refused() {
         (&["load", MODEL, "-o", "q.npy", "--force", "1:1,0"], "three numbers were expected"),
         (&["load", MODEL, "-o", "q.npy", "--force", "1:1,0,nan"], "three numbers were expected"),
         (&["load", MODEL, "-o", "q.npy", "--force", "x:1,0,0"], "VERTEX:FX,FY,FZ was expected"),
+        (
+            &["load", MODEL, "-o", "q.npy", "--force", "1:1e80,0,0"],
+            "the load has no answer that is a shape: its vertices",
+        ),
         (&["load", MODEL, "-o", "q.txt", "--gravity"], "must end in .npy"),
         (
             &["load", "plain.model.safetensors", "-o", "q.npy", "--gravity"],

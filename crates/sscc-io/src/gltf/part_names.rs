@@ -65,7 +65,7 @@ impl PartNames {
     /// they do not change the shape.
     pub fn group(&self, by: GroupsBy, node: Option<usize>, mesh: usize, primitive: usize) -> String {
         let numbered = |name: Option<&Box<str>>, number: usize| {
-            name.map_or_else(|| format!("#{number}"), |name| name.to_string())
+            name.map_or_else(|| format!("#{number}"), |name| own(name))
         };
         let shape = self.meshes.get(mesh);
         let mesh_name = || numbered(shape.and_then(|shape| shape.name.as_ref()), mesh);
@@ -87,6 +87,14 @@ impl PartNames {
             }
         }
     }
+}
+
+/// Returns a name as groups have it: one that looks like a number in place of a name (`#0`) has one more `#`, so that the two differ.
+fn own(name: &str) -> String {
+    let number = name.trim_start_matches('#');
+    let is_number = number.len() < name.len() && !number.is_empty();
+    let looks_unnamed = is_number && number.bytes().all(|byte| byte.is_ascii_digit());
+    if looks_unnamed { format!("#{name}") } else { name.to_owned() }
 }
 
 impl<'de> Deserialize<'de> for NodeNames {
@@ -117,5 +125,27 @@ impl<'de> Visitor<'de> for NodesVisitor {
             number += 1;
         }
         Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_look_like_numbers_differ_from_numbers() {
+        for (name, expected) in
+            [("#0", "##0"), ("##12", "###12"), ("0", "0"), ("#", "#"), ("#x", "#x"), ("#1a", "#1a"), ("", "")]
+        {
+            assert_eq!(own(name), expected, "{name}");
+        }
+        let names = PartNames::parse(
+            br##"{"nodes": [{"mesh": 0}, {"mesh": 1, "name": "#0"}], "materials": [{"name": "#1"}],
+            "meshes": [{"primitives": [{"material": 0}]}, {"name": "a", "primitives": [{}]}]}"##,
+        )
+        .unwrap();
+        let node = |node: usize| names.group(GroupsBy::Object, Some(node), node, 0);
+        assert_eq!((node(0), node(1)), ("#0".into(), "##0".into()));
+        assert_eq!(names.group(GroupsBy::Material, Some(0), 0, 0), "##1");
     }
 }

@@ -7,8 +7,10 @@ use glam::DVec3;
 use sscc::{Modes, TriMesh, limits};
 
 use super::named_modes::NamedModes;
+use super::vtk_frames;
 use crate::folder_files::list_files;
 use crate::mesh::{is_mesh_name, read_soup};
+use crate::solid::vtk::{Displacement, is_vtk_name};
 use crate::{FormatError, IoError};
 
 /// Maximum number of meshes in a folder.
@@ -48,7 +50,7 @@ pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<Nam
 /// names them in messages.
 pub(crate) fn mesh_files(folder: &Path, neutral: Option<&Path>, what: &str) -> Result<Vec<PathBuf>, IoError> {
     let is_neutral = |path: &Path| neutral.is_some() && fs::canonicalize(path).ok().as_deref() == neutral;
-    let paths = list_files(folder, |path| is_mesh_name(path) && !is_neutral(path))?;
+    let paths = list_files(folder, |path| (is_mesh_name(path) || is_vtk_name(path)) && !is_neutral(path))?;
     let request = |cause: String| Err(IoError::request(folder, cause));
     match paths.len() {
         0 => request(format!("there is no {what} mesh in this folder")),
@@ -66,6 +68,9 @@ pub(crate) fn positions_like(
     what: &str,
     other: &str,
 ) -> Result<Vec<DVec3>, IoError> {
+    if is_vtk_name(path) {
+        return vtk_frames::positions_like(path, &Displacement::ByName, model, what, other);
+    }
     let read = read_soup(path)?;
     let refused = |cause: String| Err(FormatError::whole(cause).of(path));
     let (found, expected) = (read.positions.len(), model.rest_positions().len());

@@ -5,11 +5,15 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use sscc::{TriMesh, limits};
 
+use super::collection::is_collection;
 use super::folder::positions_like;
 use super::frames::frame_files;
 use super::point_cache::PointCache;
+use super::vtk_frames::VtkFrames;
 use crate::file::{ending, unsupported};
+use crate::mesh_path::split_mesh_name;
 use crate::npy::Blocks;
+use crate::solid::vtk::is_vtk_name;
 use crate::{FormatError, IoError};
 
 /// Memory for the positions of meshes from a folder, in bytes. Further meshes are read again.
@@ -30,6 +34,7 @@ pub struct FrameReader {
 enum Source {
     Array(Blocks),
     PointCache(PointCache),
+    Vtk { frames: VtkFrames, kept: Vec<Option<Vec<DVec3>>> },
     Folder { files: Vec<PathBuf>, kept: Vec<Option<Vec<DVec3>>> },
 }
 
@@ -37,6 +42,8 @@ impl FrameReader {
     /// Opens the frames of a mesh:
     /// - a `.npy` file of floats or integers, of shape (T, V, 3), or (V, 3) for one frame;
     /// - a `.pc2` point cache;
+    /// - a `.vtu` or `.vtk` grid, or a `.pvd` collection of them, deformed by its displacements, or by the point data that
+    ///   `FILE#NAME` names (`FILE#`: by none);
     /// - a folder of meshes with the same faces or none, in the natural order of their names (`9.obj` before `10.obj`), as
     ///   of [`read_frames`](crate::read_frames).
     ///
@@ -58,7 +65,13 @@ impl FrameReader {
             check_shape(cache.shape(), mesh.rest_positions().len()).map_err(|error| error.of(path))?;
             Source::PointCache(cache)
         } else {
-            return Err(unsupported(path, "frame", ".npy of shape (T, V, 3), .pc2, and a folder of meshes"));
+            let (file, name) = split_mesh_name(path);
+            if !is_vtk_name(&file) && !is_collection(&file) {
+                let supported = ".npy of shape (T, V, 3), .pc2, .pvd, .vtu, .vtk, and a folder of meshes";
+                return Err(unsupported(path, "frame", supported));
+            }
+            let frames = VtkFrames::open(&file, name.as_deref())?;
+            Source::Vtk { kept: vec![None; frames.len()], frames }
         };
         let name = format!("the mesh ({})", mesh_path.file_name().unwrap_or_default().display());
         Ok(Self { path: path.to_owned(), mesh: mesh.clone(), name, source })
@@ -72,6 +85,15 @@ impl FrameReader {
             Source::Array(blocks) => blocks.shape()[0],
             Source::PointCache(cache) => cache.shape()[0],
             Source::Folder { files, .. } => files.len(),
+            Source::Vtk { frames, .. } => frames.len(),
+        }
+    }
+
+    /// Returns the time of each frame (s), where the file states them: in a `.pvd` collection.
+    pub fn times(&self) -> Option<&[f64]> {
+        match &self.source {
+            Source::Vtk { frames, .. } => frames.times.as_deref(),
+            _ => None,
         }
     }
 
@@ -84,7 +106,7 @@ impl FrameReader {
     /// When there is no such frame.
     pub fn check(&mut self, frame: usize, positions: &mut Vec<DVec3>) -> Result<(), IoError> {
         *positions = self.positions(frame)?;
-        if let Source::Folder { kept, .. } = &mut self.source
+        if let Source::Folder { kept, .. } | Source::Vtk { kept, .. } = &mut self.source
             && frame.saturating_mul(size_of_val(&positions[..])) < MAX_KEPT
         {
             kept[frame] = Some(positions.clone());
@@ -102,7 +124,7 @@ impl FrameReader {
     /// When there is no such frame.
     pub fn read(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<(), IoError> {
         match &self.source {
-            Source::Folder { kept, .. } if kept[frame].is_some() => {
+            Source::Folder { kept, .. } | Source::Vtk { kept, .. } if kept[frame].is_some() => {
                 positions.clear();
                 positions.extend(kept[frame].iter().flatten());
             }
@@ -117,6 +139,7 @@ impl FrameReader {
             Source::Folder { files, .. } => {
                 return positions_like(&files[frame], &self.mesh, "frame", &self.name);
             }
+            Source::Vtk { frames, .. } => return frames.read(frame, &self.mesh, &self.name),
             Source::Array(blocks) => blocks.read(frame * length, length)?,
             Source::PointCache(cache) => cache.read(frame * length, length),
         };

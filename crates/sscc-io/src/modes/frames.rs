@@ -6,6 +6,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use super::folder::{mesh_files, positions_like};
+use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::{IoError, read_mesh_with_warnings};
 
 /// Frames of an animation.
@@ -31,13 +32,18 @@ pub struct Frames {
 /// large.
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     let paths = frame_files(folder)?;
-    let (mesh, warnings) = read_mesh_with_warnings(&paths[0])?;
+    let (mesh, warnings) = read_first(&paths[0])?;
     let first = format!("the first one ({})", paths[0].file_name().unwrap_or_default().display());
     let mut positions = vec![mesh.rest_positions().to_vec()];
     for path in &paths[1..] {
         positions.push(positions_like(path, &mesh, "frame", &first)?);
     }
     Ok(Frames { mesh, positions, paths, warnings })
+}
+
+/// Reads the mesh of the first frame: of a grid of VTK its surface, moved by its displacements.
+fn read_first(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
+    if is_vtk_name(path) { read_surface(path, &Displacement::ByName) } else { read_mesh_with_warnings(path) }
 }
 
 /// Returns the mesh files of a folder, in natural order; at least one.

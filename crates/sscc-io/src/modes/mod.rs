@@ -2,6 +2,7 @@
 //! animations from which modes can be computed.
 
 pub mod array;
+mod collection;
 pub mod folder;
 mod frame_reader;
 mod frames;
@@ -9,6 +10,7 @@ mod mesh_mismatch;
 mod named_modes;
 mod point_cache;
 pub mod vega;
+mod vtk_frames;
 
 use std::path::Path;
 
@@ -17,6 +19,8 @@ use sscc::Modes;
 use crate::IoError;
 use crate::file::{ending, read_whole, unsupported};
 
+pub use collection::is_collection;
+pub(crate) use collection::read_collection;
 pub use frame_reader::FrameReader;
 pub use frames::{Frames, read_frames};
 pub use named_modes::NamedModes;

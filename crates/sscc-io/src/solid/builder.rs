@@ -107,6 +107,11 @@ impl Builder {
         self.faces.push(&corners, place)
     }
 
+    /// Adds a face of any number of corners, from 0.
+    pub fn polygon(&mut self, corners: &[u64], place: Place) -> Result<(), FormatError> {
+        self.faces.push(corners, place)
+    }
+
     /// Adds a triangle of second order: corners from 0, then the middles of the edges 0 1, 1 2 and 2 0.
     pub fn face_of_second_order(&mut self, nodes: [u64; 6], place: Place) -> Result<(), FormatError> {
         self.check(&nodes, place.clone())?;

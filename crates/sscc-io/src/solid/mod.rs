@@ -1,10 +1,10 @@
-//! Readers for volumetric meshes of tetrahedra and cubes: Medit, VegaFEM, gmsh and TetGen.
+//! Readers for volumetric meshes of tetrahedra and cubes: Medit, VegaFEM, gmsh, TetGen and VTK.
 //!
 //! All vertices of the file are kept in its order, even unused ones. Elements keep the file's order within their kind,
 //! and the order of their corners. Readers check the guarantees of [`VolumeMesh`]: numbers, indices, repeated corners,
 //! duplicate elements. They accept inverted, flat or overlapping elements, which [`VolumeMesh::solid`] rejects.
 //!
-//! Tetrahedra of second order are read from gmsh's files alone. Other elements of higher order, prisms and pyramids are
+//! Tetrahedra of second order are read from the files of gmsh and VTK alone. Other elements of higher order, prisms and pyramids are
 //! errors: skipping them would leave holes in the body.
 
 mod builder;
@@ -14,6 +14,7 @@ mod statements;
 pub mod tetgen;
 pub mod vega;
 mod volume_or_surface;
+pub mod vtk;
 mod words;
 
 use std::path::Path;
@@ -26,20 +27,21 @@ use crate::file::{ending, read_whole, unsupported};
 pub use volume_or_surface::VolumeOrSurface;
 
 /// Endings that [`read_volume_mesh`] supports.
-const SUPPORTED: &str = ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen)";
+const SUPPORTED: &str =
+    ".mesh (Medit), .veg (VegaFEM), .msh (gmsh), .node and .ele (TetGen), .vtu and .vtk (VTK)";
 
 /// Reads a volumetric mesh. The ending of the file name, in any case, selects the format: `.mesh` ([`medit`]), `.veg`
-/// ([`vega`]), `.msh` ([`gmsh`]), `.node` or `.ele` with the other file beside it ([`tetgen`]).
+/// ([`vega`]), `.msh` ([`gmsh`]), `.node` or `.ele` with the other file beside it ([`tetgen`]), `.vtu` or `.vtk` ([`vtk`]).
 ///
 /// # Errors
 /// When the ending is none of these, or the file (or one that belongs to it) cannot be read or is malformed; when
 /// a coordinate is beyond [`sscc::limits`], an index names no vertex, an element names a vertex twice, is duplicated or
-/// is neither a tetrahedron of 4 nodes (in gmsh's files also 10) nor an 8-node hexahedron, or there is no element.
+/// is neither a tetrahedron of 4 nodes (in files of gmsh and VTK also 10) nor an 8-node hexahedron, or there is no element.
 pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
     read_volume_or_surface(path)?.into_volume().map_err(|error| error.of(path))
 }
 
-/// As [`read_volume_mesh`]; of a Medit or gmsh file without tetrahedra and cubes, returns the surface of its faces.
+/// As [`read_volume_mesh`]; of a Medit, gmsh or VTK file without tetrahedra and cubes, returns the surface of its faces.
 ///
 /// # Errors
 /// As [`read_volume_mesh`], but an element may be missing if there are faces; then when a face is of higher order.
@@ -47,6 +49,7 @@ pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse_any,
         "msh" => gmsh::parse_any,
+        "vtu" | "vtk" => vtk::parse_any,
         "veg" => return vega::read(path).map(VolumeOrSurface::Volume),
         "node" | "ele" => return tetgen::read(path).map(VolumeOrSurface::Volume),
         _ => return Err(unsupported(path, "volumetric mesh", SUPPORTED)),
@@ -56,7 +59,7 @@ pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
 
 /// Whether the ending is that of a solid.
 pub fn is_solid_name(path: &Path) -> bool {
-    matches!(ending(path).as_str(), "mesh" | "veg" | "msh" | "node" | "ele")
+    matches!(ending(path).as_str(), "mesh" | "veg" | "msh" | "node" | "ele" | "vtu" | "vtk")
 }
 
 #[cfg(test)]

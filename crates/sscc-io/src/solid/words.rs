@@ -100,6 +100,18 @@ impl<'a> Words<'a> {
         Ok(*bytes)
     }
 
+    /// Returns the next `length` bytes.
+    pub fn bytes(&mut self, length: u64, what: &str) -> Result<&'a [u8], FormatError> {
+        let rest = &self.bytes[self.at..];
+        let Some(bytes) = usize::try_from(length).ok().and_then(|length| rest.get(..length)) else {
+            let cause =
+                format!("the file ends before {what}: {length} bytes are needed, {} are left", rest.len());
+            return Err(FormatError::new(Place::Byte(self.at), cause));
+        };
+        self.at += bytes.len();
+        Ok(bytes)
+    }
+
     /// Returns the rest of the line, without its end.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];

@@ -10,9 +10,20 @@ use sscc_io::{Message, Setting, read_certificates};
 use super::certificate_request::{CertificateRequest, Scheme};
 use crate::SimError;
 use crate::error::{At, Result};
+use crate::text::counted;
 
 /// End of the message on a contradiction.
 const REMEDY: &str = "; leave the flag out, or certify anew";
+
+/// Rings that a message can name.
+const MAX_RINGS: u32 = 8;
+
+fn of_rings(rings: u32) -> String {
+    match rings {
+        0 => String::new(),
+        rings => format!(" of {}", counted(u64::from(rings), "ring")),
+    }
+}
 
 impl CertificateRequest {
     /// Reads certificates. Refuses those of another model, and those that contradict an option.
@@ -96,13 +107,23 @@ impl CertificateRequest {
                 Some(groups) => filter.with_groups(Arc::clone(groups)),
                 None => filter,
             };
-            if filter.ignoring_rest(model, rings)?.ignored() != certificates.filter().ignored() {
-                let rings = if rings == 0 { String::new() } else { format!(" of {rings} rings") };
-                let cause = match certificates.filter().ignored() {
-                    [] => "certified without ",
-                    _ => "certified with other ignored pairs than those of ",
+            let ignored = certificates.filter().ignored();
+            let ignores = |rings: u32| -> Result<bool> {
+                Ok(filter.clone().ignoring_rest(model, rings)?.ignored() == ignored)
+            };
+            if !ignores(rings)? {
+                let known = match ignored {
+                    [] => None,
+                    _ => (0..=MAX_RINGS).find(|known| ignores(*known).unwrap_or(false)),
                 };
-                return Ok(Some(cause + Setting::IgnoreRest + rings + REMEDY));
+                let cause = match (ignored, known) {
+                    ([], _) => "certified without ".into(),
+                    (_, Some(known)) => {
+                        "certified with " + Setting::IgnoreRest + of_rings(known) + ", not with "
+                    }
+                    (_, None) => Message::from("certified with other ignored pairs than those of "),
+                };
+                return Ok(Some(cause + Setting::IgnoreRest + of_rings(rings) + REMEDY));
             }
         }
         let exceptions = certificates.exceptions().len();

@@ -39,6 +39,8 @@ pub struct DetectionAnswer<'a> {
     /// How many connected components of the mesh are inside the other one, and of the other inside this one, where discrete
     /// queries find no pair that collides.
     pub enclosed: Option<[Enclosed; 2]>,
+    /// Of two closed meshes the volume that they share and the largest ball inside of both, where asked for.
+    pub body_penetration: Option<sscc::BodyPenetration>,
     /// Whether `pairs` are all.
     pub is_complete: bool,
     /// Duration of the query on its thread, without reading files and evaluating animations. Where several q of a model are

@@ -117,12 +117,12 @@ fn in_motion<E>(
             return Ok(taken);
         }
     }
-    let Some(meshes) = sides.compared() else { return Ok(ControlFlow::Continue(())) };
+    let Some((meshes, ignored)) = sides.compared() else { return Ok(ControlFlow::Continue(())) };
     watch.begin(Stage::Detection);
     in_order(
         each,
         request.threads.unwrap_or_else(available_threads),
-        || NodePairs::new(request, meshes),
+        || NodePairs::new(request, meshes, ignored),
         NodePairs::answer,
         |index, found| {
             check_cancelled(watch)?;
@@ -149,7 +149,8 @@ fn at_rest<E: From<SimError>>(
     let count = request.meshes.len();
     let work = |(): &mut (), index: usize| {
         let file = &request.meshes[index];
-        if is_scene(file, request) {
+        // Files whose nodes cannot be compared are refused there.
+        if request.between_nodes || is_scene(file, request) {
             return Ok(None);
         }
         let source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
@@ -180,7 +181,7 @@ fn at_rest<E: From<SimError>>(
                     };
                     take(file, Ok(&answer(mesh, None, 0, (&found, request.clearance), [1, 1])))
                 }
-                // A scene.
+                // A scene, or a file that is refused.
                 Ok(None) => by_itself(file, index + 1 == count, request, watch, &mut take),
                 Err(error) => take(file, Err(error)),
             }?;
@@ -234,6 +235,7 @@ fn answer<'a>(
         curves: found.contacts.curves.as_ref(),
         near: clearance.zip(found.near.as_ref()),
         enclosed: found.enclosed,
+        body_penetration: found.penetration,
         is_complete: found.is_complete,
         microseconds: found.microseconds,
         norm: None,

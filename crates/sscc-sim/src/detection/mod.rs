@@ -7,10 +7,12 @@
 mod answer;
 mod contacts;
 mod detect;
+mod ignored_between;
 mod in_order;
 mod mesh_source;
 mod moving_mesh;
 mod near;
+mod node_boxes;
 mod node_pairs;
 mod request;
 mod rows;

@@ -195,15 +195,16 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
-    /// Returns the times of all frames, in an animation.
+    /// Returns the times of all frames, in an animation or a collection.
     pub fn times(&self) -> Option<&[f64]> {
         match &self.motion {
+            Motion::Frames(reader) => reader.times(),
             Motion::Animation(evaluation) if evaluation.animation.is_some() => Some(&evaluation.times),
             _ => None,
         }
     }
 
-    /// Returns the time of a frame, in an animation.
+    /// Returns the time of a frame.
     pub fn time(&self, frame: usize) -> Option<f64> {
         self.times().map(|times| times[frame])
     }
@@ -214,6 +215,7 @@ impl<'w> MovingMesh<'w> {
         match (self.node, self.time(frame)) {
             (Some(node), Some(time)) => format!("{file}: node {node} at {time} s"),
             (Some(node), None) => format!("{file}: node {node}"),
+            (None, Some(time)) => format!("{file}: frame {frame} at {time} s"),
             _ if self.frames() > 1 => format!("{file}: frame {frame}"),
             _ => file.to_string(),
         }
@@ -254,10 +256,10 @@ impl Evaluation {
     }
 }
 
-/// Whether the meshes of different nodes are compared with each other. Pairs that are ignored at rest are those within one mesh.
+/// Whether the meshes of different nodes are compared with each other.
 pub(super) fn compares_nodes(request: &Detection) -> bool {
     let is_scene = matches!(request.motion, MeshMotion::Rest);
-    (request.between_nodes || is_scene) && request.ignore_rest.is_none()
+    request.between_nodes || is_scene
 }
 
 fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> ContactFilter {

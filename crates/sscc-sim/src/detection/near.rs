@@ -12,6 +12,15 @@ pub struct Near {
 }
 
 impl Near {
+    /// The distances of some of these pairs, at least one of which is near.
+    pub(super) fn of_pairs(&self, pairs: &[Pair], kept: &[usize]) -> Self {
+        let near = |i: &usize| NearPair { pair: pairs[*i], distance: self.distances[*i] };
+        Self {
+            distances: kept.iter().map(|i| self.distances[*i]).collect(),
+            nearest: kept.iter().map(near).min_by(|a, b| a.distance.total_cmp(&b.distance)),
+        }
+    }
+
     /// Returns the near pairs and their distances. `nearest` searches for the nearest pair, where none is near.
     pub(super) fn of(
         found: Vec<NearPair>,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use sscc::parts::Aabb;
-
+use super::ignored_between::IgnoredBetween;
 use super::moving_mesh::MovingMesh;
+use super::node_boxes::{are_apart, boxes};
 use super::request::Detection;
 use super::worker::{QueryResult, Side, query};
 use crate::error::{At, Result};
@@ -13,42 +13,48 @@ use crate::error::{At, Result};
 pub(super) struct NodePairs<'m, 'w> {
     request: &'m Detection,
     sides: Vec<Side<'m, 'w>>,
+    ignored: &'m IgnoredBetween,
 }
 
 impl<'m, 'w> NodePairs<'m, 'w> {
-    pub fn new(request: &'m Detection, meshes: &'m [Arc<MovingMesh<'w>>]) -> Self {
-        Self { request, sides: meshes.iter().map(|mesh| Side::new(mesh)).collect() }
+    pub fn new(
+        request: &'m Detection,
+        meshes: &'m [Arc<MovingMesh<'w>>],
+        ignored: &'m IgnoredBetween,
+    ) -> Self {
+        Self { request, sides: meshes.iter().map(|mesh| Side::new(mesh)).collect(), ignored }
     }
 
     /// Answers the queries of all pairs of meshes at a frame. Returns those with colliding (or near) pairs, in order.
     pub fn answer(&mut self, frame: usize) -> Result<Vec<([usize; 2], QueryResult)>> {
-        let Self { request, sides } = self;
+        let Self { request, sides, ignored } = self;
         sides.iter_mut().try_for_each(|side| side.read(frame, request.is_continuous))?;
-        let boxes: Vec<Aabb> =
-            sides.iter().map(|side| Aabb::of_points(side.x_t0.iter().chain(&side.x_t1).copied())).collect();
+        let boxes = boxes(sides);
         let reach = request.clearance.map_or(0.0, |clearance| clearance.distance());
         let mut found = Vec::new();
         for b in 1..sides.len() {
             let (before, from_b) = sides.split_at_mut(b);
-            for (a, side) in before.iter_mut().enumerate() {
+            for a in 0..b {
                 if are_apart(&boxes[a], &boxes[b], reach) {
                     continue;
                 }
-                let mesh = side.mesh;
-                let result = query(request, (side, Some(&mut from_b[0])), false).at(|| mesh.place(frame))?;
-                if !result.pairs.is_empty() {
-                    found.push(([a, b], result));
+                let side = &mut before[a];
+                let (mesh, other) = (side.mesh, &mut from_b[0]);
+                let ignored = ignored.of([a, b]);
+                let limit = if ignored.is_empty() { request.limit } else { None };
+                let result = query(request, limit, (side, Some(other)), false).at(|| mesh.place(frame))?;
+                let mut result = result.without(ignored, request.limit);
+                if result.pairs.is_empty() {
+                    continue;
                 }
+                if request.has_positions {
+                    let sides = [&before[a], &from_b[0]];
+                    result.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).into();
+                }
+                found.push(([a, b], result));
             }
         }
         found.sort_by_key(|(nodes, _)| *nodes);
         Ok(found)
     }
-}
-
-/// Whether two boxes are farther apart along an axis than a distance. No collision is missed: a difference that is at most the
-/// distance also rounds to at most the distance, because rounding is monotone.
-fn are_apart(a: &Aabb, b: &Aabb, distance: f64) -> bool {
-    let is_beyond = |low: f64, high: f64| low - high > distance;
-    (0..3).any(|k| is_beyond(a.lower[k], b.upper[k]) || is_beyond(b.lower[k], a.upper[k]))
 }

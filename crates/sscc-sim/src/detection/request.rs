@@ -28,8 +28,9 @@ pub struct Detection {
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: Option<u32>,
-    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene at rest are
-    /// in any case. None are where pairs at rest are ignored.
+    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene of several
+    /// meshes at rest are in any case. Where pairs at rest are ignored, so are the pairs of different nodes that collide at the first
+    /// time, and those around them.
     pub between_nodes: bool,
     /// Which pairs of groups of triangles count; with another mesh, or between nodes, also those between the meshes.
     pub groups: GroupRules,
@@ -40,6 +41,8 @@ pub struct Detection {
     pub limit: Option<usize>,
     /// Asks for the pairs nearer than this, with their distances, in place of those that collide. For discrete queries without a limit.
     pub clearance: Option<Clearance>,
+    /// Asks of two meshes, both closed, for the volume that they share and the largest ball inside of both. For discrete queries.
+    pub penetration: bool,
     /// What discrete queries compute of the contacts of their pairs.
     pub contacts: ContactOptions,
     /// Whether answers have the positions of each frame, as reports need them.
@@ -64,6 +67,7 @@ impl Default for Detection {
             is_continuous: false,
             limit: None,
             clearance: None,
+            penetration: false,
             contacts: ContactOptions::default(),
             has_positions: false,
             threads: None,

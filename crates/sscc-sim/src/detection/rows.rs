@@ -105,6 +105,7 @@ pub fn check_rows<E: From<SimError>>(
                 curves: contacts.curves.as_ref(),
                 near: requests.clearance.zip(found.near),
                 enclosed: None,
+                body_penetration: None,
                 is_complete: found.is_complete,
                 microseconds,
                 norm: Some(found.statistics.norm),

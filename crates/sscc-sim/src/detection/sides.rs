@@ -7,6 +7,7 @@ use std::sync::Arc;
 use sscc_io::gltf::{count_meshes, is_gltf};
 use sscc_io::{Setting, split_mesh_name};
 
+use super::ignored_between::IgnoredBetween;
 use super::mesh_source::MeshSource;
 use super::moving_mesh::{MovingMesh, compares_nodes};
 use super::request::{AnimationMotion, Detection, MeshMotion, OtherMesh};
@@ -29,8 +30,8 @@ pub(super) struct Sides<'r, 'w> {
     other: Option<Side<'w>>,
     /// Number of frames of the motion, at least 1.
     pub frames: usize,
-    /// Whether the nodes of an animation or a scene are also compared with each other.
-    compares_nodes: bool,
+    /// Of an animation or a scene whose nodes are also compared with each other the pairs that do not count.
+    compared: Option<IgnoredBetween>,
     /// The mesh of the last pair, with its number.
     last: Option<(usize, Arc<MovingMesh<'w>>)>,
 }
@@ -69,10 +70,13 @@ impl<'r, 'w> Sides<'r, 'w> {
     /// Loads the meshes of a file, and the other mesh.
     pub fn load(file: &Path, request: &'r Detection, watch: &'w dyn Watch) -> Result<Self> {
         let animated = |animated: &AnimationMotion| {
-            let meshes = MovingMesh::animated(file, animated, request, watch)?;
+            let mut meshes = MovingMesh::animated(file, animated, request, watch)?;
+            let ignored = match compares_nodes(request) {
+                true => Some(IgnoredBetween::find(request, &mut meshes)?),
+                false => None,
+            };
             let mesh = Side::Moving(meshes.into_iter().map(Arc::new).collect());
-            let compares_nodes = compares_nodes(request);
-            Ok(Self { compares_nodes, ..Self::new(file, mesh, None, request, watch)? })
+            Ok(Self { compared: ignored, ..Self::new(file, mesh, None, request, watch)? })
         };
         match &request.motion {
             MeshMotion::Animation(motion) => {
@@ -80,6 +84,10 @@ impl<'r, 'w> Sides<'r, 'w> {
                 animated(motion)
             }
             MeshMotion::Rest if is_scene(file, request) => animated(&AnimationMotion::at_rest()),
+            MeshMotion::Rest | MeshMotion::Frames(_) if request.between_nodes => {
+                let cause = "only the nodes of a .glb, .gltf or .vrm as a whole are compared with each other";
+                Err(SimError::refused(file.display(), cause))
+            }
             MeshMotion::Rest | MeshMotion::Frames(_) => {
                 let mut source = MeshSource::read(file, request.mesh_name.as_deref(), watch)?;
                 let frames = match &request.motion {
@@ -103,10 +111,10 @@ impl<'r, 'w> Sides<'r, 'w> {
         }
     }
 
-    /// The meshes that are compared with each other, if any.
-    pub fn compared(&self) -> Option<&[Arc<MovingMesh<'w>>]> {
-        match &self.mesh {
-            Side::Moving(meshes) if self.compares_nodes && meshes.len() > 1 => Some(meshes),
+    /// The meshes that are compared with each other, if any, and the pairs between them that do not count.
+    pub fn compared(&self) -> Option<(&[Arc<MovingMesh<'w>>], &IgnoredBetween)> {
+        match (&self.mesh, &self.compared) {
+            (Side::Moving(meshes), Some(ignored)) if meshes.len() > 1 => Some((meshes, ignored)),
             _ => None,
         }
     }
@@ -127,7 +135,7 @@ impl<'r, 'w> Sides<'r, 'w> {
                 format!("there are {n} frames, but {m} of the other mesh: as many are needed, or one");
             return Err(SimError::refused(file.display(), cause));
         }
-        let sides = Self { request, watch, mesh, other, frames: n.max(m), compares_nodes: false, last: None };
+        let sides = Self { request, watch, mesh, other, frames: n.max(m), compared: None, last: None };
         if request.against.is_some() && sides.len() > MAX_PLACES {
             let cause = format!(
                 "{} nodes show the mesh, and {} the other one: name one of them, as in FILE#NODE",
@@ -205,12 +213,13 @@ fn side<'w>(
     })
 }
 
-/// Whether a file is checked as a scene: it is glTF, has several meshes, and the request names none.
+/// Whether a file is checked as a scene: it is glTF, has several meshes (or the nodes of one are compared), and the request names
+/// none.
 pub(super) fn is_scene(file: &Path, request: &Detection) -> bool {
     let is_whole =
         request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
     // What is malformed is left to the reader.
-    is_whole && is_gltf(file) && count_meshes(file).is_ok_and(|count| count > 1)
+    is_whole && is_gltf(file) && (request.between_nodes || count_meshes(file).is_ok_and(|count| count > 1))
 }
 
 /// Refuses a file without animations. A missing file is left to its reader.

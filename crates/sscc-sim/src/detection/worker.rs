@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use sscc::parts::Surface;
-use sscc::{Clearance, Detector, Enclosed, Impact, Pair, Statistics};
+use sscc::{BodyPenetration, Clearance, Detector, Enclosed, Impact, Pair, Statistics};
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
@@ -25,7 +25,7 @@ pub(super) struct Worker<'m, 'w> {
 /// A mesh of a worker, and its positions at the start and the end of a motion.
 pub(super) struct Side<'m, 'w> {
     pub mesh: &'m MovingMesh<'w>,
-    detector: Detector,
+    pub detector: Detector,
     pub x_t0: Vec<DVec3>,
     pub x_t1: Vec<DVec3>,
 }
@@ -37,11 +37,39 @@ pub(super) struct QueryResult {
     pub contacts: Contacts,
     pub near: Option<Near>,
     pub enclosed: Option<[Enclosed; 2]>,
+    pub penetration: Option<BodyPenetration>,
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: Statistics,
     /// Positions of the mesh and of the other one, at the start and the end; empty unless the request asks for them.
     pub positions: Vec<[Vec<DVec3>; 2]>,
+}
+
+impl QueryResult {
+    /// The same without these pairs (sorted), and with at most `limit` of the others: of a motion the earliest.
+    pub fn without(mut self, ignored: &[Pair], limit: Option<usize>) -> Self {
+        if ignored.is_empty() {
+            return self;
+        }
+        let counts = |pair: &Pair| ignored.binary_search(pair).is_err();
+        let mut kept: Vec<usize> = (0..self.pairs.len()).filter(|i| counts(&self.pairs[*i])).collect();
+        if let Some(limit) = limit.filter(|limit| *limit < kept.len()) {
+            if let Some(times) = &self.times {
+                kept.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
+            }
+            kept.truncate(limit);
+            kept.sort_unstable();
+            self.is_complete = false;
+        }
+        fn select<T: Clone>(all: &[T], kept: &[usize]) -> Vec<T> {
+            kept.iter().map(|i| all[*i].clone()).collect()
+        }
+        self.times = self.times.map(|times| select(&times, &kept));
+        self.contacts.penetrations = self.contacts.penetrations.map(|all| select(&all, &kept));
+        self.near = self.near.map(|near| near.of_pairs(&self.pairs, &kept));
+        self.pairs = select(&self.pairs, &kept);
+        self
+    }
 }
 
 impl<'m, 'w> Worker<'m, 'w> {
@@ -64,7 +92,8 @@ impl<'m, 'w> Worker<'m, 'w> {
         }
         let mesh = self.side.mesh;
         let sides = (&mut self.side, self.other.as_mut());
-        let mut found = query(self.request, sides, self.last == Some(frame)).at(|| mesh.place(frame))?;
+        let (request, is_last) = (self.request, self.last == Some(frame));
+        let mut found = query(request, request.limit, sides, is_last).at(|| mesh.place(frame))?;
         let is_free = match &found.near {
             Some(near) => near.nearest.is_none_or(|near| near.distance > 0.0),
             None => found.pairs.is_empty(),
@@ -73,6 +102,11 @@ impl<'m, 'w> Worker<'m, 'w> {
             let (x, y) = (&mut self.side, other);
             let enclosed = x.detector.enclosed(&x.x_t0, &mut y.detector, &y.x_t0);
             found.enclosed = Some(enclosed.at(|| mesh.place(frame))?);
+        }
+        if let (Some(y), true, false) = (&mut self.other, self.request.penetration, is_continuous) {
+            let x = &mut self.side;
+            let body = x.detector.penetration(&x.x_t0, &mut y.detector, &y.x_t0);
+            found.penetration = Some(body.at(|| mesh.place(frame))?);
         }
         if self.request.has_positions {
             let sides = [&self.side].into_iter().chain(&self.other);
@@ -85,27 +119,29 @@ impl<'m, 'w> Worker<'m, 'w> {
 /// A mesh of a query, and the other one.
 pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
-/// Answers one query at the positions that the sides have read. `is_last`: whether it is the last query of the run, the only
+/// Answers one query at the positions that the sides have read, with at most `limit` pairs. `is_last`: whether it is the last query of the run, the only
 /// one whose contact curves are asked for.
 pub(super) fn query(
     request: &Detection,
+    limit: Option<usize>,
     sides: Sides<'_, '_, '_>,
     is_last: bool,
 ) -> Result<QueryResult, sscc::Error> {
     match (request.is_continuous, &request.clearance) {
-        (true, _) => continuous(request, sides),
+        (true, _) => continuous(limit, sides),
         (false, Some(clearance)) => near(sides, clearance),
-        (false, None) => discrete(request, sides, is_last),
+        (false, None) => discrete(request, limit, sides, is_last),
     }
 }
 
 fn discrete(
     request: &Detection,
+    limit: Option<usize>,
     (x, mut other): Sides<'_, '_, '_>,
     is_last: bool,
 ) -> Result<QueryResult, sscc::Error> {
     let start = Instant::now();
-    let pairs = match (&mut other, request.limit) {
+    let pairs = match (&mut other, limit) {
         (Some(y), Some(limit)) => x.detector.against_at_most(&x.x_t0, &mut y.detector, &y.x_t0, limit),
         (Some(y), None) => x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0),
         (None, Some(limit)) => x.detector.discrete_at_most(&x.x_t0, limit),
@@ -125,6 +161,7 @@ fn discrete(
         contacts,
         near: None,
         enclosed: None,
+        penetration: None,
         is_complete,
         microseconds,
         statistics,
@@ -150,6 +187,7 @@ fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryRes
         contacts: Contacts::default(),
         near: Some(near),
         enclosed: None,
+        penetration: None,
         is_complete: true,
         microseconds: start.elapsed().as_secs_f64() * 1e6,
         statistics: x.detector.statistics(),
@@ -157,7 +195,7 @@ fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryRes
     })
 }
 
-fn continuous(request: &Detection, (x, other): Sides<'_, '_, '_>) -> Result<QueryResult, sscc::Error> {
+fn continuous(limit: Option<usize>, (x, other): Sides<'_, '_, '_>) -> Result<QueryResult, sscc::Error> {
     let start = Instant::now();
     let impacts = match other {
         Some(y) => x.detector.continuous_against([&x.x_t0, &x.x_t1], &mut y.detector, [&y.x_t0, &y.x_t1]),
@@ -165,7 +203,7 @@ fn continuous(request: &Detection, (x, other): Sides<'_, '_, '_>) -> Result<Quer
     };
     let microseconds = start.elapsed().as_secs_f64() * 1e6;
     let all = impacts?;
-    let kept: Vec<Impact> = earliest_impacts(all, request.limit);
+    let kept: Vec<Impact> = earliest_impacts(all, limit);
     let is_complete = kept.len() == all.len();
     Ok(QueryResult {
         pairs: kept.iter().map(|impact| impact.pair).collect(),
@@ -173,6 +211,7 @@ fn continuous(request: &Detection, (x, other): Sides<'_, '_, '_>) -> Result<Quer
         contacts: Contacts::default(),
         near: None,
         enclosed: None,
+        penetration: None,
         is_complete,
         microseconds,
         statistics: x.detector.statistics(),

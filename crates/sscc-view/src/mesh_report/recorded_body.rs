@@ -10,6 +10,8 @@ use crate::scene::fits;
 /// The recording of one body. Positions are relative to the centre of the recording.
 pub(super) struct RecordedBody {
     pub name: String,
+    /// The node that it is.
+    pub node: Option<usize>,
     /// Three vertex numbers for each triangle.
     pub faces: Vec<u32>,
     pub vertices: usize,
@@ -60,9 +62,10 @@ impl<T, const N: usize> FrameLists<T, N> {
 }
 
 impl RecordedBody {
-    pub fn new(name: String, mesh: &TriMesh) -> Self {
+    pub fn new(name: String, node: Option<usize>, mesh: &TriMesh) -> Self {
         Self {
             name,
+            node,
             faces: mesh.faces().as_flattened().to_vec(),
             vertices: mesh.rest_positions().len(),
             positions: Vec::new(),

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sscc_sim::LeftOut;
 
+use super::node_pairs::{NodePairs, of_frame};
 use super::recorded_body::RecordedBody;
 use crate::{Arrays, Body, Clock, Contacts, Curves, ModelScene, Playback, Track};
 
@@ -19,6 +20,8 @@ pub(super) struct Recording {
     pub is_continuous: bool,
     /// Whether the pairs are those of the first body with the second one.
     pub is_between: bool,
+    /// The pairs of different bodies, of a scene.
+    pub node_pairs: Vec<NodePairs>,
     /// The pairs that were not tested.
     pub left_out: LeftOut,
 }
@@ -39,8 +42,21 @@ impl Recording {
 
     /// The number of pairs of each frame, over all bodies.
     pub fn counts(&self) -> Vec<u64> {
-        let of_frame = |frame| self.bodies.iter().map(|body| body.pairs.of(frame).len() as u64).sum();
+        let of_frame = |frame| (0..self.bodies.len()).map(|body| self.pairs_of(body, frame)).sum();
         (0..self.frames).map(of_frame).collect()
+    }
+
+    /// The number of pairs of a body in a frame, with itself and with later bodies.
+    fn pairs_of(&self, body: usize, frame: usize) -> u64 {
+        let between = of_frame(&self.node_pairs, frame).iter().filter(|pairs| pairs.bodies[0] == body);
+        let between: usize = between.map(|pairs| pairs.pairs.len()).sum();
+        (self.bodies[body].pairs.of(frame).len() + between) as u64
+    }
+
+    /// Whether a body collides in a frame, with itself or with another one.
+    pub fn collides(&self, body: usize, frame: usize) -> bool {
+        let is_in = |pairs: &NodePairs| pairs.bodies.contains(&body);
+        !self.bodies[body].pairs.of(frame).is_empty() || of_frame(&self.node_pairs, frame).iter().any(is_in)
     }
 
     /// Returns the models and the playback, and adds their arrays.
@@ -53,7 +69,7 @@ impl Recording {
         };
         let models = self.bodies.iter().enumerate().map(model).collect();
         let body = |(index, body): (usize, &RecordedBody)| {
-            let counts = || (0..self.frames).map(|frame| body.pairs.of(frame).len() as u64).collect();
+            let counts = || (0..self.frames).map(|frame| self.pairs_of(index, frame)).collect();
             Body {
                 name: body.name.clone(),
                 model: index,
@@ -83,19 +99,29 @@ impl Recording {
 
     fn contacts(&self, arrays: &mut Arrays) -> Contacts {
         let (mut offsets, mut pairs, mut times) = (vec![0], Vec::new(), Vec::new());
+        let mut seconds = Vec::new();
         for frame in 0..self.frames {
-            for body in &self.bodies {
+            for (number, body) in self.bodies.iter().enumerate() {
                 pairs.extend(body.pairs.of(frame).as_flattened());
                 if self.is_continuous {
                     times.extend(&body.impacts[body.pairs.range(frame)]);
                 }
+                seconds.resize(pairs.len() / 2, number as u32);
+                let between = of_frame(&self.node_pairs, frame).iter();
+                for found in between.filter(|found| found.bodies[0] == number) {
+                    pairs.extend(found.pairs.iter().flat_map(|(i, j)| [*i, *j]));
+                    times.extend(&found.impacts);
+                    seconds.resize(pairs.len() / 2, found.bodies[1] as u32);
+                }
                 offsets.push((pairs.len() / 2) as u32);
             }
         }
+        let has_others = !self.node_pairs.is_empty();
         Contacts {
             offsets: arrays.add_u32("contact-offsets", offsets),
             pairs: arrays.add_u32("contact-pairs", pairs),
             times: self.is_continuous.then(|| arrays.add_f32("contact-times", times)),
+            seconds: has_others.then(|| arrays.add_u32("contact-seconds", seconds)),
             is_between: self.is_between,
         }
     }
@@ -104,6 +130,8 @@ impl Recording {
         let (mut offsets, mut segments) = (vec![0], Vec::new());
         for frame in 0..self.frames {
             self.bodies.iter().for_each(|body| segments.extend(body.segments.of(frame).as_flattened()));
+            let between = of_frame(&self.node_pairs, frame).iter();
+            between.for_each(|found| segments.extend(found.segments.as_flattened()));
             offsets.push((segments.len() / 6) as u32);
         }
         Curves {

@@ -9,6 +9,7 @@ use sscc_sim::text::{counted, grouped, one_line};
 use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
 
 use super::contact_segments::contact_segments;
+use super::node_pairs::NodePairs;
 use super::recorded_body::RecordedBody;
 use super::recording::Recording;
 use crate::{Arrays, Axis, MAX_REPORT_BYTES, PAGE, Plot, Report, Scene, Series, ViewError};
@@ -38,6 +39,8 @@ pub struct MeshReport {
     microseconds: Vec<f64>,
     is_continuous: bool,
     is_between: bool,
+    /// The pairs of different nodes of a scene.
+    node_pairs: Vec<NodePairs>,
     left_out: LeftOut,
     /// Size of the recorded positions and of those to come, in the report (bytes).
     planned_bytes: u64,
@@ -84,6 +87,37 @@ impl MeshReport {
         Ok(())
     }
 
+    /// Adds an answer about two nodes of a scene, whose own answers have been added.
+    ///
+    /// # Errors
+    /// As [`MeshReport::add`].
+    pub fn add_between_nodes(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
+        let shapes = answer.shape.zip(answer.other);
+        let (shape, other) =
+            shapes.ok_or_else(|| ViewError::Request("the answers have no positions".into()))?;
+        let body = |node: Option<usize>| self.bodies.iter().position(|body| body.node == node);
+        let bodies = body(answer.node).zip(body(answer.other_node));
+        let (a, b) = bodies.ok_or_else(|| ViewError::Request("the answer of a node is missing".into()))?;
+        self.check_size(12 * answer.pairs.len())?;
+        let mut segments = Vec::new();
+        for pairs in answer.pairs.chunks(MAX_CONTACTS) {
+            contact_segments(surface(shape), Some(surface(other)), pairs, |ends| {
+                let [a, b] = ends.map(|p| (p - self.center).as_vec3().to_array());
+                segments.push([a[0], a[1], a[2], b[0], b[1], b[2]]);
+            })?;
+            self.check_size(12 * answer.pairs.len() + size_of_val(&segments[..]))?;
+        }
+        self.node_pairs.push(NodePairs {
+            frame: answer.index,
+            bodies: [a, b],
+            pairs: answer.pairs.to_vec(),
+            impacts: answer.times.into_iter().flatten().map(|time| *time as f32).collect(),
+            segments,
+        });
+        self.microseconds[answer.index] += answer.microseconds;
+        Ok(())
+    }
+
     /// Begins the bodies of a mesh with its first answer.
     fn begin(&mut self, answer: &DetectionAnswer<'_>, shape: ShapeInMotion<'_>) -> Result<(), ViewError> {
         if self.bodies.is_empty() {
@@ -105,14 +139,16 @@ impl MeshReport {
                 self.files.push(file);
             }
             self.planned_bytes = self.planned_bytes.saturating_add(planned_bytes(shape.mesh, answer.frames));
-            self.bodies.push(RecordedBody::new(name, shape.mesh));
+            self.bodies.push(RecordedBody::new(name, node.0, shape.mesh));
         }
         self.check_size(0)
     }
 
     /// Refuses a report that is too large with this much more data (bytes).
     fn check_size(&self, more: usize) -> Result<(), ViewError> {
-        let contacts = more + self.bodies.iter().map(RecordedBody::contact_bytes).sum::<usize>();
+        let contacts = more
+            + self.bodies.iter().map(RecordedBody::contact_bytes).sum::<usize>()
+            + self.node_pairs.iter().map(NodePairs::bytes).sum::<usize>();
         let bytes = (PAGE.len() as u64 + in_base64(contacts as u64)).saturating_add(self.planned_bytes);
         if bytes > MAX_REPORT_BYTES { Err(ViewError::TooLarge) } else { Ok(()) }
     }
@@ -130,6 +166,7 @@ impl MeshReport {
             frames,
             is_continuous: self.is_continuous,
             is_between: self.is_between,
+            node_pairs: self.node_pairs,
             left_out: self.left_out,
         };
         let mut arrays = Arrays::default();
@@ -204,7 +241,7 @@ fn summary(recording: &Recording) -> Vec<(String, String)> {
     for (index, body) in recording.bodies.iter().enumerate().take(MAX_ROWS) {
         let triangles = counted((body.faces.len() / 3) as u64, "triangle");
         let vertices = grouped(body.vertices as u64);
-        let own = colliding(&mut (0..queries).map(|frame| body.pairs.of(frame).len()));
+        let own = colliding(&mut (0..queries).map(|frame| usize::from(recording.collides(index, frame))));
         let is_alone = recording.bodies.len() == 1 || recording.is_between;
         let collides =
             if is_alone { String::new() } else { format!(", colliding in {}", counted(own, noun)) };

@@ -55,6 +55,7 @@ fn answer<'a>(
         curves: None,
         near: None,
         enclosed: None,
+        body_penetration: None,
         is_complete: true,
         microseconds: 2000.0,
         norm: None,

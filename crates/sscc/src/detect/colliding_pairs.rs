@@ -52,20 +52,22 @@ impl ContactFilter {
     pub fn ignoring_rest(self, model: &ReducedModel, rings: u32) -> Result<Self, Error> {
         let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
-        self.ignoring_around(model, pairs, rings)
+        self.ignoring_around(model, pairs, rings, &())
     }
 
     /// The same filter, which also ignores these pairs and those within so many rings of them.
     ///
     /// # Errors
-    /// When they are too many.
+    /// When they are too many, or `progress` cancels.
     pub(crate) fn ignoring_around(
         self,
         model: &ReducedModel,
         pairs: Vec<Pair>,
         rings: u32,
+        progress: &dyn Progress,
     ) -> Result<Self, Error> {
-        let around = surroundings(&PairFilter::new(model, &self), &pairs, rings)?;
+        let filter = PairFilter::new(model, &self);
+        let around = surroundings(&filter, &pairs, rings, progress.cancel_token())?;
         Ok(self.ignoring(around))
     }
 }

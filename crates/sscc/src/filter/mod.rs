@@ -14,7 +14,7 @@ pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, chec
 pub(crate) use pair_filter::{GroupsBetween, PairFilter, Relation};
 pub(crate) use rings::Rings;
 pub(crate) use simplex_pairs::SimplexPair;
-pub(crate) use surroundings::surroundings;
+pub(crate) use surroundings::{surroundings, surroundings_between};
 pub use triangle_groups::{GroupTable, TriangleGroups};
 pub(crate) use weld::weld_classes;
 pub use weld::weld_classes_of_positions;

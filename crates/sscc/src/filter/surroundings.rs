@@ -3,7 +3,7 @@
 use super::contact_filter::Pair;
 use super::pair_filter::{PairFilter, Relation};
 use super::rings::Rings;
-use crate::Error;
+use crate::{CancelToken, Error};
 
 /// Pairs of the surroundings, at most.
 const MAX_PAIRS: usize = 1 << 22;
@@ -18,27 +18,67 @@ const MAX_WORK: usize = 1 << 28;
 /// pairs that never count are left out. Sorted.
 ///
 /// # Errors
-/// When they are more than 2^22, or more than 2^28 must be looked at.
-pub(crate) fn surroundings(filter: &PairFilter, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
+/// When they are more than 2^22, or more than 2^28 must be looked at; when it is cancelled.
+pub(crate) fn surroundings(
+    filter: &PairFilter,
+    pairs: &[Pair],
+    rings: u32,
+    cancel: Option<&CancelToken>,
+) -> Result<Vec<Pair>, Error> {
+    let ascending = |(a, b): Pair| (a.min(b), a.max(b));
+    let mut search = Rings::new(filter, rings);
+    let around = |(a, b): Pair| {
+        let around_a = search.around(filter, a).to_vec();
+        let kept = right_or!(around_a.len(), SurroundingsOfOne, 1);
+        (around_a[..kept].to_vec(), search.around(filter, b).to_vec())
+    };
+    let counts = |(a, b): Pair| a != b && filter.relation(a, b) != Relation::Adjacent;
+    collect(pairs.iter().copied().map(ascending), rings, cancel, around, |pair| {
+        counts(pair).then(|| ascending(pair))
+    })
+}
+
+/// As [`surroundings`], of pairs between two meshes: (triangle of the first, triangle of the second). All of them count.
+pub(crate) fn surroundings_between(
+    filters: [&PairFilter; 2],
+    pairs: &[Pair],
+    rings: u32,
+    cancel: Option<&CancelToken>,
+) -> Result<Vec<Pair>, Error> {
+    let mut search = filters.map(|filter| Rings::new(filter, rings));
+    let around =
+        |(a, b): Pair| (search[0].around(filters[0], a).to_vec(), search[1].around(filters[1], b).to_vec());
+    collect(pairs.iter().copied(), rings, cancel, around, Some)
+}
+
+/// Collects the pairs of the triangles around each pair that `kept` returns.
+fn collect(
+    pairs: impl Iterator<Item = Pair>,
+    rings: u32,
+    cancel: Option<&CancelToken>,
+    mut around: impl FnMut(Pair) -> (Vec<u32>, Vec<u32>),
+    kept: impl Fn(Pair) -> Option<Pair>,
+) -> Result<Vec<Pair>, Error> {
     if rings == 0 {
-        let mut pairs: Vec<Pair> = pairs.iter().map(|(a, b)| (*a.min(b), *a.max(b))).collect();
+        let mut pairs: Vec<Pair> = pairs.collect();
         pairs.sort_unstable();
         pairs.dedup();
         return Ok(pairs);
     }
     let too_many = || Err(Error::TooManyIgnored { most: MAX_PAIRS, rings });
-    let mut search = Rings::new(filter, rings);
     let (mut found, mut sorted, mut work) = (Vec::new(), 0, 0_usize);
-    for &(a, b) in pairs {
-        let around_a = search.around(filter, a).to_vec();
-        let around_b = search.around(filter, b);
-        work = work.saturating_add(around_a.len().saturating_mul(around_b.len()));
-        if around_a.len().saturating_mul(around_b.len()) > 4 * MAX_PAIRS || work > MAX_WORK {
+    for pair in pairs {
+        if cancel.is_some_and(CancelToken::is_cancelled) {
+            return Err(Error::Cancelled);
+        }
+        let (around_a, around_b) = around(pair);
+        let size = around_a.len().saturating_mul(around_b.len());
+        work = work.saturating_add(size);
+        if size > 4 * MAX_PAIRS || work > MAX_WORK {
             return too_many();
         }
-        for &a in right_or!(&around_a[..], SurroundingsOfOne, &around_a[..1]) {
-            let counted = around_b.iter().filter(|&&b| a != b && filter.relation(a, b) != Relation::Adjacent);
-            found.extend(counted.map(|&b| (a.min(b), a.max(b))));
+        for a in around_a {
+            found.extend(around_b.iter().filter_map(|b| kept((a, *b))));
         }
         if found.len() - sorted > MAX_PAIRS {
             found.sort_unstable();

@@ -19,7 +19,9 @@ mod exact_orientation;
 mod intersection;
 mod nearest_point;
 mod orientation;
+mod overlap_integral;
 mod planar;
+mod point_distance;
 mod segment_segment;
 mod segment_triangle;
 mod shared_edge;
@@ -39,6 +41,8 @@ pub use intersection::{
 };
 pub(crate) use nearest_point::{nearest_to_origin, nearest_within};
 pub use orientation::orient2d;
+pub(crate) use overlap_integral::overlap_integral;
+pub(crate) use point_distance::distance_point_triangle;
 pub use shared_edge::intersect_shared_edge_pair;
 pub use shared_vertex::intersect_shared_vertex_pair;
 pub use triangle_distance::{DISTANCE_ERROR, distance_triangle_triangle};

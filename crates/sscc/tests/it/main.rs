@@ -4,6 +4,7 @@
 
 mod audit;
 mod batch;
+mod body_penetration;
 mod cancel;
 mod ccd;
 mod certificates;

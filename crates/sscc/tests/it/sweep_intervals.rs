@@ -1,10 +1,10 @@
 //! Intervals of weights over which shapes collide, against brute force at many weights; pairs around those that collide at rest.
 
 use glam::DVec3;
-use sscc::parts::{Scope, penetration_triangle_triangle};
+use sscc::parts::{Scope, penetration_triangle_triangle, surroundings_between_meshes};
 use sscc::{
-    Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, ModeRange, Modes, Pair, Query,
-    ReducedModel, TriMesh, WeightIntervals,
+    CancelToken, Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, ModeRange, Modes,
+    Pair, Query, ReducedModel, TriMesh, WeightIntervals,
 };
 use sscc_testing::{cases, threshold};
 
@@ -212,6 +212,65 @@ fn surroundings_are_those_of_all_triangles() {
     }
     let unknown = detector.surroundings(&[(0, 1), (3, 2 * half)], 1);
     assert_eq!(unknown, Err(Error::PairIndex { pair: 1, triangle: 2 * half, triangles: 2 * half as usize }));
+}
+
+/// Between two meshes every pair counts: around each pair all triangles of the first mesh with all of the second.
+#[test]
+fn surroundings_between_meshes_are_those_of_all_triangles() {
+    let (mesh, other) = (two_squares(5), two_squares(3));
+    let rings_around = |mesh: &TriMesh, t: u32, rings: u32| {
+        let faces = mesh.faces();
+        let touch = |a: u32, b: u32| faces[a as usize].iter().any(|v| faces[b as usize].contains(v));
+        (0..rings).fold(vec![t], |around, _| {
+            (0..faces.len() as u32).filter(|b| around.iter().any(|a| touch(*a, *b))).collect()
+        })
+    };
+    let detectors = [&mesh, &other].map(Detector::new);
+    let given = [(7, 2), (0, 9), (7, 2)];
+    for rings in 0..3 {
+        let mut expected: Vec<Pair> = Vec::new();
+        for (a, b) in given {
+            let others = rings_around(&other, b, rings);
+            let all = rings_around(&mesh, a, rings);
+            expected.extend(all.iter().flat_map(|a| others.iter().map(move |b| (*a, *b))));
+        }
+        expected.sort_unstable();
+        expected.dedup();
+        let found = surroundings_between_meshes(detectors.each_ref(), &given, rings).unwrap();
+        assert_eq!(found, expected, "{rings}");
+    }
+    let triangles = other.faces().len();
+    let unknown = surroundings_between_meshes(detectors.each_ref(), &[(0, 0), (0, triangles as u32)], 0);
+    assert_eq!(unknown, Err(Error::PairIndex { pair: 1, triangle: triangles as u32, triangles }));
+    let token = CancelToken::new();
+    token.cancel();
+    let [a, b] = detectors.map(|detector| detector.cancelled_by(token.clone()));
+    assert_eq!(surroundings_between_meshes([&a, &b], &given, 1), Err(Error::Cancelled));
+    assert_eq!(a.surroundings(&given, 1), Err(Error::Cancelled));
+}
+
+/// A single mode reports its samples, and the last report is that of the end.
+#[test]
+fn intervals_of_one_mode_report_progress() {
+    struct Reports(std::sync::Mutex<Vec<(usize, usize)>>);
+    impl sscc::Progress for Reports {
+        fn report(&self, done: usize, total: usize) {
+            self.0.lock().unwrap().push((done, total));
+        }
+    }
+    let mesh = two_squares(2);
+    let vertices = mesh.rest_positions().len();
+    let modes = (0..vertices).map(|v| if 2 * v < vertices { DVec3::ZERO } else { DVec3::Z }).collect();
+    let model = ReducedModel::new(mesh, sscc::Modes::new(1, modes).unwrap()).unwrap();
+    let query = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+    for samples in [2, 10, 1000] {
+        let reports = Reports(std::sync::Mutex::default());
+        let range = ModeRange { mode: 0, low: 0.0, high: 1.0 };
+        query.sweep_intervals(&[0.0], &[range], samples, Some(1), &reports).unwrap();
+        let reports = reports.0.into_inner().unwrap();
+        assert!(reports.len() > samples.min(50), "{reports:?}");
+        assert!(reports.is_sorted() && reports.last() == Some(&(64, 64)), "{reports:?}");
+    }
 }
 
 /// Where two parts touch at rest, their neighbours touch at small weights.

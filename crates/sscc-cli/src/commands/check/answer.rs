@@ -1,7 +1,7 @@
 //! The answer of `sscc check` to one query: the keys of its JSON line.
 
 use serde::Serialize;
-use sscc::{Clearance, Enclosed, Pair, Proof};
+use sscc::{BodyPenetration, Clearance, Enclosed, Pair, Proof};
 use sscc_sim::{DetectionAnswer, LeftOut, Near};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
@@ -44,6 +44,8 @@ pub struct Answer<'a> {
     pub near: Option<NearAnswer<'a>>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub inside: Option<InsideAnswer>,
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub penetration: Option<PenetrationAnswer>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
     /// What proved the answer: `radius`, `local` or `search`; none without modes.
@@ -70,6 +72,28 @@ pub struct InsideAnswer {
     pub inside: [usize; 2],
     /// How many they have.
     pub components: [usize; 2],
+}
+
+/// How deep two closed meshes are in each other.
+#[derive(Serialize)]
+pub struct PenetrationAnswer {
+    /// The volume that both share, and a bound of its error.
+    pub penetration_volume: f64,
+    pub penetration_volume_error: f64,
+    /// The diameter of a ball inside of both, and by how much more no such ball is larger.
+    pub penetration_depth: f64,
+    pub penetration_depth_error: f64,
+}
+
+impl From<BodyPenetration> for PenetrationAnswer {
+    fn from(found: BodyPenetration) -> Self {
+        Self {
+            penetration_volume: found.volume,
+            penetration_volume_error: found.volume_error,
+            penetration_depth: found.depth,
+            penetration_depth_error: found.depth_error,
+        }
+    }
 }
 
 impl InsideAnswer {
@@ -137,6 +161,7 @@ impl<'a> Answer<'a> {
                 .map(|all| all.iter().map(|pair| pair.direction.to_array()).collect()),
             near: found.near.map(NearAnswer::new),
             inside: found.enclosed.and_then(InsideAnswer::new),
+            penetration: found.body_penetration.map(PenetrationAnswer::from),
             microseconds: found.microseconds,
             root_certified: found.root_certified,
             proof: found.proof.map(Proof::into),

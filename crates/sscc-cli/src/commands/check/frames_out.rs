@@ -3,13 +3,22 @@
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use sscc_io::NpyWriter;
+use glam::DVec3;
+use sscc_io::{NpyWriter, VtkFramesWriter, is_collection};
 use sscc_sim::DetectionAnswer;
+
+use super::shapes;
 
 /// The frames of one mesh, written as answers come (`--frames-out`).
 pub struct FramesOut<'a> {
     path: &'a Path,
-    writer: Option<NpyWriter>,
+    writer: Option<Writer>,
+}
+
+enum Writer {
+    Npy(NpyWriter),
+    /// A collection of VTK, with times and marks.
+    Vtk(VtkFramesWriter),
 }
 
 impl<'a> FramesOut<'a> {
@@ -30,19 +39,37 @@ impl<'a> FramesOut<'a> {
                     self.path.display()
                 );
                 let shape = [found.frames, found.mesh.rest_positions().len(), 3];
-                writer.insert(NpyWriter::create(self.path, &shape)?)
+                writer.insert(match is_collection(self.path) {
+                    true => Writer::Vtk(VtkFramesWriter::create(self.path)?),
+                    false => Writer::Npy(NpyWriter::create(self.path, &shape)?),
+                })
             }
         };
         let is_last = found.index + 1 == each;
-        for frame in [Some(shape.x_t0), is_last.then_some(shape.x_t1)].into_iter().flatten() {
-            let values: Vec<f64> = frame.iter().flat_map(|x| x.to_array()).collect();
-            writer.push(&values)?;
+        let frames: [Option<&[DVec3]>; 2] = [Some(shape.x_t0), is_last.then_some(shape.x_t1)];
+        for (at, frame) in frames.into_iter().enumerate() {
+            let Some(frame) = frame.filter(|frame| !frame.is_empty()) else { continue };
+            match writer {
+                Writer::Npy(writer) => {
+                    let values: Vec<f64> = frame.iter().flat_map(|x| x.to_array()).collect();
+                    writer.push(&values)?;
+                }
+                Writer::Vtk(writer) => {
+                    let index = found.index + at;
+                    let time = found.frame_times.map_or(index as f64, |times| times[index]);
+                    writer.push(time, found.mesh, frame, &shapes::marks(found.mesh, found.pairs))?;
+                }
+            }
         }
         Ok(())
     }
 
     /// Completes the file.
     pub fn finish(self) -> Result<()> {
-        self.writer.map_or(Ok(()), NpyWriter::finish).map_err(Into::into)
+        match self.writer {
+            Some(Writer::Npy(writer)) => Ok(writer.finish()?),
+            Some(Writer::Vtk(writer)) => Ok(writer.finish()?),
+            None => Ok(()),
+        }
     }
 }

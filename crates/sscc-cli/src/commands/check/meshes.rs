@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use sscc::TriMesh;
 use sscc_io::gltf::SkinWeights;
-use sscc_io::write_whole;
+use sscc_io::{is_collection, split_mesh_name, write_whole};
 use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, OtherMesh, SimError, Times, detect};
 use sscc_view::MeshReport;
 
@@ -30,7 +30,9 @@ pub fn check(args: &Check) -> Result<bool> {
         (MeshMotion::Rest, _) if request.against.as_ref().is_some_and(|other| other.frames.is_none()) => {
             "comparison"
         }
-        (MeshMotion::Rest, _) if args.motion.against_frames.is_none() => "file",
+        (MeshMotion::Rest, _) if request.against.as_ref().is_none_or(|other| other.frames.is_none()) => {
+            "file"
+        }
         _ => "frame",
     };
     let mut printer = Printer::new(noun, args.json.json, None);
@@ -65,10 +67,10 @@ pub fn check(args: &Check) -> Result<bool> {
         if let Some(frames) = &mut frames_out {
             frames.add(found)?;
         }
-        // A report shows each node by itself.
-        let is_between_nodes = request.against.is_none() && found.other_node.is_some();
-        if let Some(path) = args.report.as_ref().filter(|_| !is_between_nodes) {
-            report.add(found).with_context(|| path.display().to_string())?;
+        if let Some(path) = &args.report {
+            let is_between_nodes = request.against.is_none() && found.other_node.is_some();
+            let added = if is_between_nodes { report.add_between_nodes(found) } else { report.add(found) };
+            added.with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
         // Files have all frames, also where nobody reads the output.
@@ -89,6 +91,22 @@ pub fn check(args: &Check) -> Result<bool> {
 /// Whether equal vertices of a mesh are welded, or the user has decided.
 fn is_welded(request: &Detection, mesh: &TriMesh) -> bool {
     request.weld.is_some() || mesh.has_split_vertices()
+}
+
+/// Returns the frames of the mesh: those of `--frames`, or of the mesh itself where it is a collection.
+fn frames(args: &Check) -> Option<PathBuf> {
+    let own = || is_own_frames(&args.model.path).then(|| args.model.path.clone());
+    args.motion.frames.clone().or_else(own)
+}
+
+/// Returns the frames of the other mesh, as [`frames`].
+fn against_frames(args: &Check, other: &Path) -> Option<PathBuf> {
+    args.motion.against_frames.clone().or_else(|| is_own_frames(other).then(|| other.to_owned()))
+}
+
+/// Whether a mesh is a collection, which has frames of its own.
+fn is_own_frames(path: &Path) -> bool {
+    is_collection(&split_mesh_name(path).0)
 }
 
 /// Refuses flags for models, and flags that have no effect together.
@@ -119,7 +137,6 @@ fn check_flags(args: &Check) -> Result<()> {
         ("times", motion.times.is_some()),
         ("node", motion.node.is_some()),
         ("weights", motion.weights.is_some()),
-        ("between-nodes", motion.between_nodes),
     ] {
         let has_effect = !is_given || motion.animation.is_some();
         ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");
@@ -132,7 +149,9 @@ fn check_flags(args: &Check) -> Result<()> {
             "--against: neighbours are those of one mesh: leave out --neighbours, --weld and --ignore-rest"
         );
     }
-    let moves = motion.frames.is_some() || motion.animation.is_some() || motion.against_frames.is_some();
+    let moves = frames(args).is_some()
+        || motion.animation.is_some()
+        || motion.against.as_deref().is_some_and(|other| against_frames(args, other).is_some());
     ensure!(
         moves || options.ignore_rest.is_none(),
         "--ignore-rest: the mesh is at rest: add --frames or --animation"
@@ -158,11 +177,17 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
             _ => SkinWeights::Normalized,
         },
     });
-    let frames = motion.frames.clone().map(MeshMotion::Frames);
+    if let [first, _, ..] = &meshes[..]
+        && let Some(file) = meshes.iter().find(|file| is_own_frames(file))
+    {
+        let other = if first == file { &meshes[1] } else { first };
+        bail!("{}: a collection is checked by itself: leave out {}", file.display(), other.display());
+    }
+    let frames = frames(args).map(MeshMotion::Frames);
     let other = |mesh: &Path| OtherMesh {
         mesh: mesh.to_owned(),
         mesh_name: motion.against_mesh.clone(),
-        frames: motion.against_frames.clone(),
+        frames: against_frames(args, mesh),
     };
     Ok(Detection {
         meshes,
@@ -177,6 +202,7 @@ fn request(args: &Check, meshes: Vec<PathBuf>) -> Result<Detection> {
         is_continuous: args.continuous,
         limit: args.max_pairs(),
         clearance: args.clearance()?,
+        penetration: args.penetration,
         contacts: shapes::contacts(args),
         has_positions: args.report.is_some() || args.pose.is_some() || args.frames_out.is_some(),
         threads: Some(load::threads(&options.threads)),

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
-use sscc_io::{LoadedModel, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose};
+use sscc_io::{
+    LoadedModel, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose, write_vtu_pose,
+};
 use sscc_sim::{ContactOptions, DetectionAnswer};
 
 use crate::args::Check;
@@ -24,13 +26,22 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
         load::check_output(report, ".html", &inputs)?;
     }
     if let Some(frames) = &args.frames_out {
-        load::check_output(frames, ".npy", &inputs)?;
+        let ending = match ending(frames) {
+            Some("npy") => ".npy",
+            Some("pvd") => ".pvd",
+            _ => bail!("{}: the name of frames must end in .npy or .pvd", frames.display()),
+        };
+        load::check_output(frames, ending, &inputs)?;
     }
     for (path, what) in [(&args.pose, "a pose"), (&args.curves, "contact curves")] {
         let Some(path) = path else { continue };
         let ending = match ending(path) {
             Some("ply") => ".ply",
             Some("obj") => ".obj",
+            Some("vtu") if what == "a pose" => ".vtu",
+            _ if what == "a pose" => {
+                bail!("{}: the name of a pose must end in .ply, .obj or .vtu", path.display())
+            }
             _ => bail!("{}: the name of {what} must end in .ply or .obj", path.display()),
         };
         load::check_output(path, ending, &inputs)?;
@@ -46,13 +57,22 @@ pub fn contacts(args: &Check) -> ContactOptions {
 
 /// Writes a mesh at these positions with the triangles of these pairs marked.
 pub fn write_pose(path: &Path, mesh: &TriMesh, positions: &[DVec3], pairs: &[Pair]) -> Result<()> {
+    let write = match ending(path) {
+        Some("ply") => write_ply_pose,
+        Some("vtu") => write_vtu_pose,
+        _ => write_obj_pose,
+    };
+    Ok(write(path, mesh, positions, &marks(mesh, pairs))?)
+}
+
+/// Returns whether each triangle of a mesh is in one of these pairs.
+pub fn marks(mesh: &TriMesh, pairs: &[Pair]) -> Vec<bool> {
     let mut colliding = vec![false; mesh.faces().len()];
     for &(i, j) in pairs {
         colliding[i as usize] = true;
         colliding[j as usize] = true;
     }
-    let write = if ending(path) == Some("ply") { write_ply_pose } else { write_obj_pose };
-    Ok(write(path, mesh, positions, &colliding)?)
+    colliding
 }
 
 /// Writes the contact curves of an answer about a model, where the file puts the model. With a skin, which has no single

@@ -47,7 +47,15 @@ impl Answer<'_> {
             None if self.is_root_certified() => "free       by the root's certificate".to_owned(),
             None => "free".to_owned(),
         };
-        format!("{} {:>9}  {result}{}", self.place(noun), duration(self.microseconds), self.inside())
+        let more = self.inside() + &self.penetration();
+        format!("{} {:>9}  {result}{more}", self.place(noun), duration(self.microseconds))
+    }
+
+    /// Returns the volume that both meshes share, and their depth.
+    fn penetration(&self) -> String {
+        let Some(found) = &self.penetration else { return String::new() };
+        let (volume, depth) = (length(found.penetration_volume), length(found.penetration_depth));
+        format!("; shared volume {volume}, penetration depth {depth}")
     }
 
     /// Returns which mesh has parts inside the other one.
@@ -138,9 +146,16 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
             true => (FreeProof::Root { exceptions: answer.exceptions }, duration(answer.microseconds)),
             false => (FreeProof::Tests, cost),
         };
-        return vec![free_sentence(proof, &norm, answer.left_out) + &answer.inside(), cost];
+        return vec![
+            free_sentence(proof, &norm, answer.left_out) + &answer.inside() + &answer.penetration(),
+            cost,
+        ];
     }
-    listed_below(format!("COLLIDING: {} of triangles{norm}", answer.counted()), cost, answer)
+    listed_below(
+        format!("COLLIDING: {} of triangles{norm}{}", answer.counted(), answer.penetration()),
+        cost,
+        answer,
+    )
 }
 
 /// Returns two lines, and those of the first pairs.

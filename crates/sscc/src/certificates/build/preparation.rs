@@ -76,7 +76,7 @@ impl Preparation {
             colliding_pairs(model, &hierarchy, &filter, &center, progress)?
         };
         if let Some(rings) = options.ignore_rest {
-            filter = filter.ignoring_around(model, at_rest, rings)?;
+            filter = filter.ignoring_around(model, at_rest, rings, progress)?;
         }
         let triangles = model.mesh().faces().len();
         let max_exceptions = options.max_exceptions.unwrap_or_else(|| default_exceptions(triangles));

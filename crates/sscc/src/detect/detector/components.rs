@@ -70,6 +70,11 @@ impl Components {
         self.all.iter().any(|component| component.is_closed)
     }
 
+    /// Whether there are components, all of them closed.
+    pub fn are_closed(&self) -> bool {
+        !self.all.is_empty() && self.all.iter().all(|component| component.is_closed)
+    }
+
     /// Whether a triangle is part of a closed component.
     pub fn is_closed(&self, triangle: u32) -> bool {
         self.all[self.of_triangles[triangle as usize] as usize].is_closed

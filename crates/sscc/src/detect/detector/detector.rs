@@ -14,7 +14,7 @@ use crate::detect::answer::Statistics;
 use crate::detect::context::Context;
 use crate::detect::layout::Layout;
 use crate::detect::narrow_phase::{DiscreteHits, SweptHits};
-use crate::filter::{PairFilter, check_continuous, surroundings, weld_classes, weld_classes_of_positions};
+use crate::filter::{PairFilter, check_continuous, weld_classes, weld_classes_of_positions};
 use crate::hierarchy::Hierarchy;
 use crate::{CancelToken, ContactFilter, Error, Impact, Pair, ReducedModel, TriMesh, limits};
 
@@ -122,21 +122,6 @@ impl Detector {
     pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
         self.context.cancel = token.into();
         self
-    }
-
-    /// These pairs of triangles and all that count within so many rings of them: one triangle within the rings around the first one
-    /// of a pair, the other one within those around its second. Triangles with a common vertex are one ring apart. Sorted. To
-    /// leave out what touches at rest, give them to [`ContactFilter::ignoring`].
-    ///
-    /// # Errors
-    /// When a pair names a triangle that the mesh does not have; when they are more than 2^22.
-    pub fn surroundings(&self, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
-        let triangles = self.context.filter.faces().len();
-        if let Some(pair) = pairs.iter().position(|(a, b)| *a.max(b) as usize >= triangles) {
-            let triangle = pairs[pair].0.max(pairs[pair].1);
-            return Err(Error::PairIndex { pair, triangle, triangles });
-        }
-        surroundings(&self.context.filter, pairs, rings)
     }
 
     /// The maximum number of pairs of an answer without a limit: 2^26, which bounds its memory to 512 MiB (1 GiB of impacts).

@@ -49,7 +49,7 @@ impl Detector {
     }
 
     /// The connected components. Where welded vertices are apart, those of vertices that are not welded.
-    fn components_at(&mut self, positions: &[DVec3]) -> Arc<Components> {
+    pub(super) fn components_at(&mut self, positions: &[DVec3]) -> Arc<Components> {
         let filter = &self.context.filter;
         let triangles = 0..filter.faces().len() as u32;
         let mut of_classes = vec![None; filter.class_count()];
@@ -68,9 +68,9 @@ impl Detector {
 }
 
 /// A mesh at given positions.
-struct Side<'x> {
-    boxes: Boxes<'x>,
-    components: &'x Components,
+pub(super) struct Side<'x> {
+    pub boxes: Boxes<'x>,
+    pub components: &'x Components,
 }
 
 impl Side<'_> {
@@ -89,7 +89,7 @@ impl Side<'_> {
     }
 
     /// The winding number of the closed components about a point.
-    fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
+    pub(super) fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
         let (mut open, mut winding) = (vec![0], 0);
         while let Some(n) = open.pop() {
             let aabb = &self.boxes.of_nodes[n as usize];

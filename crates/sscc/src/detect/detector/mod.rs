@@ -5,6 +5,7 @@ mod batch;
 mod boxes;
 mod clearance;
 mod clearance_search;
+mod common_ball;
 mod components;
 #[allow(clippy::module_inception)] // named after its type, as all files here
 mod detector;
@@ -12,9 +13,14 @@ mod detector_search;
 mod enclosed;
 mod given_motion;
 mod nearest;
+mod penetration;
+mod shared_volume;
 mod statistics;
+mod surroundings;
 
 pub use clearance::Clearance;
 pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
 pub use enclosed::Enclosed;
+pub use penetration::BodyPenetration;
+pub use surroundings::surroundings_between_meshes;

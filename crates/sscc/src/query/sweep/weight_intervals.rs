@@ -1,10 +1,12 @@
 //! The intervals of a mode's weight over which the shape collides: samples, and sweeps from free samples to where it touches.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::sweep::{Sweep, SweepOutcome};
 use super::sweep_modes::ModeRange;
 use crate::geometry::penetration_triangle_triangle;
 use crate::query::query::Query;
-use crate::{Error, Pair, Progress, ReducedModel};
+use crate::{CancelToken, Error, Pair, Progress, ReducedModel};
 
 /// Where over a range of its weight a mode lets the shape collide.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,7 +88,10 @@ impl Query {
         }
         self.context.model.check_coordinates(q)?;
         ranges.iter().try_for_each(|range| range.check(q).map(|_| ()))?;
-        self.map_sweeps(q, ranges, threads, progress, |query, at, range| query.intervals(at, range, samples))
+        let steps = Steps { progress, done: AtomicUsize::new(0), total: ranges.len() * STEPS };
+        self.map_sweeps(q, ranges, threads, &steps, |query, at, range| {
+            query.intervals(at, range, samples, &steps)
+        })
     }
 
     fn intervals(
@@ -94,6 +99,7 @@ impl Query {
         q: &mut [f64],
         &range: &ModeRange,
         samples: usize,
+        steps: &Steps<'_>,
     ) -> Result<WeightIntervals, Error> {
         let last = samples - 1;
         let weight = |i: usize| {
@@ -101,8 +107,14 @@ impl Query {
             if i == last { range.high } else { range.low + share * (range.high - range.low) }
         };
         let mut line = Line { query: self, q, mode: range.mode };
-        let samples: Vec<WeightSample> =
-            (0..samples).map(|i| line.sample(weight(i))).collect::<Result<_, _>>()?;
+        let sample = |i: usize| {
+            let sample = line.sample(weight(i))?;
+            // Samples take all steps but the last, however many they are.
+            let reached = |i: usize| i * (STEPS - 1) / samples;
+            steps.add(reached(i + 1) - reached(i));
+            Ok(sample)
+        };
+        let samples: Vec<WeightSample> = (0..samples).map(sample).collect::<Result<_, Error>>()?;
         let mut intervals = Vec::new();
         // The samples before this one are done; it is free, or it is the first.
         let mut at = 0;
@@ -146,6 +158,35 @@ impl Query {
             at = next;
         }
         Ok(WeightIntervals { range, samples, intervals })
+    }
+}
+
+/// Steps of progress of each mode: so many are few calls, and enough for a bar of a single mode.
+const STEPS: usize = 64;
+
+/// Counts the steps of all modes; the last one of a mode is reported at its end.
+struct Steps<'p> {
+    progress: &'p dyn Progress,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl Steps<'_> {
+    fn add(&self, steps: usize) {
+        if steps > 0 {
+            self.progress.report(self.done.fetch_add(steps, Ordering::Relaxed) + steps, self.total);
+        }
+    }
+}
+
+impl Progress for Steps<'_> {
+    /// A mode is done.
+    fn report(&self, _done: usize, _total: usize) {
+        self.add(1);
+    }
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        self.progress.cancel_token()
     }
 }
 

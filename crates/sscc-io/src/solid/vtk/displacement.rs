@@ -1,0 +1,54 @@
+//! Which point data of a grid moves its points.
+
+use crate::FormatError;
+use crate::error::quoted;
+
+/// Names that solvers give to displacements, in lower case, the clearest first.
+const NAMES: [&str; 6] = ["displacement", "displacements", "displacement_vector", "displ", "disp", "u"];
+
+/// The point data of a grid that moves its points.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Displacement {
+    /// The vectors with a name that solvers give to displacements, such as `displacement` and `U`; without any, none.
+    #[default]
+    ByName,
+    /// None: points are where they are.
+    None,
+    /// The vectors of this name.
+    Named(String),
+}
+
+impl Displacement {
+    /// Returns the choice by a name; an empty one: none.
+    pub(crate) fn of_name(name: Option<&str>) -> Self {
+        match name {
+            None => Self::ByName,
+            Some("") => Self::None,
+            Some(name) => Self::Named(name.to_owned()),
+        }
+    }
+
+    /// Returns the chosen one of these arrays, each with its number of components.
+    pub(super) fn choose<'a>(
+        &self,
+        arrays: impl Iterator<Item = (&'a str, usize)> + Clone,
+    ) -> Result<Option<usize>, FormatError> {
+        let find = |is_wanted: &dyn Fn(&str) -> bool| {
+            arrays.clone().position(|(name, components)| components == 3 && is_wanted(name))
+        };
+        match self {
+            Self::None => Ok(None),
+            Self::ByName => Ok(NAMES.iter().find_map(|known| find(&|name| name.eq_ignore_ascii_case(known)))),
+            Self::Named(wanted) => match find(&|name| name == wanted) {
+                Some(found) => Ok(Some(found)),
+                None => {
+                    let vectors = arrays.filter(|(_, components)| *components == 3);
+                    let known: Vec<String> = vectors.take(10).map(|(name, _)| quoted(name)).collect();
+                    let has = if known.is_empty() { "no vectors".into() } else { known.join(", ") };
+                    let cause = format!("has no vectors {}; the point data has {has}", quoted(wanted));
+                    Err(FormatError::part("point data", cause))
+                }
+            },
+        }
+    }
+}

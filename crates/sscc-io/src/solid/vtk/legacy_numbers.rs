@@ -1,0 +1,109 @@
+//! Numbers of a legacy `.vtk` file: words, or big-endian bytes.
+
+use super::super::words::Words;
+use super::data::unsigned;
+use crate::FormatError;
+use crate::error::quoted;
+
+/// Reads the arrays of a file.
+pub(super) struct Numbers<'a> {
+    pub words: Words<'a>,
+}
+
+/// Type of the numbers of an array.
+#[derive(Clone, Copy)]
+pub(super) struct Kind {
+    size: u64,
+    form: Form,
+}
+
+#[derive(Clone, Copy)]
+enum Form {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+impl Numbers<'_> {
+    /// Reads the type of an array.
+    pub fn kind(&mut self) -> Result<Kind, FormatError> {
+        let name = self.words.word("the type of an array")?;
+        let (size, form) = match name.to_ascii_lowercase().as_str() {
+            "float" => (4, Form::Float),
+            "double" => (8, Form::Float),
+            "char" | "signed_char" | "vtktypeint8" => (1, Form::Signed),
+            "short" | "vtktypeint16" => (2, Form::Signed),
+            "int" | "vtktypeint32" => (4, Form::Signed),
+            "long" | "vtktypeint64" | "vtkidtype" => (8, Form::Signed),
+            "unsigned_char" | "vtktypeuint8" => (1, Form::Unsigned),
+            "unsigned_short" | "vtktypeuint16" => (2, Form::Unsigned),
+            "unsigned_int" | "vtktypeuint32" => (4, Form::Unsigned),
+            "unsigned_long" | "vtktypeuint64" => (8, Form::Unsigned),
+            _ => return self.words.refused(format!("numbers of type {} are not supported", quoted(name))),
+        };
+        // Ids are written as 32-bit integers, whatever their type.
+        let size = if name.eq_ignore_ascii_case("vtkIdType") { 4 } else { size };
+        Ok(Kind { size, form })
+    }
+
+    /// Reads `count` numbers. A file that is too short for them is an error before memory is reserved.
+    pub fn floats(&mut self, count: u64, kind: Kind, what: &str) -> Result<Vec<f64>, FormatError> {
+        if !self.words.binary {
+            return (0..count).map(|_| self.words.number(what)).collect();
+        }
+        let number = |bytes: &[u8]| match (kind.form, kind.size) {
+            (Form::Float, 4) => f64::from(f32::from_bits(unsigned(bytes, true) as u32)),
+            (Form::Float, _) => f64::from_bits(unsigned(bytes, true)),
+            (Form::Signed, size) => signed(bytes, size) as f64,
+            (Form::Unsigned, _) => unsigned(bytes, true) as f64,
+        };
+        Ok(self.bytes(count, kind, what)?.chunks_exact(kind.size as usize).map(number).collect())
+    }
+
+    /// Reads `count` integers from 0; `kind` is that of binary ones.
+    pub fn integers(&mut self, count: u64, kind: Kind, what: &str) -> Result<Vec<u64>, FormatError> {
+        if !self.words.binary {
+            return (0..count).map(|_| Ok(self.words.count(what)? as u64)).collect();
+        }
+        let number = |bytes: &[u8]| match kind.form {
+            Form::Float => None,
+            Form::Signed => u64::try_from(signed(bytes, kind.size)).ok(),
+            Form::Unsigned => Some(unsigned(bytes, true)),
+        };
+        let bytes = self.bytes(count, kind, what)?;
+        let numbers: Option<Vec<u64>> = bytes.chunks_exact(kind.size as usize).map(number).collect();
+        match numbers {
+            Some(numbers) => Ok(numbers),
+            None => self.words.refused(format!("{what}: integers from 0 were expected")),
+        }
+    }
+
+    /// Reads `count` integers of 32 bits.
+    pub fn ints(&mut self, count: u64, what: &str) -> Result<Vec<u64>, FormatError> {
+        self.integers(count, Kind { size: 4, form: Form::Signed }, what)
+    }
+
+    /// Skips `count` numbers, which may be any words.
+    pub fn skip(&mut self, count: u64, kind: Kind, what: &str) -> Result<(), FormatError> {
+        if self.words.binary {
+            return self.bytes(count, kind, what).map(drop);
+        }
+        (0..count).try_for_each(|_| self.words.word(what).map(drop))
+    }
+
+    /// Skips `count` bytes, or as many words.
+    pub fn skip_bytes(&mut self, count: u64, what: &str) -> Result<(), FormatError> {
+        self.skip(count, Kind { size: 1, form: Form::Unsigned }, what)
+    }
+
+    /// Returns the bytes of `count` numbers, which begin in the next line.
+    fn bytes(&mut self, count: u64, kind: Kind, what: &str) -> Result<&[u8], FormatError> {
+        self.words.rest_of_line();
+        self.words.bytes(count.saturating_mul(kind.size), what)
+    }
+}
+
+fn signed(bytes: &[u8], size: u64) -> i64 {
+    let shift = 64 - 8 * size as u32;
+    (unsigned(bytes, true) << shift).cast_signed() >> shift
+}

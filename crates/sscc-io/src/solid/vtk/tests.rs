@@ -1,0 +1,275 @@
+use glam::DVec3;
+
+use super::*;
+
+/// A `.vtu` file with ASCII arrays.
+fn vtu(points: &str, [connectivity, offsets, types]: [&str; 3], point_data: &str) -> String {
+    let count = |text: &str| text.split_whitespace().count();
+    let (n, cells) = (count(points) / 3, count(types));
+    let array = |name: &str, kind: &str, text: &str| {
+        format!("<DataArray type='{kind}' Name='{name}' format='ascii'>\n{text}\n</DataArray>\n")
+    };
+    let (connectivity, offsets) =
+        (array("connectivity", "Int64", connectivity), array("offsets", "Int64", offsets));
+    format!(
+        "<?xml version='1.0'?>\n<VTKFile type='UnstructuredGrid' version='1.0' byte_order='LittleEndian'>\n\
+         <UnstructuredGrid><Piece NumberOfPoints='{n}' NumberOfCells='{cells}'>\n\
+         <PointData>{point_data}</PointData>\n<Cells>{connectivity}{offsets}{}</Cells>\n\
+         <Points><DataArray type='Float64' NumberOfComponents='3' format='ascii'>{points}</DataArray></Points>\n\
+         </Piece></UnstructuredGrid></VTKFile>",
+        array("types", "UInt8", types)
+    )
+}
+
+const TET: &str = "0 0 0 1 0 0 0 1 0 0 0 1";
+
+fn refused(text: &str) -> String {
+    parse_grid(text.as_bytes(), &Displacement::ByName)
+        .and_then(Grid::into_volume_or_surface)
+        .err()
+        .unwrap()
+        .to_string()
+}
+
+/// Files of meshio 5.3.5 and VTK 9.7.2 (`tests/vtk/make.py`).
+fn file(name: &str) -> Vec<u8> {
+    std::fs::read(format!("{}/tests/vtk/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+const FILES: [&str; 18] = [
+    "meshio_42.vtk",
+    "meshio_51.vtk",
+    "meshio_ascii.vtu",
+    "meshio_binary.vtu",
+    "meshio_zlib.vtu",
+    "vtk_42_ascii.vtk",
+    "vtk_42_binary.vtk",
+    "vtk_51_ascii.vtk",
+    "vtk_51_binary.vtk",
+    "vtk_ascii.vtu",
+    "vtk_base64.vtu",
+    "vtk_base64_zlib.vtu",
+    "vtk_binary.vtu",
+    "vtk_binary_zlib.vtu",
+    "vtk_polydata.vtk",
+    "vtk_raw.vtu",
+    "vtk_raw_zlib.vtu",
+    "vtk_raw_zlib_big.vtu",
+];
+
+#[test]
+fn every_encoding_has_the_same_grid() {
+    let unit = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let points: Vec<DVec3> = unit.into_iter().chain(unit.map(|p| p + DVec3::X * 2.0)).collect();
+    for name in FILES {
+        let grid = parse_grid(&file(name), &Displacement::ByName).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(grid.points, points, "{name}");
+        let (array, vectors) = grid.displacement.as_ref().unwrap();
+        let moved = DVec3::new(-1.75, 0.125, 0.125);
+        let expected: Vec<DVec3> = (0..8).map(|v| if v < 4 { DVec3::ZERO } else { moved }).collect();
+        assert_eq!((array.as_str(), vectors), ("U", &expected), "{name}");
+        let (surface, warnings) = grid.moved().into_surface().unwrap();
+        assert_eq!((surface.faces().len(), warnings.len()), (8, 0), "{name}");
+        assert_eq!(surface.rest_positions()[5], DVec3::new(1.25, 0.125, 0.125), "{name}");
+        if name != "vtk_polydata.vtk" {
+            let volume = parse(&file(name)).unwrap();
+            assert_eq!((volume.tets(), volume.vertices()), (&[[0, 1, 2, 3], [4, 5, 6, 7]][..], &points[..]));
+        }
+    }
+}
+
+/// Truncated files are refused, apart from ends that hold no array and from texts, whose last number may be cut; every damaged
+/// one is read or refused.
+#[test]
+fn damaged_files_are_errors() {
+    for name in FILES {
+        let whole = file(name);
+        let read = |bytes: &[u8]| parse_grid(bytes, &Displacement::ByName).and_then(Grid::into_surface);
+        let expected = read(&whole).unwrap();
+        for length in (0..whole.len()).step_by(3) {
+            let is_text = name == "meshio_42.vtk" || name.ends_with("ascii.vtk");
+            if let (Ok(found), false) = (read(&whole[..length]), is_text) {
+                assert_eq!(found.0.faces(), expected.0.faces(), "{name} cut to {length} bytes");
+            }
+        }
+        let mut damaged = whole.clone();
+        for at in (0..whole.len()).step_by(4) {
+            for flip in [1, 0x80] {
+                damaged[at] ^= flip;
+                let _ = read(&damaged);
+                damaged[at] ^= flip;
+            }
+        }
+    }
+}
+
+#[test]
+fn displacements_are_chosen_by_name() {
+    let array = |name: &str, components: usize| {
+        let text = "0.5 ".repeat(4 * components);
+        format!(
+            "<DataArray type='Float32' Name='{name}' NumberOfComponents='{components}'>{text}</DataArray>"
+        )
+    };
+    let tet = ["0 1 2 3", "4", "10"];
+    let name_of = |data: &str, wanted: &Displacement| {
+        let grid = parse_grid(vtu(TET, tet, data).as_bytes(), wanted);
+        grid.map(|grid| grid.displacement.map(|(name, _)| name)).map_err(|error| error.to_string())
+    };
+    let all = [array("velocity", 3), array("u", 3), array("Displacement", 3), array("disp", 1)].concat();
+    assert_eq!(name_of(&all, &Displacement::ByName), Ok(Some("Displacement".into())));
+    assert_eq!(name_of(&all, &Displacement::None), Ok(None));
+    assert_eq!(name_of(&all, &Displacement::of_name(Some("velocity"))), Ok(Some("velocity".into())));
+    assert_eq!(name_of(&array("velocity", 3), &Displacement::ByName), Ok(None));
+    let message = name_of(&all, &Displacement::of_name(Some("disp"))).unwrap_err();
+    assert_eq!(
+        message,
+        "point data: has no vectors 'disp'; the point data has 'velocity', 'u', 'Displacement'"
+    );
+}
+
+#[test]
+fn cells_are_elements_and_faces() {
+    // A voxel has another order of corners than a hexahedron.
+    let cube = "0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1";
+    let voxel = parse(vtu(cube, ["0 1 2 3 4 5 6 7", "8", "11"], "").as_bytes()).unwrap();
+    let hexahedron = parse(vtu(cube, ["0 1 3 2 4 5 7 6", "8", "12"], "").as_bytes()).unwrap();
+    assert_eq!(voxel, hexahedron);
+    assert!(voxel.solid(&sscc_solid::PartialMaterial::default()).is_ok());
+    // Middles: 01, 12, 20, 03, 13, 23.
+    let middles = "0.5 0 0 0.5 0.5 0 0 0.5 0 0 0 0.5 0.5 0 0.5 0 0.5 0.5";
+    let second = vtu(&format!("{TET} {middles}"), ["0 1 2 3 4 5 6 7 8 9", "10", "24"], "");
+    let second = parse(second.as_bytes()).unwrap();
+    assert_eq!(second.middles(), [[4, 5, 6, 7, 9, 8]]);
+    assert!(second.solid(&sscc_solid::PartialMaterial::default()).is_ok());
+    let faces = |connectivity: &str, offsets: &str, types: &str| {
+        let text = vtu("0 0 0 1 0 0 0 1 0 1 1 0 0 2 0", [connectivity, offsets, types], "");
+        parse_any(text.as_bytes()).unwrap().into_surface().unwrap().0.faces().to_vec()
+    };
+    assert_eq!(faces("0 1 2", "3", "5"), [[0, 1, 2]]);
+    assert_eq!(faces("0 1 2 3", "4", "6"), [[0, 1, 2], [2, 1, 3]]);
+    assert_eq!(faces("0 1 2 3", "4", "8"), [[0, 1, 3], [0, 3, 2]]);
+    assert_eq!(faces("0 1 3 2", "4", "9"), faces("0 1 2 3", "4", "8"));
+    assert_eq!(faces("0 1 3 4 2", "5", "7").len(), 3);
+    // A vertex and a line have no surface.
+    assert_eq!(faces("4 3 4 0 1 2", "1 3 6", "1 3 5"), [[0, 1, 2]]);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    for (text, named) in [
+        (
+            vtu(TET, ["0 1 2 3", "4", "14"], ""),
+            "cell 0 (counted from 0): a pyramid (cell type 14) is not supported",
+        ),
+        (vtu(TET, ["0 1 2 3", "4", "42"], ""), "a polyhedron (cell type 42)"),
+        (vtu(TET, ["0 1 2 3", "4", "200"], ""), "cell type 200 is not supported"),
+        (vtu(TET, ["0 1 2", "3", "10"], ""), "a cell of type 10 has 4 points, this one has 3"),
+        (vtu(TET, ["0 1 2 4", "4", "10"], ""), "names vertex 4 (counted from 0), but there are 4"),
+        (vtu(TET, ["0 1 2 2", "4", "10"], ""), "names vertex 2 (counted from 0) twice"),
+        (vtu(TET, ["0 1 2 -3", "4", "10"], ""), "array 'connectivity': '-3' is no such number"),
+        (vtu(TET, ["0 1 2 3", "5", "10"], ""), "array 'connectivity': it has 4 numbers, 5 are needed"),
+        (vtu(TET, ["0 1 2 3 0 1 2", "4 3", "10 10"], ""), "it has 7 numbers, 3 are needed"),
+        (
+            vtu(TET, ["0 1 2", "4 3", "10 10"], ""),
+            "cell 0 (counted from 0): its end in the connectivity is 4",
+        ),
+        (vtu(TET, ["0 1 2 3", "4", "23"], ""), "cell type 23 is not supported: only triangles and"),
+        (vtu(TET, ["0 1 2 3", "4", "3"], ""), "has no elements"),
+        (
+            vtu("nan 0 0 1 0 0 0 1 0 0 0 1", ["0 1 2 3", "4", "10"], ""),
+            "point 0 (counted from 0): a coordinate is not finite",
+        ),
+        (vtu("0 0 0", ["", "", ""], ""), "has no elements"),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "").replace("UnstructuredGrid", "ImageData"),
+            "line 2: a VTK file of type 'ImageData': save it",
+        ),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "")
+                .replace("NumberOfPoints='4'", "NumberOfPoints='99999999999'"),
+            "it has 12 numbers, 299999999997 are needed",
+        ),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "").replace("NumberOfPoints='4'", ""),
+            "'Piece' has no NumberOfPoints",
+        ),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "").replace("</Piece>", "</Piece><Piece/>"),
+            "a second piece of the grid",
+        ),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "").replace("Name='types'", "Name='types' TimeStep='1'"),
+            "has several time steps: save each",
+        ),
+        (vtu(TET, ["0 1 2 3", "4", "10"], "").replace("</Points>", "</Pts>"), "malformed XML"),
+        (
+            vtu(TET, ["0 1 2 3", "4", "10"], "").replace("</UnstructuredGrid></VTKFile>", ""),
+            "line 3: the file ends within 'UnstructuredGrid': is it cut off?",
+        ),
+        ("<a/>".into(), "no VTK file"),
+        ("hello".into(), "no VTK file"),
+    ] {
+        let message = refused(&text);
+        assert!(message.contains(named) && !message.contains('\n'), "{named}: {message}");
+    }
+    let message = parse_grid(&file("vtk_binary_lz4.vtu"), &Displacement::ByName).err().unwrap().to_string();
+    assert!(message.contains("compressed by 'vtkLZ4DataCompressor': save it with zlib"), "{message}");
+    let binary = |text: &str| {
+        let kind = "type='Float64' NumberOfComponents='3' format=";
+        let whole = vtu(TET, ["0 1 2 3", "4", "10"], "")
+            .replace(&format!("{kind}'ascii'>{TET}"), &format!("{kind}{text}"));
+        refused(&whole)
+    };
+    for (text, named) in [
+        ("'binary'>YAAAAA==", "96 bytes are needed, 0 are left: is the file cut off?"),
+        ("'binary'>/////w==", "the file states 4294967295 bytes, its numbers of points and cells need 96"),
+        ("'binary'>YAAAA", "its base64 text is damaged or cut off"),
+        ("'appended' offset='0'>", "the file has no appended data"),
+        ("'appended'>", "has no offset"),
+        ("'hdf'>", "format 'hdf' is not known"),
+    ] {
+        let message = binary(text);
+        assert!(message.contains(named), "{text}: {message}");
+    }
+    // Sizes that lie reserve no memory.
+    let large =
+        vtu(TET, ["0 1 2 3", "4", "10"], "").replace("NumberOfPoints='4'", "NumberOfPoints='999999999999'");
+    let large = large.replace("'3' format='ascii'>", "'3' format='binary'>");
+    assert!(refused(&large).contains("too much for a file of this size"), "{}", refused(&large));
+}
+
+#[test]
+fn bad_legacy_files_are_refused() {
+    let head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+    let points = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    let cells = "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n";
+    let whole = format!("{head}{points}{cells}");
+    assert_eq!(parse(whole.as_bytes()).unwrap().tets(), [[0, 1, 2, 3]]);
+    for (text, named) in [
+        (head.replace("ASCII", "HDF"), "line 3: ASCII or BINARY was expected, not 'HDF'"),
+        (head.replace("UNSTRUCTURED_GRID", "STRUCTURED_GRID"), "a data set of kind 'STRUCTURED_GRID'"),
+        (head.to_owned(), "the file has no POINTS"),
+        (format!("{head}{points}"), "the file has 0 cells and 0 types of cells"),
+        (format!("{head}POINTS 99999999999 double\n0 0"), "the file ends before a coordinate"),
+        (format!("{head}POINTS 4 bit\n"), "line 5: numbers of type 'bit' are not supported"),
+        (whole.replace("CELLS 1 5", "CELLS 2 5"), "cell 1 (counted from 0) leaves the 5 numbers"),
+        (whole.replace("4 0 1 2 3", "9 0 1 2 3"), "cell 0 (counted from 0) leaves the 5 numbers"),
+        (whole.replace("\n10\n", "\n13\n"), "a wedge (cell type 13) is not supported"),
+        (
+            format!("{whole}POINT_DATA 3\nVECTORS U float\n0 0 0 0 0 0 0 0 0\n"),
+            "'U' has 3 vectors for 4 points",
+        ),
+        (format!("{whole}SPLINES 3\n"), "line 11: 'SPLINES' is no part of a grid that is known"),
+        (whole.replace("ASCII", "BINARY"), "is needed"),
+    ] {
+        let message = refused(&text);
+        assert!(named == "is needed" || message.contains(named), "{named}: {message}");
+    }
+    // Attributes of other kinds are skipped, and a text that is no number is none of theirs.
+    let data = "CELL_DATA 1\nSCALARS a float\nLOOKUP_TABLE default\nnan\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 4\n\
+                FIELD f 2\nx 1 4 int\n1 2 3 4\nu 3 4 float\n0 0 0 0 0 0 0 0 0 0 0 2\nTENSORS t float\n";
+    let text = format!("{whole}{data}{}", "1 ".repeat(36));
+    let grid = parse_grid(text.as_bytes(), &Displacement::ByName).unwrap();
+    assert_eq!(grid.moved().points[3], DVec3::new(0.0, 0.0, 3.0));
+}

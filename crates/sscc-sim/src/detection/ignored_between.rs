@@ -1,0 +1,51 @@
+//! The pairs of different nodes that collide at the first frame, and those around them, which never count.
+
+use std::collections::BTreeMap;
+
+use sscc::Pair;
+use sscc::parts::surroundings_between_meshes;
+
+use super::moving_mesh::MovingMesh;
+use super::node_boxes::{are_apart, boxes};
+use super::request::Detection;
+use super::worker::Side;
+use crate::error::{At, Result};
+
+/// Ignored pairs of each two meshes, by their numbers; sorted.
+#[derive(Default)]
+pub(super) struct IgnoredBetween(BTreeMap<[usize; 2], Vec<Pair>>);
+
+impl IgnoredBetween {
+    /// Finds them where the request ignores pairs at rest. Each mesh leaves out those with later meshes, and says so.
+    pub fn find(request: &Detection, meshes: &mut [MovingMesh<'_>]) -> Result<Self> {
+        let Some(rings) = request.ignore_rest else { return Ok(Self::default()) };
+        let mut found = BTreeMap::new();
+        let mut sides: Vec<Side<'_, '_>> = meshes.iter().map(Side::new).collect();
+        sides.iter_mut().try_for_each(|side| side.read(0, false))?;
+        let boxes = boxes(&sides);
+        for b in 1..sides.len() {
+            let (before, from_b) = sides.split_at_mut(b);
+            for (a, x) in
+                before.iter_mut().enumerate().filter(|(a, _)| !are_apart(&boxes[*a], &boxes[b], 0.0))
+            {
+                let y = &mut from_b[0];
+                let place = || x.mesh.place(0);
+                let pairs = x.detector.against(&x.x_t0, &mut y.detector, &y.x_t0).at(place)?.to_vec();
+                if !pairs.is_empty() {
+                    let around = surroundings_between_meshes([&x.detector, &y.detector], &pairs, rings);
+                    found.insert([a, b], around.at(place)?);
+                }
+            }
+        }
+        drop(sides);
+        for ([a, _], pairs) in &found {
+            meshes[*a].left_out = std::mem::take(&mut meshes[*a].left_out).and_ignored(pairs.len());
+        }
+        Ok(Self(found))
+    }
+
+    /// The ignored pairs of two meshes, in the order of their numbers.
+    pub fn of(&self, meshes: [usize; 2]) -> &[Pair] {
+        self.0.get(&meshes).map_or(&[], Vec::as_slice)
+    }
+}

@@ -1,0 +1,43 @@
+//! The surroundings of pairs of triangles, within a mesh and between two.
+
+use super::Detector;
+use crate::filter::{surroundings, surroundings_between};
+use crate::{Error, Pair};
+
+impl Detector {
+    /// These pairs of triangles and all that count within so many rings of them: one triangle within the rings around the first one
+    /// of a pair, the other one within those around its second. Triangles with a common vertex are one ring apart. Sorted. To
+    /// leave out what touches at rest, give them to [`ContactFilter::ignoring`].
+    ///
+    /// # Errors
+    /// When a pair names a triangle that the mesh does not have; when they are more than 2^22; when it was
+    /// cancelled.
+    pub fn surroundings(&self, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
+        let larger = pairs.iter().map(|(a, b)| *a.max(b));
+        check_triangles(larger, self.context.filter.faces().len())?;
+        surroundings(&self.context.filter, pairs, rings, self.context.cancel.as_ref())
+    }
+}
+
+/// As [`Detector::surroundings`], of pairs (triangle of the first detector's mesh, triangle of the second's). All pairs between two
+/// meshes count.
+///
+/// # Errors
+/// As [`Detector::surroundings`]; when the first detector was cancelled.
+pub fn surroundings_between_meshes(
+    detectors: [&Detector; 2],
+    pairs: &[Pair],
+    rings: u32,
+) -> Result<Vec<Pair>, Error> {
+    let filters = detectors.map(|detector| &*detector.context.filter);
+    check_triangles(pairs.iter().map(|pair| pair.0), filters[0].faces().len())?;
+    check_triangles(pairs.iter().map(|pair| pair.1), filters[1].faces().len())?;
+    surroundings_between(filters, pairs, rings, detectors[0].context.cancel.as_ref())
+}
+
+fn check_triangles(of_pairs: impl Iterator<Item = u32>, triangles: usize) -> Result<(), Error> {
+    match of_pairs.enumerate().find(|(_, triangle)| *triangle as usize >= triangles) {
+        Some((pair, triangle)) => Err(Error::PairIndex { pair, triangle, triangles }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,176 @@
+//! The volume that two bodies share and the largest ball in both, against known values.
+
+use glam::{DQuat, DVec3};
+use sscc::{BodyPenetration, CancelToken, Detector, Error, TriMesh};
+
+use crate::common::Random;
+
+/// A box of 12 triangles.
+fn cuboid(lower: DVec3, upper: DVec3) -> TriMesh {
+    let corner = |k: usize| {
+        DVec3::from_array([0, 1, 2].map(|axis| if k >> axis & 1 == 1 { upper[axis] } else { lower[axis] }))
+    };
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    TriMesh::new((0..8).map(corner).collect(), faces).unwrap()
+}
+
+/// A ball: an octahedron, subdivided.
+fn ball(center: DVec3, radius: f64, subdivisions: u32) -> TriMesh {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let mut faces = Vec::new();
+    for (a, b) in [(x, y), (y, -x), (-x, -y), (-y, x)] {
+        faces.extend([[a, b, z], [b, a, -z]]);
+    }
+    for _ in 0..subdivisions {
+        let split = |[a, b, c]: [DVec3; 3]| {
+            let [d, e, f] = [a + b, b + c, c + a].map(DVec3::normalize);
+            [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+        };
+        faces = faces.into_iter().flat_map(split).collect();
+    }
+    // Corners of equal bits are one.
+    let mut positions: Vec<DVec3> = Vec::new();
+    let mut number = |p: DVec3| match positions.iter().position(|known| *known == p) {
+        Some(known) => known as u32,
+        None => {
+            positions.push(p);
+            positions.len() as u32 - 1
+        }
+    };
+    let numbered = faces.iter().map(|face| face.map(&mut number)).collect();
+    TriMesh::new(positions.iter().map(|p| center + *p * radius).collect(), numbered).unwrap()
+}
+
+fn penetration(a: &TriMesh, b: &TriMesh) -> BodyPenetration {
+    let found =
+        Detector::new(a).penetration(a.rest_positions(), &mut Detector::new(b), b.rest_positions()).unwrap();
+    let swapped =
+        Detector::new(b).penetration(b.rest_positions(), &mut Detector::new(a), a.rest_positions()).unwrap();
+    assert!(
+        (found.volume - swapped.volume).abs() <= found.volume_error + swapped.volume_error,
+        "{found:?} {swapped:?}"
+    );
+    found
+}
+
+/// Checks volume and depth within the stated errors, and that these are small.
+fn check(a: &TriMesh, b: &TriMesh, volume: f64, depth: f64) {
+    let found = penetration(a, b);
+    assert!((found.volume - volume).abs() <= found.volume_error, "{volume}: {found:?}");
+    assert!(
+        found.depth <= depth * (1.0 + 1e-12) && depth <= found.depth + found.depth_error + 1e-8,
+        "{depth}: {found:?}"
+    );
+    let small = if depth == 0.0 { 1e-3 } else { 1.001e-3 * depth + 1e-8 };
+    assert!(found.depth_error <= small, "{found:?}");
+}
+
+#[test]
+fn boxes_share_boxes() {
+    let unit = cuboid(DVec3::ZERO, DVec3::ONE);
+    let at = |x: f64, y: f64, z: f64| cuboid(DVec3::new(x, y, z), DVec3::new(x + 1.0, y + 1.0, z + 1.0));
+    check(&unit, &at(0.75, 0.0, 0.0), 0.25, 0.25);
+    check(&unit, &at(0.5, 0.25, -0.125), 0.5 * 0.75 * 0.875, 0.5);
+    check(&unit, &at(0.0, 0.0, 0.9), 0.1, 0.1);
+    check(&unit, &unit, 1.0, 1.0);
+    // Touching, and apart.
+    for other in
+        [at(1.0, 0.0, 0.0), at(0.0, 0.0, 1.0), at(1.0, 1.0, 1.0), at(2.0, 0.0, 0.0), at(0.0, 0.0, -3.0)]
+    {
+        check(&unit, &other, 0.0, 0.0);
+    }
+    // One inside the other; a cross, whose edges alone cross.
+    check(&unit, &cuboid(DVec3::splat(0.25), DVec3::splat(0.5)), 0.25_f64.powi(3), 0.25);
+    let bars = [DVec3::new(4.0, 0.5, 0.5), DVec3::new(0.5, 4.0, 0.5)].map(|half| cuboid(-half, half));
+    check(&bars[0], &bars[1], 1.0, 1.0);
+    // A hole: the outer box with an inner one that faces inward.
+    let (outer, inner) = (cuboid(DVec3::ZERO, DVec3::splat(4.0)), cuboid(DVec3::ONE, DVec3::splat(3.0)));
+    let positions = [outer.rest_positions(), inner.rest_positions()].concat();
+    let turned = inner.faces().iter().map(|[a, b, c]| [a + 8, c + 8, b + 8]);
+    let hollow = TriMesh::new(positions, outer.faces().iter().copied().chain(turned).collect()).unwrap();
+    check(&hollow, &cuboid(DVec3::splat(1.5), DVec3::splat(2.5)), 0.0, 0.0);
+    check(&hollow, &cuboid(DVec3::new(1.5, 1.5, 2.5), DVec3::new(2.5, 2.5, 3.5)), 0.5, 0.5);
+    // Faced inward as a whole.
+    let inward = TriMesh::new(
+        unit.rest_positions().to_vec(),
+        unit.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect(),
+    );
+    check(&inward.unwrap(), &at(0.75, 0.0, 0.0), 0.25, 0.25);
+}
+
+/// Turned and moved, volumes and depths stay.
+#[test]
+fn turned_bodies_share_as_much() {
+    let mut random = Random::new(7);
+    let (a, b) =
+        (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::new(0.5, 0.25, 0.75), DVec3::new(1.5, 1.25, 1.75)));
+    for _ in 0..20 {
+        let mut number = || 2.0 * random.uniform() - 1.0;
+        let turn = DQuat::from_xyzw(number(), number(), number(), number()).normalize();
+        let shift = DVec3::new(number(), number(), number()) * 100.0;
+        let moved = |mesh: &TriMesh| {
+            TriMesh::new(
+                mesh.rest_positions().iter().map(|p| turn * *p + shift).collect(),
+                mesh.faces().to_vec(),
+            )
+            .unwrap()
+        };
+        let found = penetration(&moved(&a), &moved(&b));
+        // Corners are moved by rounding of 100.
+        assert!((found.volume - 0.5 * 0.75 * 0.25).abs() < found.volume_error + 1e-12, "{found:?}");
+        assert!(found.volume_error < 1e-10, "{found:?}");
+        assert!((found.depth - 0.25).abs() < 3e-4, "{found:?}");
+    }
+}
+
+#[test]
+fn tetrahedra_and_balls() {
+    // A tetrahedron and itself mirrored in a point: an octahedron of half its volume.
+    let corners =
+        [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]].map(DVec3::from_array);
+    let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let tet = TriMesh::new(corners.to_vec(), faces.clone()).unwrap();
+    let mirrored =
+        TriMesh::new(corners.map(|p| -p).to_vec(), faces.iter().map(|[a, b, c]| [*a, *c, *b]).collect())
+            .unwrap();
+    check(&tet, &mirrored, 4.0 / 3.0, 2.0 / 3.0_f64.sqrt());
+    // Balls of many triangles: the lens of two, within the error of the polyhedra.
+    let (a, b) = (ball(DVec3::ZERO, 1.0, 4), ball(DVec3::X * 1.5, 1.0, 4));
+    let found = penetration(&a, &b);
+    // Two caps of height 1/4.
+    let lens = 2.0 * std::f64::consts::PI * 0.25 * 0.25 * (3.0 - 0.25) / 3.0;
+    assert!((found.volume / lens - 1.0).abs() < 0.05, "{found:?} {lens}");
+    assert!((found.depth - 0.5).abs() < 0.01, "{found:?}");
+    let apart = penetration(&a, &ball(DVec3::X * 2.5, 1.0, 2));
+    assert_eq!((apart.volume, apart.depth), (0.0, 0.0));
+    let whole = penetration(&a, &ball(DVec3::ZERO, 3.0, 2));
+    let volume = |mesh: &TriMesh| -> f64 {
+        let corners = |f: &[u32; 3]| f.map(|v| mesh.rest_positions()[v as usize]);
+        mesh.faces()
+            .iter()
+            .map(|f| {
+                let [a, b, c] = corners(f);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum()
+    };
+    assert!((whole.volume - volume(&a)).abs() <= whole.volume_error + 1e-12, "{whole:?}");
+}
+
+#[test]
+fn open_meshes_have_no_volume() {
+    let unit = cuboid(DVec3::ZERO, DVec3::ONE);
+    let open = TriMesh::new(unit.rest_positions().to_vec(), unit.faces()[1..].to_vec()).unwrap();
+    let find = |a: &TriMesh, b: &TriMesh| {
+        Detector::new(a).penetration(a.rest_positions(), &mut Detector::new(b), b.rest_positions())
+    };
+    assert_eq!(find(&open, &unit), Err(Error::OpenMesh { is_second: false }));
+    assert_eq!(find(&unit, &open), Err(Error::OpenMesh { is_second: true }));
+    let token = CancelToken::new();
+    token.cancel();
+    let mut cancelled = Detector::new(&unit).cancelled_by(token);
+    let found =
+        cancelled.penetration(unit.rest_positions(), &mut Detector::new(&unit), unit.rest_positions());
+    assert_eq!(found, Err(Error::Cancelled));
+}

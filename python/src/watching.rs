@@ -1,0 +1,57 @@
+//! Passes on the progress of work in stages, and collects its notes and warnings.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use sscc::{CancelToken, Progress};
+use sscc_sim::{Stage, Watch};
+
+/// Reports to `progress`, and keeps notes.
+pub struct Watching<'a> {
+    progress: &'a dyn Progress,
+    /// Whether only steps of simulations are reported, so that the share done never decreases.
+    has_steps: bool,
+    is_reported: AtomicBool,
+    notes: Mutex<Vec<String>>,
+}
+
+impl<'a> Watching<'a> {
+    /// Reports all stages.
+    pub fn all(progress: &'a dyn Progress) -> Self {
+        Self { progress, has_steps: false, is_reported: AtomicBool::new(true), notes: Mutex::default() }
+    }
+
+    /// Reports the steps of a simulation alone.
+    pub fn steps(progress: &'a dyn Progress) -> Self {
+        Self { has_steps: true, is_reported: AtomicBool::new(false), ..Self::all(progress) }
+    }
+
+    /// Returns the notes and warnings.
+    pub fn notes(self) -> Vec<String> {
+        self.notes.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Progress for Watching<'_> {
+    fn report(&self, done: usize, total: usize) {
+        if self.is_reported.load(Ordering::Relaxed) {
+            self.progress.report(done, total);
+        }
+    }
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        self.progress.cancel_token()
+    }
+}
+
+impl Watch for Watching<'_> {
+    fn begin(&self, stage: Stage) {
+        if self.has_steps {
+            self.is_reported.store(matches!(stage, Stage::Steps { .. }), Ordering::Relaxed);
+        }
+    }
+
+    fn note(&self, note: &str) {
+        self.notes.lock().unwrap_or_else(PoisonError::into_inner).push(note.into());
+    }
+}
