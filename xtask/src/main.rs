@@ -1,6 +1,8 @@
 //! Tasks of the project: `cargo xtask` lists them. Workflows and `.ci/run` call nothing else.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod c;
+mod debian;
 mod deny;
 mod digests;
 mod environment;
@@ -28,10 +30,11 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 16] = [
+const TASKS: [Task; 17] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
+    ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),
     ("layers", "the order of crates, modules and files", layers::run),

@@ -3,10 +3,10 @@
 
 use std::env;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
+use crate::debian;
 use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 
@@ -152,17 +152,8 @@ fn chromium(install: bool) -> Result<(), String> {
     if is_installed() {
         return Ok(());
     }
-    let apt = |arguments: &[&str]| -> io::Result<bool> {
-        let status =
-            Command::new("apt-get").args(arguments).env("DEBIAN_FRONTEND", "noninteractive").status()?;
-        Ok(status.success())
-    };
-    if install {
-        let installed = apt(&["-qq", "update"])
-            .and_then(|_| apt(&["-qq", "install", "-y", "--no-install-recommends", "chromium"]));
-        if installed.is_ok_and(|ok| ok) && is_installed() {
-            return Ok(());
-        }
+    if install && debian::install(&["chromium"]) && is_installed() {
+        return Ok(());
     }
     Err("no Chromium found; install it, or name one in SSCC_CHROMIUM".into())
 }

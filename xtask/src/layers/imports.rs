@@ -104,7 +104,8 @@ impl<'c> Imports<'c> {
             if path.names.last().is_some_and(|last| last == "*") {
                 let names = path.names[..path.names.len() - 1].to_vec();
                 let module = CodePath { names, ..path.clone() };
-                let found = self.resolve(file, &module, re_exports + 1);
+                // The module itself is no re-export: following all others for it would take exponential time.
+                let found = self.resolve(file, &module, MOST_RE_EXPORTS);
                 if let Some(found) =
                     found.filter(|found| self.files[*found].1.iter().any(|item| item == name))
                 {

@@ -1,0 +1,86 @@
+//! Progress and cancel callbacks of the caller.
+
+use std::ffi::c_void;
+use std::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use sscc::{CancelToken, Progress};
+
+use crate::types::{sscc_cancel_fn, sscc_progress_fn};
+
+/// The callbacks of one computation, and whether they have cancelled it. They are called by one thread at a time.
+struct Callbacks {
+    progress: sscc_progress_fn,
+    cancel: sscc_cancel_fn,
+    user: AtomicPtr<c_void>,
+    turn: Mutex<()>,
+    is_cancelled: AtomicBool,
+}
+
+impl Callbacks {
+    fn user(&self) -> *mut c_void {
+        self.user.load(Ordering::Relaxed)
+    }
+
+    /// What is cancelled stays so.
+    fn set(&self, answer: std::ffi::c_int) {
+        if answer != 0 {
+            self.is_cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn report(&self, done: usize, total: usize) {
+        let Some(progress) = self.progress else { return };
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.is_cancelled.load(Ordering::Relaxed) {
+            self.set(progress(self.user(), done, total));
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        if let (Some(cancel), false) = (self.cancel, self.is_cancelled.load(Ordering::Relaxed)) {
+            // While another thread is in a callback, this one works on.
+            if let Ok(_turn) = self.turn.try_lock() {
+                self.set(cancel(self.user()));
+            }
+        }
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// Reports the progress of a computation to the caller's callbacks.
+pub struct Reporter {
+    callbacks: Arc<Callbacks>,
+    token: CancelToken,
+}
+
+impl Reporter {
+    pub fn new(progress: sscc_progress_fn, cancel: sscc_cancel_fn, user: *mut c_void) -> Self {
+        let (user, turn) = (AtomicPtr::new(user), Mutex::new(()));
+        let is_cancelled = AtomicBool::new(false);
+        let callbacks = Arc::new(Callbacks { progress, cancel, user, turn, is_cancelled });
+        let asked = Arc::clone(&callbacks);
+        Self { callbacks, token: CancelToken::when(move || asked.is_cancelled()) }
+    }
+
+    /// Whether a callback has cancelled, perhaps too late to have an effect.
+    pub fn has_cancelled(&self) -> bool {
+        self.callbacks.is_cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl Progress for Reporter {
+    fn report(&self, done: usize, total: usize) {
+        self.callbacks.report(done, total);
+    }
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.token)
+    }
+}
+
+/// A token that a query asks; none without a function.
+pub fn cancel_token(cancel: sscc_cancel_fn, user: *mut c_void) -> Option<CancelToken> {
+    let (cancel, user) = (cancel?, AtomicPtr::new(user));
+    Some(CancelToken::when(move || cancel(user.load(Ordering::Relaxed)) != 0))
+}

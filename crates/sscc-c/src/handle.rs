@@ -1,0 +1,60 @@
+//! Handles: objects that C owns.
+#![allow(unsafe_code, reason = "pointers from C")]
+
+use crate::live;
+use crate::pointers::Output;
+use crate::status::{Failure, Result, sscc_status};
+
+/// An object that C owns by a pointer.
+pub trait Handle: Sized {
+    /// What a message calls it.
+    const NAME: &'static str;
+
+    /// Refuses to be freed during a call that uses it.
+    fn check_idle(&self) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Gives an object to C.
+pub fn give<T: Handle>(object: T, out: Output<*mut T>) {
+    let pointer = Box::into_raw(Box::new(object));
+    live::add(pointer.addr(), T::NAME);
+    out.write(pointer);
+}
+
+/// The object of a handle.
+///
+/// # Errors
+/// When it is NULL; with debug assertions, when it is no live handle of the type.
+///
+/// # Safety
+/// The pointer is NULL or a live handle that [`give`] made, and nobody frees it while the object is used.
+#[inline(always)]
+pub unsafe fn borrow<'a, T: Handle>(handle: *const T) -> Result<&'a T> {
+    if handle.is_null() {
+        return Err(Failure::new(sscc_status::Null, format!("{} is NULL", T::NAME)));
+    }
+    live::check(handle.addr(), T::NAME)?;
+    // SAFETY: by the caller's promise the object exists.
+    Ok(unsafe { &*handle })
+}
+
+/// Frees the object of a handle; NULL is none.
+///
+/// # Errors
+/// When a call is using it; with debug assertions, when it is no live handle of the type.
+///
+/// # Safety
+/// The pointer is NULL or a live handle that [`give`] made, and nobody uses it any more.
+pub unsafe fn free<T: Handle>(handle: *mut T) -> Result<()> {
+    if handle.is_null() {
+        return Ok(());
+    }
+    // SAFETY: by the caller's promise.
+    unsafe { borrow(handle) }?.check_idle()?;
+    live::remove(handle.addr());
+    // SAFETY: `give` made the pointer of a box, which is given back once.
+    drop(unsafe { Box::from_raw(handle) });
+    Ok(())
+}

@@ -1,0 +1,240 @@
+//! Kinetic queries, for motions in small steps.
+#![allow(unsafe_code, reason = "functions for C")]
+
+use std::ffi::c_void;
+
+use sscc::KineticQuery;
+
+use crate::answer::Answer;
+use crate::callbacks::cancel_token;
+use crate::certificates::sscc_certificates;
+use crate::exclusive::Exclusive;
+use crate::handle::{Handle, borrow, free, give};
+use crate::model::sscc_model;
+use crate::pointers::{output, output_array, slice};
+use crate::status::{Result, guard, sscc_status};
+use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
+
+/// Answers as a query does, and uses its work again while q moves in small steps. Once warm, answers allocate nothing.
+pub struct sscc_kinetic(Exclusive<State>);
+
+/// A kinetic query and its last answer.
+struct State {
+    kinetic: KineticQuery,
+    answer: Answer,
+}
+
+impl State {
+    /// A copy without the token, whose function need not remain for it.
+    fn copy(&self) -> Self {
+        Self { kinetic: self.kinetic.clone().cancelled_by(None), answer: self.answer.clone() }
+    }
+}
+
+impl Handle for sscc_kinetic {
+    const NAME: &'static str = "kinetic";
+
+    fn check_idle(&self) -> Result<()> {
+        self.0.check_idle()
+    }
+}
+
+/// Makes a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_new(
+    model: *const sscc_model,
+    certificates: *const sscc_certificates,
+    kinetic: *mut *mut sscc_kinetic,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(kinetic, "kinetic") }?;
+        let (model, certificates) = unsafe { (borrow(model)?, borrow(certificates)?) };
+        let kinetic = KineticQuery::new(&model.model, &certificates.0)?;
+        give(sscc_kinetic(Exclusive::new(State { kinetic, answer: Answer::default() })), out);
+        Ok(())
+    })
+}
+
+/// Makes a copy for another thread. Copies share what does not change.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_clone(
+    kinetic: *const sscc_kinetic,
+    copy: *mut *mut sscc_kinetic,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(copy, "copy") }?;
+        let state = unsafe { borrow(kinetic) }?.0.lock()?.copy();
+        give(sscc_kinetic(Exclusive::new(state)), out);
+        Ok(())
+    })
+}
+
+/// Frees a kinetic query. NULL is nothing.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_free(kinetic: *mut sscc_kinetic) -> sscc_status {
+    // SAFETY: by the caller's promise.
+    guard(|| unsafe { free(kinetic) })
+}
+
+/// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
+/// `user` must remain as long as the query has them. A copy has none.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_set_cancel(
+    kinetic: *mut sscc_kinetic,
+    cancel: sscc_cancel_fn,
+    user: *mut c_void,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise.
+        let mut state = unsafe { borrow(kinetic) }?.0.lock()?;
+        state.kinetic = state.kinetic.clone().cancelled_by(cancel_token(cancel, user));
+        Ok(())
+    })
+}
+
+/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_kinetic_pairs copies
+/// the pairs.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_discrete(
+    kinetic: *mut sscc_kinetic,
+    q: *const f64,
+    rank: usize,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
+        state.answer.forget();
+        out.write(state.answer.set_pairs(state.kinetic.discrete(q)?));
+        Ok(())
+    })
+}
+
+/// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
+/// numbers each, which may be the same array); `count` receives their number. sscc_kinetic_impacts copies pairs and times.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_continuous(
+    kinetic: *mut sscc_kinetic,
+    q_t0: *const f64,
+    q_t1: *const f64,
+    rank: usize,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
+        let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
+        let out = unsafe { output(count, "count") }?;
+        state.answer.forget();
+        out.write(state.answer.set_impacts(state.kinetic.continuous(t0, t1)?));
+        Ok(())
+    })
+}
+
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+/// answer.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_pairs(
+    kinetic: *const sscc_kinetic,
+    pairs: *mut sscc_pair,
+    capacity: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = unsafe { borrow(kinetic) }?.0.lock()?;
+        state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
+    })
+}
+
+/// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_kinetic_pairs.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_impacts(
+    kinetic: *const sscc_kinetic,
+    impacts: *mut sscc_impact,
+    capacity: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = unsafe { borrow(kinetic) }?.0.lock()?;
+        state.answer.copy_impacts(&unsafe { output_array(impacts, capacity, "impacts") }?)
+    })
+}
+
+/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_visit_pairs(
+    kinetic: *const sscc_kinetic,
+    visit: sscc_visit_fn,
+    user: *mut c_void,
+) -> sscc_status {
+    // SAFETY: by the caller's promise.
+    guard(|| unsafe { borrow(kinetic) }?.0.lock()?.answer.visit(visit, user))
+}
+
+/// The cost of the last answer, and what proved it.
+///
+/// Threads: one call at a time for each kinetic query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_kinetic_statistics(
+    kinetic: *const sscc_kinetic,
+    statistics: *mut sscc_statistics,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(statistics, "statistics") }?;
+        out.write(unsafe { borrow(kinetic) }?.0.lock()?.kinetic.statistics().into());
+        Ok(())
+    })
+}

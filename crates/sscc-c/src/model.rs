@@ -1,0 +1,217 @@
+//! Models: a mesh and its modes.
+#![allow(unsafe_code, reason = "functions for C")]
+
+use std::ffi::c_char;
+
+use sscc::{Modes, ReducedModel, TriMesh};
+use sscc_io::{ModelInfo, load_model, write_model};
+
+use crate::handle::{Handle, borrow, free, give};
+use crate::matrix::{Matrix, sscc_index_matrix, sscc_matrix};
+use crate::pointers::{output, output_array, path, slice};
+use crate::status::{Failure, Result, guard, sscc_status};
+
+/// A mesh with its modes. It never changes; certificates and queries share it, and it may be freed before them.
+pub struct sscc_model {
+    pub(crate) model: ReducedModel,
+    info: ModelInfo,
+}
+
+impl Handle for sscc_model {
+    const NAME: &'static str = "model";
+}
+
+/// Makes a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
+/// arrays are copied.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_new(
+    positions: sscc_matrix,
+    faces: sscc_index_matrix,
+    modes: sscc_matrix,
+    model: *mut *mut sscc_model,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(model, "model") }?;
+        let mesh = unsafe { mesh(&positions, &faces) }?;
+        let modes = unsafe { Matrix::any(&modes, "modes") }?;
+        let vertices = mesh.rest_positions().len();
+        if modes.rows != 3 * vertices {
+            return Err(Failure::argument(format!(
+                "modes has {} rows: it must have 3 for each of the {vertices} vertices",
+                modes.rows
+            )));
+        }
+        let modes = Modes::from_matrix(vertices, modes.columns, |row, mode| modes.get(row, mode))?;
+        let model = ReducedModel::new(mesh, modes)?;
+        give(sscc_model { model, info: ModelInfo::default() }, out);
+        Ok(())
+    })
+}
+
+/// A mesh of the caller.
+///
+/// # Safety
+/// As [`Matrix::positions`].
+pub unsafe fn mesh(positions: &sscc_matrix, faces: &sscc_index_matrix) -> Result<TriMesh> {
+    // SAFETY: by the caller's promise.
+    let (positions, faces) =
+        unsafe { (Matrix::positions(positions, "positions")?, Matrix::faces(faces, "faces")?) };
+    let positions = positions.vectors(&mut Vec::new()).to_vec();
+    Ok(TriMesh::new(positions, faces.triples())?)
+}
+
+/// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, or a
+/// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that have modes.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of texts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_load(
+    model_path: *const c_char,
+    modes_path: *const c_char,
+    model: *mut *mut sscc_model,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(model, "model") }?;
+        let model_path = unsafe { path(model_path, "model_path") }?;
+        let modes_path =
+            (!modes_path.is_null()).then(|| unsafe { path(modes_path, "modes_path") }).transpose()?;
+        let (model, info) = load_model(model_path, modes_path)?;
+        give(sscc_model { model, info }, out);
+        Ok(())
+    })
+}
+
+/// Writes a model to a *.model.safetensors file, which appears whole or not at all.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles and texts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_save(model: *const sscc_model, model_path: *const c_char) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let sscc_model { model, info } = unsafe { borrow(model) }?;
+        Ok(write_model(unsafe { path(model_path, "model_path") }?, model, info)?)
+    })
+}
+
+/// Frees a model. NULL is nothing.
+///
+/// Threads: any, while no other call uses the model.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_free(model: *mut sscc_model) -> sscc_status {
+    // SAFETY: by the caller's promise.
+    guard(|| unsafe { free(model) })
+}
+
+/// The number of modes r; 0 for NULL.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_rank(model: *const sscc_model) -> usize {
+    // SAFETY: by the caller's promise.
+    unsafe { borrow(model) }.map_or(0, |model| model.model.rank())
+}
+
+/// The number of vertices V; 0 for NULL.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_vertex_count(model: *const sscc_model) -> usize {
+    // SAFETY: by the caller's promise.
+    unsafe { borrow(model) }.map_or(0, |model| model.model.mesh().rest_positions().len())
+}
+
+/// The number of triangles F; 0 for NULL.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_triangle_count(model: *const sscc_model) -> usize {
+    // SAFETY: by the caller's promise.
+    unsafe { borrow(model) }.map_or(0, |model| model.model.mesh().faces().len())
+}
+
+/// Copies the faces, three vertices for each triangle, counted from 0. `count` is the number of triangles.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_faces(
+    model: *const sscc_model,
+    faces: *mut u32,
+    count: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let of_model = unsafe { borrow(model) }?.model.mesh().faces();
+        let out = unsafe { output_array(faces, numbers(count, of_model.len(), "faces")?, "faces") }?;
+        for (i, vertex) in of_model.as_flattened().iter().enumerate() {
+            out.write(i, *vertex);
+        }
+        Ok(())
+    })
+}
+
+/// Computes the positions at q, bit for bit those of all answers: x, y, z of each vertex. `count` is the number of vertices.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_model_positions(
+    model: *const sscc_model,
+    q: *const f64,
+    rank: usize,
+    positions: *mut f64,
+    count: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let model = &unsafe { borrow(model) }?.model;
+        let vertices = model.mesh().rest_positions().len();
+        let q = unsafe { slice(q, rank, "q") }?;
+        let out = unsafe { output_array(positions, numbers(count, vertices, "positions")?, "positions") }?;
+        out.check_apart(q, "q and positions")?;
+        model.check_coordinates(q)?;
+        for vertex in 0..vertices {
+            for (axis, x) in model.position(vertex as u32, q).to_array().into_iter().enumerate() {
+                out.write(3 * vertex + axis, x);
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The numbers of an array of three for each element, whose count the caller states.
+fn numbers(count: usize, wanted: usize, name: &str) -> Result<usize> {
+    if count == wanted {
+        return Ok(3 * count);
+    }
+    Err(Failure::argument(format!("{name} has place for {count}: the model has {wanted}")))
+}

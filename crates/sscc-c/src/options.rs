@@ -1,0 +1,252 @@
+//! Options of certificates, and the contact filter.
+#![allow(unsafe_code, reason = "structs of the caller")]
+
+use sscc::{
+    CertifyOptions, ContactFilter, Metric, MetricKind, Neighbours, ReducedModel, TriMesh, TriangleGroups,
+};
+
+use crate::pointers::{Versioned, read_versioned, slice};
+use crate::status::{Failure, Result};
+use crate::types::sscc_pair;
+
+/// Whether triangles that share vertices count.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sscc_neighbours {
+    /// They do not.
+    Exclude = 0,
+    /// Pairs with exactly one common vertex count when they have another point in common.
+    IncludeOneVertex = 1,
+    /// Pairs with common vertices count when they have another point in common than these and the edges between them. For
+    /// discrete queries of detectors alone.
+    IncludeFolded = 2,
+}
+
+/// Whether vertices of equal positions (and modes) are one vertex, for adjacency alone.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sscc_weld {
+    /// As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
+    Default = 0,
+    /// They are.
+    On = 1,
+    /// They are not.
+    Off = 2,
+}
+
+/// Which pairs of triangles count. Set `size` to `sizeof(sscc_filter)` and leave the rest 0 for the default.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct sscc_filter {
+    /// `sizeof(sscc_filter)`.
+    pub size: usize,
+    /// Pairs that never count, in any order.
+    pub ignored: *const sscc_pair,
+    /// Number of ignored pairs.
+    pub ignored_count: usize,
+    /// A group for each triangle (below 65,536); NULL for none.
+    pub groups: *const u32,
+    /// Number of triangles in `groups`.
+    pub groups_count: usize,
+    /// 1: of triangles of one group no pair counts. 0: all pairs count.
+    pub between_groups_only: i32,
+    /// One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
+    pub weld: i32,
+    /// One of SSCC_NEIGHBOURS_EXCLUDE, SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX, SSCC_NEIGHBOURS_INCLUDE_FOLDED.
+    pub neighbours: i32,
+    /// 0.
+    pub reserved: i32,
+}
+
+// SAFETY: zeros are valid, the size is first, there is no padding.
+unsafe impl Versioned for sscc_filter {}
+
+/// The metric in which radii are measured, |z| = |S q|.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sscc_metric {
+    /// That of the model.
+    Model = 0,
+    /// Each mode by its largest vertex displacement.
+    Displacement = 1,
+    /// Each mode by the root mean square displacement, weighted by area.
+    Mass = 2,
+    /// All weights 1.
+    Identity = 3,
+    /// S is diagonal, with `scales`.
+    Scales = 4,
+}
+
+/// How much certificates store.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sscc_scheme {
+    /// Radii of nodes and node pairs, and local certificates.
+    Full = 0,
+    /// One radius for each node, and for each pair of the root's children: little time and memory.
+    Paper = 1,
+}
+
+/// How certificates are computed. Set `size` to `sizeof(sscc_certify_options)` and leave the rest 0 for the defaults.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct sscc_certify_options {
+    /// `sizeof(sscc_certify_options)`.
+    pub size: usize,
+    /// Relative tolerance of the root's radius, in (0, 1); 0: 0.1.
+    pub epsilon: f64,
+    /// How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
+    pub reach: f64,
+    /// The q from which radii are measured; NULL: q = 0.
+    pub center: *const f64,
+    /// Number of entries of `center`.
+    pub center_count: usize,
+    /// One positive number for each mode, for SSCC_METRIC_SCALES.
+    pub scales: *const f64,
+    /// Number of entries of `scales`.
+    pub scales_count: usize,
+    /// Which pairs count; NULL: the default of the mesh.
+    pub filter: *const sscc_filter,
+    /// Memory of the pair tree, in bytes for each triangle; 0: 64.
+    pub budget: usize,
+    /// Memory of local certificates, in bytes for each triangle; 0: 64.
+    pub local_budget: usize,
+    /// Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
+    pub max_exceptions: usize,
+    /// Number of threads; 0: all cores. The certificates are the same for any number.
+    pub threads: usize,
+    /// One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
+    pub metric: i32,
+    /// One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With the latter, leave both budgets 0.
+    pub scheme: i32,
+    /// 1: pairs that collide at rest never count, nor do those within `ignore_rings` rings of them.
+    pub ignore_rest: i32,
+    /// Rings around pairs that collide at rest.
+    pub ignore_rings: u32,
+}
+
+// SAFETY: zeros are valid, the size is first, there is no padding.
+unsafe impl Versioned for sscc_certify_options {}
+
+/// The contact filter of a mesh.
+///
+/// # Errors
+/// When a field has no valid value.
+///
+/// # Safety
+/// As [`read_versioned`], and the arrays have as many elements as the struct states.
+pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Result<ContactFilter> {
+    // SAFETY: by the caller's promise.
+    let filter = unsafe { read_versioned(filter, "filter") }?;
+    let neighbours = choose(
+        &[Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded],
+        filter.neighbours,
+        "filter.neighbours",
+    )?;
+    let weld = choose(&[mesh.has_split_vertices(), true, false], filter.weld, "filter.weld")?;
+    let is_between_only = choose(&[false, true], filter.between_groups_only, "filter.between_groups_only")?;
+    // SAFETY: by the caller's promise.
+    let ignored = unsafe { slice(filter.ignored, filter.ignored_count, "filter.ignored") }?;
+    let triangles = mesh.faces().len();
+    if let Some(pair) = ignored.iter().position(|pair| pair.a.max(pair.b) as usize >= triangles) {
+        let sscc_pair { a, b } = ignored[pair];
+        return Err(sscc::Error::PairIndex { pair, triangle: a.max(b), triangles }.into());
+    }
+    let mut chosen =
+        ContactFilter::new(neighbours).weld(weld).ignoring(ignored.iter().map(|pair| (pair.a, pair.b)));
+    if !filter.groups.is_null() {
+        // SAFETY: by the caller's promise.
+        let groups =
+            TriangleGroups::new(unsafe { slice(filter.groups, filter.groups_count, "filter.groups") }?)?;
+        chosen = chosen.with_groups(if is_between_only { groups.between_only() } else { groups });
+    }
+    Ok(chosen)
+}
+
+/// The options for certificates of a model.
+///
+/// # Errors
+/// When a field has no valid value.
+///
+/// # Safety
+/// As [`contact_filter`].
+pub unsafe fn certify_options(
+    options: *const sscc_certify_options,
+    model: &ReducedModel,
+) -> Result<CertifyOptions> {
+    // SAFETY: by the caller's promise.
+    let given = unsafe { read_versioned(options, "options") }?;
+    let mut options = CertifyOptions::default();
+    let is_paper = choose(&[false, true], given.scheme, "options.scheme")?;
+    if is_paper && (given.budget, given.local_budget) != (0, 0) {
+        return Err(Failure::argument(
+            "options: the scheme of the paper stores neither tree: leave both budgets 0",
+        ));
+    }
+    if is_paper {
+        options = options.budget(0).local_budget(0);
+    }
+    if given.budget > 0 {
+        options = options.budget(given.budget);
+    }
+    if given.local_budget > 0 {
+        options = options.local_budget(given.local_budget);
+    }
+    if given.epsilon != 0.0 {
+        options = options.epsilon(given.epsilon);
+    }
+    if given.reach != 0.0 {
+        options = options.reach(given.reach);
+    }
+    if choose(&[false, true], given.ignore_rest, "options.ignore_rest")? {
+        options = options.ignore_rest(given.ignore_rings);
+    }
+    if !given.center.is_null() {
+        // SAFETY: by the caller's promise.
+        options =
+            options.center(unsafe { slice(given.center, given.center_count, "options.center") }?.to_vec());
+    }
+    if !given.filter.is_null() {
+        // SAFETY: by the caller's promise.
+        options = options.filter(unsafe { contact_filter(given.filter, model.mesh()) }?);
+    }
+    // SAFETY: by the caller's promise.
+    let scales = unsafe { slice(given.scales, given.scales_count, "options.scales") }?;
+    let some = |count: usize| (count > 0).then_some(count);
+    Ok(options
+        .metric(metric(given.metric, scales, model)?)
+        .max_exceptions(some(given.max_exceptions))
+        .threads(some(given.threads)))
+}
+
+/// The metric that an option names; none for the model's.
+fn metric(kind: i32, scales: &[f64], model: &ReducedModel) -> Result<Option<Metric>> {
+    let (mesh, modes) = (model.mesh(), model.modes());
+    if !scales.is_empty() && kind != sscc_metric::Scales as i32 {
+        return Err(Failure::argument("options.scales are for SSCC_METRIC_SCALES"));
+    }
+    if kind == sscc_metric::Scales as i32 && scales.len() != model.rank() {
+        let (found, rank) = (scales.len(), model.rank());
+        return Err(Failure::argument(format!(
+            "options.scales has {found} entries, the model has {rank} modes"
+        )));
+    }
+    Ok(match kind {
+        0 => None,
+        1 => Some(Metric::displacement(mesh, modes)?),
+        2 => Some(Metric::mass(mesh, modes)?),
+        3 => Some(Metric::identity(model.rank())),
+        4 => Some(Metric::from_scales(MetricKind::Given, scales.to_vec())?),
+        _ => return Err(no_value("options.metric", kind)),
+    })
+}
+
+/// The value of that number.
+fn choose<T: Copy>(values: &[T], number: i32, name: &str) -> Result<T> {
+    let value = usize::try_from(number).ok().and_then(|i| values.get(i).copied());
+    value.ok_or_else(|| no_value(name, number))
+}
+
+fn no_value(name: &str, number: i32) -> Failure {
+    Failure::argument(format!("{name} is {number}: that is none of its values"))
+}

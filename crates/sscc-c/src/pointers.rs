@@ -1,0 +1,203 @@
+//! Arrays and outputs of the caller: checked once, then used without pointers.
+#![allow(unsafe_code, reason = "pointers from C")]
+
+use std::ffi::{CStr, c_char};
+use std::ops::Range;
+use std::path::Path;
+
+use crate::status::{Failure, Result, sscc_status};
+
+/// A place for one result.
+pub struct Output<T>(*mut T);
+
+impl<T> Output<T> {
+    /// Writes the result.
+    #[inline(always)]
+    pub fn write(self, value: T) {
+        // SAFETY: `output` has checked the pointer, and its caller promises that it can be written to.
+        unsafe { self.0.write(value) }
+    }
+}
+
+/// A place for one result.
+///
+/// # Errors
+/// When it is NULL or misaligned.
+///
+/// # Safety
+/// The pointer is NULL, or may be written to until the end of the call.
+#[inline(always)]
+pub unsafe fn output<T>(pointer: *mut T, name: &str) -> Result<Output<T>> {
+    check(pointer, 1, name)?;
+    Ok(Output(pointer))
+}
+
+/// A place for one result that the caller may not want.
+///
+/// # Errors
+/// When it is misaligned.
+///
+/// # Safety
+/// As for [`output`].
+pub unsafe fn optional_output<T>(pointer: *mut T, name: &str) -> Result<Option<Output<T>>> {
+    // SAFETY: by the caller's promise.
+    (!pointer.is_null()).then(|| unsafe { output(pointer, name) }).transpose()
+}
+
+/// A struct that the caller may leave out.
+///
+/// # Errors
+/// When it is misaligned.
+///
+/// # Safety
+/// The pointer is NULL, or points to an initialized struct that nobody changes during the call.
+pub unsafe fn optional<T: Copy>(pointer: *const T, name: &str) -> Result<Option<T>> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    check(pointer, 1, name)?;
+    // SAFETY: checked, and by the caller's promise.
+    Ok(Some(unsafe { pointer.read() }))
+}
+
+/// The numbers of an array; NULL is an array without numbers.
+///
+/// # Errors
+/// When it is NULL but for length 0, misaligned, or longer than memory.
+///
+/// # Safety
+/// The array has that many initialized numbers, which nobody changes during the call.
+#[inline(always)]
+pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<&'a [T]> {
+    if data.is_null() && length == 0 {
+        return Ok(&[]);
+    }
+    check(data, length, name)?;
+    // SAFETY: checked, and by the caller's promise.
+    Ok(unsafe { std::slice::from_raw_parts(data, length) })
+}
+
+/// An array for results.
+pub struct OutputArray<T> {
+    data: *mut T,
+    length: usize,
+}
+
+/// An array for results; NULL is an array of length 0.
+///
+/// # Errors
+/// As for [`slice`].
+///
+/// # Safety
+/// The array may be written to until the end of the call.
+#[inline(always)]
+pub unsafe fn output_array<T>(data: *mut T, length: usize, name: &str) -> Result<OutputArray<T>> {
+    if !(data.is_null() && length == 0) {
+        check(data, length, name)?;
+    }
+    Ok(OutputArray { data, length })
+}
+
+impl<T> OutputArray<T> {
+    pub fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Writes one result.
+    #[inline(always)]
+    pub fn write(&self, index: usize, value: T) {
+        assert!(index < self.length);
+        // SAFETY: within the array, which `output_array` has checked and its caller promises.
+        unsafe { self.data.add(index).write(value) }
+    }
+
+    /// Refuses an array that has memory in common with another one, which is read.
+    ///
+    /// # Errors
+    /// When they overlap.
+    pub fn check_apart<U>(&self, other: &[U], names: &str) -> Result<()> {
+        let own = bytes(self.data.addr(), self.length * size_of::<T>());
+        let other = bytes(other.as_ptr().addr(), size_of_val(other));
+        if own.start < other.end && other.start < own.end {
+            return Err(Failure::new(sscc_status::Overlap, format!("{names} overlap")));
+        }
+        Ok(())
+    }
+}
+
+fn bytes(start: usize, size: usize) -> Range<usize> {
+    start..start + size
+}
+
+/// Refuses a pointer to so many numbers that is NULL or misaligned.
+#[inline(always)]
+pub fn check<T>(data: *const T, length: usize, name: &str) -> Result<()> {
+    if !data.is_null() && data.is_aligned() && length <= isize::MAX as usize / size_of::<T>().max(1) {
+        return Ok(());
+    }
+    Err(refused(data.is_null(), data.is_aligned(), align_of::<T>(), length, name))
+}
+
+#[cold]
+fn refused(is_null: bool, is_aligned: bool, alignment: usize, length: usize, name: &str) -> Failure {
+    if is_null {
+        Failure::new(sscc_status::Null, format!("{name} is NULL"))
+    } else if !is_aligned {
+        let message = format!("{name} is misaligned: its address must be a multiple of {alignment}");
+        Failure::new(sscc_status::Misaligned, message)
+    } else {
+        Failure::argument(format!("{name} has length {length}: more than memory"))
+    }
+}
+
+/// A path, in UTF-8.
+///
+/// # Errors
+/// When it is NULL or no UTF-8.
+///
+/// # Safety
+/// The pointer is NULL, or a text that ends with 0 and that nobody changes during the call.
+pub unsafe fn path<'a>(text: *const c_char, name: &str) -> Result<&'a Path> {
+    check(text, 1, name)?;
+    // SAFETY: by the caller's promise.
+    let text = unsafe { CStr::from_ptr(text) }.to_str();
+    Ok(Path::new(text.map_err(|_| Failure::argument(format!("{name} is not UTF-8")))?))
+}
+
+/// A struct whose first field is its size, so that later versions can add fields. Fields that the caller's version does not have
+/// are 0.
+///
+/// # Safety
+/// Zeros are a valid value of the type, which begins with a `usize`, has no padding, and holds no references.
+pub unsafe trait Versioned: Copy {}
+
+/// Reads a struct that begins with its size; NULL is one of zeros.
+///
+/// # Errors
+/// When it is misaligned, its size is none of a version, or fields are set that this version does not have.
+///
+/// # Safety
+/// The pointer is NULL, or points to as many initialized bytes as its first field states, which nobody changes during the call.
+pub unsafe fn read_versioned<T: Versioned>(pointer: *const T, name: &str) -> Result<T> {
+    let mut value = std::mem::MaybeUninit::<T>::zeroed();
+    if !pointer.is_null() {
+        check(pointer, 1, name)?;
+        // SAFETY: the first field is there, by the caller's promise.
+        let size = unsafe { pointer.cast::<usize>().read() };
+        if !(size_of::<usize>()..=4096).contains(&size) || !size.is_multiple_of(size_of::<usize>()) {
+            let message = format!("{name}.size is {size}: set it to sizeof of the struct");
+            return Err(Failure::argument(message));
+        }
+        // SAFETY: so many bytes are there, by the caller's promise.
+        let given = unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), size) };
+        let known = size.min(size_of::<T>());
+        if given[known..].iter().any(|byte| *byte != 0) {
+            let message = format!("{name} has fields that this version of the library does not know");
+            return Err(Failure::argument(message));
+        }
+        // SAFETY: `known` is at most the size of both.
+        unsafe { value.as_mut_ptr().cast::<u8>().copy_from_nonoverlapping(given.as_ptr(), known) };
+    }
+    // SAFETY: zeros and the caller's fields are valid values, by the trait's promise.
+    Ok(unsafe { value.assume_init() })
+}

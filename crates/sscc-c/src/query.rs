@@ -1,0 +1,319 @@
+//! Queries at q and between two q.
+#![allow(unsafe_code, reason = "functions for C")]
+
+use std::ffi::c_void;
+
+use sscc::Query;
+
+use crate::answer::Answer;
+use crate::callbacks::cancel_token;
+use crate::certificates::sscc_certificates;
+use crate::exclusive::Exclusive;
+use crate::handle::{Handle, borrow, free, give};
+use crate::model::sscc_model;
+use crate::pointers::{optional_output, output, output_array, slice};
+use crate::status::{Result, guard, sscc_status};
+use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
+
+/// Answers which triangles of a model collide. Repeated answers allocate nothing.
+pub struct sscc_query(Exclusive<State>);
+
+/// A query and its last answer.
+struct State {
+    query: Query,
+    answer: Answer,
+}
+
+impl State {
+    /// A copy without the token, whose function need not remain for it.
+    fn copy(&self) -> Self {
+        Self { query: self.query.clone().cancelled_by(None), answer: self.answer.clone() }
+    }
+}
+
+impl Handle for sscc_query {
+    const NAME: &'static str = "query";
+
+    fn check_idle(&self) -> Result<()> {
+        self.0.check_idle()
+    }
+}
+
+/// Makes a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+///
+/// Threads: any.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_new(
+    model: *const sscc_model,
+    certificates: *const sscc_certificates,
+    query: *mut *mut sscc_query,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(query, "query") }?;
+        let (model, certificates) = unsafe { (borrow(model)?, borrow(certificates)?) };
+        let query = Query::new(&model.model, &certificates.0)?;
+        give(sscc_query(Exclusive::new(State { query, answer: Answer::default() })), out);
+        Ok(())
+    })
+}
+
+/// Makes a copy for another thread. Copies share what does not change.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_clone(
+    query: *const sscc_query,
+    copy: *mut *mut sscc_query,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(copy, "copy") }?;
+        let state = unsafe { borrow(query) }?.0.lock()?.copy();
+        give(sscc_query(Exclusive::new(state)), out);
+        Ok(())
+    })
+}
+
+/// Frees a query. NULL is nothing.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_free(query: *mut sscc_query) -> sscc_status {
+    // SAFETY: by the caller's promise.
+    guard(|| unsafe { free(query) })
+}
+
+/// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
+/// `user` must remain as long as the query has them. A copy has none.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_set_cancel(
+    query: *mut sscc_query,
+    cancel: sscc_cancel_fn,
+    user: *mut c_void,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise.
+        let mut state = unsafe { borrow(query) }?.0.lock()?;
+        state.query = state.query.clone().cancelled_by(cancel_token(cancel, user));
+        Ok(())
+    })
+}
+
+/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_query_pairs copies
+/// the pairs.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_discrete(
+    query: *mut sscc_query,
+    q: *const f64,
+    rank: usize,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
+        state.answer.forget();
+        out.write(state.answer.set_pairs(state.query.discrete(q)?));
+        Ok(())
+    })
+}
+
+/// Finds at most `limit` colliding pairs at q; which ones is not fixed. Where the limit ended the search,
+/// `complete` of the statistics is 0.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_discrete_at_most(
+    query: *mut sscc_query,
+    q: *const f64,
+    rank: usize,
+    limit: usize,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
+        state.answer.forget();
+        out.write(state.answer.set_pairs(state.query.discrete_at_most(q, limit)?));
+        Ok(())
+    })
+}
+
+/// Finds one colliding pair at q, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there
+/// is one; `pair` may be NULL.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_first(
+    query: *mut sscc_query,
+    q: *const f64,
+    rank: usize,
+    pair: *mut sscc_pair,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
+        let pair = unsafe { optional_output(pair, "pair") }?;
+        state.answer.forget();
+        let first = state.query.first(q)?;
+        if let (Some(out), Some(first)) = (pair, first) {
+            out.write(first.into());
+        }
+        out.write(state.answer.set_first(first));
+        Ok(())
+    })
+}
+
+/// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
+/// numbers each, which may be the same array); `count` receives their number. sscc_query_impacts copies pairs and times.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_continuous(
+    query: *mut sscc_query,
+    q_t0: *const f64,
+    q_t1: *const f64,
+    rank: usize,
+    count: *mut usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
+        let out = unsafe { output(count, "count") }?;
+        state.answer.forget();
+        out.write(state.answer.set_impacts(state.query.continuous(t0, t1)?));
+        Ok(())
+    })
+}
+
+/// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinity where nothing moves.
+/// It takes longer than an answer, and allocates.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_safe_scale(
+    query: *mut sscc_query,
+    q: *const f64,
+    rank: usize,
+    scale: *mut f64,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(scale, "scale")?) };
+        state.answer.forget();
+        out.write(state.query.safe_scale(q)?);
+        Ok(())
+    })
+}
+
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+/// answer.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_pairs(
+    query: *const sscc_query,
+    pairs: *mut sscc_pair,
+    capacity: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = unsafe { borrow(query) }?.0.lock()?;
+        state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
+    })
+}
+
+/// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_query_pairs.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_impacts(
+    query: *const sscc_query,
+    impacts: *mut sscc_impact,
+    capacity: usize,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let state = unsafe { borrow(query) }?.0.lock()?;
+        state.answer.copy_impacts(&unsafe { output_array(impacts, capacity, "impacts") }?)
+    })
+}
+
+/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_visit_pairs(
+    query: *const sscc_query,
+    visit: sscc_visit_fn,
+    user: *mut c_void,
+) -> sscc_status {
+    // SAFETY: by the caller's promise.
+    guard(|| unsafe { borrow(query) }?.0.lock()?.answer.visit(visit, user))
+}
+
+/// The cost of the last answer, and what proved it.
+///
+/// Threads: one call at a time for each query.
+///
+/// # Safety
+/// As the header says of handles and arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sscc_query_statistics(
+    query: *const sscc_query,
+    statistics: *mut sscc_statistics,
+) -> sscc_status {
+    guard(|| {
+        // SAFETY: by the caller's promise, here and below.
+        let out = unsafe { output(statistics, "statistics") }?;
+        out.write(unsafe { borrow(query) }?.0.lock()?.query.statistics().into());
+        Ok(())
+    })
+}

@@ -1,0 +1,12 @@
+//! Tests of the C interface through its functions.
+#![allow(unsafe_code, reason = "functions of C")]
+
+mod answers;
+mod bad_input;
+mod callbacks;
+mod common;
+mod files;
+mod handles;
+mod header;
+mod no_allocation;
+mod threads;

@@ -1,0 +1,815 @@
+/*
+ * sscc: exact collision detection for deformable triangle meshes. C interface; C++ has sscc.hpp beside it.
+ *
+ * OUTCOMES. Functions return a status; sscc_error_message() says more. After another status than SSCC_STATUS_OK nothing was
+ * written to outputs. Counts and radii are returned as they are. No panic and no error of the library crosses.
+ *
+ * HANDLES. sscc_X_new, _load, _compute and _clone give a handle, which the caller owns until sscc_X_free. Freeing NULL does
+ * nothing. Using a handle after it was freed, or freeing it twice, is the caller's error: undefined, but libraries built with debug
+ * assertions refuse it with SSCC_STATUS_HANDLE. Handles share what they were made from, so each can be freed at any time.
+ *
+ * ARRAYS. They belong to the caller, have the stated length, and must not change during a call; nothing refers to them after
+ * it. Inputs may be the same array. An output must not overlap an input. NULL is refused unless the length is 0 or the
+ * function says otherwise; so are addresses that are not a multiple of the size of a number. Texts are UTF-8 and end with 0.
+ *
+ * THREADS. Each function states its rule. Models and certificates never change, so any number of threads may use them. A query, a
+ * kinetic query, a detector and a shape serve one call at a time, in any thread: make a copy for each thread. Free a handle
+ * when no call uses it.
+ *
+ * CALLBACKS. They must return: no exception and no longjmp may leave them. sscc.hpp catches exceptions and throws them again.
+ *
+ * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing.
+ *
+ * STABILITY. Within one SSCC_ABI_VERSION functions, constants and structs stay as they are; later versions of the library
+ * add functions and constants, and fields at the end of structs that begin with their size. Programs need not be compiled again.
+ */
+
+
+#ifndef SSCC_H
+#define SSCC_H
+
+/* Written from crates/sscc-c by its test `header`: change the code, not this file. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The version of the header: that of a library is the same, or the program must be compiled again.
+#define SSCC_ABI_VERSION 1
+
+// The outcome of a call. Later versions may add values.
+enum sscc_status
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Done.
+  SSCC_STATUS_OK = 0,
+  // A callback ended the call.
+  SSCC_STATUS_CANCELLED = 1,
+  // A pointer is NULL that must not be.
+  SSCC_STATUS_NULL = 2,
+  // A pointer is not a multiple of the size of the numbers at it.
+  SSCC_STATUS_MISALIGNED = 3,
+  // Arrays overlap, or elements of one matrix, or two handles are the same that must differ.
+  SSCC_STATUS_OVERLAP = 4,
+  // An argument has the wrong length, is out of range or not finite.
+  SSCC_STATUS_ARGUMENT = 5,
+  // The pointer is no live handle of this type. Only libraries with debug assertions notice that.
+  SSCC_STATUS_HANDLE = 6,
+  // The handle is in use: by the function that called the callback, or by another thread.
+  SSCC_STATUS_BUSY = 7,
+  // The array is too small for the answer.
+  SSCC_STATUS_CAPACITY = 8,
+  // The certificates are of another model.
+  SSCC_STATUS_OTHER_MODEL = 9,
+  // More pairs collide than an answer can have.
+  SSCC_STATUS_TOO_MANY = 10,
+  // A file cannot be read or written, or its content is malformed.
+  SSCC_STATUS_FILE = 11,
+  // A defect of this library; free the handles of the call.
+  SSCC_STATUS_INTERNAL = 12,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_status sscc_status;
+#else
+typedef int32_t sscc_status;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What proved an answer, exceptions apart.
+enum sscc_proof
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // A search.
+  SSCC_PROOF_SEARCH = 0,
+  // The root's radius: one comparison.
+  SSCC_PROOF_RADIUS = 1,
+  // The root's local certificate: the strain of the whole shape.
+  SSCC_PROOF_LOCAL = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_proof sscc_proof;
+#else
+typedef int32_t sscc_proof;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The metric in which radii are measured, |z| = |S q|.
+enum sscc_metric
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // That of the model.
+  SSCC_METRIC_MODEL = 0,
+  // Each mode by its largest vertex displacement.
+  SSCC_METRIC_DISPLACEMENT = 1,
+  // Each mode by the root mean square displacement, weighted by area.
+  SSCC_METRIC_MASS = 2,
+  // All weights 1.
+  SSCC_METRIC_IDENTITY = 3,
+  // S is diagonal, with `scales`.
+  SSCC_METRIC_SCALES = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_metric sscc_metric;
+#else
+typedef int32_t sscc_metric;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Whether triangles that share vertices count.
+enum sscc_neighbours
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // They do not.
+  SSCC_NEIGHBOURS_EXCLUDE = 0,
+  // Pairs with exactly one common vertex count when they have another point in common.
+  SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX = 1,
+  // Pairs with common vertices count when they have another point in common than these and the edges between them. For
+  // discrete queries of detectors alone.
+  SSCC_NEIGHBOURS_INCLUDE_FOLDED = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_neighbours sscc_neighbours;
+#else
+typedef int32_t sscc_neighbours;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How much certificates store.
+enum sscc_scheme
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Radii of nodes and node pairs, and local certificates.
+  SSCC_SCHEME_FULL = 0,
+  // One radius for each node, and for each pair of the root's children: little time and memory.
+  SSCC_SCHEME_PAPER = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_scheme sscc_scheme;
+#else
+typedef int32_t sscc_scheme;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Whether vertices of equal positions (and modes) are one vertex, for adjacency alone.
+enum sscc_weld
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
+  SSCC_WELD_DEFAULT = 0,
+  // They are.
+  SSCC_WELD_ON = 1,
+  // They are not.
+  SSCC_WELD_OFF = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sscc_weld sscc_weld;
+#else
+typedef int32_t sscc_weld;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Certificates of a model. They never change; queries share them, and they may be freed before them.
+typedef struct sscc_certificates sscc_certificates;
+
+// Answers which triangles of a mesh collide at given positions. Repeated answers allocate nothing.
+typedef struct sscc_detector sscc_detector;
+
+// Answers as a query does, and uses its work again while q moves in small steps. Once warm, answers allocate nothing.
+typedef struct sscc_kinetic sscc_kinetic;
+
+// A mesh with its modes. It never changes; certificates and queries share it, and it may be freed before them.
+typedef struct sscc_model sscc_model;
+
+// Answers which triangles of a model collide. Repeated answers allocate nothing.
+typedef struct sscc_query sscc_query;
+
+// A model at some q, somewhere in the world, to be tested against others. Repeated answers allocate nothing.
+typedef struct sscc_shape sscc_shape;
+
+// Two triangles, counted from 0: of one mesh the lower number first, of two meshes the triangle of the first mesh first.
+typedef struct sscc_pair {
+  // The first triangle.
+  uint32_t a;
+  // The second triangle.
+  uint32_t b;
+} sscc_pair;
+
+// Which pairs of triangles count. Set `size` to `sizeof(sscc_filter)` and leave the rest 0 for the default.
+typedef struct sscc_filter {
+  // `sizeof(sscc_filter)`.
+  size_t size;
+  // Pairs that never count, in any order.
+  const struct sscc_pair *ignored;
+  // Number of ignored pairs.
+  size_t ignored_count;
+  // A group for each triangle (below 65,536); NULL for none.
+  const uint32_t *groups;
+  // Number of triangles in `groups`.
+  size_t groups_count;
+  // 1: of triangles of one group no pair counts. 0: all pairs count.
+  int32_t between_groups_only;
+  // One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
+  int32_t weld;
+  // One of SSCC_NEIGHBOURS_EXCLUDE, SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX, SSCC_NEIGHBOURS_INCLUDE_FOLDED.
+  int32_t neighbours;
+  // 0.
+  int32_t reserved;
+} sscc_filter;
+
+// How certificates are computed. Set `size` to `sizeof(sscc_certify_options)` and leave the rest 0 for the defaults.
+typedef struct sscc_certify_options {
+  // `sizeof(sscc_certify_options)`.
+  size_t size;
+  // Relative tolerance of the root's radius, in (0, 1); 0: 0.1.
+  double epsilon;
+  // How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
+  double reach;
+  // The q from which radii are measured; NULL: q = 0.
+  const double *center;
+  // Number of entries of `center`.
+  size_t center_count;
+  // One positive number for each mode, for SSCC_METRIC_SCALES.
+  const double *scales;
+  // Number of entries of `scales`.
+  size_t scales_count;
+  // Which pairs count; NULL: the default of the mesh.
+  const struct sscc_filter *filter;
+  // Memory of the pair tree, in bytes for each triangle; 0: 64.
+  size_t budget;
+  // Memory of local certificates, in bytes for each triangle; 0: 64.
+  size_t local_budget;
+  // Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
+  size_t max_exceptions;
+  // Number of threads; 0: all cores. The certificates are the same for any number.
+  size_t threads;
+  // One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
+  int32_t metric;
+  // One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With the latter, leave both budgets 0.
+  int32_t scheme;
+  // 1: pairs that collide at rest never count, nor do those within `ignore_rings` rings of them.
+  int32_t ignore_rest;
+  // Rings around pairs that collide at rest.
+  uint32_t ignore_rings;
+} sscc_certify_options;
+
+// Receives that `done` of `total` steps of a long computation are finished. Another value than 0 cancels it.
+//
+// Threads of the library call it, never two at a time. It must not throw and must not call this library with handles that the
+// computation uses.
+typedef int (*sscc_progress_fn)(void *user, size_t done, size_t total);
+
+// Returns another value than 0 to cancel. It is called often, so it should be quick. A computation calls it from threads of the
+// library, never from two at a time; a query calls it from the thread of the call. It must not throw.
+typedef int (*sscc_cancel_fn)(void *user);
+
+// A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
+// elements; both 0 stand for rows without gaps (`column_stride` 1, `row_stride` the number of columns).
+//
+// Positions are V x 3; modes are 3V x r, with the rows x, y, z of the first vertex first.
+typedef struct sscc_matrix {
+  // The first element.
+  const double *data;
+  // Number of rows.
+  size_t rows;
+  // Number of columns.
+  size_t columns;
+  // From a row to the next one, in elements.
+  size_t row_stride;
+  // From a column to the next one, in elements.
+  size_t column_stride;
+} sscc_matrix;
+
+// A matrix of 32-bit numbers of the caller, with the same strides as sscc_matrix. Faces are F x 3: vertices, counted from 0.
+typedef struct sscc_index_matrix {
+  // The first element.
+  const uint32_t *data;
+  // Number of rows.
+  size_t rows;
+  // Number of columns.
+  size_t columns;
+  // From a row to the next one, in elements.
+  size_t row_stride;
+  // From a column to the next one, in elements.
+  size_t column_stride;
+} sscc_index_matrix;
+
+// Two triangles that collide during a motion.
+typedef struct sscc_impact {
+  // The first triangle.
+  uint32_t a;
+  // The second triangle.
+  uint32_t b;
+  // The time of impact, from 0 to 1, never later than the true one.
+  double time;
+} sscc_impact;
+
+// Receives one pair of an answer. Another value than 0 ends the visit. It must not throw.
+typedef int (*sscc_visit_fn)(void *user, struct sscc_pair pair);
+
+// The cost of the last answer of a query or a detector.
+typedef struct sscc_statistics {
+  // |z| of q about the centre, in the metric of the certificates; 0 of a detector.
+  double norm;
+  // Nodes and node pairs that were opened.
+  uint64_t opened;
+  // Pairs of boxes that were compared.
+  uint64_t box_tests;
+  // Pairs of triangles that were tested exactly.
+  uint64_t triangle_tests;
+  // What proved the answer.
+  sscc_proof proof;
+  // 1 if the pairs are all that collide, 0 if a limit or an error stopped the search.
+  int32_t complete;
+} sscc_statistics;
+
+// Where a shape is: `rotation * x + translation`. The matrix need not be a rotation.
+typedef struct sscc_pose {
+  // A 3 x 3 matrix, row by row.
+  double rotation[9];
+  // The translation.
+  double translation[3];
+} sscc_pose;
+
+// An axis-aligned box.
+typedef struct sscc_box {
+  // The smallest coordinates.
+  double lower[3];
+  // The largest coordinates.
+  double upper[3];
+} sscc_box;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both get `user`.
+// Where one of them cancels, the outcome is SSCC_STATUS_CANCELLED, and there are no certificates.
+//
+// Threads: any. The computation has threads of its own.
+sscc_status sscc_certificates_compute(const struct sscc_model *model,
+                                      const struct sscc_certify_options *options,
+                                      sscc_progress_fn progress,
+                                      sscc_cancel_fn cancel,
+                                      void *user,
+                                      struct sscc_certificates **certificates);
+
+// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model.
+//
+// Threads: any.
+sscc_status sscc_certificates_load(const char *certificates_path, struct sscc_certificates **certificates);
+
+// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those of the command.
+//
+// Threads: any.
+sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
+                                   const char *certificates_path);
+
+// Frees certificates. NULL is nothing.
+//
+// Threads: any, while no other call uses the certificates.
+sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
+
+// The root's radius: where |z| of q is below it, the shape is free at q, exceptions apart. Infinity: everywhere. 0 for NULL.
+//
+// Threads: any.
+double sscc_certificates_root_radius(const struct sscc_certificates *certificates);
+
+// The number of exceptions: pairs that collide at the centre, and that every query tests. 0 for NULL.
+//
+// Threads: any.
+size_t sscc_certificates_exception_count(const struct sscc_certificates *certificates);
+
+// Makes a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
+// not count. The arrays are copied. Rest positions choose the hierarchy, and what is welded.
+//
+// Threads: any.
+sscc_status sscc_detector_new(struct sscc_matrix positions,
+                              struct sscc_index_matrix faces,
+                              const struct sscc_filter *filter,
+                              struct sscc_detector **detector);
+
+// Makes a copy for another thread. Copies share what does not change.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_clone(const struct sscc_detector *detector, struct sscc_detector **copy);
+
+// Frees a detector. NULL is nothing.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_free(struct sscc_detector *detector);
+
+// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
+// `user` must remain as long as the detector has them. A copy has none.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_set_cancel(struct sscc_detector *detector,
+                                     sscc_cancel_fn cancel,
+                                     void *user);
+
+// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs are a proof. sscc_detector_pairs
+// copies the pairs.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_discrete(struct sscc_detector *detector,
+                                   struct sscc_matrix positions,
+                                   size_t *count);
+
+// Finds at most `limit` colliding pairs; which ones is not fixed. Where the limit ended the search, `complete` of the statistics
+// is 0.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_discrete_at_most(struct sscc_detector *detector,
+                                           struct sscc_matrix positions,
+                                           size_t limit,
+                                           size_t *count);
+
+// Finds one colliding pair, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there is
+// one; `pair` may be NULL.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_first(struct sscc_detector *detector,
+                                struct sscc_matrix positions,
+                                struct sscc_pair *pair,
+                                size_t *count);
+
+// Finds all pairs that collide while every vertex moves on a straight line from its position in `x_t0` to that in `x_t1`; `count`
+// receives their number. sscc_detector_impacts copies pairs and times.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_continuous(struct sscc_detector *detector,
+                                     struct sscc_matrix x_t0,
+                                     struct sscc_matrix x_t1,
+                                     size_t *count);
+
+// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives their number.
+// The answer is that of `detector`. The other detector must be another one; for a mesh with itself, use a copy.
+//
+// Threads: one call at a time for each of both detectors.
+sscc_status sscc_detector_against(struct sscc_detector *detector,
+                                  struct sscc_matrix x,
+                                  struct sscc_detector *other,
+                                  struct sscc_matrix y,
+                                  size_t *count);
+
+// Finds all pairs (triangle of this mesh, triangle of the other one) that collide while every vertex of both moves on a straight
+// line; otherwise as sscc_detector_against. sscc_detector_impacts copies pairs and times.
+//
+// Threads: one call at a time for each of both detectors.
+sscc_status sscc_detector_continuous_against(struct sscc_detector *detector,
+                                             struct sscc_matrix x_t0,
+                                             struct sscc_matrix x_t1,
+                                             struct sscc_detector *other,
+                                             struct sscc_matrix y_t0,
+                                             struct sscc_matrix y_t1,
+                                             size_t *count);
+
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+// answer.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_pairs(const struct sscc_detector *detector,
+                                struct sscc_pair *pairs,
+                                size_t capacity);
+
+// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_detector_pairs.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_impacts(const struct sscc_detector *detector,
+                                  struct sscc_impact *impacts,
+                                  size_t capacity);
+
+// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. Meanwhile other calls with this detector are refused.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_visit_pairs(const struct sscc_detector *detector,
+                                      sscc_visit_fn visit,
+                                      void *user);
+
+// The cost of the last answer, and what proved it.
+//
+// Threads: one call at a time for each detector.
+sscc_status sscc_detector_statistics(const struct sscc_detector *detector,
+                                     struct sscc_statistics *statistics);
+
+// Makes a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+//
+// Threads: any.
+sscc_status sscc_kinetic_new(const struct sscc_model *model,
+                             const struct sscc_certificates *certificates,
+                             struct sscc_kinetic **kinetic);
+
+// Makes a copy for another thread. Copies share what does not change.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_clone(const struct sscc_kinetic *kinetic, struct sscc_kinetic **copy);
+
+// Frees a kinetic query. NULL is nothing.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_free(struct sscc_kinetic *kinetic);
+
+// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
+// `user` must remain as long as the query has them. A copy has none.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_set_cancel(struct sscc_kinetic *kinetic,
+                                    sscc_cancel_fn cancel,
+                                    void *user);
+
+// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_kinetic_pairs copies
+// the pairs.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_discrete(struct sscc_kinetic *kinetic,
+                                  const double *q,
+                                  size_t rank,
+                                  size_t *count);
+
+// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
+// numbers each, which may be the same array); `count` receives their number. sscc_kinetic_impacts copies pairs and times.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_continuous(struct sscc_kinetic *kinetic,
+                                    const double *q_t0,
+                                    const double *q_t1,
+                                    size_t rank,
+                                    size_t *count);
+
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+// answer.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_pairs(const struct sscc_kinetic *kinetic,
+                               struct sscc_pair *pairs,
+                               size_t capacity);
+
+// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_kinetic_pairs.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_impacts(const struct sscc_kinetic *kinetic,
+                                 struct sscc_impact *impacts,
+                                 size_t capacity);
+
+// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_visit_pairs(const struct sscc_kinetic *kinetic,
+                                     sscc_visit_fn visit,
+                                     void *user);
+
+// The cost of the last answer, and what proved it.
+//
+// Threads: one call at a time for each kinetic query.
+sscc_status sscc_kinetic_statistics(const struct sscc_kinetic *kinetic, struct sscc_statistics *statistics);
+
+// Makes a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
+// arrays are copied.
+//
+// Threads: any.
+sscc_status sscc_model_new(struct sscc_matrix positions,
+                           struct sscc_index_matrix faces,
+                           struct sscc_matrix modes,
+                           struct sscc_model **model);
+
+// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, or a
+// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that have modes.
+//
+// Threads: any.
+sscc_status sscc_model_load(const char *model_path,
+                            const char *modes_path,
+                            struct sscc_model **model);
+
+// Writes a model to a *.model.safetensors file, which appears whole or not at all.
+//
+// Threads: any.
+sscc_status sscc_model_save(const struct sscc_model *model, const char *model_path);
+
+// Frees a model. NULL is nothing.
+//
+// Threads: any, while no other call uses the model.
+sscc_status sscc_model_free(struct sscc_model *model);
+
+// The number of modes r; 0 for NULL.
+//
+// Threads: any.
+size_t sscc_model_rank(const struct sscc_model *model);
+
+// The number of vertices V; 0 for NULL.
+//
+// Threads: any.
+size_t sscc_model_vertex_count(const struct sscc_model *model);
+
+// The number of triangles F; 0 for NULL.
+//
+// Threads: any.
+size_t sscc_model_triangle_count(const struct sscc_model *model);
+
+// Copies the faces, three vertices for each triangle, counted from 0. `count` is the number of triangles.
+//
+// Threads: any.
+sscc_status sscc_model_faces(const struct sscc_model *model, uint32_t *faces, size_t count);
+
+// Computes the positions at q, bit for bit those of all answers: x, y, z of each vertex. `count` is the number of vertices.
+//
+// Threads: any.
+sscc_status sscc_model_positions(const struct sscc_model *model,
+                                 const double *q,
+                                 size_t rank,
+                                 double *positions,
+                                 size_t count);
+
+// Makes a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+//
+// Threads: any.
+sscc_status sscc_query_new(const struct sscc_model *model,
+                           const struct sscc_certificates *certificates,
+                           struct sscc_query **query);
+
+// Makes a copy for another thread. Copies share what does not change.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_clone(const struct sscc_query *query, struct sscc_query **copy);
+
+// Frees a query. NULL is nothing.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_free(struct sscc_query *query);
+
+// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
+// `user` must remain as long as the query has them. A copy has none.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_set_cancel(struct sscc_query *query,
+                                  sscc_cancel_fn cancel,
+                                  void *user);
+
+// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_query_pairs copies
+// the pairs.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_discrete(struct sscc_query *query,
+                                const double *q,
+                                size_t rank,
+                                size_t *count);
+
+// Finds at most `limit` colliding pairs at q; which ones is not fixed. Where the limit ended the search,
+// `complete` of the statistics is 0.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_discrete_at_most(struct sscc_query *query,
+                                        const double *q,
+                                        size_t rank,
+                                        size_t limit,
+                                        size_t *count);
+
+// Finds one colliding pair at q, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there
+// is one; `pair` may be NULL.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_first(struct sscc_query *query,
+                             const double *q,
+                             size_t rank,
+                             struct sscc_pair *pair,
+                             size_t *count);
+
+// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
+// numbers each, which may be the same array); `count` receives their number. sscc_query_impacts copies pairs and times.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_continuous(struct sscc_query *query,
+                                  const double *q_t0,
+                                  const double *q_t1,
+                                  size_t rank,
+                                  size_t *count);
+
+// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinity where nothing moves.
+// It takes longer than an answer, and allocates.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_safe_scale(struct sscc_query *query,
+                                  const double *q,
+                                  size_t rank,
+                                  double *scale);
+
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+// answer.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_pairs(const struct sscc_query *query,
+                             struct sscc_pair *pairs,
+                             size_t capacity);
+
+// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_query_pairs.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_impacts(const struct sscc_query *query,
+                               struct sscc_impact *impacts,
+                               size_t capacity);
+
+// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_visit_pairs(const struct sscc_query *query,
+                                   sscc_visit_fn visit,
+                                   void *user);
+
+// The cost of the last answer, and what proved it.
+//
+// Threads: one call at a time for each query.
+sscc_status sscc_query_statistics(const struct sscc_query *query, struct sscc_statistics *statistics);
+
+// Makes a shape at q = 0 in its own axes. `certificates` may be NULL; of them only the hierarchy is used. The shape shares
+// both, which may be freed.
+//
+// Threads: any.
+sscc_status sscc_shape_new(const struct sscc_model *model,
+                           const struct sscc_certificates *certificates,
+                           struct sscc_shape **shape);
+
+// Makes a copy for another thread. Copies share what does not change.
+//
+// Threads: one call at a time for each shape.
+sscc_status sscc_shape_clone(const struct sscc_shape *shape, struct sscc_shape **copy);
+
+// Frees a shape. NULL is nothing.
+//
+// Threads: one call at a time for each shape.
+sscc_status sscc_shape_free(struct sscc_shape *shape);
+
+// Deforms the shape by q (`rank` numbers) and moves it by a pose; NULL: not at all. `bounds` receives a box that contains it; it
+// may be NULL.
+//
+// Threads: one call at a time for each shape.
+sscc_status sscc_shape_place(struct sscc_shape *shape,
+                             const double *q,
+                             size_t rank,
+                             const struct sscc_pose *pose,
+                             struct sscc_box *bounds);
+
+// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. The answer is
+// that of `shape`. `around` is a box around all shapes that are compared; it changes the time alone, and NULL is none. The
+// other shape must be another one.
+//
+// Threads: one call at a time for each of both shapes.
+sscc_status sscc_shape_against(struct sscc_shape *shape,
+                               struct sscc_shape *other,
+                               const struct sscc_box *around,
+                               size_t *count);
+
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
+// answer.
+//
+// Threads: one call at a time for each shape.
+sscc_status sscc_shape_pairs(const struct sscc_shape *shape,
+                             struct sscc_pair *pairs,
+                             size_t capacity);
+
+// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. Meanwhile other calls with this shape are refused.
+//
+// Threads: one call at a time for each shape.
+sscc_status sscc_shape_visit_pairs(const struct sscc_shape *shape,
+                                   sscc_visit_fn visit,
+                                   void *user);
+
+// The message of the last call of this thread that failed, on one line in UTF-8; empty if none has. It is valid until the next
+// failure of a call in this thread.
+//
+// Threads: any; each has its own message.
+const char *sscc_error_message(void);
+
+// The version of the library, such as "0.1.0".
+//
+// Threads: any.
+const char *sscc_version(void);
+
+// SSCC_ABI_VERSION of the library.
+//
+// Threads: any.
+uint32_t sscc_abi_version(void);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SSCC_H */

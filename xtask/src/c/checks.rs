@@ -1,0 +1,95 @@
+//! Checks that run programs and count themselves.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use crate::program::cargo;
+use crate::tally::Tally;
+
+/// Checks that count themselves, and where they find what.
+pub struct Checks {
+    pub tally: Tally,
+    /// The root of the project.
+    pub root: PathBuf,
+    /// The folder of the command.
+    pub commands: PathBuf,
+    /// The folder of the libraries.
+    pub libraries: PathBuf,
+    /// A folder for builds, emptied.
+    pub folder: PathBuf,
+}
+
+impl Checks {
+    pub fn new(is_built: bool) -> Result<Self, String> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let root = root.canonicalize().map_err(|e| e.to_string())?;
+        let build = || {
+            cargo()
+                .args(["build", "--package", "sscc-c", "--package", "sscc-cli"])
+                .current_dir(&root)
+                .status()
+        };
+        if !is_built && !build().is_ok_and(|status| status.success()) {
+            return Err("the library or the command cannot be built".into());
+        }
+        // Cargo puts them beside this program.
+        let commands = env::current_exe().map_err(|e| e.to_string())?;
+        let commands = commands.parent().ok_or("no folder of programs")?.to_owned();
+        let (libraries, folder) = (commands.join("deps"), commands.join("c"));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        Ok(Self { tally: Tally::default(), root, commands, libraries, folder })
+    }
+
+    /// Counts a check, and prints its name, its time, and why it failed.
+    pub fn check(&mut self, name: &str, check: impl FnOnce(&Self) -> Result<(), String>) {
+        let start = Instant::now();
+        let result = check(self);
+        let seconds = start.elapsed().as_secs_f64();
+        match result {
+            Ok(()) => {
+                self.tally.passed += 1;
+                println!("{name}: ok, {seconds:.1} s");
+            }
+            Err(why) => {
+                self.tally.failed += 1;
+                println!("{name}: FAILED\n{why}");
+            }
+        }
+    }
+
+    /// Runs a program in a folder, with the libraries of cargo. Returns its exit code and its output.
+    pub fn output(&self, folder: &Path, program: &Path, arguments: &[&str]) -> Result<(i32, String), String> {
+        let mut command = Command::new(program);
+        command.args(arguments).current_dir(folder).stdin(Stdio::null());
+        command.env("SSCC_PREBUILT_DIR", &self.libraries).env("CARGO_TERM_COLOR", "never");
+        let output = command.output().map_err(|e| format!("{}: {e}", program.display()))?;
+        let code = output.status.code().unwrap_or(-1);
+        let [out, err] =
+            [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        if code > 1 || code < 0 {
+            return Err(format!(
+                "{} {}: exit code {code}\n{out}{err}",
+                program.display(),
+                arguments.join(" ")
+            ));
+        }
+        Ok((code, out))
+    }
+
+    /// Runs a program that must succeed, and returns its output.
+    pub fn succeed(&self, folder: &Path, program: &Path, arguments: &[&str]) -> Result<String, String> {
+        let (code, text) = self.output(folder, program, arguments)?;
+        if code == 0 { Ok(text) } else { Err(format!("{} failed\n{text}", program.display())) }
+    }
+
+    /// Configures and builds a project.
+    pub fn cmake(&self, source: &str, build: &Path, options: &[&str]) -> Result<(), String> {
+        let build = build.to_string_lossy();
+        let cmake = Path::new("cmake");
+        self.succeed(&self.root, cmake, &[&["-S", source, "-B", &build], options].concat())?;
+        self.succeed(&self.root, cmake, &["--build", &build, "--parallel", "2"]).map(drop)
+    }
+}

@@ -1,0 +1,23 @@
+//! Programs of Debian packages that tests need.
+
+use std::env;
+use std::io;
+use std::path::Path;
+use std::process::Command;
+
+/// Whether a program is on the path.
+pub fn has(program: &str) -> bool {
+    env::var_os("PATH")
+        .is_some_and(|path| env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+}
+
+/// Installs packages. Returns whether that worked.
+pub fn install(packages: &[&str]) -> bool {
+    let apt = |arguments: &[&str]| -> io::Result<bool> {
+        let mut apt = Command::new("apt-get");
+        Ok(apt.args(arguments).env("DEBIAN_FRONTEND", "noninteractive").status()?.success())
+    };
+    let packages = [&["-qq", "install", "-y", "--no-install-recommends"], packages].concat();
+    Path::new("/usr/bin/apt-get").exists()
+        && apt(&["-qq", "update"]).and_then(|_| apt(&packages)).is_ok_and(|ok| ok)
+}
