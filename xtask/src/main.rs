@@ -20,6 +20,7 @@ mod program;
 mod public;
 mod python;
 mod serial;
+mod site;
 mod sources;
 mod tally;
 mod test;
@@ -30,11 +31,12 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 17] = [
+const TASKS: [Task; 18] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
     ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
+    ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),
     ("layers", "the order of crates, modules and files", layers::run),
