@@ -47,7 +47,7 @@ fn add(hash: &mut u64, number: u64) {
 }
 
 fn add_pairs(hash: &mut u64, pairs: &[Pair]) {
-    pairs.iter().for_each(|&(a, b)| add(hash, u64::from(a) << 32 | u64::from(b)));
+    pairs.iter().for_each(|&(a, b)| add(hash, (u64::from(a) << 32) | u64::from(b)));
 }
 
 #[test]
