@@ -36,9 +36,9 @@ fn run() -> Result<(), Box<dyn Error>> {
         // All modes move all vertices, and a dense metric would not differ from the area's.
         ("polynomials", dense, options(), 0.1),
         // Morph targets of single precision, with seams that are welded.
-        ("mouth", mouth, options(), 1.0),
+        ("mouth", mouth, options(), 3.0),
         // Each vertex is moved by few modes, as in a skin.
-        ("strips", strips(0.2)?, options(), 0.5),
+        ("strips", strips(0.2)?, options(), 3.0),
         // Strips that cross at rest: exceptions; pairs with a common vertex count.
         ("crossing", strips(0.0)?, options().filter(touching), 0.5),
     ] {
