@@ -53,7 +53,7 @@ def run_commands(page: str, command: Path) -> int:
 def write_files(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The files that the first page names."""
     monkeypatch.syspath_prepend(str(PROJECT / "python/examples"))
-    from mouth import mouth, mouth_glb
+    from mouth import mouth, mouth_glb  # type: ignore[import-not-found]
 
     character(folder)
     mouth_glb(folder).rename(folder / "face.glb")
@@ -87,7 +87,7 @@ def test_the_rolled_sheet_collides_at_its_end(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(PROJECT / "docs/site"))
-    import sheet
+    import sheet  # type: ignore[import-not-found]
 
     sheet.write(tmp_path)
     assert run_commands("docs/how-it-works.md", command) == 1
