@@ -69,8 +69,8 @@ def problems(site: Path) -> list[str]:
 def first_page(site: Path, pages: dict[Path, Page]) -> int:
     """Bytes that the first page loads, without pictures."""
     start = site / "index.html"
-    loaded = [target for target in pages[start].loads if target.endswith((".css", ".js"))]
-    return start.stat().st_size + sum((site / target).stat().st_size for target in loaded)
+    loaded = [site / target for target in pages[start].loads if target.endswith((".css", ".js"))]
+    return start.stat().st_size + sum(path.stat().st_size for path in loaded if path.is_file())
 
 
 def main(site: Path) -> None:
