@@ -20,7 +20,7 @@ f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
 
 
 def blocks(page: str) -> list[str]:
-    text = (PROJECT / page).read_text()
+    text = (PROJECT / page).read_text(encoding="utf-8")
     return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
 
 
@@ -37,7 +37,7 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def run_commands(page: str, command: Path) -> int:
     """Runs the commands of the page, and returns how many there are."""
-    text = (PROJECT / page).read_text()
+    text = (PROJECT / page).read_text(encoding="utf-8")
     shown = re.findall(r"^```sh\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
     lines = "".join(shown).splitlines()
     for line in lines:

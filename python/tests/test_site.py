@@ -55,7 +55,7 @@ def test_tables_are_made_from_records() -> None:
     )
     marked = 0
     for page in ("results", "benchmarks"):
-        text = (PROJECT / f"docs/{page}.md").read_text()
+        text = (PROJECT / f"docs/{page}.md").read_text(encoding="utf-8")
         assert script("tables").replaced(text) == text
         marked += text.count("<!-- record: ")
     assert marked >= 12
