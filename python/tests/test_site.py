@@ -31,6 +31,7 @@ def script(name: str) -> Any:
         ('<img src="https://example.org/a.png">', "index.html: loads https://example.org/a.png"),
         ('<script src="//example.org/a.js"></script>', "index.html: loads //example.org/a.js"),
         ('<a href="javascript:x()">x</a>', "index.html: loads javascript:x()"),
+        ('<p id="top"></p>', "index.html: two elements have the id top"),
         (100_000 * "x", "index.html: 100,048 bytes with style and script; at most 100,000"),
     ],
 )
