@@ -132,3 +132,5 @@ def on_post_build(config: Any) -> None:
     index = Path(config.site_dir, "search", "search_index.json")
     index.with_suffix(".js").write_text(f"searchIndex = {index.read_text(encoding='utf-8')};\n", encoding="utf-8")
     index.unlink()
+    for sitemap in Path(config.site_dir).glob("sitemap.xml*"):
+        sitemap.unlink()  # it would need an address
