@@ -46,7 +46,8 @@ def main() -> None:
     parser.add_argument("--rustdoc", type=Path, help="the documentation of the crates, as `cargo doc` writes it")
     arguments = parser.parse_args()
     site = arguments.out.resolve()
-    run(sys.executable, HERE / "figures.py", "--check")
+    for script in ("figures.py", "tables.py"):
+        run(sys.executable, HERE / script, "--check")
     if arguments.rustdoc:
         os.environ["SSCC_RUSTDOC"] = "1"
     run(sys.executable, "-m", "mkdocs", "--quiet", "build", "--strict", "--site-dir", site)

@@ -23,13 +23,15 @@ class Page(HTMLParser):
     def __init__(self, path: Path) -> None:
         super().__init__()
         self.anchors: set[str] = set()
+        self.twice: list[str] = []
         self.links: list[str] = []
         self.loads: list[str] = []
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         for name, value in attributes:
-            if name in ("id", "name") and value:
+            if name == "id" and value:
+                self.twice += [value] if value in self.anchors else []
                 self.anchors.add(value)
             elif (tag, name) in LOADED and value:
                 self.loads.append(value)
@@ -44,6 +46,7 @@ def problems(site: Path) -> list[str]:
     found = []
     for path, page in own.items():
         name = path.relative_to(site)
+        found += [f"{name}: two elements have the id {anchor}" for anchor in page.twice]
         for target in page.loads + page.links:
             parts = urlsplit(target)
             if parts.scheme == "data":
@@ -69,8 +72,8 @@ def problems(site: Path) -> list[str]:
 def first_page(site: Path, pages: dict[Path, Page]) -> int:
     """Bytes that the first page loads, without pictures."""
     start = site / "index.html"
-    loaded = [target for target in pages[start].loads if target.endswith((".css", ".js"))]
-    return start.stat().st_size + sum((site / target).stat().st_size for target in loaded)
+    loaded = [site / target for target in pages[start].loads if target.endswith((".css", ".js"))]
+    return start.stat().st_size + sum(path.stat().st_size for path in loaded if path.is_file())
 
 
 def main(site: Path) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from itertools import combinations_with_replacement
 from pathlib import Path
@@ -85,7 +85,7 @@ def whole() -> list[float]:
     return [min(radii[direction] for radii in collisions().values()) for direction in range(DIRECTIONS)]
 
 
-def path(points: list[Point], style: str, close: bool = False) -> str:
+def path(points: Sequence[Point], style: str, close: bool = False) -> str:
     d = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points) + ("Z" if close else "")
     return f'<path d="{d}" {style}/>'
 

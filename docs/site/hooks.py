@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import posixpath
 import re
 from pathlib import Path
 from typing import Any
@@ -76,7 +77,7 @@ def project_path(page: str, target: str) -> str | None:
     path = target.split("#")[0]
     if not path or "://" in target or target.startswith("mailto:"):
         return None
-    return os.path.normpath(f"{os.path.dirname(page)}/{path}" if os.path.dirname(page) else path)
+    return posixpath.normpath(f"{posixpath.dirname(page)}/{path}" if posixpath.dirname(page) else path)
 
 
 def copied(path: str) -> bool:
@@ -86,7 +87,7 @@ def copied(path: str) -> bool:
 
 def rewritten(markdown: str, page: str) -> str:
     """The text of a page of the project with links as they are in the site."""
-    place = "" if page in ROOT_PAGES else os.path.dirname(page).removeprefix("docs").strip("/")
+    place = "" if page in ROOT_PAGES else posixpath.dirname(page).removeprefix("docs").strip("/")
 
     def replace(found: re.Match[str]) -> str:
         image, text, target = found.groups()
@@ -104,7 +105,7 @@ def rewritten(markdown: str, page: str) -> str:
         else:
             return f"{text} (`{path}/` in the project)"  # a folder
         anchor = f"#{target.split('#')[1]}" if "#" in target else ""
-        return f"{image}[{text}]({os.path.relpath(new, place or '.')}{anchor})"
+        return f"{image}[{text}]({posixpath.relpath(new, place or '.')}{anchor})"
 
     parts = re.split(f"({FENCE.pattern})", markdown, flags=FENCE.flags)
     return "".join(part if part.startswith("```") else LINK.sub(replace, part) for part in parts)
@@ -131,3 +132,5 @@ def on_post_build(config: Any) -> None:
     index = Path(config.site_dir, "search", "search_index.json")
     index.with_suffix(".js").write_text(f"searchIndex = {index.read_text(encoding='utf-8')};\n", encoding="utf-8")
     index.unlink()
+    for sitemap in Path(config.site_dir).glob("sitemap.xml*"):
+        sitemap.unlink()  # it would need an address

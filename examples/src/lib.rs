@@ -25,3 +25,8 @@ pub fn exit_code(outcome: Result<(), Box<dyn Error>>) -> ExitCode {
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 mod readme {}
+
+/// Runs the Rust example of the first page of the site.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/index.md")]
+mod first_page {}

@@ -23,6 +23,7 @@ class Tester:
     every: Call | None = None  # all pairs (n, 2), or all faces (n,)
     first: Call | None = None  # one pair; whether there is one
     yes_no: Call | None = None  # whether there is one
+    lists_faces: bool = False
 
 
 def arrays(x: Array, f: Array) -> tuple[Array, Array]:
@@ -155,7 +156,7 @@ def of_pymeshlab() -> Tester:
         meshes.apply_filter("compute_selection_by_self_intersections_per_face")
         return np.flatnonzero(meshes.current_mesh().face_selection_array())
 
-    return Tester("pymeshlab", "GPL-3.0", "floating point", prepare, every)
+    return Tester("pymeshlab", "GPL-3.0", "floating point", prepare, every, lists_faces=True)
 
 
 def of_meshlib() -> Tester:

@@ -20,7 +20,7 @@ f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
 
 
 def blocks(page: str) -> list[str]:
-    text = (PROJECT / page).read_text()
+    text = (PROJECT / page).read_text(encoding="utf-8")
     return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
 
 
@@ -37,7 +37,7 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def run_commands(page: str, command: Path) -> int:
     """Runs the commands of the page, and returns how many there are."""
-    text = (PROJECT / page).read_text()
+    text = (PROJECT / page).read_text(encoding="utf-8")
     shown = re.findall(r"^```sh\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
     lines = "".join(shown).splitlines()
     for line in lines:
@@ -53,7 +53,7 @@ def run_commands(page: str, command: Path) -> int:
 def write_files(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The files that the first page names."""
     monkeypatch.syspath_prepend(str(PROJECT / "python/examples"))
-    from mouth import mouth, mouth_glb
+    from mouth import mouth, mouth_glb  # type: ignore[import-not-found]
 
     character(folder)
     mouth_glb(folder).rename(folder / "face.glb")
@@ -87,7 +87,7 @@ def test_the_rolled_sheet_collides_at_its_end(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(PROJECT / "docs/site"))
-    import sheet
+    import sheet  # type: ignore[import-not-found]
 
     sheet.write(tmp_path)
     assert run_commands("docs/how-it-works.md", command) == 1

@@ -1,17 +1,17 @@
 // Search in all sections of all pages. The index is loaded when the field is first used; it is a script, because a page that was
 // opened as a file may not fetch.
 const script = document.currentScript;
-const field = document.getElementById("search");
-const list = document.getElementById("results");
+const field = document.getElementById("site-search");
+const list = document.getElementById("site-results");
 let searchIndex;
 
 /** Words of a text that can be compared: small letters, without accents. */
 const plain = (text) => text.toLowerCase().normalize("NFKD").replace(/[\u0300-\u036f]/g, "");
 
 function load() {
-  if (document.getElementById("index")) return;
+  if (document.getElementById("site-index")) return;
   const index = document.createElement("script");
-  index.id = "index";
+  index.id = "site-index";
   index.src = `${script.dataset.root}/search/search_index.js`;
   index.onload = search;
   document.head.append(index);
