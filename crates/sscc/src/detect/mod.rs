@@ -40,6 +40,6 @@ mod vertex_store;
 
 pub use answer::{Answer, Proof, Statistics};
 pub(crate) use colliding_pairs::colliding_pairs;
-pub(crate) use detector::detector_of_model;
 pub use detector::{Clearance, Detector, Enclosed, detector_with_weld_classes};
+pub(crate) use detector::{detector_of_model, near_pairs_of_model};
 pub use narrow_phase::{Impact, NearPair};

@@ -7,6 +7,7 @@ mod batch;
 mod cancel;
 mod ccd;
 mod certificates;
+mod certified_clearance;
 mod clearance;
 mod clusters;
 mod common;

@@ -61,7 +61,8 @@ impl CertifiedRadii {
         preparation: Preparation,
     ) -> Certificates {
         let tree_bytes = self.pair_tree.len() * size_of::<PairEntry>();
-        let local = if options.local_budget == 0 {
+        // Local certificates prove that parts do not collide, not how far apart they stay.
+        let local = if options.local_budget == 0 || options.clearance.is_some() {
             LocalCertificates::default()
         } else {
             let bytes = |budget: usize| budget.saturating_mul(model.mesh().faces().len());
