@@ -359,7 +359,7 @@ mutants! {
     /// Boxes from coarse positions are not widened by a clearance.
     CoarseBoxesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Boxes of nodes from exact bounds are not widened by a clearance.
-    NodesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
+    NodesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_found_where_positions_must_be_exact");
     /// With certificates triangles nearer than a clearance are separated as if they had to touch.
     SeparatedWithoutClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Widened boxes are not rounded.

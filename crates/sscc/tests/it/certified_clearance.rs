@@ -292,6 +292,30 @@ fn near_pairs_are_the_same_with_and_without_certificates() {
     );
 }
 
+/// Where large displacements cancel, positions and boxes are computed in double precision: the boxes are as wide.
+#[test]
+fn near_pairs_are_found_where_positions_must_be_exact() {
+    let strip = |z: f64| (0..300).map(move |i| DVec3::new(f64::from(i / 2) * 0.1, f64::from(i % 2) * 0.1, z));
+    let positions: Vec<DVec3> = strip(0.0).chain(strip(1.0)).collect();
+    let faces = [0_u32, 300].into_iter().flat_map(|first| (first..first + 298).map(|i| [i, i + 1, i + 2]));
+    // The first mode lowers the upper strip, the others move everything to and fro.
+    let modes = (0..600).flat_map(|v| [if v < 300 { DVec3::ZERO } else { -DVec3::Z }, DVec3::X, -DVec3::X]);
+    let mesh = TriMesh::new(positions, faces.collect()).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(3, modes.collect()).unwrap()).unwrap();
+    let clearance = Clearance::new(0.2).unwrap().beyond_rings(8);
+    for budget in [0, 64] {
+        let options = CertifyOptions::default().clearance(clearance).budget(budget);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let mut query = Query::new(&model, &certificates).unwrap();
+        for (lowered, is_near) in [(0.7, false), (0.85, true)] {
+            let q = [lowered, 3e4, 3e4];
+            let near = query.within(&q, &clearance).unwrap();
+            assert_eq!(near, near_by_brute_force(&model, &certificates.parts().scope, &q, &clearance));
+            assert_eq!(!near.is_empty(), is_near);
+        }
+    }
+}
+
 /// Two triangles one unit apart along a diagonal; one mode moves the second one towards the first, another one both.
 fn two_plates() -> ReducedModel {
     let along = DVec3::ONE.normalize();
