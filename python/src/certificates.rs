@@ -12,6 +12,7 @@ use crate::answer::{Answer, Reduction};
 use crate::arguments::{check_ending, count, path};
 use crate::arrays::{line, pairs, vector};
 use crate::batch::{self, Batch};
+use crate::clearance::{self, NearArrays, near_arrays};
 use crate::errors::{file, refused, value};
 use crate::hierarchy::Hierarchy;
 use crate::impacts::Impacts;
@@ -46,7 +47,9 @@ impl Certificates {
     #[inline]
     fn is_quick(&self, q: &[f64]) -> bool {
         let core = self.core();
-        core.exceptions().is_empty() && core.norm(q).is_ok_and(|norm| norm < core.root_radius())
+        core.clearance().is_none()
+            && core.exceptions().is_empty()
+            && core.norm(q).is_ok_and(|norm| norm < core.root_radius())
     }
 }
 
@@ -90,6 +93,19 @@ impl Certificates {
         };
         let found = if self.is_quick(&q) { run() } else { answer(py, run)? };
         found.map_err(|error| refused(&error, "q"))
+    }
+
+    #[pyo3(signature = (q, clearance, *, rings=None))]
+    fn within<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        clearance: &Bound<'py, PyAny>,
+        rings: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<NearArrays<'py>> {
+        let (q, clearance) = (vector(q, "q")?, clearance::clearance(clearance, rings)?);
+        let run = || self.pool.with_query(|query| Ok(query.within(&q, &clearance)?.to_vec()));
+        near_arrays(py, &answer(py, run)?.map_err(|error| refused(&error, "q"))?)
     }
 
     #[pyo3(signature = (Q, limit=None, *, threads=None, progress=None))]
@@ -255,6 +271,16 @@ impl Certificates {
     #[getter]
     fn exceptions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         pairs(py, self.core().exceptions())
+    }
+
+    #[getter]
+    fn clearance(&self) -> Option<f64> {
+        self.core().clearance().map(|clearance| clearance.distance())
+    }
+
+    #[getter]
+    fn rings(&self) -> Option<u32> {
+        self.core().clearance().map(|clearance| clearance.rings())
     }
 
     #[getter]

@@ -6,11 +6,12 @@ use pyo3::prelude::*;
 use sscc::parts::{
     DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, check_models, is_reach,
 };
-use sscc::{CertifyOptions, ContactFilter, Error};
+use sscc::{CertifyOptions, Clearance, ContactFilter, Error};
 
 use crate::arguments::{choice, count, neighbours_by_name, number, switch};
 use crate::arrays::vector;
 use crate::certificates::Certificates;
+use crate::clearance::clearance;
 use crate::errors::{refused, value};
 use crate::groups::with_groups;
 use crate::interrupt::run;
@@ -31,6 +32,8 @@ pub struct CertifyArguments<'a, 'py> {
     pub weld: Option<&'a Bound<'py, PyAny>>,
     pub ignore_rest: Option<&'a Bound<'py, PyAny>>,
     pub max_exceptions: Option<&'a Bound<'py, PyAny>>,
+    pub clearance: Option<&'a Bound<'py, PyAny>>,
+    pub rings: Option<&'a Bound<'py, PyAny>>,
     pub groups: Option<&'a Bound<'py, PyAny>>,
     pub ignore_groups: Option<&'a Bound<'py, PyAny>>,
     pub threads: Option<&'a Bound<'py, PyAny>>,
@@ -43,6 +46,15 @@ enum Scheme {
 }
 
 impl CertifyArguments<'_, '_> {
+    /// Returns the clearance; none without one.
+    fn clearance(&self) -> PyResult<Option<Clearance>> {
+        match (self.clearance, self.rings) {
+            (Some(distance), rings) => clearance(distance, rings).map(Some),
+            (None, Some(_)) => Err(value("rings is set without clearance: set both, or neither")),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// Returns the options of the core. An error names the argument.
     pub fn options(&self, loaded: &LoadedModel) -> PyResult<CertifyOptions> {
         let model = &loaded.model;
@@ -91,6 +103,7 @@ impl CertifyArguments<'_, '_> {
             .filter(with_groups(filter, triangles, self.groups, self.ignore_groups)?)
             .ignore_rest(rest_rings(self.ignore_rest)?)
             .max_exceptions(count(self.max_exceptions, "max_exceptions", 0..=usize::MAX)?)
+            .clearance(self.clearance()?)
             .budget(budget)
             .local_budget(local_budget)
             .reach(reach)

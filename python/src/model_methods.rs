@@ -87,7 +87,8 @@ impl Model {
 
     #[allow(clippy::too_many_arguments)]
     #[pyo3(signature = (*, epsilon=None, metric=None, center=None, scheme=None, budget=None, local_budget=None, reach=None,
-        neighbours=None, weld=None, ignore_rest=None, max_exceptions=None, groups=None, ignore_groups=None, threads=None, progress=None))]
+        neighbours=None, weld=None, ignore_rest=None, max_exceptions=None, clearance=None, rings=None, groups=None, ignore_groups=None,
+        threads=None, progress=None))]
     fn certify(
         slf: &Bound<'_, Self>,
         epsilon: Option<&Bound<'_, PyAny>>,
@@ -101,6 +102,8 @@ impl Model {
         weld: Option<&Bound<'_, PyAny>>,
         ignore_rest: Option<&Bound<'_, PyAny>>,
         max_exceptions: Option<&Bound<'_, PyAny>>,
+        clearance: Option<&Bound<'_, PyAny>>,
+        rings: Option<&Bound<'_, PyAny>>,
         groups: Option<&Bound<'_, PyAny>>,
         ignore_groups: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
@@ -118,6 +121,8 @@ impl Model {
             weld,
             ignore_rest,
             max_exceptions,
+            clearance,
+            rings,
             groups,
             ignore_groups,
             threads,

@@ -69,6 +69,8 @@ class Model:
         weld: bool | None = None,
         ignore_rest: bool | int | None = None,
         max_exceptions: int | None = None,
+        clearance: float | None = None,
+        rings: SupportsIndex | None = None,
         groups: ArrayLike | None = None,
         ignore_groups: ArrayLike | None = None,
         threads: int | None = None,
@@ -88,6 +90,8 @@ class Model:
         weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
         ignore_rest: True: pairs that collide at rest never count; a number: neither do those within so many rings of them.
         max_exceptions: largest number of pairs that collide at the centre and are tested in every query; None: F / 2.
+        clearance: radii at which triangles come nearer than this, in place of those at which they collide: for ``within``; other queries
+            are answered without certificates. ``rings``: triangles within so many rings of each other on the surface do not count; None: 1.
         groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
         ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.
         threads: None: all cores. The certificates are the same for any number.
@@ -159,6 +163,13 @@ class Certificates:
         """Writes ``*.sscc.safetensors``, whole or not at all."""
     def check(self, q: ArrayLike, limit: SupportsIndex | None = None) -> Answer:
         """The pairs of triangles that collide at q (r,). ``limit``: the search ends after this number of pairs."""
+    def within(
+        self, q: ArrayLike, clearance: float, *, rings: SupportsIndex | None = None
+    ) -> tuple[_U32, _F64]:
+        """All pairs (n, 2) nearer than a clearance at q (r,), and their distances (n,), as ``Detector.within`` finds them at the positions.
+
+        Certificates of this clearance, or of a larger one, beyond no more rings, answer most q by one comparison.
+        """
     def check_many(
         self,
         Q: ArrayLike,
@@ -257,6 +268,12 @@ class Certificates:
     @property
     def exceptions(self) -> _U32:
         """Pairs that collide at the centre, (n, 2): no radius covers them, and every query tests them."""
+    @property
+    def clearance(self) -> float | None:
+        """The clearance that triangles keep below the radii; None: they do not collide."""
+    @property
+    def rings(self) -> int | None:
+        """Triangles within so many rings of each other need not keep the clearance; None without one."""
     @property
     def rest_collisions(self) -> int:
         """Number of pairs that collide at rest, ignored ones included."""

@@ -51,6 +51,8 @@ pub fn request(
         ignore_rest: typed.ignore_rest,
         groups: groups(&typed.groups),
         max_exceptions: typed.max_exceptions,
+        clearance: None,
+        any_clearance: false,
         scheme: typed.scheme.map(|scheme| match scheme {
             args::Scheme::Paper => Scheme::Paper,
             args::Scheme::Full => Scheme::Full,

@@ -28,11 +28,12 @@ macro_rules! settings {
 }
 
 settings! {
-    Against "against", AgainstMesh "against_mesh", Budget "budget", Cache "cache", Center "center", Epsilon "epsilon",
+    Against "against", AgainstMesh "against_mesh", Budget "budget", Cache "cache", Center "center", Clearance "clearance",
+    Epsilon "epsilon",
     Fix "fix", Frames "frames", From "from", GroupBy "group_by", IgnoreGroups "ignore_groups", IgnoreRest "ignore_rest",
     Kind "kind", LocalBudget "local_budget", Material "material", MaxExceptions "max_exceptions", MeshName "mesh_name",
     Metric "metric", Models "models", Modes "modes", Node "node", OnlyGroups "only_groups", Out "out", Q "q",
-    Range "range", Rank "rank", Reach "reach", Resolution "resolution", Restart "restart", Scheme "scheme", Steps "steps",
+    Range "range", Rank "rank", Reach "reach", Resolution "resolution", Restart "restart", Rings "rings", Scheme "scheme", Steps "steps",
 }
 
 /// Text of a message, with settings in it. It is displayed with their names in Rust and in Python.

@@ -15,6 +15,13 @@ pub enum ZeroRadius {
         /// Whether `--ignore-rest` is absent, and would reduce the pairs to at most `max_exceptions`.
         can_ignore_rest: bool,
     },
+    /// More pairs are nearer than the clearance at the centre than may be exceptions.
+    Near {
+        /// The largest number of exceptions.
+        max_exceptions: usize,
+        /// Beyond how many rings pairs count.
+        rings: u32,
+    },
     /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
     TooClose {
         /// Triangles of the smallest part with radius 0, sorted.
@@ -38,6 +45,17 @@ impl ZeroRadius {
         }
         let mut query = Query::new(model, certificates)?.cancelled_by(progress.cancel_token().cloned());
         let center = certificates.center();
+        if let Some(clearance) = certificates.clearance() {
+            let near = query.within(center, &clearance)?.iter();
+            let is_other = |pair| certificates.exceptions().binary_search(pair).is_err();
+            let others = near.filter(|near| is_other(&near.pair)).count();
+            let default = default_exceptions(model.mesh().faces().len());
+            let max_exceptions = request.max_exceptions.unwrap_or(default);
+            return Ok(Some(match others {
+                0 => Self::TooClose { triangles: smallest_zero_node(certificates) },
+                _ => Self::Near { max_exceptions, rings: clearance.rings() },
+            }));
+        }
         let mut others = query.discrete(center)?.to_vec();
         others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
         if others.is_empty() {

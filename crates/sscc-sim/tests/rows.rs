@@ -88,6 +88,7 @@ fn rows_in_blocks_are_those_of_single_queries() {
         limit,
         clearance: None,
         threads,
+        is_certified: false,
         contacts: ContactOptions { depths: true, curves: false },
     };
     let mut single = query();
@@ -148,6 +149,7 @@ fn a_row_that_is_no_configuration_is_refused() {
         limit: None,
         clearance: None,
         threads: None,
+        is_certified: false,
         contacts,
     };
     let mut answered = 0;

@@ -213,6 +213,16 @@ pub enum Error {
         /// Maximum number of pairs of an answer.
         most: usize,
     },
+    /// A clearance beyond so many rings that the pairs within them cannot be listed.
+    #[error(
+        "within {rings} rings of each other there are more than {most} pairs of triangles: choose fewer rings"
+    )]
+    TooManyRings {
+        /// Maximum number of pairs.
+        most: usize,
+        /// The rings asked for.
+        rings: u32,
+    },
     /// An option out of range.
     #[error("{name} is {value}: it must be {wanted}")]
     Option {
@@ -239,6 +249,11 @@ pub enum Error {
         /// Digest of the model (first bytes).
         model: String,
     },
+    /// Certificates with a clearance, where collisions must be proven.
+    #[error(
+        "the certificates have a clearance, so they prove nothing about collisions: certify anew without"
+    )]
+    ClearanceCertificates,
     /// Certificates of another contact filter than that of the query.
     #[error("the certificates are of another contact filter: {what}; certify anew")]
     OtherPairs {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::model::{Model, Options};
 use super::values::Json;
 use clap::Args;
+use sscc::Clearance;
 
 /// `sscc certify`
 #[derive(Debug, Args)]
@@ -13,6 +14,7 @@ use clap::Args;
         "sscc certify bunny.model.safetensors -o bunny.sscc.safetensors"
         "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 256 --reach 32"
         "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
+        "sscc certify spring.model.safetensors -o near.sscc.safetensors --clearance 0.01 --rings 3"
         "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
     )
 )]
@@ -27,7 +29,44 @@ pub struct Certify {
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     #[command(flatten)]
+    pub clearance: CertifiedClearance,
+    #[command(flatten)]
     pub options: Options,
     #[command(flatten)]
     pub json: Json,
+}
+
+/// The clearance of certificates.
+#[derive(Debug, Args)]
+pub struct CertifiedClearance {
+    /// Certify at which |z| triangles come nearer than this distance (in units of the mesh), in place of when they collide: for
+    /// check --clearance up to D. Such certificates prove nothing about collisions
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub clearance: Option<f64>,
+    /// With --clearance: leave out triangles within N rings of each other on the surface: 1 for a common vertex, 2 for a common
+    /// neighbour of this kind, and so on [default: 1]
+    #[arg(long, value_name = "N", requires = "clearance", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub rings: Option<u32>,
+}
+
+impl CertifiedClearance {
+    /// Returns the clearance that is asked for.
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn of(&self) -> anyhow::Result<Option<Clearance>> {
+        clearance(self.clearance, self.rings)
+    }
+}
+
+/// Returns the clearance of `--clearance` and `--rings`.
+///
+/// # Errors
+/// When it is not positive and finite.
+pub fn clearance(distance: Option<f64>, rings: Option<u32>) -> anyhow::Result<Option<Clearance>> {
+    let of = |distance: f64| match Clearance::new(distance) {
+        Ok(clearance) => Ok(clearance.beyond_rings(rings.unwrap_or(1))),
+        Err(_) => anyhow::bail!("--clearance is {distance}: it must be positive and finite"),
+    };
+    distance.map(of).transpose()
 }

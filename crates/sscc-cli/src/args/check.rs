@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::certify::clearance;
 use super::model::{Model, Options};
 use super::motion::Motion;
 use super::values::{Json, method};
@@ -29,6 +30,7 @@ use sscc::{Clearance, Method};
         "sscc check character.glb#shirt --against character.glb#body"
         "sscc check bunny.obj --depths --json"
         "sscc check face.obj --against bunny.obj --clearance 0.2"
+        "sscc check spring.model.safetensors --trajectory q.npy --clearance 0.01 --rings 3 --certificates near.sscc.safetensors"
     ),
     after_help = "\
 With --q or --trajectory, the certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a \
@@ -61,12 +63,13 @@ pub struct Check {
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
     /// List the pairs nearer than this distance (in units of the mesh) in place of those that collide, with their distances,
-    /// and tell the smallest distance; triangles with a common vertex never count
+    /// and tell the smallest distance; triangles with a common vertex never count. With --certificates of this clearance, or a larger
+    /// one, most answers take one comparison; then the smallest distance is told only where it is below
     #[arg(
         long,
         value_name = "D",
         allow_hyphen_values = true,
-        conflicts_with_all = ["continuous", "first", "limit", "depths", "curves", "pose", "report", "method", "certificates", "neighbours"]
+        conflicts_with_all = ["continuous", "first", "limit", "depths", "curves", "pose", "report", "method", "neighbours"]
     )]
     pub clearance: Option<f64>,
     /// With --clearance: leave out triangles of one mesh within N rings of each other on the surface: 1 for a common vertex, 2 for a
@@ -111,11 +114,7 @@ impl Check {
     /// # Errors
     /// When it is not positive and finite.
     pub fn clearance(&self) -> anyhow::Result<Option<Clearance>> {
-        let of = |distance: f64| match Clearance::new(distance) {
-            Ok(clearance) => Ok(clearance.beyond_rings(self.rings.unwrap_or(1))),
-            Err(_) => anyhow::bail!("--clearance is {distance}: it must be positive and finite"),
-        };
-        self.clearance.map(of).transpose()
+        clearance(self.clearance, self.rings)
     }
 
     /// Returns the maximum number of pairs for each query.

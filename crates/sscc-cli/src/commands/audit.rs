@@ -3,6 +3,7 @@
 use anyhow::Context;
 use serde::Serialize;
 use sscc::AuditOptions;
+use sscc_sim::CertificateRequest;
 
 use crate::args::Audit;
 use crate::outcome::Outcome;
@@ -23,7 +24,10 @@ struct Report {
 pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
-    let certificates = load::request(&loaded, &args.model, &args.options)?.read(&args.certificates, model)?;
+    let request = load::request(&loaded, &args.model, &args.options)?;
+    // Those of a clearance are attacked with near pairs.
+    let request = CertificateRequest { any_clearance: true, ..request };
+    let certificates = request.read(&args.certificates, model)?;
     let options = AuditOptions::default()
         .samples(args.samples as usize)
         .seed(args.seed)

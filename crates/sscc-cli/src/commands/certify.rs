@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use serde::Serialize;
-use sscc::Certificates;
+use sscc::{Certificates, Clearance};
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::write_whole;
-use sscc_sim::ZeroRadius;
+use sscc_sim::{CertificateRequest, ZeroRadius};
 use sscc_view::Picture;
 
 use super::zero_radius;
@@ -32,6 +32,11 @@ struct Report {
     bytes: usize,
     rest_collisions: u64,
     exceptions: usize,
+    /// The clearance, and beyond how many rings; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rings: Option<u32>,
 }
 
 pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
@@ -46,7 +51,11 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     }
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
-    let request = load::request(&loaded, &args.model, &args.options)?;
+    let clearance = args.clearance.of()?;
+    if let (Some(_), Some(path)) = (clearance, &args.picture) {
+        bail!("{}: --picture draws shapes that are free: leave it out with --clearance", path.display());
+    }
+    let request = CertificateRequest { clearance, ..load::request(&loaded, &args.model, &args.options)? };
     let options = request.options(model)?;
     let start = Instant::now();
     let certificates = load::certify(model, &args.model.path, &options)?;
@@ -77,6 +86,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         bytes: bytes.len(),
         rest_collisions: certificates.rest_collisions(),
         exceptions: certificates.exceptions().len(),
+        clearance: clearance.map(|clearance| clearance.distance()),
+        rings: clearance.map(|clearance| clearance.rings()),
     };
     let zero_radius = ZeroRadius::find(model, &certificates, &request, interrupt::token())?;
     let mut out = Output::new();
@@ -100,6 +111,9 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
 
 /// Returns the meaning of the root's radius as text.
 fn promise(certificates: &Certificates, zero_radius: Option<&ZeroRadius>) -> String {
+    if let Some(clearance) = certificates.clearance() {
+        return near_promise(certificates, &clearance, zero_radius);
+    }
     let exceptions = !certificates.exceptions().is_empty();
     let filter = certificates.filter();
     let ignored = !filter.ignored().is_empty() || filter.groups().is_some();
@@ -107,7 +121,7 @@ fn promise(certificates: &Certificates, zero_radius: Option<&ZeroRadius>) -> Str
         (Some(ZeroRadius::Colliding { .. }), ..) => {
             "the shape collides with itself at the centre; the parts that do not are certified".into()
         }
-        (Some(ZeroRadius::TooClose { .. }), ..) => {
+        (Some(ZeroRadius::Near { .. } | ZeroRadius::TooClose { .. }), ..) => {
             "two triangles nearly touch at the centre; the parts without both are certified".into()
         }
         (None, false, false) => "below it the whole shape is free".into(),
@@ -117,6 +131,23 @@ fn promise(certificates: &Certificates, zero_radius: Option<&ZeroRadius>) -> Str
             "below it the whole shape is free, apart from exceptions and ignored pairs".into()
         }
     }
+}
+
+/// Returns the meaning of the root's radius with a clearance as text.
+fn near_promise(
+    certificates: &Certificates,
+    clearance: &Clearance,
+    zero_radius: Option<&ZeroRadius>,
+) -> String {
+    let distance = length(clearance.distance());
+    if zero_radius.is_some() {
+        return format!(
+            "triangles are nearer than {distance} at the centre; the parts without them are certified"
+        );
+    }
+    let exceptions = if certificates.exceptions().is_empty() { "" } else { ", apart from exceptions" };
+    let rings = counted(u64::from(clearance.rings().max(1)), "ring");
+    format!("below it no triangles more than {rings} apart are nearer than {distance}{exceptions}")
 }
 
 /// Returns the limit of the pair tree as text; empty without a pair tree.

@@ -18,6 +18,12 @@ pub fn note(reason: &ZeroRadius) -> String {
                  one have radius 0; raise --max-exceptions{ignore}"
             )
         }
+        ZeroRadius::Near { max_exceptions, rings } => format!(
+            "more pairs are nearer than the clearance at the centre than may be exceptions ({max_exceptions}): parts that \
+             contain one have radius 0; leave out more of the surface with --rings {}, choose a smaller --clearance, or raise \
+             --max-exceptions",
+            rings + 1
+        ),
         ZeroRadius::TooClose { triangles } => format!(
             "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
              radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \

@@ -120,6 +120,117 @@ fn unusable_clearances_are_refused() {
     assert!(check(folder.path(), &["mesh.obj", "--rings=2"]).refusal().contains("--clearance"));
 }
 
+/// Certificates with a clearance answer alike, and are refused for anything else.
+#[test]
+fn certificates_with_a_clearance_serve_near_pairs_alone() {
+    let folder = strips();
+    let folder = folder.path();
+    let model = "strips.model.safetensors";
+    let certify = |output: &str, args: &[&str]| {
+        let run = sscc(folder, &[&["certify", model, "-o", output, "--json"], args].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run.json().remove(0)
+    };
+    let report = certify("near.sscc.safetensors", &["--clearance", "0.4", "--rings", "50"]);
+    assert_eq!((&report["clearance"], &report["rings"]), (&json!(0.4), &json!(50)));
+    assert!(report["root_radius"].as_f64().unwrap() > 0.0, "{report}");
+    let plain = certify("plain.sscc.safetensors", &[]);
+    assert_eq!((plain.get("clearance"), plain.get("rings")), (None, None));
+    let near = ["--rings=50", "--certificates", "near.sscc.safetensors"];
+    let mut proofs = Vec::new();
+    for (q, clearance, code) in
+        [("0,0", "0.4", 0), ("0.5,0", "0.4", 0), ("0.7,0", "0.4", 1), ("0.7,0", "0.2", 0), ("1,0", "0.3", 1)]
+    {
+        let asked = [model, &format!("--q={q}"), &format!("--clearance={clearance}")];
+        let with = &lines(folder, &[&asked[..], &near].concat(), code)[0];
+        let without = &lines(folder, &[&asked[..], &["--rings=50"]].concat(), code)[0];
+        assert_eq!(keys(with), sorted(KEYS));
+        for key in ["pairs", "distances", "colliding", "norm", "clearance", "rings"] {
+            assert_eq!(with[key], without[key], "{q} {clearance} {key}");
+        }
+        // The smallest distance beyond the clearance is left open.
+        let told = if code == 1 { without["distance"].clone() } else { Value::Null };
+        assert_eq!(with["distance"], told, "{q} {clearance}");
+        proofs.push(with["proof"].clone());
+    }
+    assert_eq!(proofs[0], json!("radius"));
+    assert!(proofs.contains(&json!("search")), "{proofs:?}");
+    let text = check(folder, &[&[model, "--q=0,0", "--clearance=0.4"][..], &near].concat()).stdout;
+    assert!(
+        text.starts_with(
+            "clear: no triangles are nearer than 0.4000, by the root's certificate, apart from "
+        ),
+        "{text}"
+    );
+
+    let refused = |args: &[&str]| check(folder, &[&[model, "--q=0,0"], args].concat()).refusal().to_owned();
+    let file = "near.sscc.safetensors";
+    assert_eq!(
+        refused(&["--clearance=0.5", "--rings=50", "--certificates", file]),
+        format!("error: {file}: certified with a smaller --clearance (0.4) than 0.5; certify anew")
+    );
+    assert_eq!(
+        refused(&["--clearance=0.4", "--rings=49", "--certificates", file]),
+        format!("error: {file}: certified beyond 50 rings, more than --rings 49; certify anew")
+    );
+    assert_eq!(
+        refused(&["--clearance=0.4", "--certificates", "plain.sscc.safetensors"]),
+        "error: plain.sscc.safetensors: certified without --clearance; certify anew"
+    );
+    let cause = "certified with a clearance (0.4), which proves nothing about collisions; add --clearance to ask for near pairs, or certify \
+                 anew without";
+    assert_eq!(refused(&["--certificates", file]), format!("error: {file}: {cause}"));
+    for command in ["sweep", "resolve", "view"] {
+        let q: &[&str] = if command == "resolve" { &["--q=0,0"] } else { &[] };
+        let run = sscc(folder, &[&[command, model, "--certificates", file], q].concat());
+        assert!(run.refusal().contains("proves nothing about collisions"), "{command}: {run:?}");
+    }
+    for (value, name) in [("0", "0"), ("-1", "-1"), ("inf", "inf"), ("nan", "NaN")] {
+        let run =
+            sscc(folder, &["certify", model, "-o", "x.sscc.safetensors", &format!("--clearance={value}")]);
+        assert_eq!(run.refusal(), format!("error: --clearance is {name}: it must be positive and finite"));
+    }
+    let audited = sscc(folder, &["audit", model, "--certificates", file, "--samples=300", "--json"]);
+    assert_eq!((audited.code, &audited.json()[0]["violations"]), (Some(0), &json!(0)), "{audited:?}");
+    let info = sscc(folder, &["info", file]);
+    assert!(
+        info.stdout.contains("clearance      0.4000, beyond 50 rings; nothing about collisions"),
+        "{info:?}"
+    );
+    let info = &sscc(folder, &["info", file, "--json"]).json()[0];
+    assert_eq!((&info["clearance"], &info["rings"]), (&json!(0.4), &json!(50)));
+    // Where too many pairs are near at the centre a note names the remedy.
+    let close = sscc(
+        folder,
+        &[
+            "certify",
+            model,
+            "-o",
+            "close.sscc.safetensors",
+            "--clearance=3",
+            "--rings=1",
+            "--max-exceptions=0",
+        ],
+    );
+    assert!(close.stderr.contains("leave out more of the surface with --rings 2"), "{close:?}");
+}
+
+/// The commands of `docs/command.md`.
+#[test]
+fn the_guide_certifies_a_clearance() {
+    let folder = strips();
+    let folder = folder.path();
+    fs::copy(folder.join("strips.model.safetensors"), folder.join("face.model.safetensors")).unwrap();
+    sscc_io::write_npy(&folder.join("q.npy"), &[3, 2], &[0.0, 0.0, 0.1, 0.0, 0.9, 0.0]).unwrap();
+    let guide = include_str!("../../../../docs/command.md");
+    let section = guide.split("### Certificates with a clearance").nth(1).unwrap();
+    let block = section.split("```").nth(1).unwrap();
+    let run = |line: &str| sscc(folder, &line.split(' ').skip(1).collect::<Vec<_>>());
+    let codes: Vec<_> = block.lines().skip(1).map(|line| run(line).code).collect();
+    // The strips come as near as 0.1 in the last row.
+    assert_eq!(codes, [Some(0), Some(1), Some(0)]);
+}
+
 /// A cube from -half to half along each axis, around (at, 0, 0).
 fn cube(at: f64, half: f64) -> String {
     let corner = |i: u8| {

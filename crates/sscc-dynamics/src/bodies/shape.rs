@@ -35,7 +35,7 @@ impl Shape {
     /// for the cost.
     ///
     /// # Errors
-    /// When certificates or elasticity do not belong to this model, linear forces couple modes, or nonlinear forces are
+    /// When certificates or elasticity do not belong to this model, the certificates have a clearance, linear forces couple modes, or nonlinear forces are
     /// not the gradient of an energy.
     pub fn new(
         model: ReducedModel,
@@ -44,6 +44,9 @@ impl Shape {
         mass: MassProperties,
     ) -> Result<Self, DynamicsError> {
         certificates.check_model(&model)?;
+        if certificates.clearance().is_some() {
+            return Err(sscc::Error::ClearanceCertificates.into());
+        }
         let (r, found) = (model.rank(), elasticity.rank());
         if found != r {
             return Err(DynamicsError::Rank { found, rank: r });

@@ -18,6 +18,8 @@
 //! | `ignored` | U32 | i x 2 | ignored triangle pairs, sorted |
 //! | `groups` | U32 | N | the group of each triangle; absent where all pairs of groups count |
 //! | `group_pairs` | U32 | g x 2 | pairs of groups `a <= b`, sorted; with `groups` only |
+//! | `clearance` | F64 | 1 | below a radius no pair that counts is nearer than this; absent: none collides. With it triangles with a common vertex do not count |
+//! | `clearance_rings` | U32 | 1 | with `clearance` only: pairs within so many rings of each other on the surface do not count |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
 //! | `pair_limit` | F64 | 1 | the pair tree holds all node pairs with a smaller radius: a missing node pair is certified up to here; 0: no tree |
 //! | `pair_starts` | U32 | n or 0 | for each node, the index of the first pair of its children; 2^32 - 1: no pair is below the limit, or the node is a bucket |
@@ -42,9 +44,9 @@
 //! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). With
 //! `groups` also `group_pairs`: what the tensor of that name lists ("ignored": pairs that do not count, the others do;
 //! "counted": pairs that count, the others do not). The name of the scheme implies nothing. A bucket has at most 64
-//! triangles and is not the root; the tree holds no pairs within a bucket. Local certificates are new in version 6, groups
-//! in version 5; version 6 has no flat patches. Files are written in
-//! the oldest of 4, 5 and 7 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
+//! triangles and is not the root; the tree holds no pairs within a bucket. Clearances are new in version 8, local
+//! certificates in version 6, groups in version 5; version 6 has no flat patches. Files are written in
+//! the oldest of 4, 5, 7 and 8 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
 //! tree, and a text `pairs` ("root-children").
 
 use std::path::Path;
@@ -53,7 +55,8 @@ use sscc::parts::{CertificateParts, Digest, Hierarchy, LocalCertificates, Node, 
 use sscc::{Certificates, ContactFilter, Neighbours, Pair};
 
 use super::{
-    ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_groups, local_certificates, metric,
+    ANY, CERTIFICATES, Container, ContainerWriter, Kind, certificate_clearance, certificate_groups,
+    local_certificates, metric,
 };
 use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
@@ -71,8 +74,10 @@ fn scheme(tree: &PairTree, local: &LocalCertificates) -> &'static str {
     if tree.limit() > 0.0 || !local.nodes.is_empty() { "full" } else { "paper" }
 }
 
-const TENSORS: [&str; 21] = [
+const TENSORS: [&str; 23] = [
     "center",
+    certificate_clearance::CLEARANCE,
+    certificate_clearance::RINGS,
     "epsilon",
     "exceptions",
     certificate_groups::PAIRS,
@@ -128,14 +133,16 @@ pub fn certificates_to_bytes(certificates: &Certificates) -> Result<Vec<u8>, For
     let (node_radii, pair_radii) = (&parts.node_radii, &parts.root_pair_radii);
     let tree = &parts.pair_tree;
     let (tree_radii, tree_links): (Vec<f32>, Vec<u32>) = tree.entries().unzip();
-    let version = match (parts.local.nodes.is_empty(), scope.filter.groups()) {
-        (false, _) => local_certificates::VERSION,
-        (true, Some(_)) => certificate_groups::VERSION,
-        (true, None) => PLAIN_VERSION,
+    let version = match (scope.clearance, parts.local.nodes.is_empty(), scope.filter.groups()) {
+        (Some(_), ..) => certificate_clearance::VERSION,
+        (None, false, _) => local_certificates::VERSION,
+        (None, true, Some(_)) => certificate_groups::VERSION,
+        (None, true, None) => PLAIN_VERSION,
     };
     let mut writer = ContainerWriter::new(Kind { version, ..CERTIFICATES });
     metric::write(&mut writer, &scope.metric);
     certificate_groups::write(&mut writer, &scope.filter);
+    certificate_clearance::write(&mut writer, scope.clearance);
     local_certificates::write(&mut writer, &parts.local);
     writer
         .text("scheme", scheme(tree, &parts.local))
@@ -203,6 +210,7 @@ pub fn certificates_from_bytes(bytes: &[u8]) -> Result<Certificates, FormatError
         center: center.values,
         filter: certificate_groups::read(&file, ContactFilter::new(neighbours).weld(weld).ignoring(ignored))?,
         exceptions: read_pairs(&file, "exceptions")?,
+        clearance: certificate_clearance::read(&file)?,
     };
     let one = |name| file.f64(name)?.shaped(&[1]);
     let epsilon = one("epsilon")?;

@@ -22,7 +22,7 @@ pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", ver
 /// version 2 has no pair tree. The pair tree of version 3 includes pairs within buckets and is not read. Version 4 has
 /// no groups of triangles, version 5 no local certificates; files without them are still written in the older version. Version 6 has no
 /// flat patches among them.
-pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 7 };
+pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 8 };
 
 impl Kind {
     /// Checks the text entries `format` and `version`, and returns the version.

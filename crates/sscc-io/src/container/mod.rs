@@ -5,6 +5,7 @@
 //! this entry replaced by zeros. A changed byte of data, header or digest is therefore an error. The bytes are a
 //! function of the content.
 
+mod certificate_clearance;
 mod certificate_groups;
 mod certificates;
 mod elasticity;

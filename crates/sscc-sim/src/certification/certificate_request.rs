@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use sscc::parts::{DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, Scope, is_reach};
-use sscc::{CertifyOptions, ContactFilter, Metric, Neighbours, ReducedModel};
+use sscc::{CertifyOptions, Clearance, ContactFilter, Metric, Neighbours, ReducedModel};
 
 use sscc_io::Setting;
 
@@ -35,6 +35,10 @@ pub struct CertificateRequest {
     pub groups: GroupRules,
     /// Maximum number of exceptions (`--max-exceptions`).
     pub max_exceptions: Option<usize>,
+    /// Radii at which two triangles come nearer than a clearance (`--clearance`, `--rings`); none: radii of collisions.
+    pub clearance: Option<Clearance>,
+    /// Whether certificates from a file may have any clearance, or none.
+    pub any_clearance: bool,
     /// Which certificates to store (`--scheme`).
     pub scheme: Option<Scheme>,
     /// Memory for the pair tree (`--budget`), in bytes for each triangle.
@@ -69,6 +73,7 @@ impl CertificateRequest {
             .filter(self.filter(model)?)
             .ignore_rest(self.ignore_rest)
             .max_exceptions(self.max_exceptions)
+            .clearance(self.clearance)
             .budget(self.budget()?.unwrap_or(DEFAULT_BUDGET))
             .local_budget(self.local_budget()?.unwrap_or(DEFAULT_LOCAL_BUDGET))
             .reach(self.reach()?.unwrap_or(DEFAULT_REACH))
@@ -93,6 +98,7 @@ impl CertificateRequest {
             center: self.center.clone().unwrap_or_else(|| vec![0.0; model.rank()]),
             filter,
             exceptions: Vec::new(),
+            clearance: None,
         })
     }
 

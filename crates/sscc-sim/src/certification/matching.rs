@@ -56,6 +56,9 @@ impl CertificateRequest {
 
     /// Returns the first other contradiction: the cause of the refusal.
     fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<Message>> {
+        if let Some(cause) = self.clearance_contradiction(certificates) {
+            return Ok(Some(cause));
+        }
         let epsilon = certificates.parts().epsilon;
         if let Some(typed) = self.epsilon.filter(|typed| *typed != epsilon) {
             let numbers = format!(" {epsilon}, not {typed}; leave the flag out");
@@ -131,6 +134,36 @@ impl CertificateRequest {
             let cause = format!("certified with {exceptions} exceptions, more than ");
             Message::from(cause) + Setting::MaxExceptions + " allows" + REMEDY
         }))
+    }
+
+    /// Returns why certificates do not serve the clearance that is asked for, or none.
+    fn clearance_contradiction(&self, certificates: &Certificates) -> Option<Message> {
+        let anew = |cause: Message| Some(cause + "; certify anew");
+        match (certificates.clearance(), &self.clearance) {
+            _ if self.any_clearance => None,
+            (None, None) => None,
+            (Some(known), None) => {
+                let cause = format!(
+                    "certified with a clearance ({}), which proves nothing about collisions; add ",
+                    known.distance()
+                );
+                Some(
+                    Message::from(cause)
+                        + Setting::Clearance
+                        + " to ask for near pairs, or certify anew without",
+                )
+            }
+            (None, Some(_)) => anew("certified without " + Setting::Clearance),
+            (Some(known), Some(asked)) if known.distance() < asked.distance() => {
+                let cause = "certified with a smaller " + Setting::Clearance;
+                anew(cause + format!(" ({}) than {}", known.distance(), asked.distance()))
+            }
+            (Some(known), Some(asked)) if known.rings() > asked.rings() => {
+                let cause = format!("certified beyond {} rings, more than ", known.rings());
+                anew(Message::from(cause) + Setting::Rings + format!(" {}", asked.rings()))
+            }
+            (Some(_), Some(_)) => None,
+        }
     }
 
     /// Whether local certificates take no more than their budget and what the pair tree leaves of its own: that of `--budget`, else

@@ -7,8 +7,11 @@ use sscc::{Error, NearPair, Pair};
 pub struct Near {
     /// Distance of each pair nearer than the clearance (model unit).
     pub distances: Vec<f64>,
-    /// The nearest pair that counts, also where it is not nearer than the clearance; none where no pair counts.
+    /// The nearest pair that counts, also where it is not nearer than the clearance; none where no pair counts, and where it is not
+    /// nearer and certificates leave its distance open.
     pub nearest: Option<NearPair>,
+    /// Whether no pair is near, and certificates leave the smallest distance open.
+    pub is_open: bool,
 }
 
 impl Near {
@@ -18,7 +21,16 @@ impl Near {
         Self {
             distances: kept.iter().map(|i| self.distances[*i]).collect(),
             nearest: kept.iter().map(near).min_by(|a, b| a.distance.total_cmp(&b.distance)),
+            is_open: false,
         }
+    }
+
+    /// Returns the near pairs and their distances; the nearest pair only where one is near.
+    pub(super) fn of_certified(found: Vec<NearPair>) -> (Vec<Pair>, Self) {
+        let nearest = found.iter().copied().min_by(|a, b| a.distance.total_cmp(&b.distance));
+        let distances = found.iter().map(|near| near.distance).collect();
+        let near = Self { distances, nearest, is_open: nearest.is_none() };
+        (found.into_iter().map(|near| near.pair).collect(), near)
     }
 
     /// Returns the near pairs and their distances. `nearest` searches for the nearest pair, where none is near.
@@ -26,9 +38,8 @@ impl Near {
         found: Vec<NearPair>,
         nearest: impl FnOnce() -> Result<Option<NearPair>, Error>,
     ) -> Result<(Vec<Pair>, Self), Error> {
-        let listed = found.iter().copied().min_by(|a, b| a.distance.total_cmp(&b.distance));
-        let nearest = if listed.is_some() { listed } else { nearest()? };
-        let distances = found.iter().map(|near| near.distance).collect();
-        Ok((found.into_iter().map(|near| near.pair).collect(), Self { distances, nearest }))
+        let (pairs, near) = Self::of_certified(found);
+        let nearest = if near.is_open { nearest()? } else { near.nearest };
+        Ok((pairs, Self { nearest, is_open: false, ..near }))
     }
 }

@@ -28,6 +28,9 @@ pub struct RowQueries<'a> {
     pub limit: Option<usize>,
     /// Asks for the pairs nearer than this, in place of those that collide. For discrete queries without a limit.
     pub clearance: Option<Clearance>,
+    /// Whether the certificates of the query are for the clearance. Then the smallest distance is told only where it is below the
+    /// clearance: they do not prove how large it is beyond.
+    pub is_certified: bool,
     /// Number of threads for discrete queries of several q. None: all cores.
     pub threads: Option<usize>,
     /// Options for the contacts of the pairs that discrete queries find.
@@ -73,7 +76,7 @@ pub fn check_rows<E: From<SimError>>(
                 .batch_at_most(&rows[next..end], limit, requests.threads, &CancelledBy(progress))
                 .map(Answers::Batch)
         } else if let Some(clearance) = &requests.clearance {
-            near(query, rows[next], clearance)
+            near(query, rows[next], clearance, requests.is_certified)
         } else if requests.is_continuous {
             query.continuous(rows[next], rows[next + 1]).map(|impacts| Answers::Motion(impacts.to_vec()))
         } else {
@@ -197,10 +200,18 @@ impl Answers {
 }
 
 /// Answers a query for the pairs nearer than a clearance.
-fn near(query: &mut Query, q: &[f64], clearance: &Clearance) -> Result<Answers, sscc::Error> {
+fn near(
+    query: &mut Query,
+    q: &[f64],
+    clearance: &Clearance,
+    is_certified: bool,
+) -> Result<Answers, sscc::Error> {
     let found = query.within(q, clearance)?.to_vec();
     let statistics = query.statistics();
-    let (pairs, near) = Near::of(found, || query.nearest(q, clearance.rings()))?;
+    let (pairs, near) = match is_certified {
+        true => Near::of_certified(found),
+        false => Near::of(found, || query.nearest(q, clearance.rings()))?,
+    };
     Ok(Answers::Near(pairs, near, statistics))
 }
 

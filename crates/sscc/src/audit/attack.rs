@@ -7,7 +7,7 @@ use super::minimum_search::{Collision, MinimumSearch};
 use super::options::AuditOptions;
 use super::random::Random;
 use crate::parallel::map_with;
-use crate::{Certificates, Error, Method, Progress, Query, ReducedModel};
+use crate::{Certificates, Error, Method, Pair, Progress, Query, ReducedModel};
 
 /// One in this many attacks is on the root, another on a pair of its children: they cost as much as
 /// a traditional query of the whole model.
@@ -108,9 +108,16 @@ impl Attack<'_> {
         let claim = self.draw_claim(sample, random);
         let q = self.draw_configuration(claim, sample, random)?;
         let query = if claim.nodes == (0, 0) { &mut queries.root } else { &mut queries.part };
-        let pairs = query.discrete_between(claim.nodes, &q).ok()?.to_vec();
+        let pairs = match self.minimum.clearance {
+            Some(clearance) => query.near_between(claim.nodes, &q, &clearance).ok()?,
+            None => query.discrete_between(claim.nodes, &q).ok()?.to_vec(),
+        };
         let norm = query.norm();
-        Some(pairs.into_iter().find_map(|faces| self.claims.violation(faces, norm, &q)))
+        // Near pairs are those of all that share no vertex.
+        let MinimumSearch { filter, rings, .. } = self.minimum;
+        let is_counted = |(a, b): &Pair| !rings.contain(*a, *b) && !filter.is_excluded(*a, *b);
+        let mut pairs = pairs.into_iter().filter(is_counted);
+        Some(pairs.find_map(|faces| self.claims.violation(faces, norm, &q)))
     }
 
     /// The claim that a sample attacks.

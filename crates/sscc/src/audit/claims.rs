@@ -1,13 +1,13 @@
 //! The claims of certificates. A claim names a node or a node pair and its radius: none of its triangle pairs collides
-//! below it.
+//! below it, or is nearer than the clearance of the certificates.
 
 use std::fmt;
 
 use super::random::Random;
-use crate::Pair;
 use crate::certificates::CertificateParts;
 use crate::certificates::{StoredPair, sibling_pairs};
 use crate::hierarchy::NodePair;
+use crate::{Clearance, Pair};
 
 /// The claim that no pair of triangles between two nodes, or within one where both are the same, collides below the
 /// radius.
@@ -163,11 +163,15 @@ impl<'a> Claims<'a> {
         }
     }
 
-    /// The violation by two triangles that count and collide at q, if they refute a claim.
+    /// The violation by two triangles that count and collide at q, or are nearer than the clearance, if they refute a claim.
     pub(super) fn violation(&self, faces: Pair, norm: f64, q: &[f64]) -> Option<String> {
         let claim = self.refuted_by(faces, norm)?;
+        let found = self.parts.scope.clearance.map_or_else(
+            || "collide".to_owned(),
+            |clearance: Clearance| format!("are nearer than {:e}", clearance.distance()),
+        );
         Some(format!(
-            "triangles {} and {} collide at |z| = {norm:e}, below the radius {:e} of {claim}; q = {q:?}",
+            "triangles {} and {} {found} at |z| = {norm:e}, below the radius {:e} of {claim}; q = {q:?}",
             faces.0, faces.1, claim.radius
         ))
     }

@@ -9,13 +9,13 @@ use crate::certificates::PairTree;
 use crate::{Certificates, Error, Impact, Method, Pair, Progress, Query, ReducedModel};
 
 /// Brute force is quadratic: up to this many triangles it runs for every sample, beyond for three of them.
-const BRUTE_FORCE_TRIANGLES: usize = 2000;
+pub(super) const BRUTE_FORCE_TRIANGLES: usize = 2000;
 
 /// One comparison is made for this many samples.
-const SAMPLES_PER_COMPARISON: usize = 50;
+pub(super) const SAMPLES_PER_COMPARISON: usize = 50;
 
 /// At most this many comparisons are made.
-const MAX_COMPARISONS: usize = 200;
+pub(super) const MAX_COMPARISONS: usize = 200;
 
 /// One in this many compares continuous queries, too.
 const CONTINUOUS: usize = 2;
@@ -113,7 +113,7 @@ impl Comparison<'_> {
 
     /// A random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
     /// five times it; for every third sample up to the limit of the pair tree.
-    fn draw_configuration(&self, random: &mut Random, sample: usize) -> Vec<f64> {
+    pub(super) fn draw_configuration(&self, random: &mut Random, sample: usize) -> Vec<f64> {
         let certificates = self.certificates;
         let z = draw_scaled(certificates.center().len(), random, sample);
         let (root, global) = (certificates.root_radius(), certificates.global_radius());

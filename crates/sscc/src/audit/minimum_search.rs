@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::point_pairs::{GRID, PointPairs, Weights, grid};
 use super::random::Random;
 use crate::certificates::Scope;
-use crate::filter::PairFilter;
+use crate::filter::{PairFilter, RingPairs, SimplexPair};
 use crate::model::ScaledModel;
-use crate::{Pair, ReducedModel};
+use crate::{Clearance, Pair, ReducedModel, distance_triangle_triangle};
 
 /// A configuration at which two points of two triangles meet, up to rounding.
 ///
@@ -48,6 +48,10 @@ pub(super) struct MinimumSearch<'a> {
     pub(super) scope: &'a Scope,
     pub(super) scaled: &'a ScaledModel,
     pub(super) filter: &'a PairFilter,
+    /// Pairs that need not keep the clearance; none without one.
+    pub(super) rings: &'a RingPairs,
+    /// Sought are triangles nearer than this; none: that collide.
+    pub(super) clearance: Option<Clearance>,
 }
 
 /// The candidate of a minimum over pairs of points.
@@ -62,9 +66,10 @@ impl MinimumSearch<'_> {
     /// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
     /// rays.
     pub(super) fn search(&self, faces: Pair, random: &mut Random) -> Option<Collision> {
-        let found = self.filter.simplex_pairs(faces.0, faces.1).filter_map(|simplices| {
-            self.search_simplices(faces, &PointPairs { scaled: self.scaled, simplices }, random)
-        });
+        let found = self
+            .filter
+            .simplex_pairs(faces.0, faces.1)
+            .filter_map(|simplices| self.search_simplices(faces, &self.points(simplices), random));
         found.reduce(|best, next| if next.norm < best.norm { next } else { best })
     }
 
@@ -72,7 +77,7 @@ impl MinimumSearch<'_> {
     /// modes do not bring them together.
     pub(super) fn approach(&self, faces: Pair, random: &mut Random) -> Option<Vec<f64>> {
         let simplices = self.filter.simplex_pairs(faces.0, faces.1).next()?;
-        let z = PointPairs { scaled: self.scaled, simplices }.solution(Weights::random(random));
+        let z = self.points(simplices).solution(Weights::random(random));
         let moves = z.iter().any(|z| *z != 0.0);
         moves.then(|| self.scope.metric.unscale(&z[..self.model.rank()]))
     }
@@ -101,11 +106,23 @@ impl MinimumSearch<'_> {
         Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed })
     }
 
-    /// Whether two triangles collide at q, on the computed positions.
+    /// The points of two simplices.
+    fn points(&self, simplices: SimplexPair<u32>) -> PointPairs<'_> {
+        let distance = self.clearance.map_or(0.0, |clearance| clearance.distance());
+        PointPairs { scaled: self.scaled, simplices, distance }
+    }
+
+    /// Whether two triangles collide at q, or are nearer than the clearance, on the computed positions.
     pub(super) fn collides(&self, faces: Pair, q: &[f64]) -> bool {
         let corners = |face: u32| self.model.mesh().faces()[face as usize].map(|i| self.model.position(i, q));
-        self.model.check_coordinates(q).is_ok()
-            && self.filter.collide(faces, &corners(faces.0), &corners(faces.1))
+        if self.model.check_coordinates(q).is_err() {
+            return false;
+        }
+        let [a, b] = [corners(faces.0), corners(faces.1)];
+        match self.clearance {
+            Some(clearance) => distance_triangle_triangle(&a, &b) < clearance.distance(),
+            None => self.filter.collide(faces, &a, &b),
+        }
     }
 
     /// Searches collisions along rays: along each mode, and along directions in which points of the pair approach.

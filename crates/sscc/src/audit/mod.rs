@@ -6,7 +6,7 @@
 //! - The true minimum of `|z|`, searched for critical pairs of triangles ([`minimum_search`]), which also measures
 //!   how tight radii are ([`tightness`]).
 //! - Answers of certified queries, continuous ones too, compared with the traditional method, itself compared with brute
-//!   force ([`compare`]).
+//!   force ([`compare`]). With a clearance these are answers about near pairs ([`compare_near`]).
 //!
 //! Each collision found is compared with all radii that cover it ([`claims`]): of nodes, of node pairs, and the limit of the
 //! pair tree where it lacks a pair.
@@ -14,6 +14,7 @@
 mod attack;
 mod claims;
 mod compare;
+mod compare_near;
 mod local_attack;
 mod minimum_search;
 mod options;
@@ -21,8 +22,6 @@ mod point_pairs;
 mod random;
 mod tightness;
 
-use crate::filter::PairFilter;
-use crate::model::ScaledModel;
 use crate::parallel::on_threads;
 use crate::{Certificates, Error, Progress, ReducedModel};
 
@@ -78,10 +77,10 @@ pub fn audit(
     certificates.check_model(model)?;
     let run = || {
         let parts = certificates.parts();
-        let scaled = ScaledModel::new(model, &parts.scope.metric, &parts.scope.center);
-        let filter = PairFilter::new(model, &parts.scope.filter).excluding(&parts.scope.exceptions);
-        let minimum =
-            &minimum_search::MinimumSearch { model, scope: &parts.scope, scaled: &scaled, filter: &filter };
+        let scope = &*parts.scope;
+        let (filter, rings) = &scope.counted_pairs(model)?;
+        let (scaled, clearance) = (&scope.scaled_model(model), scope.clearance);
+        let minimum = &minimum_search::MinimumSearch { model, scope, scaled, filter, rings, clearance };
         let claims = &claims::Claims::new(parts);
         let tightness = tightness::measure(certificates, claims, minimum, options.seed, progress);
         let collisions = &tightness.collisions;
@@ -90,7 +89,10 @@ pub fn audit(
         let attacks = attack.run()?;
         violations.extend(attacks.violations);
         let comparison = compare::Comparison { model, certificates, claims, minimum, options, progress };
-        violations.extend(comparison.run()?);
+        violations.extend(match clearance {
+            Some(clearance) => comparison.run_near(&clearance)?,
+            None => comparison.run()?,
+        });
         let mut quotients = tightness.quotients;
         quotients.sort_by(f64::total_cmp);
         Ok(AuditReport {

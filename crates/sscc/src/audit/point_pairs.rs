@@ -1,4 +1,4 @@
-//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form.
+//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form, or as near as a distance.
 
 use glam::{DMat3, DVec3};
 
@@ -9,10 +9,15 @@ use crate::model::ScaledModel;
 /// Steps of the barycentric grid along each edge.
 pub(super) const GRID: usize = 6;
 
+/// Steps to the direction in which two points are a distance apart.
+const STEPS_TO_DISTANCE: usize = 8;
+
 /// Points of two simplices, given by barycentric weights.
 pub(super) struct PointPairs<'a> {
     pub(super) scaled: &'a ScaledModel,
     pub(super) simplices: SimplexPair<u32>,
+    /// The distance that is sought; 0 for a contact.
+    pub(super) distance: f64,
 }
 
 /// Barycentric weights of a point of each simplex.
@@ -72,26 +77,40 @@ impl PointPairs<'_> {
     /// The smallest `|z|` that brings the two points together; infinite where modes do not reach.
     pub(super) fn radius(&self, weights: Weights) -> f64 {
         let relative = self.relative(weights);
-        relative.multiplier().map_or(f64::INFINITY, |y| relative.difference.dot(y).max(0.0).sqrt())
+        let solved = relative.multiplier(self.distance);
+        solved.map_or(f64::INFINITY, |(y, left)| left.dot(y).max(0.0).sqrt())
     }
 
     /// That z; 0 where modes do not reach.
     pub(super) fn solution(&self, weights: Weights) -> Vec<f64> {
         let relative = self.relative(weights);
-        let y = relative.multiplier().unwrap_or(DVec3::ZERO);
+        let (y, _) = relative.multiplier(self.distance).unwrap_or_default();
         relative.modes.iter().map(|b| -b.dot(y)).collect()
     }
 }
 
 impl Relative {
-    /// `(B B')^-1 d`, where B has full rank.
-    fn multiplier(&self) -> Option<DVec3> {
+    /// `y = (B B')^-1 d`, where B has full rank, and d. For a distance D less D along y, the direction in which the points
+    /// then are that far apart: the fixed point of a few steps. No z is smaller, and any D of that length brings points as near.
+    fn multiplier(&self, distance: f64) -> Option<(DVec3, DVec3)> {
         let mut gram = DMat3::ZERO;
         for b in &self.modes {
             gram += DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z);
         }
         let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
-        (gram.determinant() > 1e-15 * trace * trace * trace).then(|| gram.inverse() * self.difference)
+        if gram.determinant() <= 1e-15 * trace * trace * trace || !trace.is_finite() {
+            return None;
+        }
+        let (inverse, mut left) = (gram.inverse(), self.difference);
+        if distance > 0.0 {
+            if self.difference.length() <= distance {
+                return Some((DVec3::ZERO, DVec3::ZERO));
+            }
+            for _ in 0..STEPS_TO_DISTANCE {
+                left = self.difference - (inverse * left).normalize_or_zero() * distance;
+            }
+        }
+        Some((inverse * left, left))
     }
 }
 

@@ -50,6 +50,7 @@ pub(super) fn measure(
     let context = RadiusSearchContext {
         model: minimum.scaled,
         filter: minimum.filter,
+        rings: minimum.rings,
         hierarchy: &parts.hierarchy,
         nodes: &bounds,
         groups: &groups,

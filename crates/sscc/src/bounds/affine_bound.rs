@@ -12,6 +12,10 @@
 //! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows
 //! with delta, so a lower bound of the distance serves. Only the symmetric part of each mode's gradient enters g: a
 //! local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
+//!
+//! A clearance (`required_gap.rs`) needs a gap along the unit direction u of more than D in place of 0, with the rate D' at which D grows:
+//! `(delta - e0 - D) / (g delta + e + e1 + D')`. For `D + e0 >= 0` this grows with delta, too: its derivative has the sign of
+//! `e + e1 + D' + g (e0 + D)`. Each two points of the triangles have a direction u of their own; all of them stay farther apart than D.
 
 use glam::DVec3;
 
@@ -19,7 +23,7 @@ use super::affine_fit::AffineFit;
 use super::cone_rate::bound_rate_in_cone;
 use super::pair_corners::PairCorners;
 use super::strain::{StrainGram, bound_rate, strain_gram};
-use crate::model::RoundingBound;
+use crate::model::ScaledModel;
 use crate::model::rounding::{ROUND_UP, larger_or_nan, radius_down};
 
 /// An affine map of some points' modes and how fast it moves points apart. Owns its memory.
@@ -63,12 +67,15 @@ impl AffineBound {
     }
 
     /// The bound of two triangles among the points.
-    pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, rounding: &RoundingBound) -> f64 {
+    pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, model: &ScaledModel) -> f64 {
+        let rounding = &model.rounding;
         let delta = pair.rest_distance;
         let residual = self.fit.residual_up(pair.squared_residual, rounding);
         let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
-        let at_rest = rounding.at_rest(axes);
-        let per_norm = right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0);
+        let required = right_or!(model.required.along_unit(), AffineWithoutClearance, Default::default());
+        let at_rest = rounding.at_rest(axes) + required.at_rest;
+        let per_norm =
+            right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0) + required.per_norm;
         let slack = (residual + per_norm) * ROUND_UP;
         let rate_rounding = 8.0 * f64::EPSILON * self.fit.frobenius();
         let bound = |rate: f64| {
@@ -94,7 +101,7 @@ impl AffineBound {
         differences: &[DVec3; 9],
         rest_distance: f64,
         sufficient: f64,
-        rounding: &RoundingBound,
+        model: &ScaledModel,
     ) -> f64 {
         let [a0, a1, a2] = pair.corners.a;
         let [b0, b1, b2] = pair.corners.b;
@@ -111,7 +118,7 @@ impl AffineBound {
                 squared_residual = larger_or_nan(squared_residual, self.squared_residual(i, j));
             }
         }
-        self.bound(AffinePair { differences, rest_distance, squared_residual }, sufficient, rounding)
+        self.bound(AffinePair { differences, rest_distance, squared_residual }, sufficient, model)
     }
 }
 

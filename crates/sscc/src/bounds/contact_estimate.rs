@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::TwoTriangles;
+use crate::geometry::{TwoTriangles, nearest_to_origin};
 
 /// Samples of each determinant along the way; roots closer together than this are missed.
 const SAMPLES: usize = 24;
@@ -62,6 +62,17 @@ pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -
         }
     }
     first.is_finite().then_some(first)
+}
+
+/// The smallest t in (0, 1] at which two triangles are as near as a distance, if one is found.
+pub(super) fn estimate_first_nearness(
+    corners_at: impl Fn(f64) -> TwoTriangles,
+    distance: f64,
+) -> Option<f64> {
+    let excess = |t: f64| nearest_to_origin(&corners_at(t).differences()).point.length() - distance;
+    let times = (0..=SAMPLES).map(|i| i as f64 / SAMPLES as f64);
+    let (before, near) = times.clone().zip(times.skip(1)).find(|(_, t)| excess(*t) < 0.0)?;
+    Some(bisect(before, near, false, &excess))
 }
 
 /// The root between two ends of different sign.

@@ -48,11 +48,11 @@ impl Kernel for BoundVertices<'_, '_> {
         }
         let (of_a, of_b) = projections.split_at(vertices_a.len() * row_len);
         direction_bounds.clear();
-        let rounding = model.rounding.along(dir);
+        let least = model.least_gap(dir);
         for (i, projected_i) in vertices_a.iter().zip(of_a.chunks_exact(row_len)) {
             for (j, projected_j) in vertices_b.iter().zip(of_b.chunks_exact(row_len)) {
                 let gap = dir.dot(model.positions[*j as usize] - model.positions[*i as usize]);
-                direction_bounds.push(bound_points_along(gap, projected_i, projected_j, rounding));
+                direction_bounds.push(bound_points_along(gap, projected_i, projected_j, least));
             }
         }
     }
@@ -103,14 +103,16 @@ impl<'m> LeafPair<'m> {
         let differences: [DVec3; 9] = std::array::from_fn(|ij| at(b[ij % 3]) - at(a[ij / 3]));
         let Some(dir) = scale_direction(nearest_to_origin(&differences).point) else { return 0.0 };
         let rest_distance = bound_rest_distance(&differences, dir, &self.model.rounding);
-        if rest_distance <= 0.0 || (self.squared_residuals.is_empty() && !self.fit()) {
+        if rest_distance <= self.model.required.at_rest()
+            || (self.squared_residuals.is_empty() && !self.fit())
+        {
             return 0.0;
         }
         let squared_residuals = self.vertex_pairs(a, b).map(|at| self.squared_residuals[at]);
         let squared_residual = squared_residuals.into_iter().fold(0.0, larger_or_nan);
         let sufficient = if is_near(&differences, rest_distance) { sufficient } else { 0.0 };
         let pair = AffinePair { differences: &differences, rest_distance, squared_residual };
-        self.affine.bound(pair, sufficient, &self.model.rounding)
+        self.affine.bound(pair, sufficient, self.model)
     }
 
     fn fit(&mut self) -> bool {

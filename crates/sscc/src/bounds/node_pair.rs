@@ -10,6 +10,8 @@
 //! R_nm >= min over corners (i, j) of  (dir.d_ij - e0) / (|B_ij' dir| + rho_n(dir) + rho_m(dir) + e1)
 //! ```
 //!
+//! A clearance adds `D |dir|` to e0, and its rate to e1, as in `separating_direction.rs`: gaps of all points of the two hulls exceed it.
+//!
 //! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/bounds.md#affine-bounds-and-directions.
 
 use super::node_modes::NodeModes;
@@ -202,9 +204,12 @@ fn bound_corners_along(
     // The terms of a square add up to at most (the sum of all |row|)^2; the products err by row eps of that, and
     // at most 16 sums follow one another: 2,000 leaves room.
     let lost = right_or!((row_len as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
-    let per_norm = right_or!(2.0 * model.rounding.per_norm(dir), NodePairWithoutRateError, 0.0);
+    let required = right_or!(model.required.along(dir), NodePairWithoutClearance, Default::default());
+    let per_norm =
+        right_or!(2.0 * model.rounding.per_norm(dir), NodePairWithoutRateError, 0.0) + required.per_norm;
     let slack = dir.abs().dot(n.residual + m.residual) + per_norm;
-    let at_rest = right_or!(2.0 * model.rounding.at_rest(dir), NodePairWithoutRestError, 0.0);
+    let at_rest =
+        right_or!(2.0 * model.rounding.at_rest(dir), NodePairWithoutRestError, 0.0) + required.at_rest;
     let gap = dir.dot(m.center - n.center);
     // For corners M of m and N of n, `|c + M + N|^2 = |c|^2 + (|c + M|^2 - |c|^2) + (|c + N|^2 - |c|^2) + 2 M.N`.
     let [(steps_m, squares_m), (steps_n, squares_n)] = [0, 3].map(|first| {

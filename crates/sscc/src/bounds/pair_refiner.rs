@@ -11,7 +11,7 @@ use super::affine_bound::{AffineBound, is_near};
 use super::pair_corners::PairCorners;
 use super::separating_direction::{CornerProjections, bound_along, bound_rest_distance};
 use super::sub_triangle::{MAX_DEPTH, SubPair};
-use super::upper_bound::RelativeModes;
+use super::upper_bound::{Ray, RelativeModes};
 use crate::geometry::nearest_to_origin;
 use crate::min_heap::MinHeapEntry;
 use crate::model::mode_rows::squared_distance;
@@ -115,7 +115,9 @@ impl<'m> PairRefiner<'m> {
                 let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
                 let part = part.corners(pair, &mut corner_modes);
                 let z = &mut self.projections.rows[..self.model.row_len];
-                if let Some(upper) = self.relative.bound_along_ray(pair, &part, farthest, z) {
+                let distance = self.model.required.at_rest();
+                let ray = Ray { farthest, distance, z };
+                if let Some(upper) = self.relative.bound_along_ray(pair, &part, ray) {
                     target.lower_upper_bound(upper);
                 }
             }
@@ -146,16 +148,16 @@ impl<'m> PairRefiner<'m> {
     /// The largest of the cheap bounds of two (sub-)triangles.
     fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
         self.best_direction = None;
-        let rounding = self.model.rounding;
+        let model = self.model;
         let differences = pair.differences();
         // The rest distance, from the Euclidean closest points.
         let closest = nearest_to_origin(&differences);
-        let Some(dir) = scale_direction(closest.point) else { return 0.0 };
-        let rest_distance = bound_rest_distance(&differences, dir, &rounding);
-        if rest_distance <= 0.0 {
+        let Some(mut dir) = scale_direction(closest.point) else { return 0.0 };
+        let rest_distance = bound_rest_distance(&differences, dir, &model.rounding);
+        if rest_distance <= model.required.at_rest() {
             return 0.0;
         }
-        let mut lower = bound_along(pair, &differences, dir, &rounding, &mut self.projections);
+        let mut lower = bound_along(pair, &differences, dir, model.least_gap(dir), &mut self.projections);
         self.best_direction = Some(dir);
         if lower >= target.sufficient() {
             return lower;
@@ -168,7 +170,7 @@ impl<'m> PairRefiner<'m> {
                 &differences,
                 rest_distance,
                 target.sufficient(),
-                &rounding,
+                model,
             ));
             if lower >= target.sufficient() {
                 return lower;
@@ -181,11 +183,15 @@ impl<'m> PairRefiner<'m> {
             let ridge = 1e-6 * (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z);
             let metric = gram + DMat3::from_diagonal(DVec3::splat(ridge));
             let Some(factor) = inverse_factor(metric) else { break };
-            let nearest = nearest_to_origin(&differences.map(|d| factor * d));
+            // With a clearance the other triangle comes nearer by it, along the last direction.
+            let kept = dir.normalize_or_zero() * model.required.at_rest();
+            let shifted = differences.map(|d| d - kept);
+            let nearest = nearest_to_origin(&shifted.map(|d| factor * d));
             weights = nearest.weights;
-            let Some(dir) = scale_direction(factor.transpose() * nearest.point) else { break };
-            let better = bound_along(pair, &differences, dir, &rounding, &mut self.projections);
-            target.lower_upper_bound(self.relative.bound_at(pair, &differences, &weights));
+            let Some(found) = scale_direction(factor.transpose() * nearest.point) else { break };
+            dir = found;
+            let better = bound_along(pair, &differences, dir, model.least_gap(dir), &mut self.projections);
+            target.lower_upper_bound(self.relative.bound_at(pair, &shifted, &weights));
             let has_gained = better > lower * 1.001;
             if better > lower {
                 self.best_direction = Some(dir);
@@ -201,7 +207,7 @@ impl<'m> PairRefiner<'m> {
                 &differences,
                 rest_distance,
                 target.sufficient(),
-                &rounding,
+                model,
             ));
         }
         lower

@@ -4,10 +4,20 @@
 
 use glam::{DMat3, DVec3};
 
-use super::contact_estimate::estimate_first_contact;
+use super::contact_estimate::{estimate_first_contact, estimate_first_nearness};
 use super::pair_corners::PairCorners;
 use crate::geometry::{TwoTriangles, nearest_to_origin};
 use crate::model::mode_rows::{add_scaled, dot, gram, project};
+
+/// A ray in q-space from the centre along which two triangles approach.
+pub(super) struct Ray<'z> {
+    /// The largest norm of interest.
+    pub(super) farthest: f64,
+    /// The distance that is sought: 0 for a contact.
+    pub(super) distance: f64,
+    /// Scratch of one row.
+    pub(super) z: &'z mut [f64],
+}
 
 /// The relative modes of two points, one of each triangle. Owns its memory.
 pub(super) struct RelativeModes {
@@ -60,14 +70,12 @@ impl RelativeModes {
     }
 
     /// The norm of a z along which the closest points of the sub-triangles approach and at which the triangles first
-    /// touch, if that is at most `farthest`: for rank 1 or 2, or modes that do not reach all directions. `z` is scratch of
-    /// one row.
+    /// touch, or come as near as a distance: for rank 1 or 2, or modes that do not reach all directions.
     pub(super) fn bound_along_ray(
         &mut self,
         pair: &PairCorners<'_>,
         sub_pair: &PairCorners<'_>,
-        farthest: f64,
-        z: &mut [f64],
+        Ray { farthest, distance, z }: Ray<'_>,
     ) -> Option<f64> {
         let closest = nearest_to_origin(&sub_pair.differences());
         self.gram_at(sub_pair, &closest.weights);
@@ -81,10 +89,15 @@ impl RelativeModes {
         };
         let (velocities_a, velocities_b) = (velocities(&pair.modes_a), velocities(&pair.modes_b));
         let at = |p: &[DVec3; 3], v: &[DVec3; 3], t: f64| std::array::from_fn(|i| p[i] + v[i] * t);
-        let contact = estimate_first_contact(|t| TwoTriangles {
+        let corners_at = |t| TwoTriangles {
             a: at(&pair.corners.a, &velocities_a, t),
             b: at(&pair.corners.b, &velocities_b, t),
-        });
+        };
+        let contact = if distance > 0.0 {
+            estimate_first_nearness(corners_at, distance)
+        } else {
+            estimate_first_contact(corners_at)
+        };
         contact.map(|t| t * farthest)
     }
 }

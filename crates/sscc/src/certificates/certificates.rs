@@ -7,13 +7,14 @@ use std::sync::Arc;
 
 use super::{Digest, LocalCertificates, PairTree, Scope};
 use crate::hierarchy::Hierarchy;
-use crate::{ContactFilter, Error, Metric, Pair};
+use crate::{Clearance, ContactFilter, Error, Metric, Pair};
 
 /// The proof of which parts of a model are free of collisions near the centre: a hierarchy with a radius for each node
 /// and for pairs of nodes.
 ///
 /// All radii are norms `|z| = |S (q - center)|` in the metric of the certificates. A set of triangle pairs with radius
-/// R is certified: at any q with `|z| < R` no pair that counts has a point in common, except for the exceptions.
+/// R is certified: at any q with `|z| < R` no pair that counts has a point in common, except for the exceptions; with a
+/// [clearance](Certificates::clearance) none is nearer than that.
 ///
 /// Clones share one memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +77,21 @@ impl Certificates {
     /// Which pairs of triangles count.
     pub fn filter(&self) -> &ContactFilter {
         &self.0.scope.filter
+    }
+
+    /// The clearance that triangles keep below the radii ([`CertifyOptions::clearance`](crate::CertifyOptions::clearance)); none:
+    /// they do not collide.
+    pub fn clearance(&self) -> Option<Clearance> {
+        self.0.scope.clearance
+    }
+
+    /// Whether they prove triangles farther apart than a clearance: theirs is at least as large, beyond no more rings.
+    pub(crate) fn is_within_clearance(&self, clearance: &Clearance) -> bool {
+        self.clearance().is_some_and(|certified| {
+            let is_as_far = certified.distance() >= clearance.distance();
+            right_or!(is_as_far, SmallerClearanceUsed, true)
+                && right_or!(certified.rings() <= clearance.rings(), MoreRingsUsed, true)
+        })
     }
 
     /// Pairs that no radius covers and every query tests, sorted.

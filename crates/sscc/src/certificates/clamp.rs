@@ -9,8 +9,8 @@ const MAX_STEPS: usize = 4096;
 
 impl Certificates {
     /// q itself if it is inside the root's ellipsoid, else the last point inside it on the line from the centre to q:
-    /// free by the root's certificate. None if the root's radius is 0, or if there are exceptions, which no radius
-    /// covers.
+    /// free by the root's certificate. None if the root's radius is 0, if there are exceptions, which no radius
+    /// covers, or if they have a clearance, since triangles within its rings may collide.
     ///
     /// # Errors
     /// As [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates) for a model of this rank: length
@@ -24,7 +24,7 @@ impl Certificates {
             return Err(Error::CoordinatesValue { index, value: q[index] });
         }
         let root = self.root_radius();
-        if root <= 0.0 || !self.exceptions().is_empty() {
+        if root <= 0.0 || !self.exceptions().is_empty() || self.clearance().is_some() {
             return Ok(None);
         }
         let mut offset = vec![0.0; q.len()];

@@ -54,6 +54,10 @@ impl Digest {
             let listed = groups.listed().flat_map(|(g, h)| [u32::from(g), u32::from(h)]);
             sections.numbers(name, groups.listed().count(), listed);
         }
+        if let Some(clearance) = right_or!(scope.clearance, ClearanceNotHashed, None) {
+            sections.reals("clearance", 1, std::iter::once(clearance.distance()));
+            sections.numbers("rings", 1, std::iter::once(clearance.rings()));
+        }
         Self(*sections.0.finalize().as_bytes())
     }
 

@@ -1,6 +1,6 @@
 //! Options of the computation of certificates.
 
-use crate::{ContactFilter, Metric};
+use crate::{Clearance, ContactFilter, Metric};
 
 /// How certificates are computed. Each method sets one option: `CertifyOptions::default().budget(0).threads(2)`.
 #[derive(Clone, Debug)]
@@ -12,6 +12,7 @@ pub struct CertifyOptions {
     pub(crate) filter: Option<ContactFilter>,
     pub(crate) ignore_rest: Option<u32>,
     pub(crate) max_exceptions: Option<usize>,
+    pub(crate) clearance: Option<Clearance>,
     pub(crate) budget: usize,
     pub(crate) local_budget: usize,
     pub(crate) reach: f64,
@@ -27,6 +28,7 @@ impl Default for CertifyOptions {
             filter: None,
             ignore_rest: None,
             max_exceptions: None,
+            clearance: None,
             budget: DEFAULT_BUDGET,
             local_budget: DEFAULT_LOCAL_BUDGET,
             reach: DEFAULT_REACH,
@@ -64,6 +66,11 @@ impl CertifyOptions {
         /// contains one is 0. None: half the number of the triangles, because testing more in every query costs as much as
         /// radii can save.
         max_exceptions: impl Into<Option<usize>>,
+        /// Radii at which two triangles come nearer than a clearance, in place of those at which they collide: for
+        /// [`Query::within`](crate::Query::within) alone, up to that clearance and beyond as many rings. They prove nothing about
+        /// collisions, because triangles within the rings may collide, so other queries do without them. Exceptions are then the pairs nearer
+        /// than the clearance at the centre. There are no local certificates. None: radii of collisions.
+        clearance: impl Into<Option<Clearance>>,
         /// Memory for the pair tree ([`PairTree`](crate::parts::PairTree)), in bytes for each triangle of the mesh; a node pair
         /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
         /// ([`PairTree::limit`](crate::parts::PairTree::limit)): queries with `|z|` below that do not open two nodes only because

@@ -1,6 +1,8 @@
 //! The scope of certificates: the metric, centre, contact filter and exceptions for which they hold.
 
-use crate::{ContactFilter, Metric, Pair, ReducedModel};
+use crate::filter::{PairFilter, RingPairs};
+use crate::model::ScaledModel;
+use crate::{Clearance, ContactFilter, DISTANCE_ERROR, Error, Metric, Neighbours, Pair, ReducedModel};
 
 /// The data beside faces, positions and modes for which certificates hold: it defines `|z|`, and which pairs of
 /// triangles count.
@@ -15,8 +17,10 @@ pub struct Scope {
     pub center: Vec<f64>,
     /// Which pairs of triangles count.
     pub filter: ContactFilter,
-    /// Pairs that collide at the centre: no radius covers them, and every query tests them. Sorted.
+    /// Pairs that collide at the centre, or are nearer than the clearance: no radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
+    /// The clearance that triangles keep below the radii, and beyond how many rings; none: they do not collide.
+    pub clearance: Option<Clearance>,
 }
 
 impl Scope {
@@ -27,7 +31,38 @@ impl Scope {
             center: vec![0.0; model.rank()],
             filter: ContactFilter::of(model.mesh()),
             exceptions: Vec::new(),
+            clearance: None,
         }
+    }
+
+    /// The model in scaled coordinates about the centre, whose parts keep the clearance.
+    pub(crate) fn scaled_model(&self, model: &ReducedModel) -> ScaledModel {
+        let scaled = ScaledModel::new(model, &self.metric, &self.center);
+        match self.clearance {
+            Some(clearance) => scaled.keeping(clearance.distance(), DISTANCE_ERROR),
+            None => scaled,
+        }
+    }
+
+    /// The pairs that radii cover: those that count and are no exceptions; with a clearance they share no vertex, and are not within the
+    /// rings, which are the second part of the result.
+    ///
+    /// # Errors
+    /// When too many pairs are within the rings.
+    pub(crate) fn counted_pairs(&self, model: &ReducedModel) -> Result<(PairFilter, RingPairs), Error> {
+        let Some(clearance) = self.clearance else {
+            let filter = PairFilter::new(model, &self.filter).excluding(&self.exceptions);
+            return Ok((filter, RingPairs::NONE));
+        };
+        let mut filter = self.filter.clone();
+        // Triangles with a common vertex are one ring apart.
+        filter.neighbours = Neighbours::Exclude;
+        let filter = PairFilter::new(model, &filter).excluding(&self.exceptions);
+        let rings = match clearance.rings() {
+            0 | 1 => RingPairs::NONE,
+            rings => RingPairs::new(&filter, rings)?,
+        };
+        Ok((filter, rings))
     }
 
     /// `|S (q - center)|`, rounded up.

@@ -42,6 +42,9 @@ fn check_scope(parts: &CertificateParts) -> Result<(), &'static str> {
     if exceptions.iter().any(|pair| ignored.binary_search(pair).is_ok()) {
         return Err("a pair is an exception and ignored");
     }
+    if scope.clearance.is_some() && !parts.local.nodes.is_empty() {
+        return Err("with a clearance there are no local certificates");
+    }
     if let Some(groups) = scope.filter.groups() {
         if groups.of_triangles().len() != parts.hierarchy.order().len() {
             return Err("the number of group numbers is not the number of triangles");

@@ -116,6 +116,9 @@ impl<const E: usize> NodeVolumes<E> {
         } else {
             frame.error_bound(rounding)
         };
+        // Corners may be as much nearer to each other.
+        let margin = motion.margin_beside_rounding() * frame.scale() * (1.0 + 1e-5);
+        self.corner_error += right_or!(margin, SeparatedWithoutClearance, 0.0) as f32;
     }
 
     /// Computes all AABBs from all vertices, bottom-up; those of open buckets are current.

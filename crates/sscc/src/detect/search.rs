@@ -265,11 +265,22 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
                 side.move_corners(vertices);
                 side.volumes.corners(vertices)
             });
+            let apart = 2.0 * side.motion.margin();
             self.state.counters.box_tests += 1;
             if self.state.counters.box_tests.is_multiple_of(BOXES_PER_CHECK) {
                 self.check_cancelled();
             }
-            if Aabb::of_swept_triangle(&a).is_disjoint(&Aabb::of_swept_triangle(&b)) {
+            let [box_a, box_b] = [&a, &b].map(Aabb::of_swept_triangle);
+            let is_apart = if apart > 0.0 {
+                right_or!(
+                    box_a.is_farther(&box_b, apart),
+                    ExceptionsOfContactsAlone,
+                    box_a.is_disjoint(&box_b)
+                )
+            } else {
+                box_a.is_disjoint(&box_b)
+            };
+            if is_apart {
                 continue;
             }
             self.count_triangle_test();

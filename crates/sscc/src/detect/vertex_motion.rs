@@ -24,6 +24,12 @@ pub(crate) trait VertexMotion<const E: usize> {
         0.0
     }
 
+    /// The part of [`Self::margin`] that [`Self::rounding`] does not include. Coarse positions have a bound of their error, which that
+    /// part would exceed by far: there [`Self::coarse_slack`] widens AABBs.
+    fn margin_beside_rounding(&self) -> f64 {
+        0.0
+    }
+
     /// The AABB that chooses the [`F32Frame`](super::f32_frame::F32Frame). It must contain the positions at
     /// [`Self::coarse_coordinates`], and all positions where [`Self::HAS_ERROR_BOUND`]: the error bounds assume that. For
     /// other sources any AABB is right, and affects speed only.

@@ -12,7 +12,7 @@ mod weld;
 
 pub use contact_filter::{ContactFilter, Neighbours, Pair, check_continuous, check_models};
 pub(crate) use pair_filter::{GroupsBetween, PairFilter, Relation};
-pub(crate) use rings::Rings;
+pub(crate) use rings::{RingPairs, Rings};
 pub(crate) use simplex_pairs::SimplexPair;
 pub(crate) use surroundings::{surroundings, surroundings_between};
 pub use triangle_groups::{GroupTable, TriangleGroups};

@@ -1,9 +1,11 @@
 //! Rings of a mesh: how far apart two triangles are on the surface.
 
 use super::pair_filter::PairFilter;
+use crate::Error;
 
 /// Which triangles lie within a number of rings of another one. Triangles with a common vertex are one ring apart, those with a common
 /// neighbour of this kind two, and so on; welded vertices are one.
+#[derive(Clone)]
 pub(crate) struct Rings {
     rings: u32,
     /// For each vertex class its first entry in `triangles`, and the end.
@@ -93,5 +95,50 @@ impl Rings {
                 return;
             }
         }
+    }
+}
+
+/// The pairs of triangles within a number of rings of each other, for many threads to look up.
+pub(crate) struct RingPairs {
+    /// For each triangle where its entries in `later` start, and the end; empty where no pair is listed.
+    starts: Vec<usize>,
+    /// The triangles of higher numbers within its rings, ascending.
+    later: Vec<u32>,
+}
+
+/// Listed pairs of a mesh, at most: 256 MiB of them.
+const MAX_LISTED: usize = 1 << 26;
+
+impl RingPairs {
+    /// No pairs.
+    pub(crate) const NONE: Self = Self { starts: Vec::new(), later: Vec::new() };
+
+    /// The pairs of a mesh.
+    ///
+    /// # Errors
+    /// When they are more than 2^26.
+    pub(crate) fn new(filter: &PairFilter, rings: u32) -> Result<Self, Error> {
+        let mut search = Rings::new(filter, rings);
+        let (mut starts, mut later) = (vec![0], Vec::new());
+        for a in 0..filter.faces().len() as u32 {
+            later.extend(search.around(filter, a).iter().filter(|b| **b > a));
+            if later.len() > MAX_LISTED {
+                return Err(Error::TooManyRings { most: MAX_LISTED, rings });
+            }
+            let start = starts[a as usize];
+            later[start..].sort_unstable();
+            starts.push(later.len());
+        }
+        Ok(Self { starts, later })
+    }
+
+    /// Whether two triangles are within the rings of each other.
+    pub(crate) fn contain(&self, a: u32, b: u32) -> bool {
+        let (first, second) = (a.min(b), a.max(b));
+        if self.starts.is_empty() {
+            return false;
+        }
+        let [start, end] = [0, 1].map(|next| self.starts[first as usize + next]);
+        right_or!(self.later[start..end].binary_search(&second).is_ok(), RingsOfClearanceForgotten, false)
     }
 }

@@ -46,6 +46,11 @@ impl Aabb {
         (self.lower.cmpgt(other.upper) | other.lower.cmpgt(self.upper)).any()
     }
 
+    /// Whether the boxes are farther apart than a distance along some axis.
+    pub(crate) fn is_farther(&self, other: &Self, distance: f64) -> bool {
+        (self.lower - other.upper).max(other.lower - self.upper).max_element() > distance
+    }
+
     /// The middle of the box.
     #[inline]
     pub fn center(&self) -> DVec3 {

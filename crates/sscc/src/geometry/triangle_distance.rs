@@ -96,41 +96,54 @@ fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
 
 #[cfg(test)]
 mod tests {
+    use num_bigint::BigInt;
     use num_rational::BigRational;
     use num_traits::{One, Signed, ToPrimitive, Zero};
     use sscc_testing::Numbers;
 
     use super::*;
 
-    type Point = [BigRational; 3];
+    /// In integer multiples of a common unit.
+    type Point = [BigInt; 3];
 
-    fn exact(p: DVec3) -> Point {
-        p.to_array().map(|x| BigRational::from_float(x).unwrap())
+    /// A numerator and a positive denominator. Unlike a rational number it is not reduced, which would take most of the time.
+    type Fraction = (BigInt, BigInt);
+
+    /// The points in multiples of one over a power of two, and that power.
+    fn exact(points: &[DVec3]) -> (Vec<Point>, BigInt) {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let all = points.iter().flat_map(|p| p.to_array()).map(exact);
+        let unit = all.map(|x| x.denom().clone()).max().unwrap();
+        let whole = |x: f64| exact(x).numer() * (&unit / exact(x).denom());
+        (points.iter().map(|p| p.to_array().map(whole)).collect(), unit)
     }
 
     fn minus(a: &Point, b: &Point) -> Point {
         std::array::from_fn(|i| &a[i] - &b[i])
     }
 
-    fn dot(a: &Point, b: &Point) -> BigRational {
+    fn dot(a: &Point, b: &Point) -> BigInt {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
     /// The square of the distance of the origin from the hull of points, by all corners, edges and faces of it: exact.
-    fn exact_square(points: &[Point]) -> BigRational {
-        let mut best = points.iter().map(|p| dot(p, p)).min().unwrap();
-        let inside = |x: &BigRational| !x.is_negative() && *x <= BigRational::one();
+    fn exact_square(points: &[Point]) -> Fraction {
+        let mut best = (points.iter().map(|p| dot(p, p)).min().unwrap(), BigInt::one());
+        let mut take = |numerator: BigInt, denominator: &BigInt| {
+            if &numerator * &best.1 < &best.0 * denominator {
+                best = (numerator, denominator.clone());
+            }
+        };
         for (i, p) in points.iter().enumerate() {
             for (j, q) in points[..i].iter().enumerate() {
                 let d = minus(q, p);
-                let square = dot(&d, &d);
+                let (square, along) = (dot(&d, &d), -dot(p, &d));
                 if square.is_zero() {
                     continue;
                 }
-                let t = -dot(p, &d) / &square;
-                if inside(&t) {
-                    let at: Point = std::array::from_fn(|c| &p[c] + &d[c] * &t);
-                    best = best.min(dot(&at, &at));
+                // The foot of the perpendicular is at along / square from p to q.
+                if !along.is_negative() && along <= square {
+                    take(dot(p, p) * &square - &along * &along, &square);
                 }
                 for r in &points[..j] {
                     let e = minus(r, p);
@@ -139,12 +152,14 @@ mod tests {
                     if determinant.is_zero() {
                         continue;
                     }
-                    let (x, y) = (-dot(p, &d), -dot(p, &e));
-                    let s = (&x * &ee - &y * &de) / &determinant;
-                    let t = (&y * &square - &x * &de) / &determinant;
-                    if !s.is_negative() && !t.is_negative() && &s + &t <= BigRational::one() {
-                        let at: Point = std::array::from_fn(|c| &p[c] + &d[c] * &s + &e[c] * &t);
-                        best = best.min(dot(&at, &at));
+                    let (x, y) = (&along, -dot(p, &e));
+                    let s = x * &ee - &y * &de;
+                    let t = &y * &square - x * &de;
+                    if !s.is_negative() && !t.is_negative() && &s + &t <= determinant {
+                        // The determinant is the square of the normal d x e.
+                        let minor = |i: usize, j: usize| &d[i] * &e[j] - &d[j] * &e[i];
+                        let height = dot(p, &[minor(1, 2), minor(2, 0), minor(0, 1)]);
+                        take(&height * &height, &determinant);
                     }
                 }
             }
@@ -160,20 +175,27 @@ mod tests {
             return None;
         }
         // The distance is that of the origin from all differences.
-        let differences: Vec<Point> = (0..9).map(|i| minus(&exact(b[i % 3]), &exact(a[i / 3]))).collect();
-        let square = exact_square(&differences);
         let all = [*a, *b];
+        let (corners, unit) = exact(all.as_flattened());
+        let differences: Vec<Point> = (0..9).map(|i| minus(&corners[3 + i % 3], &corners[i / 3])).collect();
+        let (numerator, denominator) = exact_square(&differences);
         let size = (0..3).map(|axis| {
             let of = all.as_flattened().iter().map(|x| x[axis]);
             of.clone().fold(f64::NEG_INFINITY, f64::max) - of.fold(f64::INFINITY, f64::min)
         });
         let error = size.fold(0.0, f64::max) * DISTANCE_ERROR;
-        let is_within = |share: f64| {
-            let [below, above] =
-                [found - error * share, found + error * share].map(|x| BigRational::from_float(x).unwrap());
-            &above * &above >= square && (below.is_negative() || &below * &below <= square)
+        // How the square of a number compares with that of the distance.
+        let scaled = &unit * &unit * &denominator;
+        let compare = |x: f64| {
+            let x = BigRational::from_float(x).unwrap();
+            (x.numer() * x.numer() * &scaled).cmp(&(x.denom() * x.denom() * &numerator))
         };
-        assert!(is_within(1.0), "case {case}: {found} for the square {:?}", square.to_f64());
+        let is_within = |share: f64| {
+            let [below, above] = [found - error * share, found + error * share];
+            compare(above).is_ge() && (below < 0.0 || compare(below).is_le())
+        };
+        let square = || BigRational::new(numerator.clone(), scaled.clone()).to_f64();
+        assert!(is_within(1.0), "case {case}: {found} for the square {:?}", square());
         let mut used = 1e-6;
         while !is_within(used) {
             used *= 2.0;
@@ -261,6 +283,7 @@ mod tests {
                 None => touching += 1,
             }
         }
+        println!("{apart} pairs apart, {touching} that touch, at most {worst:e} of the error");
         assert!(apart > count / 2 && touching > count / 20, "{apart} {touching}");
         assert!(worst < 0.1, "{worst}");
     }

@@ -27,11 +27,19 @@ pub(crate) struct RoundingBound {
     per_norm: DVec3,
 }
 
-/// The rounding bound along one direction: `at_rest + per_norm |z|`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RoundingAlong {
+/// A gap along one direction, `at_rest + per_norm |z|`: a larger gap in exact arithmetic proves two points apart.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LeastGap {
     pub(crate) at_rest: f64,
     pub(crate) per_norm: f64,
+}
+
+impl LeastGap {
+    /// The sum of two.
+    #[inline]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { at_rest: self.at_rest + other.at_rest, per_norm: self.per_norm + other.per_norm }
+    }
 }
 
 /// Roundings granted beside the r of the positions: those of scaling, differences, midpoints, dot products
@@ -73,8 +81,8 @@ impl RoundingBound {
 
     /// Both parts along a direction.
     #[inline]
-    pub(crate) fn along(&self, dir: DVec3) -> RoundingAlong {
-        RoundingAlong { at_rest: self.at_rest(dir), per_norm: self.per_norm(dir) }
+    pub(crate) fn along(&self, dir: DVec3) -> LeastGap {
+        LeastGap { at_rest: self.at_rest(dir), per_norm: self.per_norm(dir) }
     }
 }
 

@@ -6,8 +6,9 @@ use glam::DVec3;
 use super::metric::Metric;
 use super::mode_rows::padded_rank;
 use super::reduced_model::ReducedModel;
-use super::rounding::norm_up;
-use super::rounding_bound::RoundingBound;
+use super::required_gap::RequiredGap;
+use super::rounding::{ROUND_UP, norm_up};
+use super::rounding_bound::{LeastGap, RoundingBound};
 
 /// Positions at the centre (called rest in the bounds) and scaled modes of a model, laid out for the bounds.
 pub(crate) struct ScaledModel {
@@ -18,6 +19,10 @@ pub(crate) struct ScaledModel {
     /// For each vertex three rows (x, y, z).
     modes: Vec<f64>,
     pub(crate) rounding: RoundingBound,
+    /// The gap that a clearance needs beside the rounding bound; 0 without one.
+    pub(crate) required: RequiredGap,
+    /// The largest length of a row of scaled modes.
+    mode_reach: f64,
 }
 
 impl ScaledModel {
@@ -52,7 +57,28 @@ impl ScaledModel {
         let floor = right_or!(mode_reach.max_element() * f64::EPSILON, ModeReachWithoutFloor, 0.0);
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());
-        Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding }
+        let required = RequiredGap::default();
+        let mode_reach = mode_reach.max_element();
+        Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding, required, mode_reach }
+    }
+
+    /// The same model, whose parts must keep a clearance. `error`: that of computed distances, as a share of the size of two triangles.
+    pub(crate) fn keeping(mut self, clearance: f64, error: f64) -> Self {
+        let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for i in self.faces.as_flattened() {
+            let x = self.positions[*i as usize];
+            (lower, upper) = (lower.min(x), upper.max(x));
+        }
+        let extent = (upper - lower).max_element().max(0.0) * ROUND_UP;
+        self.required = RequiredGap::new(clearance, extent, self.mode_reach, error);
+        self
+    }
+
+    /// The gap along a direction that proves two points apart, by more than the clearance where there is one.
+    #[inline]
+    pub(crate) fn least_gap(&self, dir: DVec3) -> LeastGap {
+        let required = right_or!(self.required.along(dir), DirectionWithoutClearance, LeastGap::default());
+        self.rounding.along(dir).plus(required)
     }
 
     /// The modes of a vertex: three rows.

@@ -330,6 +330,38 @@ mutants! {
     ClearanceHalved: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
     /// Triangles nearer than a clearance are separated as if they had to touch.
     ClearanceOfBoxesAlone: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
+    /// The bound along a separating direction omits the clearance.
+    DirectionWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_translations_are_the_distance_less_the_clearance");
+    /// The affine bound omits the clearance.
+    AffineWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_a_contraction_are_those_of_its_distances");
+    /// The bound of two nodes omits the clearance.
+    NodePairWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_translations_are_the_distance_less_the_clearance");
+    /// Directions are taken for unit vectors: along a diagonal the gap of a clearance is too small.
+    RequiredGapOfUnitDirections: CaughtBy("lib bounds::tests::clearance::clearances_are_measured_along_unit_directions");
+    /// The gap of a clearance omits the error of distances at the centre.
+    DistanceErrorAtRestForgotten: CaughtBy("lib model::required_gap::tests::gaps_hold_the_clearance_and_the_error_of_distances");
+    /// The gap of a clearance omits the error of distances that grows with |z|.
+    DistanceErrorOfMotionForgotten: CaughtBy("lib model::required_gap::tests::gaps_hold_the_clearance_and_the_error_of_distances");
+    /// Radii with a clearance are those of pairs within the rings, too.
+    RingsOfClearanceForgotten: CaughtBy("it certified_clearance::certificates_with_a_clearance_prove_nothing_about_collisions");
+    /// The digest of certificates omits the clearance.
+    ClearanceNotHashed: CaughtBy("it certified_clearance::another_clearance_is_refused");
+    /// Certificates with a smaller clearance are used.
+    SmallerClearanceUsed: CaughtBy("it certified_clearance::another_clearance_is_refused");
+    /// Certificates beyond more rings are used.
+    MoreRingsUsed: CaughtBy("it certified_clearance::another_clearance_is_refused");
+    /// Certificates with a clearance prove that nothing collides.
+    ClearanceProvesFree: CaughtBy("it certified_clearance::certificates_with_a_clearance_prove_nothing_about_collisions");
+    /// Exceptions that do not touch are not near.
+    ExceptionsOfContactsAlone: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
+    /// With certificates boxes are widened by a quarter of a clearance.
+    WidenedByHalfOfClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
+    /// Boxes from coarse positions are not widened by a clearance.
+    CoarseBoxesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
+    /// Boxes of nodes from exact bounds are not widened by a clearance.
+    NodesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_found_where_positions_must_be_exact");
+    /// With certificates triangles nearer than a clearance are separated as if they had to touch.
+    SeparatedWithoutClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Widened boxes are not rounded.
     MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
     /// The points where two lines are nearest are found each by itself.

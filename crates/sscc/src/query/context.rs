@@ -84,6 +84,24 @@ impl QueryContext {
         }
     }
 
+    /// The context of questions about clearances, from that of questions about collisions: certificates with a clearance cull their
+    /// searches. Moving hulls and local certificates do not.
+    pub(super) fn of_clearance(&self, certificates: &Certificates) -> Self {
+        let exceptions = certificates.exceptions();
+        let buckets = self.detect.layout.buckets.count();
+        Self {
+            detect: Context { exceptions: exceptions.into(), ..self.detect.clone() },
+            certificates: Some(certificates.clone()),
+            method: Method::Certified,
+            hulls: None,
+            locals: None,
+            local_norm: f64::INFINITY,
+            all_reached_norm: all_reached_norm(&certificates.parts().pair_tree, buckets),
+            proven_radius: if exceptions.is_empty() { certificates.root_radius() } else { 0.0 },
+            ..self.clone()
+        }
+    }
+
     /// The normal cones of the method, if it uses any.
     pub(super) fn cones(&self) -> Option<NormalCones> {
         let nodes = self.detect.layout.buckets.node_count();

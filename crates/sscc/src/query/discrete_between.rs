@@ -1,10 +1,13 @@
-//! `Query::discrete_between`: the colliding pairs of two nodes, without certificates, for audits.
+//! `Query::discrete_between` and `near_between`: the colliding pairs of two nodes, or those nearer than a clearance, without
+//! certificates, for audits.
 
 use super::method::Method;
 use super::query::Query;
+use super::widened_motion::WidenedMotion;
+use crate::detect::narrow_phase::ClearanceHits;
 use crate::detect::vertex_motion::DeformedMotion;
-use crate::hierarchy::{BUCKET_TRIANGLES, Node, NodePair};
-use crate::{Certificates, Error, Pair};
+use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy, Node, NodePair};
+use crate::{Certificates, Clearance, Detector, Error, Pair};
 
 impl Query {
     /// The colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
@@ -25,18 +28,51 @@ impl Query {
         search.end()?;
         let exceptions = context.certificates.as_ref().map_or(&[][..], Certificates::exceptions);
         let hierarchy = &detect.hierarchy;
-        let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
-        let contains = |node: &Node, t| {
-            node.triangle_count as usize > BUCKET_TRIANGLES || hierarchy.triangles(node).contains(&t)
-        };
-        narrow.0.list.retain(|pair| {
-            let (a, b) = *pair;
-            let is_between = contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a);
-            is_between && exceptions.binary_search(pair).is_err()
-        });
+        narrow
+            .0
+            .list
+            .retain(|pair| is_between(hierarchy, (n, m), *pair) && exceptions.binary_search(pair).is_err());
         narrow.0.list.sort_unstable();
         Ok(&narrow.0.list)
     }
+
+    /// The pairs nearer than a clearance between the triangles of two nodes without common triangles, or within one node, found without
+    /// certificates: exceptions and pairs within the rings, too.
+    ///
+    /// # Errors
+    /// As [`Query::discrete`].
+    pub(crate) fn near_between(
+        &mut self,
+        (n, m): NodePair,
+        q: &[f64],
+        clearance: &Clearance,
+    ) -> Result<Vec<Pair>, Error> {
+        debug_assert_ne!(self.context.method, Method::Certified);
+        self.forget();
+        let configuration = self.measure(q)?;
+        self.norm = configuration.norm;
+        let (detect, broad) = (&self.context.detect, &mut self.discrete.certified.broad);
+        let mut narrow = ClearanceHits { distance: clearance.distance(), ..ClearanceHits::default() };
+        let deformed = DeformedMotion::new([q], configuration.reach);
+        let motion = WidenedMotion::new(deformed, &detect.layout, clearance.distance());
+        let mut search = broad.search(detect, &motion, &mut narrow, Detector::MAX_PAIRS);
+        search.traverse((n, m));
+        search.end()?;
+        let found = narrow.hits.list.into_iter().map(|near| near.pair);
+        let mut pairs: Vec<Pair> =
+            found.filter(|pair| is_between(&detect.hierarchy, (n, m), *pair)).collect();
+        pairs.sort_unstable();
+        Ok(pairs)
+    }
+}
+
+/// Whether one triangle of a pair is in one node and the other one in the other; nodes larger than a bucket have been searched alone.
+fn is_between(hierarchy: &Hierarchy, (n, m): NodePair, (a, b): Pair) -> bool {
+    let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
+    let contains = |node: &Node, t| {
+        node.triangle_count as usize > BUCKET_TRIANGLES || hierarchy.triangles(node).contains(&t)
+    };
+    contains(x, a) && contains(y, b) || contains(x, b) && contains(y, a)
 }
 
 #[cfg(test)]

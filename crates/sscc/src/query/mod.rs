@@ -24,6 +24,7 @@ mod local_proofs;
 mod local_scales;
 mod local_tables;
 mod method;
+mod near_search;
 mod pair_hulls;
 mod pair_tree_traversal;
 mod proven_shares;
@@ -34,6 +35,7 @@ mod safe_scale;
 mod smallest_stretch;
 mod sweep;
 mod valid_ball;
+mod widened_motion;
 
 pub use kinetic::KineticQuery;
 pub use method::Method;

@@ -8,6 +8,7 @@ use super::configuration_check::ConfigurationCheck;
 use super::configuration_search::{DiscreteSearch, SweptSearch};
 use super::context::QueryContext;
 use super::method::Method;
+use super::near_search::NearSearch;
 use crate::certificates::CertificateParts;
 use crate::certificates::Scope;
 use crate::detect::answer::Statistics;
@@ -32,8 +33,10 @@ pub struct Query {
     pub(super) swept: Option<Box<SweptSearch<SweptHits>>>,
     /// Made by the first sweep.
     pub(super) candidates: Option<Box<SweptSearch<AabbHits>>>,
-    /// Made by the first question about distances.
+    /// Made by the first question about distances that certificates do not answer.
     pub(super) detector: Option<Box<Detector>>,
+    /// The search for near triangles, where the certificates have a clearance.
+    pub(super) near: Option<Box<NearSearch>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) check: ConfigurationCheck,
@@ -51,7 +54,8 @@ impl fmt::Debug for Query {
 }
 
 impl Query {
-    /// A query that uses certificates. First it fits the moving hulls of nodes, in less than a fifth of the time that the
+    /// A query that uses certificates; those with a [clearance](Certificates::clearance) serve [`Query::within`] alone, and all other
+    /// questions are answered without certificates. First it fits the moving hulls of nodes, in less than a fifth of the time that the
     /// certificates took. Clones share them.
     ///
     /// # Errors
@@ -100,7 +104,19 @@ impl Query {
         hierarchy: Arc<Hierarchy>,
         method: Method,
     ) -> Self {
-        let context = QueryContext::new(model, certificates, scope, hierarchy, method);
+        // Certificates with a clearance prove nothing about collisions of triangles within their rings.
+        let (plain, near): (Option<&Certificates>, Option<&Certificates>) = match certificates {
+            Some(certificates)
+                if right_or!(certificates.clearance().is_some(), ClearanceProvesFree, false) =>
+            {
+                (None, Some(certificates))
+            }
+            plain => (plain, None),
+        };
+        let near = near.filter(|_| method == Method::Certified);
+        let plain_method = if near.is_some() { Method::BdTree } else { method };
+        let context = QueryContext::new(model, plain, scope, hierarchy, plain_method);
+        let near = near.map(|certificates| Box::new(NearSearch::new(&context, certificates)));
         let discrete = DiscreteSearch::new(&context);
         let check = ConfigurationCheck::new(&context);
         let statistics = Statistics::default();
@@ -110,6 +126,7 @@ impl Query {
             swept: None,
             candidates: None,
             detector: None,
+            near,
             norm: 0.0,
             statistics,
             check,
@@ -124,6 +141,7 @@ impl Query {
             swept: None,
             candidates: None,
             detector: None,
+            near: None,
             norm: self.norm,
             statistics: self.statistics,
             check: self.check.clone(),

@@ -8,6 +8,7 @@ mod body_penetration;
 mod cancel;
 mod ccd;
 mod certificates;
+mod certified_clearance;
 mod clearance;
 mod clusters;
 mod common;

@@ -108,12 +108,16 @@ impl InsideAnswer {
 pub struct NearAnswer<'a> {
     pub clearance: f64,
     pub rings: u32,
-    /// The smallest distance of two triangles that count, also where it is not below the clearance; none where none count.
+    /// The smallest distance of two triangles that count, also where it is not below the clearance; none where none count, and
+    /// where it is not below and certificates leave it open.
     pub distance: Option<f64>,
     /// These triangles.
     pub nearest: Option<Pair>,
     /// The distance of each pair.
     pub distances: &'a [f64],
+    /// Whether certificates leave the smallest distance open.
+    #[serde(skip)]
+    pub is_open: bool,
 }
 
 impl<'a> NearAnswer<'a> {
@@ -124,6 +128,7 @@ impl<'a> NearAnswer<'a> {
             distance: near.nearest.map(|near| near.distance),
             nearest: near.nearest.map(|near| near.pair),
             distances: &near.distances,
+            is_open: near.is_open,
         }
     }
 }

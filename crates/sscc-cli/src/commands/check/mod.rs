@@ -15,7 +15,7 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc::parts::Scope;
 use sscc::{Certificates, Method, Query};
 use sscc_io::{LoadedModel, Rows, Setting, read_rows};
-use sscc_sim::{DetectionAnswer, RowQueries, check_rows, read_configuration};
+use sscc_sim::{CertificateRequest, DetectionAnswer, RowQueries, check_rows, read_configuration};
 
 use crate::args::{At, Check};
 use crate::outcome::Outcome;
@@ -35,8 +35,9 @@ fn check_model(args: &Check) -> Result<bool> {
     if let Some(second) = args.meshes.first() {
         bail!("{}: --q and --trajectory take one model: leave it out", second.display());
     }
-    // Distances are those of positions, without certificates.
-    let default = if args.clearance.is_some() { Method::BdTree } else { Method::Certified };
+    // Distances are those of positions, without certificates unless some of a clearance are given.
+    let is_certified = args.certificates.is_some();
+    let default = if args.clearance.is_some() && !is_certified { Method::BdTree } else { Method::Certified };
     let method = args.method.unwrap_or(default);
     let loaded = load::model(&args.model)?;
     let rows = coordinates(&args.at, &loaded)?;
@@ -47,7 +48,7 @@ fn check_model(args: &Check) -> Result<bool> {
     );
     shapes::check(args, slice::from_ref(&args.model.path))?;
     let clearance = args.clearance()?;
-    let request = load::request(&loaded, &args.model, &args.options)?;
+    let request = CertificateRequest { clearance, ..load::request(&loaded, &args.model, &args.options)? };
     let certificates = match &args.certificates {
         Some(path) => Some(request.read(path, model)?),
         None if method == Method::Certified => {
@@ -82,6 +83,7 @@ fn check_model(args: &Check) -> Result<bool> {
         is_continuous: args.continuous,
         limit: args.max_pairs(),
         clearance,
+        is_certified,
         threads: Some(load::threads(&args.options.threads)),
         contacts: shapes::contacts(args),
     };

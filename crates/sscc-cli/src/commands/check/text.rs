@@ -77,8 +77,16 @@ impl Answer<'_> {
         let word = if is_near { format!("NEAR       {}", self.counted()) } else { "clear".to_owned() };
         let nearest = self.near.as_ref().and_then(|near| near.nearest.zip(near.distance));
         let nearest = nearest.map(|((i, j), distance)| format!("nearest {i} {j} at {}", length(distance)));
-        let nearest = nearest.unwrap_or_else(|| "no pair counts".to_owned());
+        let nearest = nearest.unwrap_or_else(|| match &self.near {
+            Some(near) if near.is_open => self.near_proof().to_owned(),
+            _ => "no pair counts".to_owned(),
+        });
         if is_near { format!("{word}, {nearest}") } else { format!("{word:<10} {nearest}") }
+    }
+
+    /// Returns what proves that no pair is near, where certificates leave the smallest distance open.
+    fn near_proof(&self) -> &'static str {
+        if self.is_root_certified() { "by the root's certificate" } else { "by a search" }
     }
 
     /// Returns the time, the depth or the distance of a pair; empty without any.
@@ -129,7 +137,10 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
         let apart = answer.left_out.apart() + &rings.unwrap_or_default();
         let nearest = near.nearest.zip(near.distance);
         let nearest = nearest.map(|((i, j), distance)| format!("; nearest: {i} {j} at {}", length(distance)));
-        let nearest = nearest.unwrap_or_else(|| "; no pair counts".to_owned());
+        let nearest = nearest.unwrap_or_else(|| match near.is_open {
+            true => format!(", {}", answer.near_proof()),
+            false => "; no pair counts".to_owned(),
+        });
         let inside = answer.inside();
         if !answer.is_finding() {
             return vec![

@@ -23,6 +23,11 @@ pub struct CertificatesInfo {
     rest_collisions: u64,
     exceptions: usize,
     ignored: usize,
+    /// The clearance that triangles keep below the radii, and beyond how many rings; absent for radii of collisions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rings: Option<u32>,
     /// 0 if all pairs of groups of triangles count.
     groups: usize,
     center: Vec<f64>,
@@ -71,6 +76,8 @@ impl CertificatesInfo {
             rest_collisions: parts.rest_collisions,
             exceptions: parts.scope.exceptions.len(),
             ignored: parts.scope.filter.ignored().len(),
+            clearance: parts.scope.clearance.map(|clearance| clearance.distance()),
+            rings: parts.scope.clearance.map(|clearance| clearance.rings()),
             groups: parts.scope.filter.groups().map_or(0, |groups| GroupTable::from(&**groups).count),
             center: parts.scope.center.clone(),
             nodes: parts.node_radii.len(),
@@ -140,6 +147,13 @@ impl CertificatesInfo {
         if self.groups > 0 {
             let groups = counted(self.groups as u64, "group");
             lines.insert(4, format!("groups         {groups} of triangles, of which not all pairs count"));
+        }
+        if let (Some(clearance), Some(rings)) = (self.clearance, self.rings) {
+            let rings = counted(u64::from(rings.max(1)), "ring");
+            lines.insert(
+                4,
+                format!("clearance      {}, beyond {rings}; nothing about collisions", length(clearance)),
+            );
         }
         lines.extend(self.levels.iter().enumerate().map(|(i, level)| {
             let [min, median, max] = [level.min, level.median, level.max].map(length);

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::super::MODEL;
 use super::*;
 use glam::DVec3;
-use sscc::{CertifyOptions, Metric, MetricKind, Modes, ReducedModel, TriMesh, TriangleGroups};
+use sscc::{CertifyOptions, Clearance, Metric, MetricKind, Modes, ReducedModel, TriMesh, TriangleGroups};
 use sscc_testing::{cases, threshold};
 
 /// A strip of triangles folded over itself, with three modes, one of which moves nothing.
@@ -91,6 +91,54 @@ fn groups_round_trip() {
     let plain = certificates_to_bytes(&Certificates::compute(&model(), &plain, &()).unwrap()).unwrap();
     assert_eq!(Container::parse(&plain, CERTIFICATES).unwrap().version(), 4);
     assert_eq!(certificates_to_bytes(&grouped(|groups| groups)).unwrap(), plain);
+}
+
+#[test]
+fn clearances_round_trip_and_damaged_ones_are_rejected() {
+    let clearance = Clearance::new(0.01).unwrap().beyond_rings(3);
+    let options = CertifyOptions::default().clearance(clearance).budget(16);
+    let certificates = Certificates::compute(&model(), &options, &()).unwrap();
+    let bytes = certificates_to_bytes(&certificates).unwrap();
+    let file = Container::parse(&bytes, CERTIFICATES).unwrap();
+    assert_eq!(file.version(), 8);
+    let read = certificates_from_bytes(&bytes).unwrap();
+    assert_eq!((&read, read.clearance()), (&certificates, Some(clearance)));
+    read.check_model(&model()).unwrap();
+    assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
+    let changed = |version: u32, distance: &[f64], rings: Option<u32>| {
+        let mut writer = ContainerWriter::new(super::super::Kind { version, ..CERTIFICATES });
+        copy(&file, &mut writer, &["clearance", "clearance_rings"]);
+        if !distance.is_empty() {
+            writer.f64("clearance", &[distance.len()], distance);
+        }
+        if let Some(rings) = rings {
+            writer.u32("clearance_rings", &[1], &[rings]);
+        }
+        certificates_from_bytes(&writer.finish().unwrap())
+    };
+    let refused =
+        |version, distance: &[f64], rings| changed(version, distance, rings).unwrap_err().to_string();
+    assert!(refused(7, &[0.01], Some(3)).contains("not known in this version of the format"));
+    for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(refused(8, &[distance], Some(3)).contains("must be positive and finite"), "{distance}");
+    }
+    assert!(
+        changed(8, &[0.01], None).is_err()
+            && changed(8, &[], Some(3)).is_err()
+            && changed(8, &[1.0, 2.0], Some(3)).is_err()
+    );
+    // Others are of another scope: they are read, and refused for the model.
+    for (distance, rings) in [(&[0.02][..], Some(3)), (&[0.01], Some(2)), (&[], None)] {
+        assert!(changed(8, distance, rings).unwrap().check_model(&model()).is_err());
+    }
+    for end in 0..bytes.len() {
+        assert!(certificates_from_bytes(&bytes[..end]).is_err());
+    }
+    for at in (0..bytes.len()).step_by(7) {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        assert!(certificates_from_bytes(&flipped).is_err(), "{at}");
+    }
 }
 
 #[test]

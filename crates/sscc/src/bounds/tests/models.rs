@@ -12,7 +12,7 @@ use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, Node};
 use crate::model::{ScaledModel, scale_direction};
 use crate::vectors::InstructionSet;
-use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
+use crate::{DISTANCE_ERROR, Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
 /// Room for the rounding of the search for the true minimum.
 pub(super) const ROOM: f64 = 1.0 + 1e-9;
@@ -151,9 +151,24 @@ fn far_target() -> RefinementTarget {
     RefinementTarget { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1, subdivisions: 500 }
 }
 
+/// The model in scaled coordinates about the rest pose, whose parts keep a clearance; none for 0.
+pub(super) fn scaled_keeping(model: &ReducedModel, clearance: f64) -> ScaledModel {
+    let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
+    if clearance > 0.0 { scaled.keeping(clearance, DISTANCE_ERROR) } else { scaled }
+}
+
 /// All bounds of one pair of triangles, by name.
 pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
-    let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
+    all_bounds_keeping(model, 0.0, random)
+}
+
+/// The same for triangles that keep a clearance.
+pub(super) fn all_bounds_keeping(
+    model: &ReducedModel,
+    clearance: f64,
+    random: &mut Random,
+) -> Vec<(&'static str, f64)> {
+    let scaled = scaled_keeping(model, clearance);
     let pair = pair_corners(&scaled);
     let differences = pair.differences();
     let row_len = scaled.row_len;
@@ -161,7 +176,7 @@ pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'st
     let mut affine = AffineBound::new(row_len);
     let mut bounds = Vec::new();
     let among_others = with_others(model, random);
-    let scaled_others = ScaledModel::new(&among_others, model.metric(), &vec![0.0; model.rank()]);
+    let scaled_others = scaled_keeping(&among_others, clearance);
     let mut leaves = LeafPair::new(&scaled_others);
     leaves.load(&[2, 0], &[1, 3]);
     for sufficient in [f64::INFINITY, random.power(-6.0, 6.0)] {
@@ -178,19 +193,23 @@ pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'st
             _ => random.vector(),
         };
         let Some(dir) = scale_direction(dir) else { continue };
-        bounds.push(("direction", bound_along(&pair, &differences, dir, &scaled.rounding, &mut projections)));
+        bounds.push((
+            "direction",
+            bound_along(&pair, &differences, dir, scaled.least_gap(dir), &mut projections),
+        ));
         leaves.set_direction(dir);
         let shared = leaves.bound_along_direction([0, 1, 2], [3, 4, 5]);
-        let alone = bound_along(&pair, &differences, dir, &scaled_others.rounding, &mut projections);
+        let alone = bound_along(&pair, &differences, dir, scaled_others.least_gap(dir), &mut projections);
         assert_eq!(shared.to_bits(), alone.to_bits());
         projections.instructions = InstructionSet::Baseline;
-        let in_baseline = bound_along(&pair, &differences, dir, &scaled_others.rounding, &mut projections);
+        let in_baseline =
+            bound_along(&pair, &differences, dir, scaled_others.least_gap(dir), &mut projections);
         projections.instructions = InstructionSet::default();
         assert_eq!(in_baseline.to_bits(), alone.to_bits());
         let distance = bound_rest_distance(&differences, dir, &scaled.rounding);
         if distance > 0.0 {
             for sufficient in [0.0, f64::INFINITY, random.power(-6.0, 6.0)] {
-                let bound = affine.fit_and_bound(&pair, &differences, distance, sufficient, &scaled.rounding);
+                let bound = affine.fit_and_bound(&pair, &differences, distance, sufficient, &scaled);
                 bounds.push(("affine", bound));
             }
         }
@@ -219,7 +238,12 @@ fn two_leaves(split: u32, count: u32) -> Hierarchy {
 
 /// The bound of two nodes: the first `split` triangles and the others.
 pub(super) fn node_pair_bound(model: &ReducedModel, split: u32) -> f64 {
-    let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
+    node_pair_bound_keeping(model, 0.0, split)
+}
+
+/// The same for nodes that keep a clearance.
+pub(super) fn node_pair_bound_keeping(model: &ReducedModel, clearance: f64, split: u32) -> f64 {
+    let scaled = scaled_keeping(model, clearance);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);
     let bounds = NodePairBounds::new(&scaled, &hierarchy);
     let mut scratch = NodePairScratch::new(scaled.row_len);

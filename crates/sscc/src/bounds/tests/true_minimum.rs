@@ -66,7 +66,7 @@ impl OraclePair {
     }
 
     /// `d` and the columns of `B` for two points given by barycentric weights.
-    fn relative(&self, [wx, wy]: [DVec3; 2]) -> (DVec3, Vec<DVec3>) {
+    pub(super) fn relative(&self, [wx, wy]: [DVec3; 2]) -> (DVec3, Vec<DVec3>) {
         let w = [-wx.x, -wx.y, -wx.z, wy.x, wy.y, wy.z];
         let d = self.p.iter().zip(w).map(|(p, w)| *p * w).sum();
         let column = |k: usize| self.a.iter().zip(w).map(|(a, w)| a[k] * w).sum();

@@ -69,7 +69,8 @@ impl CertifiedRadii {
         options: &CertifyOptions,
         preparation: Preparation,
     ) -> Certificates {
-        let local = if options.local_budget == 0 {
+        // Local certificates prove that parts do not collide, not how far apart they stay.
+        let local = if options.local_budget == 0 || options.clearance.is_some() {
             LocalCertificates::default()
         } else {
             let both = options.budget.saturating_add(options.local_budget);

@@ -47,7 +47,7 @@ impl<'a> LeafBounds<'a> {
     /// Takes the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. `dir`: a
     /// direction in which all are bounded.
     pub(super) fn load(&mut self, (n, m): NodePair, dir: Option<DVec3>, certified: f64) {
-        let RadiusSearchContext { hierarchy, filter, .. } = self.context;
+        let RadiusSearchContext { hierarchy, filter, rings, .. } = self.context;
         let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
         self.leaves.load(x, y);
         if let Some(dir) = dir {
@@ -58,7 +58,7 @@ impl<'a> LeafBounds<'a> {
             for &b in if n == m { &y[i + 1..] } else { y } {
                 for SimplexPair { a: x, b: y } in filter.simplex_pairs(a, b) {
                     let lower = dir.map_or(0.0, |_| self.leaves.bound_along_direction(x, y));
-                    if lower < certified && !filter.is_excluded(a, b) {
+                    if lower < certified && !filter.is_excluded(a, b) && !rings.contain(a, b) {
                         self.pairs.push(BoundedSimplexPair {
                             triangles: (a, b),
                             x,

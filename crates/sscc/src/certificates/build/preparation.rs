@@ -10,12 +10,12 @@ use super::radius_search_context::RadiusSearchContext;
 use crate::bounds::NodePairBounds;
 use crate::certificates::local::compute_local_certificates;
 use crate::certificates::{CertifyOptions, Digest, LocalCertificates, Scope, default_exceptions, is_reach};
-use crate::detect::colliding_pairs;
-use crate::filter::PairFilter;
+use crate::detect::{colliding_pairs, near_pairs_of_model};
+use crate::filter::{PairFilter, RingPairs};
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::{ScaledModel, check_scaled_modes};
 use crate::parallel;
-use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
+use crate::{Clearance, ContactFilter, DISTANCE_ERROR, Error, Pair, Progress, ReducedModel};
 
 /// The input of all tasks, and the parts of the certificates that need no task.
 pub(crate) struct Preparation {
@@ -30,6 +30,7 @@ pub(crate) struct Preparation {
     pub(crate) epsilon: f64,
     scaled: ScaledModel,
     filter: PairFilter,
+    rings: RingPairs,
     nodes: NodePairBounds,
     groups: NodeGroups,
 }
@@ -70,7 +71,14 @@ impl Preparation {
             parallel::join(collide_at_rest, || ScaledModel::new(model, &metric, &center));
         let at_rest = at_rest?;
         let rest_collisions = at_rest.len() as u64;
-        let at_center = if center == rest {
+        let clearance = options.clearance;
+        let scaled = match clearance {
+            Some(clearance) => scaled.keeping(clearance.distance(), DISTANCE_ERROR),
+            None => scaled,
+        };
+        let at_center = if let Some(clearance) = clearance {
+            near_at_center(model, &filter, &center, &clearance, progress)?
+        } else if center == rest {
             at_rest.clone()
         } else {
             colliding_pairs(model, &hierarchy, &filter, &center, progress)?
@@ -81,15 +89,16 @@ impl Preparation {
         let triangles = model.mesh().faces().len();
         let max_exceptions = options.max_exceptions.unwrap_or_else(|| default_exceptions(triangles));
         let exceptions = exceptions(at_center, &filter, max_exceptions);
-        let scope = Scope { metric, center, filter, exceptions };
+        let scope = Scope { metric, center, filter, exceptions, clearance };
         let (digest, nodes) =
             parallel::join(|| Digest::of(model, &scope), || NodePairBounds::new(&scaled, &hierarchy));
-        let filter = PairFilter::new(model, &scope.filter).excluding(&scope.exceptions);
+        let (filter, rings) = scope.counted_pairs(model)?;
         let global_radius = global_radius(model, &scope.metric, &scope.center);
         Ok(Self {
             digest,
             groups: NodeGroups::new(&filter, &hierarchy),
             filter,
+            rings,
             nodes,
             global_radius,
             farthest: farthest_radius(global_radius, options.reach),
@@ -119,16 +128,34 @@ impl Preparation {
 
     /// A search for one thread.
     pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
-        let Self { scaled, filter, hierarchy, nodes, groups, .. } = self;
+        let Self { scaled, filter, rings, hierarchy, nodes, groups, .. } = self;
         RadiusSearch::new(
-            RadiusSearchContext { model: scaled, filter, hierarchy, nodes, groups },
+            RadiusSearchContext { model: scaled, filter, rings, hierarchy, nodes, groups },
             self.epsilon,
             progress,
         )
     }
 }
 
-/// The pairs that collide at the centre and are not ignored; none if there are more than allowed.
+/// Pairs farther apart than the clearance by less than this share of it are exceptions, too. Parts are often made as far apart as they
+/// must be, and their radius would be 0.
+const NEARLY: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+
+/// The pairs that are nearer than a clearance at the centre, and those that are hardly farther apart, sorted.
+fn near_at_center(
+    model: &ReducedModel,
+    filter: &ContactFilter,
+    center: &[f64],
+    clearance: &Clearance,
+    progress: &dyn Progress,
+) -> Result<Vec<Pair>, Error> {
+    let distance = clearance.distance() * NEARLY;
+    // Where that is not finite, nothing is that far apart.
+    let nearly = Clearance::new(distance).unwrap_or(*clearance).beyond_rings(clearance.rings());
+    near_pairs_of_model(model, filter, center, &nearly, progress)
+}
+
+/// The pairs that collide at the centre, or are near there, and are not ignored; none if there are more than allowed.
 fn exceptions(at_center: Vec<Pair>, filter: &ContactFilter, max_exceptions: usize) -> Vec<Pair> {
     let is_counted = |pair: &Pair| filter.ignored().binary_search(pair).is_err();
     let mut exceptions: Vec<Pair> = at_center.into_iter().filter(is_counted).collect();

@@ -2,7 +2,7 @@
 
 use super::node_groups::NodeGroups;
 use crate::bounds::NodePairBounds;
-use crate::filter::PairFilter;
+use crate::filter::{PairFilter, RingPairs};
 use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
 
@@ -12,6 +12,8 @@ pub(crate) struct RadiusSearchContext<'a> {
     pub(crate) model: &'a ScaledModel,
     /// The contact filter, which also excludes exceptions.
     pub(crate) filter: &'a PairFilter,
+    /// Pairs that need not keep a clearance; none without one.
+    pub(crate) rings: &'a RingPairs,
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) nodes: &'a NodePairBounds,
     pub(crate) groups: &'a NodeGroups,

@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::against::in_common_frame;
 use super::clearance_search::ClearanceSearch;
-use super::detector::Detector;
+use super::detector::{Detector, detector_of_model};
 use super::detector_search::{DetectorSearch, Refit};
 use super::given_motion::GivenMotion;
-use crate::Error;
 use crate::detect::narrow_phase::NearPair;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::filter::Rings;
+use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
 /// A distance that triangles should keep, and which neighbours need not keep it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,26 @@ impl Clearance {
     }
 }
 
+/// A model with more near pairs than this at one configuration (384 MiB of them) is refused.
+const MAX_PAIRS_OF_MODEL: usize = 1 << 24;
+
+/// All pairs of a model that count and are nearer than a clearance at q, sorted.
+///
+/// # Errors
+/// When q is no configuration of the model, there are more than 2^24 such pairs, those within the rings included, or `progress` cancels.
+pub(crate) fn near_pairs_of_model(
+    model: &ReducedModel,
+    filter: &ContactFilter,
+    q: &[f64],
+    clearance: &Clearance,
+    progress: &dyn Progress,
+) -> Result<Vec<Pair>, Error> {
+    let positions = model.positions(q)?;
+    let mut detector = detector_of_model(model, filter)?.cancelled_by(progress.cancel_token().cloned());
+    detector.within_at_most(&positions, clearance, MAX_PAIRS_OF_MODEL)?;
+    Ok(detector.near_pairs().iter().map(|near| near.pair).collect())
+}
+
 impl Detector {
     /// All pairs that count and are nearer than a clearance at these positions, sorted by pair: `distance < clearance` for the
     /// distances listed, which have the error of [`distance_triangle_triangle`](crate::distance_triangle_triangle). Pairs that
@@ -73,11 +93,22 @@ impl Detector {
     /// # Errors
     /// As [`Detector::discrete`].
     pub fn within(&mut self, positions: &[DVec3], clearance: &Clearance) -> Result<&[NearPair], Error> {
+        self.within_at_most(positions, clearance, Self::MAX_PAIRS)?;
+        Ok(self.near_pairs())
+    }
+
+    /// Finds all near pairs, if they are at most `most` before those within the rings are left out.
+    fn within_at_most(
+        &mut self,
+        positions: &[DVec3],
+        clearance: &Clearance,
+        most: usize,
+    ) -> Result<(), Error> {
         let motion = self.check([positions])?.widened(clearance.distance);
         self.begin_clearance(&motion, positions, Refit::All, clearance);
         let (context, near) = (&self.context, &mut self.clearance);
-        let Some(ClearanceSearch { search, .. }) = near.as_deref_mut() else { return Ok(&[]) };
-        let mut result = search.find(context, &motion, Self::MAX_PAIRS);
+        let Some(ClearanceSearch { search, .. }) = near.as_deref_mut() else { return Ok(()) };
+        let mut result = search.find(context, &motion, most);
         self.statistics.set_search(search, result.is_ok());
         let list = &mut search.narrow.hits.list;
         list.sort_unstable_by_key(|near| near.pair);
@@ -92,8 +123,7 @@ impl Detector {
             });
         }
         result?;
-        self.check_complete().map_err(|_| Error::TooManyNearPairs { most: Self::MAX_PAIRS })?;
-        Ok(self.near_pairs())
+        self.check_complete().map_err(|_| Error::TooManyNearPairs { most })
     }
 
     /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) nearer than a clearance, sorted.

@@ -19,6 +19,7 @@ mod statistics;
 mod surroundings;
 
 pub use clearance::Clearance;
+pub(crate) use clearance::near_pairs_of_model;
 pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
 pub use enclosed::Enclosed;

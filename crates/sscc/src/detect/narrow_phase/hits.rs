@@ -1,5 +1,8 @@
 //! The hits of one search, up to a limit.
 
+/// A limit that is there for memory alone ends hardly any search.
+const PRACTICALLY_UNLIMITED: usize = 1 << 24;
+
 /// Hits, and whether the limit stopped the search.
 #[derive(Clone)]
 pub(crate) struct Hits<T> {
@@ -32,7 +35,7 @@ impl<T> Hits<T> {
 
     /// Whether no number of hits ends the search.
     pub(crate) fn is_unlimited(&self) -> bool {
-        self.limit == usize::MAX
+        self.limit >= PRACTICALLY_UNLIMITED
     }
 
     /// Whether the limit never stopped the search.

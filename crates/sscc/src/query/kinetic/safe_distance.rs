@@ -63,8 +63,8 @@ impl SafeDistances {
             };
             let differences = pair.differences();
             let Some(dir) = scale_direction(nearest_to_origin(&differences).point) else { return 0.0 };
-            distance =
-                distance.min(bound_along(&pair, &differences, dir, &self.error, &mut self.projections));
+            let least = self.error.along(dir);
+            distance = distance.min(bound_along(&pair, &differences, dir, least, &mut self.projections));
         }
         distance
     }

@@ -1,0 +1,108 @@
+//! The search for near triangles at q with certificates of a clearance.
+//!
+//! Below a radius no pair of its part is nearer than the clearance of the certificates, hence than any smaller one. The traversals are
+//! those of collisions: they open node pairs whose radius is reached, down to AABBs that are wider by half of the clearance
+//! ([`WidenedMotion`]). Moving hulls and local certificates prove that parts do not collide, not how far apart they are: they are not used.
+
+use super::certified_search::{CertifiedSearch, Sought};
+use super::configuration::Configuration;
+use super::configuration_check::ConfigurationCheck;
+use super::context::QueryContext;
+use super::widened_motion::WidenedMotion;
+use crate::detect::answer::Statistics;
+use crate::detect::narrow_phase::{ClearanceHits, NarrowPhase, NearPair};
+use crate::detect::vertex_motion::DeformedMotion;
+use crate::filter::Rings;
+use crate::{CancelToken, Certificates, Clearance, Detector, Error};
+
+/// Finds near triangles, and owns the memory for it.
+#[derive(Clone)]
+pub(super) struct NearSearch {
+    context: QueryContext,
+    check: ConfigurationCheck,
+    search: CertifiedSearch<1>,
+    narrow: ClearanceHits,
+    /// The last rings, and how many.
+    rings: Option<(u32, Rings)>,
+    /// `|z|` of the last search, rounded up.
+    pub(super) norm: f64,
+}
+
+impl NearSearch {
+    /// `context`: that of questions about collisions of the same model.
+    pub(super) fn new(context: &QueryContext, certificates: &Certificates) -> Self {
+        let context = context.of_clearance(certificates);
+        Self {
+            check: ConfigurationCheck::new(&context),
+            search: CertifiedSearch::new(&context),
+            narrow: ClearanceHits::default(),
+            rings: None,
+            norm: 0.0,
+            context,
+        }
+    }
+
+    /// Whether the certificates prove triangles farther apart than a clearance.
+    pub(super) fn is_for(&self, clearance: &Clearance) -> bool {
+        self.context.certificates.as_ref().is_some_and(|certified| certified.is_within_clearance(clearance))
+    }
+
+    /// The near pairs that were found last.
+    pub(super) fn pairs(&self) -> &[NearPair] {
+        &self.narrow.hits.list
+    }
+
+    /// Finds all near pairs at q, sorted. [`Self::is_for`] is true for the clearance.
+    ///
+    /// # Errors
+    /// When q is no configuration of the model, there are more than [`Detector::MAX_PAIRS`], or the token cancels.
+    pub(super) fn find(
+        &mut self,
+        q: &[f64],
+        clearance: &Clearance,
+        cancel: Option<&CancelToken>,
+    ) -> Result<Statistics, Error> {
+        self.narrow.hits.list.clear();
+        let configuration = self.check.measure(&self.context, q)?;
+        self.norm = configuration.norm;
+        if self.context.is_proven_free(configuration.norm) {
+            return Ok(Statistics::PROVEN_FREE);
+        }
+        self.context.detect.cancel = cancel.cloned();
+        self.narrow.distance = clearance.distance();
+        let Configuration { norm, reach, .. } = configuration;
+        let deformed = DeformedMotion::new([q], reach);
+        let motion = WidenedMotion::new(deformed, &self.context.detect.layout, clearance.distance());
+        let sought = (Sought::All, Detector::MAX_PAIRS);
+        let proof = self.search.find(&self.context, norm, &motion, &mut self.narrow, sought)?;
+        if !self.narrow.hits().is_complete() {
+            return Err(Error::TooManyNearPairs { most: Detector::MAX_PAIRS });
+        }
+        self.leave_out_rings(clearance.rings())?;
+        self.narrow.hits.list.sort_unstable_by_key(|near| near.pair);
+        let mut statistics = Statistics { complete: true, ..Statistics::default() };
+        statistics.set_counters(&self.search.broad.state.counters);
+        statistics.set_proof(proof);
+        Ok(statistics)
+    }
+
+    /// # Errors
+    /// When the token cancels; then there are no pairs.
+    fn leave_out_rings(&mut self, rings: u32) -> Result<(), Error> {
+        if rings <= 1 || self.narrow.hits.list.is_empty() {
+            return Ok(());
+        }
+        let detect = &self.context.detect;
+        self.rings = self.rings.take().filter(|(count, _)| *count == rings);
+        let (_, own) = self.rings.get_or_insert_with(|| (rings, Rings::new(&detect.filter, rings)));
+        let list = &mut self.narrow.hits.list;
+        // Fast where the first triangle is that of the pair before.
+        list.sort_unstable_by_key(|near| near.pair);
+        let mut is_cancelled = false;
+        list.retain(|NearPair { pair: (a, b), .. }| {
+            is_cancelled |= detect.is_cancelled();
+            !is_cancelled && !own.contain(&detect.filter, *a, *b)
+        });
+        if is_cancelled { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}

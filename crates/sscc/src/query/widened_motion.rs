@@ -1,0 +1,76 @@
+//! The vertex motion of searches for near triangles at q: positions deformed by the modes, and wider AABBs.
+
+use glam::DVec3;
+
+use crate::detect::layout::Layout;
+use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
+use crate::geometry::Aabb;
+
+/// A motion to q, whose AABBs are so wide that those of triangles nearer than a clearance overlap.
+#[derive(Clone, Copy)]
+pub(super) struct WidenedMotion<'q> {
+    motion: DeformedMotion<'q, 1>,
+    whole: Aabb,
+    margin: f64,
+}
+
+/// Distances are computed within 2^-40 of the size of two triangles, and coordinates in the frame of a search are rounded to a few
+/// units of 2^-24 of the extent: boxes are wider by this share of it. Single precision moves them by as much anyway.
+const ROUNDING_SHARE: f64 = 4.0 * f32::EPSILON as f64;
+
+impl<'q> WidenedMotion<'q> {
+    /// For a distance of triangles: each AABB is wider by half of it, but no farther than all overlap.
+    pub(super) fn new(motion: DeformedMotion<'q, 1>, layout: &Layout, distance: f64) -> Self {
+        let whole = motion.overall_aabb(layout);
+        let extent = (whole.upper - whole.lower).max_element();
+        let half =
+            right_or!((distance / 2.0).min(extent), WidenedByHalfOfClearance, (distance / 4.0).min(extent));
+        Self { motion, whole, margin: half + ROUNDING_SHARE * extent }
+    }
+}
+
+impl VertexMotion<1> for WidenedMotion<'_> {
+    const HAS_ERROR_BOUND: bool = true;
+
+    #[inline]
+    fn rounding(&self) -> f64 {
+        self.motion.rounding()
+    }
+
+    #[inline]
+    fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    #[inline]
+    fn margin_beside_rounding(&self) -> f64 {
+        self.margin
+    }
+
+    #[inline]
+    fn overall_aabb(&self, _: &Layout) -> Aabb {
+        self.whole
+    }
+
+    #[inline]
+    fn coarse_coordinates(&self) -> Option<[&[f64]; 1]> {
+        self.motion.coarse_coordinates()
+    }
+
+    #[inline]
+    fn coarse_slack(&self, _: u32) -> Option<DVec3> {
+        Some(DVec3::splat(right_or!(self.margin, CoarseBoxesOfClearanceNotWidened, 0.0)))
+    }
+
+    #[inline]
+    fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; 1] {
+        self.motion.positions(layout, vertex)
+    }
+
+    #[inline]
+    fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
+        let Aabb { lower, upper } = self.motion.node_aabb(layout, node)?;
+        let margin = right_or!(self.margin, NodesOfClearanceNotWidened, 0.0);
+        Some(Aabb { lower: lower - margin, upper: upper + margin })
+    }
+}
