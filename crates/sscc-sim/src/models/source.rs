@@ -289,7 +289,7 @@ pub(crate) fn read_embedded(path: &Path) -> Result<(TriMesh, Vec<String>), SimEr
 pub fn read_surface(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
     if path.exists() && !is_mesh_name(path) {
         let (what, supported) =
-            ("surface or solid", ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele");
+            ("surface or solid", ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk");
         return Err(IoError::Unsupported { path: path.to_owned(), what, supported });
     }
     read_mesh_with_warnings(path)
