@@ -129,7 +129,9 @@ fn vtu(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> Vec<u8> {
         // meshio reads one component that is stated as a table of one column.
         let components =
             if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
-        format!("<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>")
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>"
+        )
     };
     let [marks, points, corners, ends, types] = offsets;
     let head = format!(

@@ -42,6 +42,7 @@ pub use answer::{Answer, Proof, Statistics};
 pub(crate) use colliding_pairs::colliding_pairs;
 pub(crate) use detector::detector_of_model;
 pub use detector::{
-    BodyPenetration, Clearance, Detector, Enclosed, detector_with_weld_classes, surroundings_between_meshes,
+    BodyPenetration, Clearance, Detector, Enclosed, body_penetration, detector_with_weld_classes,
+    surroundings_between_meshes,
 };
 pub use narrow_phase::{Impact, NearPair};

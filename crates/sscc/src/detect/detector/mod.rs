@@ -22,5 +22,5 @@ pub use clearance::Clearance;
 pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
 pub use enclosed::Enclosed;
-pub use penetration::BodyPenetration;
+pub use penetration::{BodyPenetration, body_penetration};
 pub use surroundings::surroundings_between_meshes;
