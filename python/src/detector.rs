@@ -1,11 +1,13 @@
 //! `sscc.Detector` and `sscc.self_intersections`: exact collisions of any mesh at given positions.
 
+use sscc::parts::body_penetration;
 use std::sync::Arc;
 
 use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use sscc::parts::GroupTable;
+use sscc::parts::body_penetration;
 use sscc::{Answer, Error, TriMesh};
 use sscc_sim::text::{counted, grouped};
 
@@ -329,7 +331,7 @@ impl Detector {
         let other = as_detector(other)?;
         let [x, y] = named_both(positions, other_positions)?;
         let ask = |detector: &mut sscc::Detector, other: &mut sscc::Detector| {
-            detector.penetration(&x.points, other, &y.points)
+            body_penetration([detector, other], [&x.points, &y.points])
         };
         let found = self.ask_both(py, &[&x], other, &[&y], ask)?;
         let class = py.import("sscc._penetration")?.getattr("BodyPenetration")?;

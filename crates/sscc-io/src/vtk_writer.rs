@@ -126,9 +126,11 @@ fn vtu(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> Vec<u8> {
         start
     });
     let array = |kind: &str, name: &str, components: u8, offset: usize| {
+        // meshio reads one component that is stated as a table of one column.
+        let components =
+            if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
         format!(
-            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" \
-             offset=\"{offset}\"/>"
+            "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>"
         )
     };
     let [marks, points, corners, ends, types] = offsets;

@@ -56,15 +56,11 @@ pub enum Error {
         /// How many triangles there are.
         triangles: usize,
     },
-    /// A mesh without an inside, where the volume of bodies is asked for.
+    /// A mesh without an inside, the `first` or the `second`, where the volume of bodies is asked for.
     #[error(
-        "the {} mesh is open, so it has no inside and no volume: close its holes, and make its triangles face the same side",
-        if *is_second { "second" } else { "first" }
+        "the {0} mesh is open, so it has no inside and no volume: close its holes, and make its triangles face the same side"
     )]
-    OpenMesh {
-        /// Whether it is the second mesh.
-        is_second: bool,
-    },
+    OpenMesh(&'static str),
     /// Folded neighbours where only distances can be bounded.
     #[error(
         "include-folded is for discrete queries of meshes without modes: triangles with a common edge have distance 0 in \

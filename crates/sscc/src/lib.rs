@@ -305,9 +305,7 @@ mod vectors;
 pub use audit::{AuditOptions, AuditReport, audit};
 pub use cancel_token::CancelToken;
 pub use certificates::{Certificates, CertifyOptions};
-pub use detect::{
-    Answer, BodyPenetration, Clearance, Detector, Enclosed, Impact, NearPair, Proof, Statistics,
-};
+pub use detect::{Answer, Clearance, Detector, Enclosed, Impact, NearPair, Proof, Statistics};
 pub use error::Error;
 pub use filter::{ContactFilter, Neighbours, Pair, TriangleGroups};
 pub use geometry::{

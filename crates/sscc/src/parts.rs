@@ -19,7 +19,9 @@ pub use crate::curves::{
     ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,
     contact_curves_between,
 };
-pub use crate::detect::{detector_with_weld_classes, surroundings_between_meshes};
+pub use crate::detect::{
+    BodyPenetration, body_penetration, detector_with_weld_classes, surroundings_between_meshes,
+};
 pub use crate::disjoint_sets::DisjointSets;
 pub use crate::filter::{GroupTable, check_continuous, check_models, weld_classes_of_positions};
 pub use crate::geometry::{

@@ -12,7 +12,7 @@ use sscc::parts::is_reach;
 #[derive(Debug, Args)]
 pub struct Model {
     /// The model: *.model.safetensors, a .glb, .gltf or .vrm with morph targets, a complete .npz (mean, components,
-    /// faces), or a mesh (.obj, .off, .ply, .stl) or solid (.mesh, .veg, .msh, .node, .ele) with --modes; check without a
+    /// faces), or a mesh (.obj, .off, .ply, .stl) or solid (.mesh, .veg, .msh, .node, .ele, .vtu, .vtk) with --modes; check without a
     /// q takes any of them as a mesh
     #[arg(value_name = "MODEL")]
     pub path: PathBuf,

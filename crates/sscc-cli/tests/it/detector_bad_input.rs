@@ -38,7 +38,7 @@ fn invalid_frames_and_animations() {
         ("missing", "missing: not found"),
         (
             "mesh.obj",
-            "unknown kind of frame file; supported: .npy of shape (T, V, 3), .pc2, and a folder of meshes",
+            "unknown kind of frame file; supported: .npy of shape (T, V, 3), .pc2, .pvd, .vtu, .vtk, and a folder of meshes",
         ),
         ("cut.npy", "568 bytes follow: is the file cut off?"),
         ("nan.npy", "nan.npy: frame 1: vertex 2 (counted from 0) has the position [0.0, NaN, "),

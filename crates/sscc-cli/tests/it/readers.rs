@@ -270,7 +270,7 @@ fn causes_and_ways_out() {
         (
             "a.fbx",
             b"x",
-            "a.fbx: unknown kind of mesh file; supported: .obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele; glTF: .glb, .gltf",
+            "a.fbx: unknown kind of mesh file; supported: .obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk; glTF: .glb, .gltf",
         ),
         (
             "a.msh",

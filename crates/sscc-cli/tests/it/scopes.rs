@@ -325,7 +325,10 @@ fn poses_that_cannot_be_written() {
     let directory = strips();
     let folder = directory.path();
     for (args, named) in [
-        (&["--q=0,0", "--pose", "pose.stl"][..], "pose.stl: the name of a pose must end in .ply or .obj"),
+        (
+            &["--q=0,0", "--pose", "pose.stl"][..],
+            "pose.stl: the name of a pose must end in .ply, .obj or .vtu",
+        ),
         (&["--q=0,0", "--pose", "none/pose.ply"], "none/pose.ply: cannot be written"),
         (&["--q=0,0", "--pose", "mesh.obj"], "mesh.obj: the output is an input"),
         (&["--trajectory", "modes.npy", "--pose", "pose.ply"], "--trajectory"),

@@ -40,7 +40,7 @@ pub struct DetectionAnswer<'a> {
     /// queries find no pair that collides.
     pub enclosed: Option<[Enclosed; 2]>,
     /// Of two closed meshes the volume that they share and the largest ball inside of both, where asked for.
-    pub body_penetration: Option<sscc::BodyPenetration>,
+    pub body_penetration: Option<sscc::parts::BodyPenetration>,
     /// Whether `pairs` are all.
     pub is_complete: bool,
     /// Duration of the query on its thread, without reading files and evaluating animations. Where several q of a model are

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use sscc::parts::Surface;
-use sscc::{BodyPenetration, Clearance, Detector, Enclosed, Impact, Pair, Statistics};
+use sscc::parts::{BodyPenetration, Surface, body_penetration};
+use sscc::{Clearance, Detector, Enclosed, Impact, Pair, Statistics};
 
 use super::answer::earliest_impacts;
 use super::contacts::{ContactOptions, Contacts};
@@ -105,7 +105,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         }
         if let (Some(y), true, false) = (&mut self.other, self.request.penetration, is_continuous) {
             let x = &mut self.side;
-            let body = x.detector.penetration(&x.x_t0, &mut y.detector, &y.x_t0);
+            let body = body_penetration([&mut x.detector, &mut y.detector], [&x.x_t0, &y.x_t0]);
             found.penetration = Some(body.at(|| mesh.place(frame))?);
         }
         if self.request.has_positions {

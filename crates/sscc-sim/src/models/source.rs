@@ -288,8 +288,10 @@ pub(crate) fn read_embedded(path: &Path) -> Result<(TriMesh, Vec<String>), SimEr
 /// When the ending is that of no mesh file; as [`sscc_io::read_mesh`].
 pub fn read_surface(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
     if path.exists() && !is_mesh_name(path) {
-        let (what, supported) =
-            ("surface or solid", ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele");
+        let (what, supported) = (
+            "surface or solid",
+            ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk",
+        );
         return Err(IoError::Unsupported { path: path.to_owned(), what, supported });
     }
     read_mesh_with_warnings(path)

@@ -41,7 +41,8 @@ mod vertex_store;
 pub use answer::{Answer, Proof, Statistics};
 pub(crate) use colliding_pairs::colliding_pairs;
 pub use detector::{
-    BodyPenetration, Clearance, Detector, Enclosed, detector_with_weld_classes, surroundings_between_meshes,
+    BodyPenetration, Clearance, Detector, Enclosed, body_penetration, detector_with_weld_classes,
+    surroundings_between_meshes,
 };
 pub(crate) use detector::{detector_of_model, near_pairs_of_model};
 pub use narrow_phase::{Impact, NearPair};

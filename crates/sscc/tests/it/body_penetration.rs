@@ -1,7 +1,8 @@
 //! The volume that two bodies share and the largest ball in both, against known values.
 
 use glam::{DQuat, DVec3};
-use sscc::{BodyPenetration, CancelToken, Detector, Error, TriMesh};
+use sscc::parts::{BodyPenetration, body_penetration};
+use sscc::{CancelToken, Detector, Error, TriMesh};
 
 use crate::common::Random;
 
@@ -42,11 +43,13 @@ fn ball(center: DVec3, radius: f64, subdivisions: u32) -> TriMesh {
     TriMesh::new(positions.iter().map(|p| center + *p * radius).collect(), numbered).unwrap()
 }
 
+fn find(a: &TriMesh, b: &TriMesh) -> Result<BodyPenetration, Error> {
+    let mut detectors = [a, b].map(Detector::new);
+    body_penetration(detectors.each_mut(), [a.rest_positions(), b.rest_positions()])
+}
+
 fn penetration(a: &TriMesh, b: &TriMesh) -> BodyPenetration {
-    let found =
-        Detector::new(a).penetration(a.rest_positions(), &mut Detector::new(b), b.rest_positions()).unwrap();
-    let swapped =
-        Detector::new(b).penetration(b.rest_positions(), &mut Detector::new(a), a.rest_positions()).unwrap();
+    let (found, swapped) = (find(a, b).unwrap(), find(b, a).unwrap());
     assert!(
         (found.volume - swapped.volume).abs() <= found.volume_error + swapped.volume_error,
         "{found:?} {swapped:?}"
@@ -162,15 +165,12 @@ fn tetrahedra_and_balls() {
 fn open_meshes_have_no_volume() {
     let unit = cuboid(DVec3::ZERO, DVec3::ONE);
     let open = TriMesh::new(unit.rest_positions().to_vec(), unit.faces()[1..].to_vec()).unwrap();
-    let find = |a: &TriMesh, b: &TriMesh| {
-        Detector::new(a).penetration(a.rest_positions(), &mut Detector::new(b), b.rest_positions())
-    };
-    assert_eq!(find(&open, &unit), Err(Error::OpenMesh { is_second: false }));
-    assert_eq!(find(&unit, &open), Err(Error::OpenMesh { is_second: true }));
+    assert_eq!(find(&open, &unit), Err(Error::OpenMesh("first")));
+    assert_eq!(find(&unit, &open), Err(Error::OpenMesh("second")));
     let token = CancelToken::new();
     token.cancel();
     let mut cancelled = Detector::new(&unit).cancelled_by(token);
-    let found =
-        cancelled.penetration(unit.rest_positions(), &mut Detector::new(&unit), unit.rest_positions());
+    let at = unit.rest_positions();
+    let found = body_penetration([&mut cancelled, &mut Detector::new(&unit)], [at, at]);
     assert_eq!(found, Err(Error::Cancelled));
 }

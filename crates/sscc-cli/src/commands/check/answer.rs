@@ -1,7 +1,8 @@
 //! The answer of `sscc check` to one query: the keys of its JSON line.
 
 use serde::Serialize;
-use sscc::{BodyPenetration, Clearance, Enclosed, Pair, Proof};
+use sscc::parts::BodyPenetration;
+use sscc::{Clearance, Enclosed, Pair, Proof};
 use sscc_sim::{DetectionAnswer, LeftOut, Near};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.

@@ -23,5 +23,5 @@ pub(crate) use clearance::near_pairs_of_model;
 pub(crate) use detector::detector_of_model;
 pub use detector::{Detector, detector_with_weld_classes};
 pub use enclosed::Enclosed;
-pub use penetration::BodyPenetration;
+pub use penetration::{BodyPenetration, body_penetration};
 pub use surroundings::surroundings_between_meshes;

@@ -25,39 +25,34 @@ pub struct BodyPenetration {
     pub depth_error: f64,
 }
 
-impl Detector {
-    /// The volume that this mesh and the other one share, and the largest ball inside of both. Costs the pairs of triangles whose
-    /// projections along z overlap, and a search that takes longer the flatter what they share is.
-    ///
-    /// # Errors
-    /// As [`Detector::discrete`], for both; when a mesh is open, so that it has no inside.
-    pub fn penetration(
-        &mut self,
-        positions: &[DVec3],
-        other: &mut Self,
-        other_positions: &[DVec3],
-    ) -> Result<BodyPenetration, Error> {
-        self.check([positions])?;
-        other.check([other_positions])?;
-        let components = [self.components_at(positions), other.components_at(other_positions)];
-        if let Some(open) = components.iter().position(|components| !components.are_closed()) {
-            return Err(Error::OpenMesh { is_second: open == 1 });
-        }
-        let boxes = [Boxes::new(&self.context, positions), Boxes::new(&other.context, other_positions)];
-        let triangles = boxes.each_ref().map(|boxes| {
-            let faces = boxes.context.filter.faces().len() as u32;
-            (0..faces).map(|triangle| boxes.corners(triangle)).collect::<Vec<_>>()
-        });
-        let cancel = self.context.cancel.as_ref();
-        let (volume, volume_error) = shared_volume(triangles.each_ref().map(Vec::as_slice), cancel)?;
-        let [a, b] = boxes;
-        let sides =
-            [&Side { boxes: a, components: &components[0] }, &Side { boxes: b, components: &components[1] }];
-        // A ball is not larger than what both share. Where that may be nothing, as where they only touch, none is searched.
-        let largest = (0.75 * (volume + volume_error) / std::f64::consts::PI).cbrt();
-        let (radius, bound) =
-            if volume <= volume_error { (0.0, largest) } else { largest_common_ball(sides)? };
-        let bound = bound.min(largest).max(radius);
-        Ok(BodyPenetration { volume, volume_error, depth: 2.0 * radius, depth_error: 2.0 * (bound - radius) })
+/// The volume that two meshes share, and the largest ball inside of both, each at its positions. Costs the pairs of triangles whose
+/// projections along z overlap, and a search that takes longer the flatter what they share is. The token of the first detector cancels it.
+///
+/// # Errors
+/// As [`Detector::discrete`], for both; when a mesh is open, so that it has no inside.
+pub fn body_penetration(
+    [one, two]: [&mut Detector; 2],
+    [positions, other_positions]: [&[DVec3]; 2],
+) -> Result<BodyPenetration, Error> {
+    one.check([positions])?;
+    two.check([other_positions])?;
+    let components = [one.components_at(positions), two.components_at(other_positions)];
+    if let Some(open) = components.iter().position(|components| !components.are_closed()) {
+        return Err(Error::OpenMesh(["first", "second"][open]));
     }
+    let boxes = [Boxes::new(&one.context, positions), Boxes::new(&two.context, other_positions)];
+    let triangles = boxes.each_ref().map(|boxes| {
+        let faces = boxes.context.filter.faces().len() as u32;
+        (0..faces).map(|triangle| boxes.corners(triangle)).collect::<Vec<_>>()
+    });
+    let cancel = one.context.cancel.as_ref();
+    let (volume, volume_error) = shared_volume(triangles.each_ref().map(Vec::as_slice), cancel)?;
+    let [a, b] = boxes;
+    let sides =
+        [&Side { boxes: a, components: &components[0] }, &Side { boxes: b, components: &components[1] }];
+    // A ball is not larger than what both share. Where that may be nothing, as where they only touch, none is searched.
+    let largest = (0.75 * (volume + volume_error) / std::f64::consts::PI).cbrt();
+    let (radius, bound) = if volume <= volume_error { (0.0, largest) } else { largest_common_ball(sides)? };
+    let bound = bound.min(largest).max(radius);
+    Ok(BodyPenetration { volume, volume_error, depth: 2.0 * radius, depth_error: 2.0 * (bound - radius) })
 }
