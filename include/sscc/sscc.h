@@ -257,7 +257,7 @@ typedef struct sscc_certify_options {
   size_t local_budget;
   // Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
   size_t max_exceptions;
-  // Number of threads; 0: all cores. The certificates are the same for any number.
+  // Number of threads, of which at most 1024 are made; 0: all cores. The certificates are the same for any number.
   size_t threads;
   // One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
   int32_t metric;

@@ -9,6 +9,9 @@ use crate::pointers::{Versioned, read_versioned, slice};
 use crate::status::{Failure, Result};
 use crate::types::sscc_pair;
 
+/// As many threads as a machine may have; more would exhaust the system.
+const MAX_THREADS: usize = 1024;
+
 /// Whether triangles that share vertices count.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,7 +116,7 @@ pub struct sscc_certify_options {
     pub local_budget: usize,
     /// Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
     pub max_exceptions: usize,
-    /// Number of threads; 0: all cores. The certificates are the same for any number.
+    /// Number of threads, of which at most 1024 are made; 0: all cores. The certificates are the same for any number.
     pub threads: usize,
     /// One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
     pub metric: i32,
@@ -216,7 +219,7 @@ pub unsafe fn certify_options(
     Ok(options
         .metric(metric(given.metric, scales, model)?)
         .max_exceptions(some(given.max_exceptions))
-        .threads(some(given.threads)))
+        .threads(some(given.threads.min(MAX_THREADS))))
 }
 
 /// The metric that an option names; none for the model's.

@@ -126,7 +126,7 @@ impl<T> OutputArray<T> {
 }
 
 fn bytes(start: usize, size: usize) -> Range<usize> {
-    start..start + size
+    start..start.saturating_add(size)
 }
 
 /// Refuses a pointer to so many numbers that is NULL or misaligned.

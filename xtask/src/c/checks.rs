@@ -69,7 +69,7 @@ impl Checks {
         let code = output.status.code().unwrap_or(-1);
         let [out, err] =
             [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
-        if code > 1 || code < 0 {
+        if !(0..=1).contains(&code) {
             return Err(format!(
                 "{} {}: exit code {code}\n{out}{err}",
                 program.display(),

@@ -6,16 +6,23 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::checks::Checks;
+use crate::tally::SkipLog;
 
 /// What runs the command in `docs/c.md`.
 const BUILT: &str = "cargo run --release -- ";
 
-/// Runs all.
-pub fn run(checks: &mut Checks) {
+/// Runs all. Logs the example that is left out without Eigen.
+pub fn run(checks: &mut Checks, log: &Path) {
     checks.check("commands of docs/c.md", commands);
     checks.check("spring.cpp answers as the command", spring);
     checks.check("check_mesh.c answers as the command", meshes);
     checks.check("the program of docs/c.md", program);
+    if checks.root.join("target/c/eigen_maps").exists() {
+        checks.check("eigen_maps.cpp", eigen_maps);
+    } else {
+        checks.tally +=
+            SkipLog::skip(log, "eigen_maps.cpp", "Eigen is not installed (Debian's libeigen3-dev)");
+    }
 }
 
 /// The only block of that language in `docs/c.md`.
@@ -104,6 +111,13 @@ fn meshes(checks: &Checks) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Matrices in both orders of storage have the same answer.
+fn eigen_maps(checks: &Checks) -> Result<(), String> {
+    let found = checks.succeed(&checks.root, &checks.root.join("target/c/eigen_maps"), &[])?;
+    let wanted = "at rest: 0 pairs\nat q: 0 1\ndetector: 1 pairs\n";
+    if found == wanted { Ok(()) } else { Err(format!("printed {found:?}, not {wanted:?}")) }
 }
 
 /// The program that `docs/c.md` shows compiles without a warning, and prints what it says.

@@ -54,7 +54,7 @@ pub fn test(log: &Path, is_built: bool) -> Tally {
         }
     };
     programs::run(&mut checks);
-    examples::run(&mut checks);
+    examples::run(&mut checks, log);
     checks.tally
 }
 

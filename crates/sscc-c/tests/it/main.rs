@@ -1,5 +1,6 @@
 //! Tests of the C interface through its functions.
 #![allow(unsafe_code, reason = "functions of C")]
+#![allow(clippy::unwrap_used)]
 
 mod answers;
 mod bad_input;
