@@ -1,6 +1,5 @@
 //! `sscc.Detector` and `sscc.self_intersections`: exact collisions of any mesh at given positions.
 
-use sscc::parts::body_penetration;
 use std::sync::Arc;
 
 use glam::DVec3;

@@ -17,7 +17,7 @@ use crate::interrupt::{answer, signals};
 use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
-/// The keywords of `Model.certify`, except `progress`.
+/// The keywords of `Model.certify`, except `progress`, and the clearance: clusters compute certificates of collisions.
 const KEYWORDS: [&str; 14] = [
     "epsilon",
     "metric",
@@ -83,6 +83,8 @@ fn options(model: &Bound<'_, Model>, keywords: &Bound<'_, PyDict>) -> PyResult<C
         weld: weld.as_ref(),
         ignore_rest: ignore_rest.as_ref(),
         max_exceptions: max_exceptions.as_ref(),
+        clearance: None,
+        rings: None,
         groups: groups.as_ref(),
         ignore_groups: ignore_groups.as_ref(),
         threads: threads.as_ref(),

@@ -283,8 +283,7 @@ mod tests {
                 None => touching += 1,
             }
         }
-        println!("{apart} pairs apart, {touching} that touch, at most {worst:e} of the error");
         assert!(apart > count / 2 && touching > count / 20, "{apart} {touching}");
-        assert!(worst < 0.1, "{worst}");
+        assert!(worst < 0.1, "{worst:e} of the error");
     }
 }

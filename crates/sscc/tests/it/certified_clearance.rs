@@ -199,7 +199,6 @@ fn below_radii_no_pair_is_nearer_than_the_clearance() {
             }
         }
     }
-    println!("{tested} models, {attacked} attacks, {exact} exact distances");
     assert!(tested > cases(600) / 2 && attacked > tested && exact > 20, "{tested} {attacked} {exact}");
 }
 
@@ -285,7 +284,6 @@ fn near_pairs_are_the_same_with_and_without_certificates() {
             assert_eq!(statistics.norm, certificates.norm(&q).unwrap());
         }
     }
-    println!("{found} near pairs; {by_radius} by the radius, {by_search} by a search, {narrow} without");
     assert!(
         found > 1000 && by_radius > 20 && by_search > 20 && narrow > 20,
         "{found} {by_radius} {by_search} {narrow}"
