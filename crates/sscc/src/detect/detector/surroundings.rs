@@ -7,7 +7,7 @@ use crate::{Error, Pair};
 impl Detector {
     /// These pairs of triangles and all that count within so many rings of them: one triangle within the rings around the first one
     /// of a pair, the other one within those around its second. Triangles with a common vertex are one ring apart. Sorted. To
-    /// leave out what touches at rest, give them to [`ContactFilter::ignoring`].
+    /// leave out what touches at rest, give them to [`ContactFilter::ignoring`](crate::ContactFilter::ignoring).
     ///
     /// # Errors
     /// When a pair names a triangle that the mesh does not have; when they are more than 2^22; when it was
