@@ -244,7 +244,8 @@ class Certificates:
     def model(self) -> Model: ...
     @property
     def root_radius(self) -> float:
-        """The norm below which the whole shape is free, apart from exceptions."""
+        """The norm below which the whole shape is free, apart from exceptions; with a ``clearance`` it keeps the clearance, but may collide
+        within the rings."""
     @property
     def global_radius(self) -> float:
         """The largest radius: radii are computed up to it. It may be infinite."""

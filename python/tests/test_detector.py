@@ -568,7 +568,7 @@ def test_bodies_share_a_volume() -> None:
     assert abs(found.volume - 0.125) <= found.volume_error < 1e-12
     assert found.depth <= 0.25 <= found.depth + found.depth_error + 1e-8
     assert box.penetration(corners, box, corners + 2) == (0, 0, 0, 0)
-    with pytest.raises(ValueError, match="the second mesh is open"):
+    with pytest.raises(ValueError, match="the second mesh has no inside"):
         box.penetration(corners, sscc.Detector(faces[1:]), corners)
 
 

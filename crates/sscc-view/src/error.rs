@@ -1,5 +1,7 @@
 //! Errors of the page, its reports and its server.
 
+use sscc::{Certificates, ReducedModel};
+
 /// An error of the page: a model that it cannot show, or a request that it cannot answer.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -44,4 +46,16 @@ pub enum ViewError {
     #[cfg(feature = "server")]
     #[error("the operating system provides no random numbers: {0}")]
     Random(getrandom::Error),
+}
+
+/// Refuses certificates that the page cannot show as proofs of no collision.
+///
+/// # Errors
+/// If they belong to another model or have a clearance.
+pub(crate) fn check_certificates(model: &ReducedModel, certificates: &Certificates) -> Result<(), ViewError> {
+    certificates.check_model(model)?;
+    match certificates.clearance() {
+        Some(_) => Err(sscc::Error::ClearanceCertificates.into()),
+        None => Ok(()),
+    }
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
 use sscc_sim::IntervalRow;
 
+use crate::error::check_certificates;
 use crate::reduced_facts::{ModelDetails, ReducedFacts};
 use crate::{Arrays, Playback, Plot, ViewError};
 
@@ -79,7 +80,7 @@ impl ModelScene {
     /// Returns the description of a model and adds its arrays, whose names end in `-INDEX`.
     ///
     /// # Errors
-    /// If the certificates belong to another model, or a number of the model exceeds the range of the page.
+    /// If the certificates belong to another model or have a clearance, or a number of the model exceeds the range of the page.
     pub fn new(
         index: usize,
         name: impl Into<String>,
@@ -88,7 +89,7 @@ impl ModelScene {
         details: ModelDetails,
         arrays: &mut Arrays,
     ) -> Result<Self, ViewError> {
-        certificates.check_model(model)?;
+        check_certificates(model, certificates)?;
         let rest = model.mesh().rest_positions();
         let (min, max) = bounds(rest);
         let reduced = ReducedFacts::new(model, certificates, details);

@@ -58,7 +58,8 @@ pub enum Error {
     },
     /// A mesh without an inside, the `first` or the `second`, where the volume of bodies is asked for.
     #[error(
-        "the {0} mesh is open, so it has no inside and no volume: close its holes, and make its triangles face the same side"
+        "the {0} mesh has no inside, because it is open or parts of it face inward: close its holes, and make its triangles \
+         face outward"
     )]
     OpenMesh(&'static str),
     /// Folded neighbours where only distances can be bounded.

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use sscc::{CancelToken, Certificates, Method, Query, ReducedModel};
 use sscc_sim::IntervalRow;
 
+use crate::error::check_certificates;
 use crate::{Arrays, Scene, ViewError};
 use cancellation::{Cancellation, MAX_SECONDS};
 use nodes::ORDER;
@@ -72,7 +73,7 @@ impl Live {
     /// Returns the live page of a model. `scene` and `arrays` describe the model. The token cancels queries.
     ///
     /// # Errors
-    /// If the certificates belong to another model.
+    /// If the certificates belong to another model or have a clearance.
     pub fn new(
         model: &ReducedModel,
         certificates: &Certificates,
@@ -80,6 +81,7 @@ impl Live {
         mut arrays: Arrays,
         cancel: Option<CancelToken>,
     ) -> Result<Self, ViewError> {
+        check_certificates(model, certificates)?;
         arrays.add_u32(ORDER, certificates.parts().hierarchy.order().iter().copied());
         let query = Query::new(model, certificates)?.cancelled_by(cancel.clone());
         let long = Mutex::new(Long { certified: query.clone(), traditional: None });

@@ -11,7 +11,7 @@ mod raster;
 use glam::DVec3;
 use sscc::{Certificates, ReducedModel};
 
-use crate::error::ViewError;
+use crate::error::{ViewError, check_certificates};
 use camera::Camera;
 use image::Image;
 use label::{LINE, wrapped};
@@ -36,13 +36,13 @@ impl Picture {
     /// radius is 0 or infinite, the picture shows only the shape at the centre.
     ///
     /// # Errors
-    /// If the certificates belong to another model, or the picture cannot be encoded.
+    /// If the certificates belong to another model or have a clearance, or the picture cannot be encoded.
     pub fn draw(
         model: &ReducedModel,
         certificates: &Certificates,
         names: &[String],
     ) -> Result<Self, ViewError> {
-        certificates.check_model(model)?;
+        check_certificates(model, certificates)?;
         let root = certificates.root_radius();
         let modes = if root > 0.0 && root.is_finite() { MAX_MODES.min(model.rank()) } else { 0 };
         let note = (modes == 0).then(|| {

@@ -1,8 +1,8 @@
 //! Answers of a live page equal those of the core.
 
 use serde_json::{Value, json};
-use sscc::{Method, ModeRange, Proof, Query};
-use sscc_view::{Arrays, ModelDetails, ModelScene};
+use sscc::{Certificates, CertifyOptions, Clearance, Error, Method, ModeRange, Proof, Query};
+use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Picture, ViewError};
 
 use crate::common::{Client, scene, strips, with_server};
 
@@ -319,4 +319,19 @@ fn the_animation_is_the_reduced_motion() {
         let reply = client.post("/api/glb", r#"{"q":[[0,0,0]],"times":[0]}"#);
         assert_eq!(sscc_io::gltf::parse(&reply.body, None).unwrap().modes.rank(), 1);
     });
+}
+
+/// The page compares norms with radii by itself, so these must be about collisions.
+#[test]
+fn certificates_with_a_clearance_are_refused() {
+    let (model, plain) = strips();
+    let options = CertifyOptions::default().clearance(Clearance::new(0.1).unwrap());
+    let kept = Certificates::compute(&model, &options, &()).unwrap();
+    let is_refused = |error: ViewError| matches!(error, ViewError::Core(Error::ClearanceCertificates));
+    let mut arrays = Arrays::default();
+    let details = ModelDetails::default();
+    assert!(is_refused(ModelScene::new(0, "strips", &model, &kept, details, &mut arrays).unwrap_err()));
+    assert!(is_refused(Picture::draw(&model, &kept, &[]).map(|_| ()).unwrap_err()));
+    let (scene, arrays) = scene(&model, &plain);
+    assert!(is_refused(Live::new(&model, &kept, scene, arrays, None).map(|_| ()).unwrap_err()));
 }

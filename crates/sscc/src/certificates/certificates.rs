@@ -100,7 +100,7 @@ impl Certificates {
     }
 
     /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
-    /// exceptions.
+    /// exceptions; of certificates with a [`clearance`](Self::clearance) no triangles that count come nearer than it, but others may collide.
     pub fn root_radius(&self) -> f64 {
         self.0.node_radii[0]
     }

@@ -62,7 +62,11 @@ fn error(planes: [&Plane; 2], area: f64) -> f64 {
         let share = if plane.area == 0.0 { 1.0 } else { (area / plane.area.abs()).min(1.0) };
         share * (plane.z.1 - plane.z.0) * reach * plane.width
     };
-    ERROR * (reach * width * height + steep(planes[0]) + steep(planes[1]))
+    // A slope beyond the range of numbers is replaced by 0.
+    let vague = |plane: &Plane| if plane.is_vague { area * (plane.z.1 - plane.z.0) } else { 0.0 };
+    vague(planes[0])
+        + vague(planes[1])
+        + ERROR * (reach * width * height + steep(planes[0]) + steep(planes[1]))
 }
 
 /// The plane of a triangle, as heights over its projection.
@@ -71,6 +75,8 @@ struct Plane {
     area: f64,
     from: DVec3,
     slope: DVec2,
+    /// Whether the slope is beyond the range of numbers, and 0 in place of it.
+    is_vague: bool,
     /// The lowest and the highest corner.
     z: (f64, f64),
     /// Diameter of the projection.
@@ -87,7 +93,10 @@ impl Plane {
         let flat = corners.map(DVec3::truncate);
         let width = (0..3).map(|k| flat[k].distance(flat[(k + 1) % 3])).fold(0.0, f64::max);
         let reach = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        Self { area: 0.5 * normal.z, from: p, slope: -normal.truncate() / normal.z, z, width, reach }
+        let slope = -normal.truncate() / normal.z;
+        let is_vague = !slope.is_finite();
+        let slope = if is_vague { DVec2::ZERO } else { slope };
+        Self { area: 0.5 * normal.z, from: p, slope, is_vague, z, width, reach }
     }
 
     /// The height at a point of the projection. It is between the corners, whatever the slope.

@@ -161,6 +161,29 @@ fn tetrahedra_and_balls() {
     assert!((whole.volume - volume(&a)).abs() <= whole.volume_error + 1e-12, "{whole:?}");
 }
 
+/// Would fail if one direction were that of the whole mesh: the inverted part would take volume away.
+#[test]
+fn parts_face_one_way() {
+    let inverted =
+        |mesh: &TriMesh| -> Vec<[u32; 3]> { mesh.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect() };
+    let (large, small) =
+        (cuboid(DVec3::ZERO, DVec3::splat(2.0)), cuboid(DVec3::splat(3.0), DVec3::splat(4.0)));
+    let both = |faces: [Vec<[u32; 3]>; 2]| {
+        let positions = [large.rest_positions(), small.rest_positions()].concat();
+        let [first, second] = faces;
+        let second = second.into_iter().map(|face| face.map(|v| v + 8));
+        TriMesh::new(positions, first.into_iter().chain(second).collect()).unwrap()
+    };
+    let half = cuboid(DVec3::new(3.5, 3.0, 3.0), DVec3::new(5.0, 4.0, 4.0));
+    let outward = both([large.faces().to_vec(), small.faces().to_vec()]);
+    let inward = both([inverted(&large), inverted(&small)]);
+    check(&outward, &half, 0.5, 0.5);
+    check(&inward, &half, 0.5, 0.5);
+    let mixed = both([large.faces().to_vec(), inverted(&small)]);
+    assert_eq!(find(&mixed, &half), Err(Error::OpenMesh("first")));
+    assert_eq!(find(&half, &mixed), Err(Error::OpenMesh("second")));
+}
+
 #[test]
 fn open_meshes_have_no_volume() {
     let unit = cuboid(DVec3::ZERO, DVec3::ONE);

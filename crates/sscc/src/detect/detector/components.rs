@@ -66,6 +66,11 @@ impl Components {
         self.all.iter().map(|component| component.triangle)
     }
 
+    /// The number of the component of a triangle.
+    pub fn of_triangle(&self, triangle: u32) -> usize {
+        self.of_triangles[triangle as usize] as usize
+    }
+
     pub fn has_closed(&self) -> bool {
         self.all.iter().any(|component| component.is_closed)
     }
@@ -77,6 +82,6 @@ impl Components {
 
     /// Whether a triangle is part of a closed component.
     pub fn is_closed(&self, triangle: u32) -> bool {
-        self.all[self.of_triangles[triangle as usize] as usize].is_closed
+        self.all[self.of_triangle(triangle)].is_closed
     }
 }

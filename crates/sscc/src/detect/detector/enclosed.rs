@@ -90,6 +90,15 @@ impl Side<'_> {
 
     /// The winding number of the closed components about a point.
     pub(super) fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
+        self.winding_number_of(point, |triangle| self.components.is_closed(triangle))
+    }
+
+    /// The winding number about a point of the triangles that count.
+    pub(super) fn winding_number_of(
+        &self,
+        point: DVec3,
+        is_counted: impl Fn(u32) -> bool,
+    ) -> Result<i32, Error> {
         let (mut open, mut winding) = (vec![0], 0);
         while let Some(n) = open.pop() {
             let aabb = &self.boxes.of_nodes[n as usize];
@@ -104,8 +113,8 @@ impl Side<'_> {
             if self.boxes.context.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            let closed = self.boxes.triangles(n).iter().filter(|t| self.components.is_closed(**t));
-            winding += closed.map(|t| crossing(point, &self.boxes.corners(*t))).sum::<i32>();
+            let counted = self.boxes.triangles(n).iter().filter(|t| is_counted(**t));
+            winding += counted.map(|t| crossing(point, &self.boxes.corners(*t))).sum::<i32>();
         }
         Ok(winding)
     }

@@ -11,6 +11,7 @@ mod components;
 mod detector;
 mod detector_search;
 mod enclosed;
+mod facing;
 mod given_motion;
 mod nearest;
 mod penetration;

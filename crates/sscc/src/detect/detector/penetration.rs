@@ -4,6 +4,7 @@ use super::boxes::Boxes;
 use super::common_ball::largest_common_ball;
 use super::detector::Detector;
 use super::enclosed::Side;
+use super::facing::facing;
 use super::shared_volume::shared_volume;
 use crate::Error;
 use glam::DVec3;
@@ -17,7 +18,7 @@ pub struct BodyPenetration {
     pub volume: f64,
     /// Bound of the rounding error of the volume.
     pub volume_error: f64,
-    /// The diameter of a ball that is inside of both meshes, nearly the largest one; 0 where there is none. Of two plates that overlap,
+    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 where there is none. Of two plates that overlap,
     /// or two balls, it is how far one must move to leave the other.
     pub depth: f64,
     /// No such ball has a larger diameter than `depth + depth_error`, up to 1e-9 of the size of the meshes: at most a thousandth more,
@@ -29,7 +30,8 @@ pub struct BodyPenetration {
 /// projections along z overlap, and a search that takes longer the flatter what they share is. The token of the first detector cancels it.
 ///
 /// # Errors
-/// As [`Detector::discrete`], for both; when a mesh is open, so that it has no inside.
+/// As [`Detector::discrete`], for both; when a mesh is open, or some of its parts face inward that are not within others, so that it
+/// has no inside.
 pub fn body_penetration(
     [one, two]: [&mut Detector; 2],
     [positions, other_positions]: [&[DVec3]; 2],
@@ -46,10 +48,15 @@ pub fn body_penetration(
         (0..faces).map(|triangle| boxes.corners(triangle)).collect::<Vec<_>>()
     });
     let cancel = one.context.cancel.as_ref();
-    let (volume, volume_error) = shared_volume(triangles.each_ref().map(Vec::as_slice), cancel)?;
     let [a, b] = boxes;
     let sides =
         [&Side { boxes: a, components: &components[0] }, &Side { boxes: b, components: &components[1] }];
+    let mut directions = [1; 2];
+    for (n, name) in ["first", "second"].into_iter().enumerate() {
+        directions[n] = facing(sides[n], &triangles[n])?.ok_or(Error::OpenMesh(name))?;
+    }
+    let sign = f64::from(directions[0] * directions[1]);
+    let (volume, volume_error) = shared_volume(triangles.each_ref().map(Vec::as_slice), sign, cancel)?;
     // A ball is not larger than what both share. Where that may be nothing, as where they only touch, none is searched.
     let largest = (0.75 * (volume + volume_error) / std::f64::consts::PI).cbrt();
     let (radius, bound) = if volume <= volume_error { (0.0, largest) } else { largest_common_ball(sides)? };

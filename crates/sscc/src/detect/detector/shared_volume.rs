@@ -8,13 +8,13 @@ use crate::{CancelToken, Error};
 /// Pairs between two questions whether the search is cancelled.
 const PAIRS: usize = 1 << 12;
 
-/// Returns the volume that two closed meshes share, and a bound of its rounding error. Meshes that face inward count as those that face
-/// outward.
+/// Returns the volume that two closed meshes share, and a bound of its rounding error. `sign`: -1 where one of them faces inward, else 1.
 ///
 /// # Errors
 /// When the token cancels.
 pub(super) fn shared_volume(
     meshes: [&[[DVec3; 3]]; 2],
+    sign: f64,
     cancel: Option<&CancelToken>,
 ) -> Result<(f64, f64), Error> {
     let aabbs = meshes.map(|mesh| Aabb::of_points(mesh.iter().flatten().copied()));
@@ -24,7 +24,6 @@ pub(super) fn shared_volume(
     let shared =
         Aabb { lower: aabbs[0].lower.max(aabbs[1].lower), upper: aabbs[0].upper.min(aabbs[1].upper) };
     let center = shared.center();
-    let direction = meshes.map(|mesh| direction(mesh, center));
     // Only triangles over the shared box have a partner.
     let [a, b] = meshes.map(|mesh| spans(mesh, &shared, center));
     let (mut sum, mut error, mut pairs) = (0.0_f64, 0.0, 0_usize);
@@ -50,7 +49,7 @@ pub(super) fn shared_volume(
         own.push(span);
         if is_of_a { at_a += 1 } else { at_b += 1 }
     }
-    Ok(((direction[0] * direction[1] * sum).max(0.0), error))
+    Ok(((sign * sum).max(0.0), error))
 }
 
 /// A triangle relative to the centre, with its AABB.
@@ -74,13 +73,4 @@ fn spans(mesh: &[[DVec3; 3]], shared: &Aabb, center: DVec3) -> Vec<Span> {
         .collect();
     spans.sort_unstable_by(|a, b| a.lower.x.total_cmp(&b.lower.x));
     spans
-}
-
-/// Returns 1 for a mesh that faces outward, -1 for one that faces inward.
-fn direction(mesh: &[[DVec3; 3]], center: DVec3) -> f64 {
-    let volume = |corners: &[DVec3; 3]| {
-        let [a, b, c] = corners.map(|p| p - center);
-        a.dot(b.cross(c))
-    };
-    mesh.iter().map(volume).sum::<f64>().signum()
 }

@@ -1,0 +1,42 @@
+//! Whether the triangles of a closed mesh face outward or inward.
+
+use glam::DVec3;
+
+use super::enclosed::Side;
+use crate::Error;
+
+/// Rounding errors of a component's volume, in units of the sum of the absolute values of its terms.
+const ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// Returns 1 for a mesh that faces outward, -1 for one that faces inward; None where some of its components wind about a place in
+/// one direction and others in the other one, so that it has no inside. Components without volume do not count, and of one that
+/// crosses itself its volume tells how it faces. `triangles`: the corners of all triangles.
+///
+/// # Errors
+/// When the token cancels.
+pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option<i32>, Error> {
+    let components = side.components;
+    let from: Vec<(u32, DVec3)> = components.triangles().map(|t| (t, triangles[t as usize][0])).collect();
+    // For each component six times its volume, and the sum of the terms' absolute values.
+    let mut volumes = vec![[0.0_f64; 2]; from.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        let component = components.of_triangle(triangle as u32);
+        let [a, b, c] = corners.map(|p| p - from[component].1);
+        let [volume, sum] = &mut volumes[component];
+        *volume += a.dot(b.cross(c));
+        *sum += a.length() * b.length() * c.length();
+    }
+    let direction = if volumes.iter().map(|[volume, _]| volume).sum::<f64>() < 0.0 { -1 } else { 1 };
+    for (&(triangle, point), [volume, sum]) in from.iter().zip(volumes) {
+        if volume.abs() <= ERROR * triangles.len() as f64 * sum {
+            continue;
+        }
+        let own = components.of_triangle(triangle);
+        let outside = side.winding_number_of(point, |t| components.of_triangle(t) != own)?;
+        let inside = outside + if volume < 0.0 { -1 } else { 1 };
+        if outside * direction < 0 || inside * direction < 0 {
+            return Ok(None);
+        }
+    }
+    Ok(Some(direction))
+}
