@@ -77,7 +77,7 @@ typedef int32_t sscc_status;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What proved an answer, exceptions apart.
+// Proof of an answer, exceptions apart.
 enum sscc_proof
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
@@ -129,7 +129,7 @@ enum sscc_neighbours
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // They do not.
+  // Pairs with common vertices never count.
   SSCC_NEIGHBOURS_EXCLUDE = 0,
   // Pairs with exactly one common vertex count when they have another point in common.
   SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX = 1,
@@ -172,9 +172,9 @@ enum sscc_weld
  {
   // As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
   SSCC_WELD_DEFAULT = 0,
-  // They are.
+  // Vertices of equal positions are one vertex.
   SSCC_WELD_ON = 1,
-  // They are not.
+  // All vertices are different.
   SSCC_WELD_OFF = 2,
 };
 #ifndef __cplusplus
@@ -219,17 +219,17 @@ typedef struct sscc_filter {
   const struct sscc_pair *ignored;
   // Number of ignored pairs.
   size_t ignored_count;
-  // A group for each triangle (below 65,536); NULL for none.
+  // A group for each triangle (below 65,536); NULL for none, with `groups_count` 0.
   const uint32_t *groups;
   // Number of triangles in `groups`.
   size_t groups_count;
-  // 1: of triangles of one group no pair counts. 0: all pairs count.
+  // 1: of triangles of one group no pair counts, which needs `groups`. 0: all pairs count.
   int32_t between_groups_only;
   // One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
   int32_t weld;
   // One of SSCC_NEIGHBOURS_EXCLUDE, SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX, SSCC_NEIGHBOURS_INCLUDE_FOLDED.
   int32_t neighbours;
-  // 0.
+  // Must be 0.
   int32_t reserved;
 } sscc_filter;
 
@@ -241,7 +241,7 @@ typedef struct sscc_certify_options {
   double epsilon;
   // How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
   double reach;
-  // The q from which radii are measured; NULL: q = 0.
+  // The q from which radii are measured; NULL, with `center_count` 0: q = 0.
   const double *center;
   // Number of entries of `center`.
   size_t center_count;
@@ -271,12 +271,13 @@ typedef struct sscc_certify_options {
 
 // Receives that `done` of `total` steps of a long computation are finished. Another value than 0 cancels it.
 //
-// Threads of the library call it, never two at a time. It must not throw and must not call this library with handles that the
-// computation uses.
+// Threads of the library call it, never two at a time. It must not throw. It must not free the handles of the computation, nor
+// call this library with them in another way.
 typedef int (*sscc_progress_fn)(void *user, size_t done, size_t total);
 
 // Returns another value than 0 to cancel. It is called often, so it should be quick. A computation calls it from threads of the
-// library, never from two at a time; a query calls it from the thread of the call. It must not throw.
+// library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
+// handles of the computation or the query.
 typedef int (*sscc_cancel_fn)(void *user);
 
 // A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
@@ -333,7 +334,7 @@ typedef struct sscc_statistics {
   uint64_t box_tests;
   // Pairs of triangles that were tested exactly.
   uint64_t triangle_tests;
-  // What proved the answer.
+  // Proof of the answer.
   sscc_proof proof;
   // 1 if the pairs are all that collide, 0 if a limit or an error stopped the search.
   int32_t complete;
@@ -370,10 +371,12 @@ sscc_status sscc_certificates_compute(const struct sscc_model *model,
                                       void *user,
                                       struct sscc_certificates **certificates);
 
-// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model.
+// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model. Certificates with a
+// clearance are refused: they prove nothing about collisions.
 //
 // Threads: any.
-sscc_status sscc_certificates_load(const char *certificates_path, struct sscc_certificates **certificates);
+sscc_status sscc_certificates_load(const char *certificates_path,
+                                   struct sscc_certificates **certificates);
 
 // Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those of the command.
 //
@@ -381,7 +384,7 @@ sscc_status sscc_certificates_load(const char *certificates_path, struct sscc_ce
 sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
                                    const char *certificates_path);
 
-// Frees certificates. NULL is nothing.
+// Frees certificates. NULL is ignored.
 //
 // Threads: any, while no other call uses the certificates.
 sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
@@ -410,7 +413,7 @@ sscc_status sscc_detector_new(struct sscc_matrix positions,
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_clone(const struct sscc_detector *detector, struct sscc_detector **copy);
 
-// Frees a detector. NULL is nothing.
+// Frees a detector. NULL is ignored.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_free(struct sscc_detector *detector);
@@ -503,7 +506,7 @@ sscc_status sscc_detector_visit_pairs(const struct sscc_detector *detector,
                                       sscc_visit_fn visit,
                                       void *user);
 
-// The cost of the last answer, and what proved it.
+// The cost of the last answer, and its proof.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_statistics(const struct sscc_detector *detector,
@@ -521,7 +524,7 @@ sscc_status sscc_kinetic_new(const struct sscc_model *model,
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_clone(const struct sscc_kinetic *kinetic, struct sscc_kinetic **copy);
 
-// Frees a kinetic query. NULL is nothing.
+// Frees a kinetic query. NULL is ignored.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_free(struct sscc_kinetic *kinetic);
@@ -576,7 +579,7 @@ sscc_status sscc_kinetic_visit_pairs(const struct sscc_kinetic *kinetic,
                                      sscc_visit_fn visit,
                                      void *user);
 
-// The cost of the last answer, and what proved it.
+// The cost of the last answer, and its proof.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_statistics(const struct sscc_kinetic *kinetic, struct sscc_statistics *statistics);
@@ -603,7 +606,7 @@ sscc_status sscc_model_load(const char *model_path,
 // Threads: any.
 sscc_status sscc_model_save(const struct sscc_model *model, const char *model_path);
 
-// Frees a model. NULL is nothing.
+// Frees a model. NULL is ignored.
 //
 // Threads: any, while no other call uses the model.
 sscc_status sscc_model_free(struct sscc_model *model);
@@ -649,7 +652,7 @@ sscc_status sscc_query_new(const struct sscc_model *model,
 // Threads: one call at a time for each query.
 sscc_status sscc_query_clone(const struct sscc_query *query, struct sscc_query **copy);
 
-// Frees a query. NULL is nothing.
+// Frees a query. NULL is ignored.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_free(struct sscc_query *query);
@@ -733,7 +736,7 @@ sscc_status sscc_query_visit_pairs(const struct sscc_query *query,
                                    sscc_visit_fn visit,
                                    void *user);
 
-// The cost of the last answer, and what proved it.
+// The cost of the last answer, and its proof.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_statistics(const struct sscc_query *query, struct sscc_statistics *statistics);
@@ -751,7 +754,7 @@ sscc_status sscc_shape_new(const struct sscc_model *model,
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_clone(const struct sscc_shape *shape, struct sscc_shape **copy);
 
-// Frees a shape. NULL is nothing.
+// Frees a shape. NULL is ignored.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_free(struct sscc_shape *shape);
@@ -767,13 +770,13 @@ sscc_status sscc_shape_place(struct sscc_shape *shape,
                              struct sscc_box *bounds);
 
 // Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. The answer is
-// that of `shape`. `around` is a box around all shapes that are compared; it changes the time alone, and NULL is none. The
-// other shape must be another one.
+// that of `shape`. `bounds` is an AABB that contains all shapes that are compared; it changes the time alone, and NULL is none.
+// The other shape must be another one.
 //
 // Threads: one call at a time for each of both shapes.
 sscc_status sscc_shape_against(struct sscc_shape *shape,
                                struct sscc_shape *other,
-                               const struct sscc_box *around,
+                               const struct sscc_box *bounds,
                                size_t *count);
 
 // Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the

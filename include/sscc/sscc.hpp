@@ -47,15 +47,29 @@ using pose = sscc_pose;
 using matrix = sscc_matrix;
 using index_matrix = sscc_index_matrix;
 
-// As many elements of somebody else, like std::span.
+namespace detail {
+
+// Whether the elements of a container are one after another. Of Eigen only vectors are, and only those without a stride: sscc::map
+// is for matrices, in any order of storage.
+template <class C, class = void>
+struct is_contiguous : std::true_type {};
+template <class C>
+struct is_contiguous<C, std::void_t<decltype(C::IsVectorAtCompileTime), decltype(C::InnerStrideAtCompileTime)>>
+    : std::bool_constant<bool(C::IsVectorAtCompileTime) && int(C::InnerStrideAtCompileTime) == 1> {};
+
+}  // namespace detail
+
+// A number of elements that another object owns, like std::span.
 template <class T>
 class view {
  public:
   constexpr view() noexcept = default;
   constexpr view(T* data, std::size_t size) noexcept : data_(data), size_(size) {}
-  // Any container with data() and size(): std::vector, std::array, std::span, Eigen::VectorXd, ...
+  // Any container with data() and size(): std::vector, std::array, std::span, Eigen::VectorXd, a column of a column-major matrix.
+  // Not a row of it, nor a matrix: their elements are elsewhere.
   template <class C, class P = decltype(std::declval<C&>().data()),
-            class = std::enable_if_t<std::is_convertible_v<P, T*> && !std::is_same_v<std::decay_t<C>, view>>>
+            class = std::enable_if_t<std::is_convertible_v<P, T*> && !std::is_same_v<std::decay_t<C>, view> &&
+                                     detail::is_contiguous<std::decay_t<C>>::value>>
   constexpr view(C&& container) noexcept
       : data_(container.data()), size_(static_cast<std::size_t>(container.size())) {}
 
@@ -79,10 +93,10 @@ inline matrix rows(view<const double> numbers, std::size_t columns) noexcept {
   return {numbers.data(), numbers.size() / columns, columns, 0, 0};
 }
 
-// Positions: x, y, z of each vertex.
+// Positions: x, y, z of each vertex, one after another. A matrix of Eigen is given by map().
 inline matrix positions(view<const double> xyz) noexcept { return rows(xyz, 3); }
 
-// Faces: three vertices for each triangle.
+// Faces: three vertices for each triangle, one after another. A matrix of Eigen is given by map().
 inline index_matrix faces(view<const std::uint32_t> vertices) noexcept {
   if (vertices.size() % 3 != 0) {
     return {vertices.data(), 1, vertices.size(), 0, 0};  // which the library refuses
@@ -295,7 +309,7 @@ class searching : public answering<Api> {
   // The impacts of the last answer; none after a discrete one.
   view<const impact> impacts() const noexcept { return impacts_; }
 
-  // The cost of the last answer, and what proved it.
+  // The cost of the last answer, and its proof.
   returns<statistics> cost() const {
     statistics found{};
     const status s = Api::statistics(this->handle_.get(), &found);
@@ -310,7 +324,7 @@ class searching : public answering<Api> {
     return finish(s);
   }
 
-  // Makes later answers ask nobody.
+  // Removes the callable: nothing cancels later answers.
   returns<void> never_cancel() {
     const status s = Api::set_cancel(this->handle_.get(), nullptr, nullptr);
     if (s == SSCC_STATUS_OK) canceller_.reset();
@@ -321,12 +335,13 @@ class searching : public answering<Api> {
   using answering<Api>::answering;
 
   returns<view<const pair>> discrete_answer(status s, std::size_t count) {
+    forget();
     rethrow();
-    impacts_.clear();
     return this->answer(s, count);
   }
 
   returns<view<const impact>> continuous_answer(status s, std::size_t count) {
+    forget();
     rethrow();
     this->pairs_.resize(s == SSCC_STATUS_OK ? count : 0);
     impacts_.resize(this->pairs_.size());
@@ -335,6 +350,12 @@ class searching : public answering<Api> {
       for (std::size_t i = 0; i < count; ++i) this->pairs_[i] = {impacts_[i].a, impacts_[i].b};
     }
     return finish(s, view<const impact>(impacts_));
+  }
+
+  // Forgets the last answer, also where the next one fails.
+  void forget() noexcept {
+    this->pairs_.clear();
+    impacts_.clear();
   }
 
   void rethrow() {
@@ -461,7 +482,7 @@ class certificates {
     return compute(m, options, std::forward<Progress>(progress), [] { return false; });
   }
 
-  // With progress(done, total) and cancel(), which is asked often.
+  // With progress(done, total) and cancel(), which is called often.
   template <class Progress, class Cancel>
   static returns<certificates> compute(const model& m, const certify_options& options, Progress&& progress,
                                        Cancel&& cancel) {
@@ -546,6 +567,7 @@ class query : public detail::searching<detail::query_api> {
   returns<double> safe_scale(view<const double> q) {
     double scale = 0.0;
     const status s = sscc_query_safe_scale(get(), q.data(), q.size(), &scale);
+    forget();
     rethrow();
     return detail::finish(s, scale);
   }
@@ -654,10 +676,11 @@ class shape : public detail::answering<detail::shape_api> {
     return detail::finish(s, bounds);
   }
 
-  // All pairs (triangle of this shape, triangle of the other one) that collide, sorted.
-  returns<view<const pair>> against(shape& other, const box* around = nullptr) {
+  // All pairs (triangle of this shape, triangle of the other one) that collide, sorted. `bounds` is an AABB that contains all
+  // shapes that are compared, which changes the time alone.
+  returns<view<const pair>> against(shape& other, const box* bounds = nullptr) {
     std::size_t count = 0;
-    const status s = sscc_shape_against(get(), other.get(), around, &count);
+    const status s = sscc_shape_against(get(), other.get(), bounds, &count);
     return answer(s, count);
   }
 };

@@ -19,8 +19,9 @@ use serde_json::Value;
 use crate::kept_list::{self, KeptList};
 use crate::program::{cargo, exit_code, root, usage};
 
-/// The version of rustdoc's JSON that is read here.
+/// The version of rustdoc's JSON that is read here, and the version of Rust that writes it, which the workflow installs.
 const FORMAT: u64 = 57;
+const RUST: &str = "1.95";
 
 /// The maximum number of items outside of `parts`: 260, and those of distances, of intervals of weights, and of clearances of certificates.
 const MAX_ITEMS: usize = 260 + 21 + 19 + 5;
@@ -110,7 +111,10 @@ fn documentation() -> Result<Value, String> {
         serde_json::from_slice(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     match json["format_version"].as_u64() {
         Some(FORMAT) => Ok(json),
-        found => Err(format!("rustdoc's JSON has version {found:?}, {FORMAT} was expected")),
+        found => Err(format!(
+            "rustdoc's JSON has version {}, {FORMAT} was expected: cargo +{RUST} xtask public",
+            found.unwrap_or_default()
+        )),
     }
 }
 
@@ -167,4 +171,18 @@ fn list(value: &Value) -> &[Value] {
 
 fn text(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_workflow_has_the_version_of_rust_that_writes_this_format() {
+        let text = fs::read_to_string(root().join(".github/workflows/test.yml")).unwrap();
+        let lint = text.split("\n  lint:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).unwrap();
+        assert!(lint.contains("cargo xtask public"));
+        assert!(lint.contains(&format!("RUSTUP_TOOLCHAIN: \"{RUST}\"")));
+        assert!(lint.contains(&format!("rustup toolchain install {RUST} ")));
+    }
 }

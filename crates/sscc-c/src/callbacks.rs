@@ -13,7 +13,7 @@ struct Callbacks {
     progress: sscc_progress_fn,
     cancel: sscc_cancel_fn,
     user: AtomicPtr<c_void>,
-    turn: Mutex<()>,
+    lock: Mutex<()>,
     is_cancelled: AtomicBool,
 }
 
@@ -22,7 +22,7 @@ impl Callbacks {
         self.user.load(Ordering::Relaxed)
     }
 
-    /// What is cancelled stays so.
+    /// A cancelled computation stays cancelled.
     fn set(&self, answer: std::ffi::c_int) {
         if answer != 0 {
             self.is_cancelled.store(true, Ordering::Relaxed);
@@ -31,7 +31,7 @@ impl Callbacks {
 
     fn report(&self, done: usize, total: usize) {
         let Some(progress) = self.progress else { return };
-        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        let _lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_cancelled.load(Ordering::Relaxed) {
             self.set(progress(self.user(), done, total));
         }
@@ -40,7 +40,7 @@ impl Callbacks {
     fn is_cancelled(&self) -> bool {
         if let (Some(cancel), false) = (self.cancel, self.is_cancelled.load(Ordering::Relaxed)) {
             // While another thread is in a callback, this one works on.
-            if let Ok(_turn) = self.turn.try_lock() {
+            if let Ok(_lock) = self.lock.try_lock() {
                 self.set(cancel(self.user()));
             }
         }
@@ -56,11 +56,11 @@ pub struct Reporter {
 
 impl Reporter {
     pub fn new(progress: sscc_progress_fn, cancel: sscc_cancel_fn, user: *mut c_void) -> Self {
-        let (user, turn) = (AtomicPtr::new(user), Mutex::new(()));
+        let (user, lock) = (AtomicPtr::new(user), Mutex::new(()));
         let is_cancelled = AtomicBool::new(false);
-        let callbacks = Arc::new(Callbacks { progress, cancel, user, turn, is_cancelled });
-        let asked = Arc::clone(&callbacks);
-        Self { callbacks, token: CancelToken::when(move || asked.is_cancelled()) }
+        let callbacks = Arc::new(Callbacks { progress, cancel, user, lock, is_cancelled });
+        let token_callbacks = Arc::clone(&callbacks);
+        Self { callbacks, token: CancelToken::when(move || token_callbacks.is_cancelled()) }
     }
 
     /// Whether a callback has cancelled, perhaps too late to have an effect.

@@ -3,7 +3,7 @@
 
 use std::ffi::{c_char, c_void};
 
-use sscc::Certificates;
+use sscc::{Certificates, Error};
 use sscc_io::{read_certificates, write_certificates};
 
 use crate::callbacks::Reporter;
@@ -52,7 +52,8 @@ pub unsafe extern "C" fn sscc_certificates_compute(
     })
 }
 
-/// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model.
+/// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model. Certificates with a
+/// clearance are refused: they prove nothing about collisions.
 ///
 /// Threads: any.
 ///
@@ -67,7 +68,12 @@ pub unsafe extern "C" fn sscc_certificates_load(
         // SAFETY: by the caller's promise, here and below.
         let out = unsafe { output(certificates, "certificates") }?;
         let path = unsafe { path(certificates_path, "certificates_path") }?;
-        give(sscc_certificates(read_certificates(path)?), out);
+        let certificates = read_certificates(path)?;
+        if certificates.clearance().is_some() {
+            let message = format!("{}: {}", path.display(), Error::ClearanceCertificates);
+            return Err(Failure::argument(message));
+        }
+        give(sscc_certificates(certificates), out);
         Ok(())
     })
 }
@@ -90,7 +96,7 @@ pub unsafe extern "C" fn sscc_certificates_save(
     })
 }
 
-/// Frees certificates. NULL is nothing.
+/// Frees certificates. NULL is ignored.
 ///
 /// Threads: any, while no other call uses the certificates.
 ///

@@ -91,7 +91,7 @@ pub unsafe extern "C" fn sscc_detector_clone(
     })
 }
 
-/// Frees a detector. NULL is nothing.
+/// Frees a detector. NULL is ignored.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -355,7 +355,7 @@ pub unsafe extern "C" fn sscc_detector_visit_pairs(
     guard(|| unsafe { borrow(detector) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and what proved it.
+/// The cost of the last answer, and its proof.
 ///
 /// Threads: one call at a time for each detector.
 ///

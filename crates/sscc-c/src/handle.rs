@@ -7,7 +7,7 @@ use crate::status::{Failure, Result, sscc_status};
 
 /// An object that C owns by a pointer.
 pub trait Handle: Sized {
-    /// What a message calls it.
+    /// Its name in messages.
     const NAME: &'static str;
 
     /// Refuses to be freed during a call that uses it.
@@ -40,7 +40,7 @@ pub unsafe fn borrow<'a, T: Handle>(handle: *const T) -> Result<&'a T> {
     Ok(unsafe { &*handle })
 }
 
-/// Frees the object of a handle; NULL is none.
+/// Frees the object of a handle; NULL is ignored.
 ///
 /// # Errors
 /// When a call is using it; with debug assertions, when it is no live handle of the type.

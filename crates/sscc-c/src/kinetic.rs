@@ -81,7 +81,7 @@ pub unsafe extern "C" fn sscc_kinetic_clone(
     })
 }
 
-/// Frees a kinetic query. NULL is nothing.
+/// Frees a kinetic query. NULL is ignored.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn sscc_kinetic_visit_pairs(
     guard(|| unsafe { borrow(kinetic) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and what proved it.
+/// The cost of the last answer, and its proof.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///

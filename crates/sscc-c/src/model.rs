@@ -106,7 +106,7 @@ pub unsafe extern "C" fn sscc_model_save(model: *const sscc_model, model_path: *
     })
 }
 
-/// Frees a model. NULL is nothing.
+/// Frees a model. NULL is ignored.
 ///
 /// Threads: any, while no other call uses the model.
 ///

@@ -16,7 +16,7 @@ const MAX_THREADS: usize = 1024;
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_neighbours {
-    /// They do not.
+    /// Pairs with common vertices never count.
     Exclude = 0,
     /// Pairs with exactly one common vertex count when they have another point in common.
     IncludeOneVertex = 1,
@@ -31,9 +31,9 @@ pub enum sscc_neighbours {
 pub enum sscc_weld {
     /// As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
     Default = 0,
-    /// They are.
+    /// Vertices of equal positions are one vertex.
     On = 1,
-    /// They are not.
+    /// All vertices are different.
     Off = 2,
 }
 
@@ -47,19 +47,22 @@ pub struct sscc_filter {
     pub ignored: *const sscc_pair,
     /// Number of ignored pairs.
     pub ignored_count: usize,
-    /// A group for each triangle (below 65,536); NULL for none.
+    /// A group for each triangle (below 65,536); NULL for none, with `groups_count` 0.
     pub groups: *const u32,
     /// Number of triangles in `groups`.
     pub groups_count: usize,
-    /// 1: of triangles of one group no pair counts. 0: all pairs count.
+    /// 1: of triangles of one group no pair counts, which needs `groups`. 0: all pairs count.
     pub between_groups_only: i32,
     /// One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
     pub weld: i32,
     /// One of SSCC_NEIGHBOURS_EXCLUDE, SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX, SSCC_NEIGHBOURS_INCLUDE_FOLDED.
     pub neighbours: i32,
-    /// 0.
+    /// Must be 0.
     pub reserved: i32,
 }
+
+// No padding: the size is the sum of the fields. A target on which this fails is not supported.
+const _: () = assert!(size_of::<sscc_filter>() == 5 * size_of::<usize>() + 4 * size_of::<i32>());
 
 // SAFETY: zeros are valid, the size is first, there is no padding.
 unsafe impl Versioned for sscc_filter {}
@@ -100,7 +103,7 @@ pub struct sscc_certify_options {
     pub epsilon: f64,
     /// How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
     pub reach: f64,
-    /// The q from which radii are measured; NULL: q = 0.
+    /// The q from which radii are measured; NULL, with `center_count` 0: q = 0.
     pub center: *const f64,
     /// Number of entries of `center`.
     pub center_count: usize,
@@ -128,6 +131,12 @@ pub struct sscc_certify_options {
     pub ignore_rings: u32,
 }
 
+// As for `sscc_filter`. With pointers of 32 bits, most targets would have padding before `epsilon`.
+const _: () = assert!(
+    size_of::<sscc_certify_options>()
+        == 10 * size_of::<usize>() + 2 * size_of::<f64>() + 4 * size_of::<i32>()
+);
+
 // SAFETY: zeros are valid, the size is first, there is no padding.
 unsafe impl Versioned for sscc_certify_options {}
 
@@ -148,8 +157,15 @@ pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Resu
     )?;
     let weld = choose(&[mesh.has_split_vertices(), true, false], filter.weld, "filter.weld")?;
     let is_between_only = choose(&[false, true], filter.between_groups_only, "filter.between_groups_only")?;
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's promise, here and below.
     let ignored = unsafe { slice(filter.ignored, filter.ignored_count, "filter.ignored") }?;
+    let groups = unsafe { slice(filter.groups, filter.groups_count, "filter.groups") }?;
+    if filter.reserved != 0 {
+        return Err(Failure::argument(format!("filter.reserved is {}: it must be 0", filter.reserved)));
+    }
+    if is_between_only && filter.groups.is_null() {
+        return Err(Failure::argument("filter.between_groups_only needs filter.groups"));
+    }
     let triangles = mesh.faces().len();
     if let Some(pair) = ignored.iter().position(|pair| pair.a.max(pair.b) as usize >= triangles) {
         let sscc_pair { a, b } = ignored[pair];
@@ -158,9 +174,7 @@ pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Resu
     let mut chosen =
         ContactFilter::new(neighbours).weld(weld).ignoring(ignored.iter().map(|pair| (pair.a, pair.b)));
     if !filter.groups.is_null() {
-        // SAFETY: by the caller's promise.
-        let groups =
-            TriangleGroups::new(unsafe { slice(filter.groups, filter.groups_count, "filter.groups") }?)?;
+        let groups = TriangleGroups::new(groups)?;
         chosen = chosen.with_groups(if is_between_only { groups.between_only() } else { groups });
     }
     Ok(chosen)
@@ -204,10 +218,10 @@ pub unsafe fn certify_options(
     if choose(&[false, true], given.ignore_rest, "options.ignore_rest")? {
         options = options.ignore_rest(given.ignore_rings);
     }
+    // SAFETY: by the caller's promise.
+    let center = unsafe { slice(given.center, given.center_count, "options.center") }?;
     if !given.center.is_null() {
-        // SAFETY: by the caller's promise.
-        options =
-            options.center(unsafe { slice(given.center, given.center_count, "options.center") }?.to_vec());
+        options = options.center(center.to_vec());
     }
     if !given.filter.is_null() {
         // SAFETY: by the caller's promise.

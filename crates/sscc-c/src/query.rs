@@ -81,7 +81,7 @@ pub unsafe extern "C" fn sscc_query_clone(
     })
 }
 
-/// Frees a query. NULL is nothing.
+/// Frees a query. NULL is ignored.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -299,7 +299,7 @@ pub unsafe extern "C" fn sscc_query_visit_pairs(
     guard(|| unsafe { borrow(query) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and what proved it.
+/// The cost of the last answer, and its proof.
 ///
 /// Threads: one call at a time for each query.
 ///

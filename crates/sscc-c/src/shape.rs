@@ -82,7 +82,7 @@ pub unsafe extern "C" fn sscc_shape_clone(
     })
 }
 
-/// Frees a shape. NULL is nothing.
+/// Frees a shape. NULL is ignored.
 ///
 /// Threads: one call at a time for each shape.
 ///
@@ -129,8 +129,8 @@ fn rust_pose(pose: sscc_pose) -> Pose {
 }
 
 /// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. The answer is
-/// that of `shape`. `around` is a box around all shapes that are compared; it changes the time alone, and NULL is none. The
-/// other shape must be another one.
+/// that of `shape`. `bounds` is an AABB that contains all shapes that are compared; it changes the time alone, and NULL is none.
+/// The other shape must be another one.
 ///
 /// Threads: one call at a time for each of both shapes.
 ///
@@ -140,7 +140,7 @@ fn rust_pose(pose: sscc_pose) -> Pose {
 pub unsafe extern "C" fn sscc_shape_against(
     shape: *mut sscc_shape,
     other: *mut sscc_shape,
-    around: *const sscc_box,
+    bounds: *const sscc_box,
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
@@ -151,22 +151,22 @@ pub unsafe extern "C" fn sscc_shape_against(
         // SAFETY: by the caller's promise, here and below.
         let State { shape, found, answer } = &mut *unsafe { borrow(shape) }?.0.lock()?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.shape;
-        let (around, out) = unsafe { (optional(around, "around")?, output(count, "count")?) };
-        let around = around.map_or(Ok(Aabb::EMPTY), rust_box)?;
+        let (bounds, out) = unsafe { (optional(bounds, "bounds")?, output(count, "count")?) };
+        let bounds = bounds.map_or(Ok(Aabb::EMPTY), rust_box)?;
         answer.forget();
         found.clear();
-        shape.colliding(other, around, found);
+        shape.colliding(other, bounds, found);
         out.write(answer.set_pairs(found));
         Ok(())
     })
 }
 
-fn rust_box(around: sscc_box) -> Result<Aabb> {
-    let [lower, upper] = [around.lower, around.upper].map(DVec3::from_array);
+fn rust_box(bounds: sscc_box) -> Result<Aabb> {
+    let [lower, upper] = [bounds.lower, bounds.upper].map(DVec3::from_array);
     if lower.is_finite() && upper.is_finite() {
         return Ok(Aabb { lower, upper });
     }
-    Err(Failure::argument("around is not finite"))
+    Err(Failure::argument("bounds are not finite"))
 }
 
 /// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the

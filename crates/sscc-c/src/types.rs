@@ -26,7 +26,7 @@ pub struct sscc_impact {
     pub time: f64,
 }
 
-/// What proved an answer, exceptions apart.
+/// Proof of an answer, exceptions apart.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_proof {
@@ -50,7 +50,7 @@ pub struct sscc_statistics {
     pub box_tests: u64,
     /// Pairs of triangles that were tested exactly.
     pub triangle_tests: u64,
-    /// What proved the answer.
+    /// Proof of the answer.
     pub proof: sscc_proof,
     /// 1 if the pairs are all that collide, 0 if a limit or an error stopped the search.
     pub complete: i32,
@@ -78,12 +78,13 @@ pub struct sscc_pose {
 
 /// Receives that `done` of `total` steps of a long computation are finished. Another value than 0 cancels it.
 ///
-/// Threads of the library call it, never two at a time. It must not throw and must not call this library with handles that the
-/// computation uses.
+/// Threads of the library call it, never two at a time. It must not throw. It must not free the handles of the computation, nor
+/// call this library with them in another way.
 pub type sscc_progress_fn = Option<extern "C" fn(user: *mut c_void, done: usize, total: usize) -> c_int>;
 
 /// Returns another value than 0 to cancel. It is called often, so it should be quick. A computation calls it from threads of the
-/// library, never from two at a time; a query calls it from the thread of the call. It must not throw.
+/// library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
+/// handles of the computation or the query.
 pub type sscc_cancel_fn = Option<extern "C" fn(user: *mut c_void) -> c_int>;
 
 /// Receives one pair of an answer. Another value than 0 ends the visit. It must not throw.

@@ -5,12 +5,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use super::packages::skip_reason;
+use crate::debian;
 use crate::program::cargo;
-use crate::tally::Tally;
+use crate::tally::{SkipLog, Tally};
 
 /// Checks that count themselves, and where they find what.
 pub struct Checks {
     pub tally: Tally,
+    /// The file to which skipped checks add a line.
+    log: PathBuf,
     /// The root of the project.
     pub root: PathBuf,
     /// The folder of the command.
@@ -22,7 +26,7 @@ pub struct Checks {
 }
 
 impl Checks {
-    pub fn new(is_built: bool) -> Result<Self, String> {
+    pub fn new(log: &Path, is_built: bool) -> Result<Self, String> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         let root = root.canonicalize().map_err(|e| e.to_string())?;
         let build = || {
@@ -40,11 +44,15 @@ impl Checks {
         let (libraries, folder) = (commands.join("deps"), commands.join("c"));
         let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        Ok(Self { tally: Tally::default(), root, commands, libraries, folder })
+        let (tally, log) = (Tally::default(), log.to_owned());
+        Ok(Self { tally, log, root, commands, libraries, folder })
     }
 
-    /// Counts a check, and prints its name, its time, and why it failed.
-    pub fn check(&mut self, name: &str, check: impl FnOnce(&Self) -> Result<(), String>) {
+    /// Counts a check, and prints its name, its time, and why it failed. It is skipped where a program that it needs is missing.
+    pub fn check(&mut self, name: &str, needed: &[&str], check: impl FnOnce(&Self) -> Result<(), String>) {
+        if let Some(reason) = skip_reason(needed, debian::has) {
+            return self.skip(name, &reason);
+        }
         let start = Instant::now();
         let result = check(self);
         let seconds = start.elapsed().as_secs_f64();
@@ -58,6 +66,11 @@ impl Checks {
                 println!("{name}: FAILED\n{why}");
             }
         }
+    }
+
+    /// Counts and logs a skipped check.
+    pub fn skip(&mut self, name: &str, reason: &str) {
+        self.tally += SkipLog::skip(&self.log, name, reason);
     }
 
     /// Runs a program in a folder, with the libraries of cargo. Returns its exit code and its output.

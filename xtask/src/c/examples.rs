@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::checks::Checks;
-use crate::tally::SkipLog;
+use super::packages::{BUILD_PROGRAMS, EIGEN_PACKAGE};
 
 /// What runs the command in `docs/c.md`.
 const BUILT: &str = "cargo run --release -- ";
 
-/// Runs all. Logs the example that is left out without Eigen.
-pub fn run(checks: &mut Checks, log: &Path) {
-    checks.check("commands of docs/c.md", commands);
-    checks.check("spring.cpp answers as the command", spring);
-    checks.check("check_mesh.c answers as the command", meshes);
-    checks.check("the program of docs/c.md", program);
+/// Runs all. An example is left out without Eigen.
+pub fn run(checks: &mut Checks) {
+    checks.check("commands of docs/c.md", &BUILD_PROGRAMS, commands);
+    checks.check("spring.cpp answers as the command", &BUILD_PROGRAMS, spring);
+    checks.check("check_mesh.c answers as the command", &BUILD_PROGRAMS, meshes);
+    checks.check("the program of docs/c.md", &BUILD_PROGRAMS, program);
     if checks.root.join("target/c/eigen_maps").exists() {
-        checks.check("eigen_maps.cpp", eigen_maps);
+        checks.check("eigen_maps.cpp", &BUILD_PROGRAMS, eigen_maps);
     } else {
-        checks.tally +=
-            SkipLog::skip(log, "eigen_maps.cpp", "Eigen is not installed (Debian's libeigen3-dev)");
+        let reason = format!("it was not built: Eigen is not installed (Debian's {EIGEN_PACKAGE})");
+        checks.skip("eigen_maps.cpp", &reason);
     }
 }
 

@@ -2,11 +2,12 @@
 //!
 //! `crates/sscc-c/tests/programs` is built with gcc and clang, as it is and with the sanitizers for addresses and undefined
 //! behaviour, and runs under valgrind. The package is installed and found by CMake and by pkg-config. The commands of `docs/c.md` are
-//! run as shown, and the examples answer as the command does. Where cmake, a compiler or valgrind is missing, tests are
-//! skipped; a run that counts skipped tests as failed may install Debian's packages.
+//! run as shown, and the examples answer as the command does. A check is skipped by name where one of its programs is missing;
+//! a run that counts skipped tests as failed may install Debian's packages.
 
 mod checks;
 mod examples;
+mod packages;
 mod programs;
 
 use std::path::Path;
@@ -14,20 +15,7 @@ use std::process::ExitCode;
 
 use checks::Checks;
 
-use crate::debian;
 use crate::tally::{SkipLog, Tally};
-
-/// Programs that the tests need, and their Debian packages.
-const PROGRAMS: [(&str, &str); 8] = [
-    ("cmake", "cmake"),
-    ("make", "make"),
-    ("gcc", "gcc"),
-    ("g++", "g++"),
-    ("clang", "clang"),
-    ("clang++", "clang"),
-    ("valgrind", "valgrind"),
-    ("pkg-config", "pkg-config"),
-];
 
 /// Runs the task, and returns its exit code.
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -43,10 +31,13 @@ pub fn run(arguments: &[String]) -> ExitCode {
 /// Runs the tests. With `is_built`, `cargo test` has built the library and the command.
 pub fn test(log: &Path, is_built: bool) -> Tally {
     println!("== C and C++");
-    if let Err(reason) = find_programs() {
-        return SkipLog::skip(log, "programs in C and C++", &reason);
+    if !cfg!(target_os = "linux") {
+        return SkipLog::skip(log, "programs in C and C++", "they are tested on Linux alone");
     }
-    let mut checks = match Checks::new(is_built) {
+    if SkipLog::is_strict() {
+        packages::install_missing();
+    }
+    let mut checks = match Checks::new(log, is_built) {
         Ok(checks) => checks,
         Err(line) => {
             println!("error: {line}");
@@ -54,24 +45,6 @@ pub fn test(log: &Path, is_built: bool) -> Tally {
         }
     };
     programs::run(&mut checks);
-    examples::run(&mut checks, log);
+    examples::run(&mut checks);
     checks.tally
-}
-
-fn find_programs() -> Result<(), String> {
-    let missing = || PROGRAMS.iter().filter(|(program, _)| !debian::has(program)).collect::<Vec<_>>();
-    if SkipLog::is_strict() {
-        let mut packages: Vec<&str> = missing().into_iter().map(|(_, package)| *package).collect();
-        // For an example that is left out without it.
-        if !Path::new("/usr/include/eigen3").exists() {
-            packages.push("libeigen3-dev");
-        }
-        if !packages.is_empty() {
-            debian::install(&packages);
-        }
-    }
-    match missing().first() {
-        None => Ok(()),
-        Some((program, package)) => Err(format!("{program} is not installed (Debian's {package})")),
-    }
 }

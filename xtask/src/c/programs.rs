@@ -1,35 +1,45 @@
 //! The programs of `crates/sscc-c/tests/programs`: compilers, sanitizers, valgrind, installed package.
 
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::Path;
 
 use super::checks::Checks;
+use super::packages::BUILD_PROGRAMS;
 
 const SOURCE: &str = "crates/sscc-c/tests/programs";
 const NAMES: [&str; 4] = ["from_c", "from_c_static", "from_cpp", "no_exceptions"];
 
-/// The option of CMake that names a compiler.
-const COMPILERS: [(&str, [&str; 2]); 2] = [
-    ("gcc", ["-DCMAKE_C_COMPILER=gcc", "-DCMAKE_CXX_COMPILER=g++"]),
-    ("clang", ["-DCMAKE_C_COMPILER=clang", "-DCMAKE_CXX_COMPILER=clang++"]),
-];
+/// Compilers of C and of C++.
+const COMPILERS: [[&str; 2]; 2] = [["gcc", "g++"], ["clang", "clang++"]];
+
+/// The commands of `docs/c.md` that install the library.
+const INSTALL: [&str; 3] =
+    ["cmake -S crates/sscc-c -B build", "cmake --build build", "cmake --install build --prefix DIR"];
 
 /// Runs all.
 pub fn run(checks: &mut Checks) {
-    for (compiler, options) in COMPILERS {
+    for [c, cpp] in COMPILERS {
+        let options = [format!("-DCMAKE_C_COMPILER={c}"), format!("-DCMAKE_CXX_COMPILER={cpp}")];
         for (kind, sanitize) in [("", "-DSSCC_SANITIZE=OFF"), (", sanitized", "-DSSCC_SANITIZE=ON")] {
-            let name = format!("programs by {compiler}{kind}");
+            let name = format!("programs by {c}{kind}");
             let build = checks.folder.join(name.replace([' ', ','], "-"));
-            checks.check(&name, |checks| {
-                checks.cmake(SOURCE, &build, &[options[0], options[1], sanitize])?;
+            checks.check(&name, &["cmake", "make", c, cpp], |checks| {
+                checks.cmake(SOURCE, &build, &[&options[0], &options[1], sanitize])?;
                 all_pass(checks, &build)
             });
         }
     }
     let build = checks.folder.join("programs-by-gcc");
     for name in ["from_c", "from_cpp"] {
-        checks.check(&format!("{name} under valgrind"), |checks| under_valgrind(checks, &build.join(name)));
+        let needed = [&BUILD_PROGRAMS[..], &["valgrind"]].concat();
+        let check = |checks: &Checks| under_valgrind(checks, &build.join(name));
+        checks.check(&format!("{name} under valgrind"), &needed, check);
     }
-    checks.check("the installed package", |checks| installed(checks, &build));
+    checks.check("the package, installed as docs/c.md says", &BUILD_PROGRAMS, install);
+    checks.check("the installed package, found by CMake", &BUILD_PROGRAMS, found_by_cmake);
+    let needed = [&BUILD_PROGRAMS[..], &["pkg-config"]].concat();
+    checks.check("the installed package, found by pkg-config", &needed, found_by_pkg_config);
+    checks.check("a package with a folder of its own", &needed, absolute_folder);
 }
 
 /// Runs the programs of a build.
@@ -57,31 +67,60 @@ fn under_valgrind(checks: &Checks, program: &Path) -> Result<(), String> {
     checks.succeed(&checks.folder, Path::new("valgrind"), &arguments).map(drop)
 }
 
-/// Installs the package, and builds programs with it: by CMake, and by pkg-config alone.
-fn installed(checks: &Checks, build: &Path) -> Result<(), String> {
-    let prefix = checks.folder.join("prefix");
-    let own = build.join("sscc").to_string_lossy().into_owned();
-    let prefix_text = prefix.to_string_lossy().into_owned();
-    let package = checks.folder.join("package");
-    let prefix_option = format!("-DCMAKE_INSTALL_PREFIX={prefix_text}");
-    checks.cmake("crates/sscc-c", &package, &[&prefix_option, "-DCMAKE_INSTALL_LIBDIR=lib"])?;
-    checks.succeed(&checks.root, Path::new("cmake"), &["--install", &package.to_string_lossy()])?;
-
-    let found = checks.folder.join("found");
-    let find = format!("-DCMAKE_PREFIX_PATH={prefix_text}");
-    checks.cmake(SOURCE, &found, &[&find, "-DSSCC_STATIC=ON"])?;
-    if found.join("sscc").exists() {
-        return Err(format!("the package in {prefix_text} was not found: {own} was built"));
+/// Installs the package as the document says: where it is becomes known after the configuration.
+fn install(checks: &Checks) -> Result<(), String> {
+    let text = fs::read_to_string(checks.root.join("docs/c.md")).map_err(|e| format!("docs/c.md: {e}"))?;
+    let [package, prefix] =
+        ["package", "prefix"].map(|name| checks.folder.join(name).to_string_lossy().into_owned());
+    for command in INSTALL {
+        if !text.contains(&format!("`{command}`")) {
+            return Err(format!("docs/c.md does not show `{command}`"));
+        }
+        let words = command.split(' ').map(|word| match word {
+            "build" => &package,
+            "DIR" => &prefix,
+            _ => word,
+        });
+        let words: Vec<&str> = words.collect();
+        checks.succeed(&checks.root, Path::new(words[0]), &words[1..])?;
     }
-    all_pass(checks, &found)?;
+    Ok(())
+}
 
+/// Builds and runs the programs with the installed package.
+fn found_by_cmake(checks: &Checks) -> Result<(), String> {
+    let (prefix, build) = (checks.folder.join("prefix"), checks.folder.join("found"));
+    let find = format!("-DCMAKE_PREFIX_PATH={}", prefix.display());
+    checks.cmake(SOURCE, &build, &[&find, "-DSSCC_STATIC=ON"])?;
+    if build.join("sscc").exists() {
+        return Err(format!("the package in {} was not found: another one was built", prefix.display()));
+    }
+    all_pass(checks, &build)
+}
+
+/// Builds and runs a program with pkg-config alone.
+fn found_by_pkg_config(checks: &Checks) -> Result<(), String> {
+    let prefix = checks.folder.join("prefix");
+    let prefix = prefix.display();
+    let find = format!("PKG_CONFIG_PATH={prefix}/lib/pkgconfig:{prefix}/lib64/pkgconfig pkg-config sscc");
     let program = checks.folder.join("by_pkg_config");
-    let flags = ["PKG_CONFIG_PATH=", &prefix_text, "/lib/pkgconfig pkg-config --cflags --libs sscc"].concat();
     let compile = format!(
-        "gcc -std=c11 {SOURCE}/from_c.c -o '{}' $({flags}) -lpthread -lm -Wl,-rpath,'{prefix_text}/lib'",
+        "gcc -std=c11 {SOURCE}/from_c.c -o {} $({find} --cflags --libs) -lpthread -lm -Wl,-rpath,$({find} --variable=libdir)",
         program.display()
     );
     checks.succeed(&checks.root, Path::new("sh"), &["-c", &compile])?;
-    let text = checks.succeed(&checks.folder, &PathBuf::from(&program), &[])?;
+    let text = checks.succeed(&checks.folder, &program, &[])?;
     if text == "passed\n" { Ok(()) } else { Err(format!("by pkg-config: {text}")) }
+}
+
+/// A folder of libraries with an absolute path stays where it is, and pkg-config says so.
+fn absolute_folder(checks: &Checks) -> Result<(), String> {
+    let build = checks.folder.join("absolute");
+    let text = build.to_string_lossy();
+    let options = ["-S", "crates/sscc-c", "-B", &text, "-DCMAKE_INSTALL_LIBDIR=/opt/sscc/lib"];
+    checks.succeed(&checks.root, Path::new("cmake"), &options)?;
+    let file = build.join("sscc.pc");
+    let arguments = ["--variable=libdir", &file.to_string_lossy()];
+    let found = checks.succeed(&checks.root, Path::new("pkg-config"), &arguments)?;
+    if found == "/opt/sscc/lib\n" { Ok(()) } else { Err(format!("pkg-config says {found:?}")) }
 }

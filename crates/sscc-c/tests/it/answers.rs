@@ -143,8 +143,8 @@ fn shapes_in_the_world_meet() {
         let mut bounds = std::mem::zeroed();
         done(sscc_shape_place(other, &0.0, 1, &lifted(1.0), &mut bounds));
         assert!(bounds.lower[2] <= 1.0 && bounds.upper[2] >= 2.0 && bounds.upper[2] < 2.1);
-        for around in [null(), &raw const bounds] {
-            done(sscc_shape_against(all.shape, other, around, &mut count));
+        for given in [null(), &raw const bounds] {
+            done(sscc_shape_against(all.shape, other, given, &mut count));
             let mut pair = PAIR;
             done(sscc_shape_pairs(all.shape, &mut pair, 1));
             assert_eq!((count, pair), (1, sscc_pair { a: 1, b: 0 }));

@@ -292,9 +292,9 @@ fn arrays_of_detectors_and_shapes() {
         done(sscc_shape_clone(all.shape, &mut copy));
         refused(sscc_shape_against(all.shape, all.shape, null(), n), Overlap, "are the same");
         let odd = misaligned(&[0.0; 20]);
-        refused(sscc_shape_against(all.shape, copy, odd.cast(), n), Misaligned, "around is misaligned");
-        let around = sscc_box { lower: [0.0; 3], upper: [f64::NAN; 3] };
-        refused(sscc_shape_against(all.shape, copy, &around, n), Argument, "around is not finite");
+        refused(sscc_shape_against(all.shape, copy, odd.cast(), n), Misaligned, "bounds is misaligned");
+        let bounds = sscc_box { lower: [0.0; 3], upper: [f64::NAN; 3] };
+        refused(sscc_shape_against(all.shape, copy, &bounds, n), Argument, "bounds are not finite");
         refused(sscc_shape_place(copy, &0.0, 1, odd.cast(), null_mut()), Misaligned, "pose is misaligned");
         let bounds = odd.cast_mut().cast();
         refused(sscc_shape_place(copy, &0.0, 1, null(), bounds), Misaligned, "bounds is misaligned");
@@ -430,6 +430,8 @@ fn options() {
     with(&sscc_filter { neighbours: 3, ..filter }, "filter.neighbours is 3");
     with(&sscc_filter { neighbours: 2, ..filter }, "include-folded");
     with(&sscc_filter { between_groups_only: -1, ..filter }, "filter.between_groups_only is -1");
+    with(&sscc_filter { between_groups_only: 1, ..filter }, "between_groups_only needs filter.groups");
+    with(&sscc_filter { reserved: 1, ..filter }, "filter.reserved is 1: it must be 0");
     let ignored = [sscc_pair { a: 0, b: 2 }];
     with(
         &sscc_filter { ignored: ignored.as_ptr(), ignored_count: 1, ..filter },
@@ -453,6 +455,15 @@ fn options() {
         refused(made, Misaligned, "options is misaligned");
         let null_pairs = sscc_filter { ignored_count: 1, ..filter };
         refused(sscc_detector_new(x, faces(&FACES), &null_pairs, &mut null_mut()), Null, "filter.ignored");
+        let null_groups = sscc_filter { groups_count: 2, ..filter };
+        refused(
+            sscc_detector_new(x, faces(&FACES), &null_groups, &mut null_mut()),
+            Null,
+            "filter.groups is NULL",
+        );
+        let options = sscc_certify_options { center_count: 1, ..default };
+        let made = sscc_certificates_compute(all.model, &options, None, None, null_mut(), &mut null_mut());
+        refused(made, Null, "options.center is NULL");
         let mut folded = null_mut();
         let folds = sscc_filter { neighbours: 2, ..filter };
         done(sscc_detector_new(x, faces(&FACES), &folds, &mut folded));

@@ -87,7 +87,7 @@ fn answers_are_cancelled() {
         refused(sscc_query_discrete(query, q, 3, n), sscc_status::Cancelled, "interrupted");
         assert_eq!((count, stop.count()), (9, 1));
         done(sscc_query_pairs(query, null_mut(), 0));
-        // A copy asks nobody; neither does the query without a callback.
+        // A copy has no callback; nor has the query once it is removed.
         let copy = made(|out| sscc_query_clone(query, out));
         done(sscc_query_discrete(copy, q, 3, n));
         done(sscc_query_free(copy));

@@ -4,9 +4,11 @@ use std::ffi::CString;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
+use glam::DVec3;
+use sscc::{Certificates, CertifyOptions, Clearance, Modes, ReducedModel, TriMesh};
 use sscc_c::*;
 
-use crate::common::{Handles, done, made, refused};
+use crate::common::{Handles, MODE, TWO, done, made, refused};
 
 fn c(path: &Path) -> CString {
     CString::new(path.to_str().unwrap()).unwrap()
@@ -41,7 +43,7 @@ fn a_mesh_is_loaded_with_its_modes() {
     let [mesh, modes] = ["two.obj", "two.npy"].map(|name| folder.path().join(name));
     std::fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n")
         .unwrap();
-    sscc_io::write_npy(&modes, &[18, 1], &crate::common::MODE).unwrap();
+    sscc_io::write_npy(&modes, &[18, 1], &MODE).unwrap();
     let (mesh, modes) = (c(&mesh), c(&modes));
     unsafe {
         let model = made(|out| sscc_model_load(mesh.as_ptr(), modes.as_ptr(), out));
@@ -50,6 +52,24 @@ fn a_mesh_is_loaded_with_its_modes() {
         let without = sscc_model_load(mesh.as_ptr(), null(), &mut null_mut());
         refused(without, sscc_status::File, "two.obj");
     }
+}
+
+#[test]
+fn certificates_with_a_clearance_are_refused() {
+    let rows = |numbers: &[f64]| numbers.chunks(3).map(DVec3::from_slice).collect::<Vec<_>>();
+    let mesh = TriMesh::new(rows(&TWO), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let modes = Modes::new(1, rows(&MODE)).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let options = CertifyOptions::default().clearance(Clearance::new(0.25).unwrap());
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    assert!(certificates.root_radius() > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("near.sscc.safetensors");
+    sscc_io::write_certificates(&path, &certificates).unwrap();
+    let mut loaded = null_mut();
+    let status = unsafe { sscc_certificates_load(c(&path).as_ptr(), &mut loaded) };
+    refused(status, sscc_status::Argument, "near.sscc.safetensors: the certificates have a clearance");
+    assert!(loaded.is_null());
 }
 
 #[test]

@@ -22,6 +22,33 @@ fn the_header_is_that_of_the_code() {
     );
 }
 
+/// The number of the ABI is that of the code in the header, in the names of the shared library, and in its documentation.
+#[test]
+fn all_places_have_the_same_abi() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let abi = sscc_c::SSCC_ABI_VERSION;
+    assert_eq!(sscc_c::sscc_abi_version(), abi);
+    let names = [("libsscc.so.", ""), ("libsscc.", ".dylib")];
+    let places: [(&str, &[(&str, &str)]); 4] = [
+        ("include/sscc/sscc.h", &[("#define SSCC_ABI_VERSION ", "\n")]),
+        ("crates/sscc-c/build.rs", &names),
+        ("crates/sscc-c/CMakeLists.txt", &names),
+        ("docs/c.md", &names[..1]),
+    ];
+    for (path, texts) in places {
+        let text = std::fs::read_to_string(root.join(path)).unwrap();
+        for (before, after) in texts {
+            let numbers = text.split(before).skip(1).filter_map(|rest| {
+                let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+                (end > 0 && rest[end..].starts_with(after)).then(|| rest[..end].parse::<u32>().unwrap())
+            });
+            let numbers: Vec<u32> = numbers.collect();
+            assert!(!numbers.is_empty(), "{path} has no {before}");
+            assert!(numbers.iter().all(|number| *number == abi), "{path}: {before}{numbers:?}, not {abi}");
+        }
+    }
+}
+
 /// The header without the sections on safety, all of which refer to its head.
 fn without_safety(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();

@@ -156,8 +156,17 @@ int main() {
   CHECK(wanted > 20);
   certified.cancel_when([] { return true; });
   CHECK(refused([&] { certified.discrete(q); }) == SSCC_STATUS_CANCELLED && certified.pairs().empty());
+  // What a callable throws leaves no older answer.
+  certified.never_cancel();
+  CHECK(certified.discrete(q).size() == wanted);
   certified.cancel_when([]() -> bool { throw stopped(); });
-  CHECK(is_stopped([&] { certified.discrete(q); }));
+  CHECK(is_stopped([&] { certified.discrete(q); }) && certified.pairs().empty());
+  certified.never_cancel();
+  const std::array<double, 1> q_t0 = {0.0};
+  CHECK(!certified.continuous(q_t0, q).empty() && !certified.impacts().empty());
+  certified.cancel_when([]() -> bool { throw stopped(); });
+  CHECK(is_stopped([&] { certified.continuous(q_t0, q); }));
+  CHECK(certified.pairs().empty() && certified.impacts().empty());
   auto moved_query = std::move(certified);
   CHECK(is_stopped([&] { moved_query.discrete(q); }));
   CHECK(moved_query.clone().discrete(q).size() == wanted);
