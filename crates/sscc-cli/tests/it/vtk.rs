@@ -124,6 +124,22 @@ fn collections_are_frames_with_times() {
     let other = refused(&["other.obj", "--frames=motion.pvd"]);
     assert!(other.contains("the surface of this frame has 8 triangles and 8 vertices"), "{other}");
     assert!(other.contains("the cells must be the same in all frames"), "{other}");
+    // Inputs and other files are not overwritten; an earlier collection is replaced.
+    let input = "again.pvd: the output is an input; choose another name";
+    for args in [["again.pvd"].as_slice(), &["again.pvd#"], &["rest.vtu", "--frames=again.pvd"]] {
+        assert!(refused(&[args, &["--frames-out=again.pvd"]].concat()).ends_with(input));
+    }
+    for args in [["rest.vtu", "--frames=again"], ["again/again_000000.vtu", "--frames=motion.pvd"]] {
+        let message = refused(&[&args[..], &["--frames-out=again.pvd"]].concat());
+        assert!(message.contains("again.pvd: its folder has files of the input 'again"), "{message}");
+    }
+    assert_eq!(frames(&["again.pvd"]), expected);
+    assert_eq!(frames(&["motion.pvd", "--frames-out=again.pvd"]), expected);
+    fs::write(folder.join("again/notes.txt"), "a").unwrap();
+    assert!(refused(&["motion.pvd", "--frames-out=again.pvd"]).contains(
+        "again: contains 'notes.txt', which is not a file of an earlier collection 'again.pvd': move it away"
+    ));
+    assert_eq!(frames(&["again.pvd"]), expected);
     let output = refused(&["motion.pvd", "--frames-out=x.vtu"]);
     assert_eq!(output, "error: x.vtu: the name of frames must end in .npy or .pvd");
 }
