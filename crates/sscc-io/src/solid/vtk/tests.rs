@@ -387,7 +387,7 @@ fn references_and_cdata_in_arrays_are_refused() {
         }
     }
     let message = refused(&whole.replace("\n0 1 2 3\n", "\n0 1 2<!-- x --> 3\n"));
-    assert!(message.contains("the text of an element is in several parts"), "{message}");
+    assert!(message.contains("the text of an array is in several parts"), "{message}");
     // Elsewhere they are of no consequence.
     let named =
         whole.replace("<PointData>", "<FieldData><Array>a&amp;b<![CDATA[c]]></Array></FieldData><PointData>");

@@ -23,7 +23,7 @@ const SAVE: &str =
 /// Maximum number of elements within each other, which bounds memory; real files have about six.
 const MAX_DEPTH: usize = 64;
 
-/// An element with its attributes and the text in it, apart from that of its children.
+/// An element with its attributes and, of an array, the text in it, apart from that of its children.
 pub(crate) struct Element<'a> {
     pub name: String,
     /// Number of the element around it.
@@ -92,13 +92,13 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
             }
             Event::Empty(start) => found.push(element(&start, open.last(), line)?),
             Event::End(_) => drop(open.pop()),
-            Event::Text(part) if !part.trim_ascii().is_empty() => {
+            Event::Text(part) if is_in_array(&found, &open) && !part.trim_ascii().is_empty() => {
                 let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
                 // Text is borrowed from the file, so its end is where the reader is.
                 let part = text.get(start - part.len()..start).unwrap_or_default();
                 if let Some(parent) = open.last().map(|number| &mut found[*number]) {
                     if !parent.text.is_empty() {
-                        return Err(FormatError::line(line, "the text of an element is in several parts"));
+                        return Err(FormatError::line(line, "the text of an array is in several parts"));
                     }
                     parent.text = part;
                 }
@@ -122,7 +122,7 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
     }
 }
 
-/// Whether the text that follows belongs to an array, of which no part may be dropped.
+/// Whether text belongs to an array, of which no part may be dropped.
 fn is_in_array(found: &[Element<'_>], open: &[usize]) -> bool {
     open.last().is_some_and(|number| found[*number].name == "DataArray")
 }
