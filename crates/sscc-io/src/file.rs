@@ -86,14 +86,9 @@ impl WholeFile {
     /// # Errors
     /// As [`write_whole`].
     pub(crate) fn create(path: &Path) -> Result<Self, IoError> {
-        let refused = |cause| not_written(path, cause);
-        // A rename over /dev/null would replace the device.
-        match fs::metadata(path) {
-            Ok(metadata) => check_regular(path, &metadata)?,
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => return Err(refused(error)),
-        }
-        Ok(Self { path: path.to_owned(), part: PartFile::create_in(folder(path)).map_err(refused)? })
+        check_target(path)?;
+        let part = PartFile::create_in(folder(path)).map_err(|cause| not_written(path, cause))?;
+        Ok(Self { path: path.to_owned(), part })
     }
 
     /// Appends bytes.
@@ -105,15 +100,29 @@ impl WholeFile {
     pub(crate) fn finish(self) -> Result<(), IoError> {
         let Self { path, part } = self;
         part.rename(&path).map_err(|cause| not_written(&path, cause))?;
-        // Makes the rename durable. Some systems cannot open directories.
-        if let Ok(directory) = File::open(folder(&path)) {
-            let _ = directory.sync_all();
-        }
+        sync_folder(&path);
         Ok(())
     }
 }
 
-fn not_written(path: &Path, cause: io::Error) -> IoError {
+/// Returns an error if a file cannot be replaced: a rename over /dev/null would replace the device.
+pub(crate) fn check_target(path: &Path) -> Result<(), IoError> {
+    match fs::metadata(path) {
+        Ok(metadata) => check_regular(path, &metadata),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(not_written(path, error)),
+    }
+}
+
+/// Makes the rename of a file durable. Some systems cannot open directories.
+pub(crate) fn sync_folder(path: &Path) {
+    if let Ok(directory) = File::open(folder(path)) {
+        let _ = directory.sync_all();
+    }
+}
+
+/// Returns the error for a file that cannot be written.
+pub(crate) fn not_written(path: &Path, cause: io::Error) -> IoError {
     IoError::System { path: path.to_owned(), action: "written", cause }
 }
 

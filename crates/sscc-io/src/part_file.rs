@@ -17,18 +17,8 @@ pub(crate) struct PartFile {
 impl PartFile {
     /// Creates the file in a folder, with an unused name.
     pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
-        for number in 0..MAX_ATTEMPTS {
-            let path = folder.join(format!(".sscc-{}-{number}.part", process::id()));
-            match File::create_new(&path) {
-                Ok(file) => return Ok(Self { path, file: Some(file) }),
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
-            }
-        }
-        Err(io::Error::new(
-            ErrorKind::AlreadyExists,
-            "there are too many files named .sscc-*.part; remove them",
-        ))
+        let (path, file) = create_unused(folder, |path| File::create_new(path))?;
+        Ok(Self { path, file: Some(file) })
     }
 
     /// Appends bytes.
@@ -56,6 +46,22 @@ impl Drop for PartFile {
             let _ = fs::remove_file(&self.path);
         }
     }
+}
+
+/// Creates a file or a folder by `create`, with an unused name.
+pub(crate) fn create_unused<T>(
+    folder: &Path,
+    create: impl Fn(&Path) -> io::Result<T>,
+) -> io::Result<(PathBuf, T)> {
+    for number in 0..MAX_ATTEMPTS {
+        let path = folder.join(format!(".sscc-{}-{number}.part", process::id()));
+        match create(&path) {
+            Ok(created) => return Ok((path, created)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::Error::new(ErrorKind::AlreadyExists, "there are too many files named .sscc-*.part; remove them"))
 }
 
 #[cfg(test)]

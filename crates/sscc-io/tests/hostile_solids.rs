@@ -174,6 +174,31 @@ proptest! {
         parse_all(&bytes[..len]);
     }
 
+    /// Files of VTK in all encodings.
+    #[test]
+    fn damaged_vtk_files(
+        name in prop::sample::select(vec![
+            "meshio_zlib.vtu", "vtk_ascii.vtu", "vtk_base64_zlib.vtu", "vtk_binary.vtu", "vtk_binary_zlib.vtu", "vtk_raw.vtu",
+            "vtk_raw_zlib_big.vtu", "vtk_42_binary.vtk", "vtk_51_ascii.vtk", "vtk_polydata.vtk",
+        ]),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+        part in prop::sample::select(vec!["", "", "&#45;", "<![CDATA[5]]>", "<!-- -->", "<", "'", "-1 "]),
+        at in any::<prop::sample::Index>(),
+        cut in any::<prop::sample::Index>(),
+        whole: bool,
+    ) {
+        let path = format!("{}/tests/vtk/{name}", env!("CARGO_MANIFEST_DIR"));
+        let mut bytes = std::fs::read(path).unwrap();
+        for (at, value) in damage {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        let at = at.index(bytes.len());
+        bytes.splice(at..at, part.bytes());
+        let len = if whole { bytes.len() } else { cut.index(bytes.len()) };
+        check_any(vtk::parse_any(&bytes[..len]));
+    }
+
     /// Exchanged numbers, which damage of single bytes seldom produces.
     #[test]
     fn exchanged_numbers(
@@ -248,6 +273,9 @@ fn long_files_use_little_memory() {
         format!("{groups}{}", many("$A\n$EndA\n")),
         String::from_utf8_lossy(VTU).replace("<Cells>", &format!("{}<Cells>", many("<a/>"))),
         String::from_utf8_lossy(VTU).replace("<Cells>", &format!("{}<Cells>", many("<a>"))),
+        String::from_utf8_lossy(VTU)
+            .replace("<Cells>", &format!("<a>{}</a><Cells>", many("&#45;<![CDATA[]]>"))),
+        String::from_utf8_lossy(VTU).replace("0 1 2 3", &many("&#48; ")),
         String::from_utf8_lossy(VTU)
             .replace("0 1 2 3", &many("0 "))
             .replace("> 4 <", "> 100000 <")

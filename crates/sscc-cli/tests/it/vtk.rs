@@ -8,11 +8,17 @@ use tempfile::TempDir;
 
 use crate::common::sscc;
 
-/// Two tetrahedra that are apart; the displacements `U` move the second one into the first (crates/sscc-io/tests/vtk).
+/// Two tetrahedra that are apart; the displacements `u` move the second one into the first (crates/sscc-io/tests/vtk, where they are
+/// `U`: those are in `unclear.vtu`).
 fn result() -> TempDir {
     let directory = tempfile::tempdir().unwrap();
     let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../sscc-io/tests/vtk/vtk_raw_zlib.vtu");
-    fs::copy(from, directory.path().join("result.vtu")).unwrap();
+    let mut bytes = fs::read(from).unwrap();
+    fs::write(directory.path().join("unclear.vtu"), &bytes).unwrap();
+    let name = b"Name=\"U\"";
+    let at = bytes.windows(name.len()).position(|window| window == name).unwrap();
+    bytes[at..at + name.len()].copy_from_slice(b"Name=\"u\"");
+    fs::write(directory.path().join("result.vtu"), bytes).unwrap();
     directory
 }
 
@@ -32,7 +38,7 @@ fn results_are_checked_as_they_are_deformed() {
     let deformed = sscc(folder, &["check", "result.vtu", "--json", "--pose=pose.vtu"]);
     assert_eq!(deformed.code, Some(1), "{deformed:?}");
     assert!(
-        deformed.stderr.contains("result.vtu: the point data 'U' moves the points (FILE# takes them"),
+        deformed.stderr.contains("result.vtu: the point data 'u' moves the points (FILE# takes them"),
         "{deformed:?}"
     );
     let pairs = deformed.json()[0]["pairs"].clone();
@@ -49,8 +55,16 @@ fn results_are_checked_as_they_are_deformed() {
     assert!(
         named
             .refusal()
-            .contains("result.vtu: point data: has no vectors 'T'; the point data has 'velocity', 'U'")
+            .contains("result.vtu: point data: has no vectors 'T'; the point data has 'velocity', 'u'")
     );
+    // `U` may be a velocity.
+    let unclear = sscc(folder, &["check", "unclear.vtu"]);
+    assert!(
+        unclear.code == Some(0)
+            && unclear.stderr.contains("unclear.vtu: the point data 'U' may be displacements or velocities"),
+        "{unclear:?}"
+    );
+    assert_eq!(sscc(folder, &["check", "unclear.vtu#U"]).code, Some(1));
     let info = sscc(folder, &["info", "result.vtu"]);
     assert!(info.code == Some(0) && info.stdout.contains("2 tetrahedra"), "{info:?}");
 }
@@ -110,6 +124,22 @@ fn collections_are_frames_with_times() {
     let other = refused(&["other.obj", "--frames=motion.pvd"]);
     assert!(other.contains("the surface of this frame has 8 triangles and 8 vertices"), "{other}");
     assert!(other.contains("the cells must be the same in all frames"), "{other}");
+    // Inputs and other files are not overwritten; an earlier collection is replaced.
+    let input = "again.pvd: the output is an input; choose another name";
+    for args in [["again.pvd"].as_slice(), &["again.pvd#"], &["rest.vtu", "--frames=again.pvd"]] {
+        assert!(refused(&[args, &["--frames-out=again.pvd"]].concat()).ends_with(input));
+    }
+    for args in [["rest.vtu", "--frames=again"], ["again/again_000000.vtu", "--frames=motion.pvd"]] {
+        let message = refused(&[&args[..], &["--frames-out=again.pvd"]].concat());
+        assert!(message.contains("again.pvd: its folder has files of the input 'again"), "{message}");
+    }
+    assert_eq!(frames(&["again.pvd"]), expected);
+    assert_eq!(frames(&["motion.pvd", "--frames-out=again.pvd"]), expected);
+    fs::write(folder.join("again/notes.txt"), "a").unwrap();
+    assert!(refused(&["motion.pvd", "--frames-out=again.pvd"]).contains(
+        "again: contains 'notes.txt', which is not a file of an earlier collection 'again.pvd': move it away"
+    ));
+    assert_eq!(frames(&["again.pvd"]), expected);
     let output = refused(&["motion.pvd", "--frames-out=x.vtu"]);
     assert_eq!(output, "error: x.vtu: the name of frames must end in .npy or .pvd");
 }

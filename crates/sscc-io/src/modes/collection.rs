@@ -86,6 +86,8 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Vec<TimedFile>, FormatError> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn collection(sets: &str) -> Result<Vec<TimedFile>, FormatError> {
@@ -102,6 +104,42 @@ mod tests {
                 .unwrap();
         let found: Vec<(&Path, f64)> = files.iter().map(|file| (file.file.as_path(), file.time)).collect();
         assert_eq!(found, [(Path::new("a/b/c.vtu"), 2.5), (Path::new("a/d.vtk"), 1.0)]);
+    }
+
+    proptest! {
+        /// Random damage is an error of one line, or leaves a collection of files below the folder.
+        #[test]
+        fn damaged_collections(
+            damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
+            part in prop::sample::select(vec!["", "&#46;", "&amp;", "<![CDATA[x]]>", "<!--", "<DataSet", "'", "/", "]]>", "\0"]),
+            at in any::<prop::sample::Index>(),
+            cut in any::<prop::sample::Index>(),
+            whole: bool,
+        ) {
+            let text = "<?xml version='1.0'?>\n<VTKFile type='Collection'><Collection>\n\
+                <DataSet timestep='2.5' group='' part='0' file='b/c.vtu'/><DataSet file='d.vtk'/></Collection></VTKFile>";
+            let mut bytes = text.as_bytes().to_vec();
+            for (at, value) in damage {
+                let at = at.index(bytes.len());
+                bytes[at] = value;
+            }
+            let at = at.index(bytes.len());
+            bytes.splice(at..at, part.bytes());
+            let len = if whole { bytes.len() } else { cut.index(bytes.len()) };
+            match parse(&bytes[..len], Path::new("a")) {
+                Ok(files) => {
+                    let is_below = |file: &TimedFile| {
+                        file.file.starts_with("a") && !file.file.components().any(|part| part == Component::ParentDir)
+                    };
+                    prop_assert!(!files.is_empty());
+                    prop_assert!(files.iter().all(|file| file.time.is_finite() && is_below(file)));
+                }
+                Err(error) => {
+                    let message = error.to_string();
+                    prop_assert!(!message.is_empty() && !message.contains('\n') && message.len() < 400, "{}", message);
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Reads the frames of a given mesh one by one: an array of positions, a point cache, or a folder of meshes.
+//! Reads the frames of a given mesh one by one: an array of positions, a point cache, a grid or a collection of VTK, or a folder of
+//! meshes.
 
 use std::path::{Path, PathBuf};
 

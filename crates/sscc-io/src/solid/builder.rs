@@ -12,6 +12,10 @@ use crate::{FormatError, Place};
 /// Name of the material of elements without a material.
 const DEFAULT_MATERIAL: &str = "default";
 
+/// Cause where a file has vertices, but only points and lines at them.
+const NO_CELLS: &str = "no cell is a triangle, a polygon, a tetrahedron or a hexahedron: save the surface or the solid, not only its \
+    points and lines";
+
 /// Vertices and elements read so far. Elements may precede their vertices, so `finish` checks the indices.
 pub(super) struct Builder {
     parts: VolumeMeshParts,
@@ -143,6 +147,9 @@ impl Builder {
 
     /// Returns the solid.
     pub fn finish(self) -> Result<VolumeMesh, FormatError> {
+        if self.vertices() > 0 && self.elements() == 0 && self.faces.triangle_count() == 0 {
+            return Err(SolidError::NoElements.into());
+        }
         self.finish_any()?.into_volume()
     }
 
@@ -169,7 +176,7 @@ impl Builder {
                 return Err(error);
             }
             if self.faces.triangle_count() == 0 {
-                return Err(SolidError::NoElements.into());
+                return Err(FormatError::whole(NO_CELLS));
             }
             let (mesh, warnings) = self.faces.finish(self.parts.vertices)?.into_mesh_with_warnings()?;
             return Ok(VolumeOrSurface::Surface { mesh, warnings });
@@ -269,6 +276,11 @@ mod tests {
     fn empty_meshes_and_invalid_coordinates_are_rejected() {
         assert!(with_vertices(0).finish().unwrap_err().to_string().contains("no vertices"));
         assert!(with_vertices(4).finish().unwrap_err().to_string().contains("no elements"));
+        let nothing = with_vertices(4).finish_any().unwrap_err().to_string();
+        assert!(
+            nothing.starts_with("no cell is a triangle, a polygon, a tetrahedron or a hexahedron: save"),
+            "{nothing}"
+        );
         for x in [f64::NAN, f64::INFINITY, 2e60] {
             assert!(with_vertices(0).vertex(DVec3::new(0.0, x, 0.0), Place::Whole).is_err());
         }

@@ -124,6 +124,15 @@ impl<'a> Words<'a> {
         line.strip_suffix(b"\r").unwrap_or(line)
     }
 
+    /// Skips a line, which may be empty; an error at the end of the file.
+    pub fn line(&mut self, what: &str) -> Result<(), FormatError> {
+        if self.at == self.bytes.len() {
+            return Err(FormatError::whole(format!("the file ends before {what}")));
+        }
+        self.rest_of_line();
+        Ok(())
+    }
+
     /// Skips to after the next line with this beginning, if there is one.
     pub fn skip_past_line(&mut self, start: &str) -> bool {
         while self.at < self.bytes.len() {

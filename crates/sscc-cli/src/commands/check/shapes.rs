@@ -7,7 +7,8 @@ use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
 use sscc_io::{
-    LoadedModel, write_obj_curves, write_obj_pose, write_ply_curves, write_ply_pose, write_vtu_pose,
+    LoadedModel, VtkFramesWriter, is_collection, split_mesh_name, write_obj_curves, write_obj_pose,
+    write_ply_curves, write_ply_pose, write_vtu_pose,
 };
 use sscc_sim::{ContactOptions, DetectionAnswer};
 
@@ -21,7 +22,8 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
     let files = [&model.modes, certificates, &at.trajectory, &motion.frames, &motion.against];
     let more = [&motion.against_frames, &options.metric, &options.groups.group_by];
     let files = files.into_iter().chain(more).flatten().chain(meshes);
-    let inputs: Vec<&Path> = files.map(|file| file.as_path()).collect();
+    let named: Vec<PathBuf> = files.map(|file| split_mesh_name(file).0).collect();
+    let inputs: Vec<&Path> = named.iter().map(PathBuf::as_path).collect();
     if let Some(report) = &args.report {
         load::check_output(report, ".html", &inputs)?;
     }
@@ -32,6 +34,9 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
             _ => bail!("{}: the name of frames must end in .npy or .pvd", frames.display()),
         };
         load::check_output(frames, ending, &inputs)?;
+        if is_collection(frames) {
+            VtkFramesWriter::check(frames, &inputs)?;
+        }
     }
     for (path, what) in [(&args.pose, "a pose"), (&args.curves, "contact curves")] {
         let Some(path) = path else { continue };

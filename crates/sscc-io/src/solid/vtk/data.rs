@@ -1,10 +1,11 @@
 //! Bytes of the arrays of a VTK file: base64, raw, plain or compressed by zlib.
 
-use std::io::Read;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use flate2::read::ZlibDecoder;
+use flate2::{Decompress, FlushDecompress, Status};
+
+/// Bytes that are expanded at a time.
+const BUFFER: usize = 1 << 14;
 
 /// How a file stores binary arrays.
 #[derive(Clone, Copy)]
@@ -49,7 +50,7 @@ impl Layout {
         let header = count.checked_add(3).and_then(|numbers| numbers.checked_mul(self.header as u64));
         let start = header.and_then(|bytes| usize::try_from(bytes).ok()).filter(|bytes| *bytes <= data.len());
         let Some(mut at) = start else { return Err(cut_off(header.unwrap_or(u64::MAX), data.len())) };
-        let mut bytes = Vec::new();
+        let (mut bytes, mut blocks) = (Vec::new(), Blocks::new());
         for block in 0..count as usize {
             let compressed = self.number(data, 3 + block)?;
             let end = usize::try_from(compressed).ok().and_then(|length| at.checked_add(length));
@@ -58,10 +59,7 @@ impl Layout {
             };
             at += packed.len();
             let size = if block + 1 == count as usize { last } else { size };
-            let before = bytes.len();
-            let read = ZlibDecoder::new(packed).take(size.saturating_add(1)).read_to_end(&mut bytes);
-            let is_whole = read.is_ok() && (bytes.len() - before) as u64 == size;
-            if !is_whole {
+            if !blocks.expand(packed, size, &mut bytes) {
                 return Err(format!(
                     "compressed block {block} (counted from 0) is damaged: it does not expand to {size} bytes"
                 ));
@@ -77,6 +75,37 @@ impl Layout {
             return Err(cut_off((start + self.header) as u64, data.len()));
         };
         Ok(unsigned(bytes, self.is_big_endian))
+    }
+}
+
+/// Expands blocks of zlib one after the other, with one state, since blocks may be tiny.
+struct Blocks {
+    zlib: Decompress,
+    buffer: Box<[u8]>,
+}
+
+impl Blocks {
+    fn new() -> Self {
+        Self { zlib: Decompress::new(true), buffer: vec![0; BUFFER].into() }
+    }
+
+    /// Appends the bytes of a block: whether it is whole and has `size` of them. At most [`BUFFER`] more are appended.
+    fn expand(&mut self, packed: &[u8], size: u64, bytes: &mut Vec<u8>) -> bool {
+        self.zlib.reset(true);
+        loop {
+            let (read, written) = (self.zlib.total_in(), self.zlib.total_out());
+            let rest = usize::try_from(read).ok().and_then(|read| packed.get(read..)).unwrap_or_default();
+            let status = self.zlib.decompress(rest, &mut self.buffer, FlushDecompress::None);
+            bytes.extend(&self.buffer[..(self.zlib.total_out() - written) as usize]);
+            match status {
+                Ok(Status::StreamEnd) => return self.zlib.total_out() == size,
+                Ok(_) if self.zlib.total_out() > size => return false,
+                // Without progress the block is cut off.
+                Ok(_) if (self.zlib.total_in(), self.zlib.total_out()) == (read, written) => return false,
+                Ok(_) => {}
+                Err(_) => return false,
+            }
+        }
     }
 }
 
@@ -118,6 +147,8 @@ pub(super) fn from_base64(text: &[u8]) -> Result<Vec<u8>, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+
     use super::*;
 
     const PLAIN: Layout = Layout { header: 4, is_big_endian: false, is_compressed: false };
@@ -133,6 +164,56 @@ mod tests {
     #[test]
     fn numbers_have_a_byte_order() {
         assert_eq!((unsigned(&[1, 2], false), unsigned(&[1, 2], true)), (513, 258));
+    }
+
+    /// An array of zlib in blocks of this size.
+    fn zlib(bytes: &[u8], size: usize) -> Vec<u8> {
+        let pack = |block: &[u8]| {
+            let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+            encoder.write_all(block).unwrap();
+            encoder.finish().unwrap()
+        };
+        let blocks: Vec<Vec<u8>> = bytes.chunks(size).map(pack).collect();
+        let lengths = blocks.iter().map(Vec::len);
+        let header = [blocks.len(), size, bytes.len() % size].into_iter().chain(lengths);
+        let header = header.flat_map(|number| (number as u32).to_le_bytes());
+        header.chain(blocks.iter().flatten().copied()).collect()
+    }
+
+    #[test]
+    fn blocks_have_any_size() {
+        let layout = Layout { is_compressed: true, ..PLAIN };
+        let bytes: Vec<u8> = (0..100_000_u64).map(|i| (i * i >> 7) as u8).collect();
+        for size in [1, 7, BUFFER - 1, BUFFER, BUFFER + 1, 2 * BUFFER, bytes.len()] {
+            let packed = zlib(&bytes, size);
+            assert!(layout.unpack(&packed, bytes.len() as u64).unwrap() == bytes, "{size}");
+            let cut = layout.unpack(&packed[..packed.len() - 1], bytes.len() as u64);
+            assert!(cut.unwrap_err().contains("is the file cut off?"), "{size}");
+        }
+        // A block that is cut off, has a wrong sum, or expands to less or more than the header says.
+        let whole = zlib(&bytes[..300], 300);
+        let with = |at: usize, value: u8| {
+            let mut damaged = whole.clone();
+            damaged[at] = value;
+            layout.unpack(&damaged, 300).unwrap_err()
+        };
+        for message in
+            [with(12, whole[12] - 1), with(whole.len() - 1, whole[whole.len() - 1] ^ 1), with(16, 0)]
+        {
+            assert!(message.starts_with("compressed block 0 (counted from 0) is damaged"), "{message}");
+        }
+        for size in [299, 301] {
+            let mut damaged = whole.clone();
+            damaged[4..12].copy_from_slice(&[(size as u32).to_le_bytes(), [0; 4]].concat());
+            let message = layout.unpack(&damaged, size).unwrap_err();
+            assert!(message.ends_with(&format!("does not expand to {size} bytes")), "{message}");
+        }
+        // A bomb is not expanded beyond the stated size.
+        let mut bomb = zlib(&vec![0; 10 << 20], 10 << 20);
+        bomb[4..12].copy_from_slice(&[1000_u32.to_le_bytes(), [0; 4]].concat());
+        let (mut blocks, mut bytes) = (Blocks::new(), Vec::new());
+        assert!(!blocks.expand(&bomb[16..], 1000, &mut bytes) && bytes.len() <= 1000 + BUFFER);
+        assert!(layout.unpack(&bomb, 1000).is_err());
     }
 
     #[test]

@@ -3,13 +3,20 @@
 use crate::FormatError;
 use crate::error::quoted;
 
-/// Names that solvers give to displacements, in lower case, the clearest first.
-const NAMES: [&str; 6] = ["displacement", "displacements", "displacement_vector", "displ", "disp", "u"];
+/// Names that solvers give to displacements, in any case, the clearest first.
+const NAMES: [&str; 5] = ["displacement", "displacements", "displacement_vector", "displ", "disp"];
+
+/// A further name of displacements.
+const SHORT: &str = "u";
+
+/// Name of displacements or, as OpenFOAM writes them, of velocities.
+const UNCLEAR: &str = "U";
 
 /// The point data of a grid that moves its points.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Displacement {
-    /// The vectors with a name that solvers give to displacements, such as `displacement` and `U`; without any, none.
+    /// The vectors with a name that solvers give to displacements, such as `displacement` and `u`; without any, none. `U` is not
+    /// among them: it is also a name of velocities.
     #[default]
     ByName,
     /// None: points are where they are.
@@ -28,6 +35,13 @@ impl Displacement {
         }
     }
 
+    /// Whether points stay where they are although the data has vectors `U`, which may be displacements or velocities.
+    pub(super) fn is_unclear<'a>(&self, mut arrays: impl Iterator<Item = (&'a str, usize)> + Clone) -> bool {
+        *self == Self::ByName
+            && matches!(self.choose(arrays.clone()), Ok(None))
+            && arrays.any(|(name, components)| components == 3 && name == UNCLEAR)
+    }
+
     /// Returns the chosen one of these arrays, each with its number of components.
     pub(super) fn choose<'a>(
         &self,
@@ -38,7 +52,10 @@ impl Displacement {
         };
         match self {
             Self::None => Ok(None),
-            Self::ByName => Ok(NAMES.iter().find_map(|known| find(&|name| name.eq_ignore_ascii_case(known)))),
+            Self::ByName => {
+                let clear = NAMES.iter().find_map(|known| find(&|name| name.eq_ignore_ascii_case(known)));
+                Ok(clear.or_else(|| find(&|name| name == SHORT)))
+            }
             Self::Named(wanted) => match find(&|name| name == wanted) {
                 Some(found) => Ok(Some(found)),
                 None => {

@@ -14,13 +14,21 @@ pub(crate) struct Grid {
     pub(super) cells: Cells,
     /// Name and vectors of the point data that moves the points.
     pub(super) displacement: Option<(String, Vec<DVec3>)>,
+    /// Whether vectors may be displacements, but have not been asked for: see [`Displacement::is_unclear`](super::Displacement).
+    pub(super) is_unclear: bool,
 }
 
 impl Grid {
-    /// Returns a line that names the point data that moves the points.
+    /// Returns a line that names the point data that moves the points, or that may be meant to.
     pub fn note(&self) -> Option<String> {
-        let (name, _) = self.displacement.as_ref()?;
-        Some(format!("the point data {} moves the points (FILE# takes them as they are)", quoted(name)))
+        match &self.displacement {
+            Some((name, _)) => {
+                Some(format!("the point data {} moves the points (FILE# takes them as they are)", quoted(name)))
+            }
+            None => self.is_unclear.then(|| {
+                "the point data 'U' may be displacements or velocities and does not move the points (FILE#U applies it)".into()
+            }),
+        }
     }
 
     /// Moves the points by their displacements.

@@ -205,18 +205,26 @@ impl Parser<'_, '_> {
             "TEXTURE_COORDINATES" => {
                 let components = self.size("the number of components")?;
                 let kind = self.numbers.kind()?;
-                self.array(name, components, count, kind)
+                self.skip(&name, components, count, kind)
             }
             "SCALARS" => {
                 let kind = self.numbers.kind()?;
                 let components = self.components_of_scalars()?;
+                self.skip(&name, components, count, kind)
+            }
+            "VECTORS" => {
+                let kind = self.numbers.kind()?;
                 self.array(name, components, count, kind)
             }
             _ => {
                 let kind = self.numbers.kind()?;
-                self.array(name, components, count, kind)
+                self.skip(&name, components, count, kind)
             }
         }
+    }
+
+    fn skip(&mut self, name: &str, components: u64, count: u64, kind: Kind) -> Result<(), FormatError> {
+        self.numbers.skip(count.saturating_mul(components), kind, &what(name))
     }
 
     /// Reads the number of components of scalars, which may be left out, and the name of their table.
@@ -239,24 +247,16 @@ impl Parser<'_, '_> {
             }
             let (components, count) =
                 (self.size("the number of components")?, self.size("the number of rows")?);
-            if self.numbers.words.peek()?.is_some_and(|kind| kind.eq_ignore_ascii_case("string")) {
-                return self
-                    .numbers
-                    .words
-                    .refused(format!("array {}: texts are not supported", quoted(&name)));
-            }
             let kind = self.numbers.kind()?;
             self.array(name, components, count, kind)?;
         }
         Ok(())
     }
 
-    /// Reads an array that is used, and skips the others.
+    /// Reads vectors or the array of a field, where they are used, and skips the others.
     fn array(&mut self, name: String, components: u64, count: u64, kind: Kind) -> Result<(), FormatError> {
-        let numbers = count.saturating_mul(components);
-        let what = format!("a number of {}", quoted(&name));
         if self.section.0 != Section::Points || components != 3 || *self.displacement == Displacement::None {
-            return self.numbers.skip(numbers, kind, &what);
+            return self.skip(&name, components, count, kind);
         }
         let found = (name.as_str(), 3);
         // Of many vectors only those that can be chosen are kept.
@@ -265,9 +265,9 @@ impl Parser<'_, '_> {
             displacement => displacement.choose([found].into_iter())?.is_some(),
         };
         let values = if is_wanted {
-            vectors(&self.numbers.floats(numbers, kind, &what)?)
+            vectors(&self.numbers.floats(count.saturating_mul(components), kind, &what(&name))?)
         } else {
-            self.numbers.skip(numbers, kind, &what)?;
+            self.skip(&name, components, count, kind)?;
             Vec::new()
         };
         self.vectors.push((name, values));
@@ -282,7 +282,9 @@ impl Parser<'_, '_> {
             let (types, cells) = (self.cells.types.len(), self.cells.ends.len());
             return Err(FormatError::whole(format!("the file has {cells} cells and {types} types of cells")));
         }
-        let chosen = self.displacement.choose(self.vectors.iter().map(|(name, _)| (name.as_str(), 3)))?;
+        let names = self.vectors.iter().map(|(name, _)| (name.as_str(), 3));
+        let is_unclear = self.displacement.is_unclear(names.clone());
+        let chosen = self.displacement.choose(names)?;
         let displacement = chosen.map(|chosen| self.vectors.swap_remove(chosen));
         if let Some((name, vectors)) =
             displacement.as_ref().filter(|(_, vectors)| vectors.len() != points.len())
@@ -290,8 +292,13 @@ impl Parser<'_, '_> {
             let cause = format!("{} has {} vectors for {} points", quoted(name), vectors.len(), points.len());
             return Err(FormatError::whole(cause));
         }
-        Ok(Grid { points, cells: self.cells, displacement })
+        Ok(Grid { points, cells: self.cells, displacement, is_unclear })
     }
+}
+
+/// Names an item of an array in messages.
+fn what(name: &str) -> String {
+    format!("an item of {}", quoted(name))
 }
 
 fn vectors(numbers: &[f64]) -> Vec<DVec3> {

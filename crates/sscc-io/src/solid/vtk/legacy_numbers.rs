@@ -10,19 +10,27 @@ pub(super) struct Numbers<'a> {
     pub words: Words<'a>,
 }
 
-/// Type of the numbers of an array.
+/// Type of the items of an array.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
+    /// Bytes of an item; 0: they are not whole bytes.
     size: u64,
     form: Form,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum Form {
     Float,
     Signed,
     Unsigned,
+    /// Eight of them are a byte. They are only skipped.
+    Bit,
+    /// Lines, or bytes after their length. They are only skipped.
+    Text,
 }
+
+/// Number of bytes of the length before a text, by the first two bits of the length.
+const LENGTHS: [u64; 4] = [8, 4, 2, 1];
 
 impl Numbers<'_> {
     /// Reads the type of an array.
@@ -39,6 +47,8 @@ impl Numbers<'_> {
             "unsigned_short" | "vtktypeuint16" => (2, Form::Unsigned),
             "unsigned_int" | "vtktypeuint32" => (4, Form::Unsigned),
             "unsigned_long" | "vtktypeuint64" => (8, Form::Unsigned),
+            "bit" => (0, Form::Bit),
+            "string" | "utf8_string" => (0, Form::Text),
             _ => return self.words.refused(format!("numbers of type {} are not supported", quoted(name))),
         };
         // Ids are written as 32-bit integers, whatever their type.
@@ -48,6 +58,7 @@ impl Numbers<'_> {
 
     /// Reads `count` numbers. A file that is too short for them is an error before memory is reserved.
     pub fn floats(&mut self, count: u64, kind: Kind, what: &str) -> Result<Vec<f64>, FormatError> {
+        self.check_numbers(kind)?;
         if !self.words.binary {
             return (0..count).map(|_| self.words.number(what)).collect();
         }
@@ -55,20 +66,21 @@ impl Numbers<'_> {
             (Form::Float, 4) => f64::from(f32::from_bits(unsigned(bytes, true) as u32)),
             (Form::Float, _) => f64::from_bits(unsigned(bytes, true)),
             (Form::Signed, size) => signed(bytes, size) as f64,
-            (Form::Unsigned, _) => unsigned(bytes, true) as f64,
+            (_, _) => unsigned(bytes, true) as f64,
         };
         Ok(self.bytes(count, kind, what)?.chunks_exact(kind.size as usize).map(number).collect())
     }
 
     /// Reads `count` integers from 0; `kind` is that of binary ones.
     pub fn integers(&mut self, count: u64, kind: Kind, what: &str) -> Result<Vec<u64>, FormatError> {
+        self.check_numbers(kind)?;
         if !self.words.binary {
             return (0..count).map(|_| Ok(self.words.count(what)? as u64)).collect();
         }
         let number = |bytes: &[u8]| match kind.form {
             Form::Float => None,
             Form::Signed => u64::try_from(signed(bytes, kind.size)).ok(),
-            Form::Unsigned => Some(unsigned(bytes, true)),
+            _ => Some(unsigned(bytes, true)),
         };
         let bytes = self.bytes(count, kind, what)?;
         let numbers: Option<Vec<u64>> = bytes.chunks_exact(kind.size as usize).map(number).collect();
@@ -83,12 +95,45 @@ impl Numbers<'_> {
         self.integers(count, Kind { size: 4, form: Form::Signed }, what)
     }
 
-    /// Skips `count` numbers, which may be any words.
-    pub fn skip(&mut self, count: u64, kind: Kind, what: &str) -> Result<(), FormatError> {
-        if self.words.binary {
-            return self.bytes(count, kind, what).map(drop);
+    /// Refuses items that are not read as numbers.
+    fn check_numbers(&self, kind: Kind) -> Result<(), FormatError> {
+        match kind.form {
+            Form::Bit => self.words.refused("numbers of type 'bit' are not supported"),
+            Form::Text => self.words.refused("numbers were expected, not texts"),
+            Form::Float | Form::Signed | Form::Unsigned => Ok(()),
         }
-        (0..count).try_for_each(|_| self.words.word(what).map(drop))
+    }
+
+    /// Skips `count` items: numbers, which may be any words, bits or texts.
+    pub fn skip(&mut self, count: u64, kind: Kind, what: &str) -> Result<(), FormatError> {
+        match kind.form {
+            Form::Text => self.skip_texts(count, what),
+            Form::Bit if self.words.binary => {
+                self.words.rest_of_line();
+                self.words.bytes(count.div_ceil(8), what).map(drop)
+            }
+            _ if self.words.binary => self.bytes(count, kind, what).map(drop),
+            _ => (0..count).try_for_each(|_| self.words.word(what).map(drop)),
+        }
+    }
+
+    /// Skips texts: lines, which may be empty; in binary files bytes after their length.
+    fn skip_texts(&mut self, count: u64, what: &str) -> Result<(), FormatError> {
+        self.words.rest_of_line();
+        for _ in 0..count {
+            if !self.words.binary {
+                self.words.line(what)?;
+                continue;
+            }
+            let mut ahead = self.words;
+            let start = ahead.take::<1>(what)?[0] >> 6;
+            let size = LENGTHS[usize::from(start)];
+            let length = unsigned(self.words.bytes(size, what)?, true);
+            // The first two bits are those of the size.
+            let length = if size == 8 { length } else { length & (u64::MAX >> (66 - 8 * size)) };
+            self.words.bytes(length, what)?;
+        }
+        Ok(())
     }
 
     /// Skips `count` bytes, or as many words.

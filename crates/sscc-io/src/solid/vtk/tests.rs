@@ -36,6 +36,11 @@ fn file(name: &str) -> Vec<u8> {
     std::fs::read(format!("{}/tests/vtk/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
+/// The displacements of the files, whose name is also one of velocities.
+fn named_u() -> Displacement {
+    Displacement::Named("U".into())
+}
+
 const FILES: [&str; 18] = [
     "meshio_42.vtk",
     "meshio_51.vtk",
@@ -62,7 +67,10 @@ fn every_encoding_has_the_same_grid() {
     let unit = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     let points: Vec<DVec3> = unit.into_iter().chain(unit.map(|p| p + DVec3::X * 2.0)).collect();
     for name in FILES {
-        let grid = parse_grid(&file(name), &Displacement::ByName).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let unclear =
+            parse_grid(&file(name), &Displacement::ByName).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!(unclear.displacement.is_none() && unclear.note().unwrap().contains("FILE#U applies it"));
+        let grid = parse_grid(&file(name), &named_u()).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_eq!(grid.points, points, "{name}");
         let (array, vectors) = grid.displacement.as_ref().unwrap();
         let moved = DVec3::new(-1.75, 0.125, 0.125);
@@ -84,7 +92,7 @@ fn every_encoding_has_the_same_grid() {
 fn damaged_files_are_errors() {
     for name in FILES {
         let whole = file(name);
-        let read = |bytes: &[u8]| parse_grid(bytes, &Displacement::ByName).and_then(Grid::into_surface);
+        let read = |bytes: &[u8]| parse_grid(bytes, &named_u()).and_then(Grid::into_surface);
         let expected = read(&whole).unwrap();
         for length in (0..whole.len()).step_by(3) {
             let is_text = name == "meshio_42.vtk" || name.ends_with("ascii.vtk");
@@ -120,7 +128,23 @@ fn displacements_are_chosen_by_name() {
     assert_eq!(name_of(&all, &Displacement::ByName), Ok(Some("Displacement".into())));
     assert_eq!(name_of(&all, &Displacement::None), Ok(None));
     assert_eq!(name_of(&all, &Displacement::of_name(Some("velocity"))), Ok(Some("velocity".into())));
-    assert_eq!(name_of(&array("velocity", 3), &Displacement::ByName), Ok(None));
+    for free in [array("velocity", 3), array("U", 3), array("U", 1)] {
+        assert_eq!(name_of(&free, &Displacement::ByName), Ok(None));
+    }
+    assert_eq!(name_of(&array("U", 3), &named_u()), Ok(Some("U".into())));
+    assert_eq!(
+        name_of(&[array("U", 3), array("u", 3)].concat(), &Displacement::ByName),
+        Ok(Some("u".into()))
+    );
+    let note = |data: &str, wanted: &Displacement| {
+        parse_grid(vtu(TET, tet, data).as_bytes(), wanted).unwrap().note()
+    };
+    let line = "the point data 'U' may be displacements or velocities and does not move the points (FILE#U applies it)";
+    assert_eq!(note(&array("U", 3), &Displacement::ByName).as_deref(), Some(line));
+    assert_eq!(note(&array("U", 1), &Displacement::ByName), None);
+    assert_eq!(note(&array("U", 3), &Displacement::None), None);
+    let moved = "the point data 'u' moves the points (FILE# takes them as they are)";
+    assert_eq!(note(&[array("U", 3), array("u", 3)].concat(), &Displacement::ByName).as_deref(), Some(moved));
     let message = name_of(&all, &Displacement::of_name(Some("disp"))).unwrap_err();
     assert_eq!(
         message,
@@ -175,12 +199,15 @@ fn bad_input_is_refused() {
             "cell 0 (counted from 0): its end in the connectivity is 4",
         ),
         (vtu(TET, ["0 1 2 3", "4", "23"], ""), "cell type 23 is not supported: only triangles and"),
-        (vtu(TET, ["0 1 2 3", "4", "3"], ""), "has no elements"),
+        (
+            vtu(TET, ["0 1 2 3", "4", "3"], ""),
+            "no cell is a triangle, a polygon, a tetrahedron or a hexahedron: save the surface",
+        ),
         (
             vtu("nan 0 0 1 0 0 0 1 0 0 0 1", ["0 1 2 3", "4", "10"], ""),
             "point 0 (counted from 0): a coordinate is not finite",
         ),
-        (vtu("0 0 0", ["", "", ""], ""), "has no elements"),
+        (vtu("0 0 0", ["", "", ""], ""), "no cell is a triangle, a polygon"),
         (
             vtu(TET, ["0 1 2 3", "4", "10"], "").replace("UnstructuredGrid", "ImageData"),
             "line 2: a VTK file of type 'ImageData': save it",
@@ -257,14 +284,26 @@ fn bad_legacy_files_are_refused() {
         (whole.replace("4 0 1 2 3", "9 0 1 2 3"), "cell 0 (counted from 0) leaves the 5 numbers"),
         (whole.replace("\n10\n", "\n13\n"), "a wedge (cell type 13) is not supported"),
         (
-            format!("{whole}POINT_DATA 3\nVECTORS U float\n0 0 0 0 0 0 0 0 0\n"),
-            "'U' has 3 vectors for 4 points",
+            format!("{whole}POINT_DATA 3\nVECTORS u float\n0 0 0 0 0 0 0 0 0\n"),
+            "'u' has 3 vectors for 4 points",
         ),
         (format!("{whole}SPLINES 3\n"), "line 11: 'SPLINES' is no part of a grid that is known"),
-        (whole.replace("ASCII", "BINARY"), "is needed"),
+        (
+            format!("{whole}POINT_DATA 4\nVECTORS u bit\n0 0 0 0 0 0 0 0 0 0 0 1\n"),
+            "line 12: numbers of type 'bit' are not supported",
+        ),
+        (
+            format!("{whole}POINT_DATA 4\nFIELD f 1\nu 3 4 string\na\n"),
+            "line 13: numbers were expected, not texts",
+        ),
+        (format!("{whole}POINT_DATA 4\nFIELD f 1\nx 1 4 string\na\n"), "the file ends before an item of 'x'"),
+        (
+            whole.replace("ASCII", "BINARY"),
+            "the file ends before a coordinate: 96 bytes are needed, 60 are left",
+        ),
     ] {
         let message = refused(&text);
-        assert!(named == "is needed" || message.contains(named), "{named}: {message}");
+        assert!(message.contains(named), "{named}: {message}");
     }
     // Attributes of other kinds are skipped, and a text that is no number is none of theirs.
     let data = "CELL_DATA 1\nSCALARS a float\nLOOKUP_TABLE default\nnan\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 4\n\
@@ -272,4 +311,106 @@ fn bad_legacy_files_are_refused() {
     let text = format!("{whole}{data}{}", "1 ".repeat(36));
     let grid = parse_grid(text.as_bytes(), &Displacement::ByName).unwrap();
     assert_eq!(grid.moved().points[3], DVec3::new(0.0, 0.0, 3.0));
+}
+
+const LEGACY: &str = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+    0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\n";
+
+#[test]
+fn only_vectors_and_fields_of_legacy_files_are_displacements() {
+    let numbers = "0 0 0 0 0 0 0 0 0 0 0 1\n";
+    for (data, is_moved) in [
+        ("VECTORS u float\n", true),
+        ("FIELD f 1\nu 3 4 float\n", true),
+        ("NORMALS u float\n", false),
+        ("SCALARS u float 3\nLOOKUP_TABLE default\n", false),
+        ("TEXTURE_COORDINATES u 3 float\n", false),
+    ] {
+        let text = format!("{LEGACY}{data}{numbers}");
+        for wanted in [Displacement::ByName, Displacement::Named("u".into())] {
+            let grid = parse_grid(text.as_bytes(), &wanted);
+            let found = grid.is_ok_and(|grid| grid.displacement.is_some());
+            assert_eq!(found, is_moved, "{data}");
+        }
+    }
+}
+
+#[test]
+fn bits_and_texts_of_legacy_files_are_skipped() {
+    // Texts are lines, which may be empty.
+    let text = format!(
+        "{LEGACY}SCALARS b bit\nLOOKUP_TABLE default\n1 0 1 1\nFIELD f 3\ns 1 4 string\na\n\nb%20c\nu\nb 1 4 bit\n\
+         0 1 0 1\nu 3 4 float\n0 0 0 0 0 0 0 0 0 0 0 2\n"
+    );
+    let grid = parse_grid(text.as_bytes(), &Displacement::ByName).unwrap();
+    assert_eq!(grid.moved().points[3], DVec3::new(0.0, 0.0, 3.0));
+
+    let mut binary =
+        b"# vtk DataFile Version 3.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n".to_vec();
+    let numbers = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0_f64];
+    binary.extend(numbers.iter().flat_map(|x| x.to_be_bytes()));
+    binary.extend(b"\nCELLS 1 5\n");
+    binary.extend([4, 0, 1, 2, 3_i32].iter().flat_map(|v| v.to_be_bytes()));
+    binary.extend(b"\nCELL_TYPES 1\n\0\0\0\x0a\nPOINT_DATA 4\nFIELD f 3\nb 3 4 bit\n");
+    binary.extend([0xa5, 0xf0]);
+    // Lengths of 1, 2, 4 and 8 bytes.
+    binary.extend(b"\ns 1 4 string\n");
+    binary.extend(b"\xc2ab\x80\x01c\x40\0\0\x03def\0\0\0\0\0\0\0\x01g");
+    let cut = binary.len();
+    binary.extend(b"\nu 3 4 double\n");
+    binary.extend(numbers.iter().flat_map(|x| x.to_be_bytes()));
+    let grid = parse_grid(&binary, &Displacement::ByName).unwrap();
+    assert_eq!(grid.moved().points[3], DVec3::new(0.0, 0.0, 2.0));
+    for length in cut - 21..cut {
+        assert!(parse_grid(&binary[..length], &Displacement::None).is_err(), "{length}");
+    }
+    binary[cut - 9] = 0x3f;
+    let message = parse_grid(&binary, &Displacement::None).err().unwrap().to_string();
+    assert!(message.contains("the file ends before an item of 's'"), "{message}");
+}
+
+/// No part of the text of an array is dropped.
+#[test]
+fn references_and_cdata_in_arrays_are_refused() {
+    let whole = vtu(TET, ["0 1 2 3", "4", "10"], "");
+    assert!(parse(whole.as_bytes()).is_ok());
+    for (part, named) in [
+        ("&#45;5", "line 6: character references are not supported in arrays"),
+        ("5&#48;", "line 6: character references are not supported in arrays"),
+        ("&amp;", "line 6: character references are not supported in arrays"),
+        ("<![CDATA[5]]>", "line 6: CDATA sections are not supported in arrays"),
+        ("1<![CDATA[5]]>", "line 6: CDATA sections are not supported in arrays"),
+    ] {
+        for numbers in [format!("{part} 1 2 3"), format!("0 1 {part} 3"), format!("0 1 2 {part}")] {
+            let message = refused(&whole.replace("\n0 1 2 3\n", &format!("\n{numbers}\n")));
+            assert!(message == named, "{numbers}: {message}");
+        }
+    }
+    let message = refused(&whole.replace("\n0 1 2 3\n", "\n0 1 2<!-- x --> 3\n"));
+    assert!(message.contains("the text of an array is in several parts"), "{message}");
+    // Elsewhere they are of no consequence.
+    let named =
+        whole.replace("<PointData>", "<FieldData><Array>a&amp;b<![CDATA[c]]></Array></FieldData><PointData>");
+    assert!(parse(named.as_bytes()).is_ok());
+}
+
+#[test]
+fn encodings_of_appended_data_are_compared_exactly() {
+    let raw = file("vtk_raw.vtu");
+    let with = |encoding: &[u8]| {
+        let from = b"encoding=\"raw\"";
+        let at = raw.windows(from.len()).position(|window| window == from).unwrap();
+        let bytes = [&raw[..at], encoding, &raw[at + from.len()..]].concat();
+        parse_grid(&bytes, &Displacement::None)
+            .map(|grid| grid.points.len())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!((with(b"encoding='raw'"), with(b"raw='base64' encoding=\"raw\"")), (Ok(8), Ok(8)));
+    for bad in ["encoding='rawer'", "encoding='RAW'", "raw='1'", "encoding=raw", "encoding='' raw=''"] {
+        assert_eq!(
+            with(bad.as_bytes()).unwrap_err(),
+            "AppendedData: its encoding is neither 'raw' nor 'base64'",
+            "{bad}"
+        );
+    }
 }

@@ -23,7 +23,7 @@ const SAVE: &str =
 /// Maximum number of elements within each other, which bounds memory; real files have about six.
 const MAX_DEPTH: usize = 64;
 
-/// An element with its attributes and the text in it, apart from that of its children.
+/// An element with its attributes and, of an array, the text in it, apart from that of its children.
 pub(crate) struct Element<'a> {
     pub name: String,
     /// Number of the element around it.
@@ -92,16 +92,22 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
             }
             Event::Empty(start) => found.push(element(&start, open.last(), line)?),
             Event::End(_) => drop(open.pop()),
-            Event::Text(part) if !part.trim_ascii().is_empty() => {
+            Event::Text(part) if is_in_array(&found, &open) && !part.trim_ascii().is_empty() => {
                 let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
                 // Text is borrowed from the file, so its end is where the reader is.
                 let part = text.get(start - part.len()..start).unwrap_or_default();
                 if let Some(parent) = open.last().map(|number| &mut found[*number]) {
                     if !parent.text.is_empty() {
-                        return Err(FormatError::line(line, "the text of an element is in several parts"));
+                        return Err(FormatError::line(line, "the text of an array is in several parts"));
                     }
                     parent.text = part;
                 }
+            }
+            Event::GeneralRef(_) if is_in_array(&found, &open) => {
+                return Err(FormatError::line(line, "character references are not supported in arrays"));
+            }
+            Event::CData(_) if is_in_array(&found, &open) => {
+                return Err(FormatError::line(line, "CDATA sections are not supported in arrays"));
             }
             Event::Eof => match open.last().filter(|_| !is_head) {
                 None => return Ok(found),
@@ -114,6 +120,11 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
             _ => {}
         }
     }
+}
+
+/// Whether text belongs to an array, of which no part may be dropped.
+fn is_in_array(found: &[Element<'_>], open: &[usize]) -> bool {
+    open.last().is_some_and(|number| found[*number].name == "DataArray")
 }
 
 fn element<'a>(
@@ -210,11 +221,10 @@ fn appended(tail: &[u8]) -> Result<(bool, Option<&[u8]>), FormatError> {
     let refused = |cause: &str| FormatError::part("AppendedData", cause);
     let begin =
         tail.iter().position(|byte| *byte == b'>').ok_or_else(|| refused("the file ends within it"))?;
-    let start = String::from_utf8_lossy(&tail[..begin]);
-    let is_base64 = match start.contains("raw") {
-        true => false,
-        false if start.contains("base64") => true,
-        false => return Err(refused("its encoding is neither 'raw' nor 'base64'")),
+    let is_base64 = match encoding(&tail[..=begin]).as_deref() {
+        Some("raw") => false,
+        Some("base64") => true,
+        _ => return Err(refused("its encoding is neither 'raw' nor 'base64'")),
     };
     let data = tail[begin + 1..].trim_ascii_start();
     let Some(data) = data.strip_prefix(b"_") else { return Err(refused("its data begins with '_'")) };
@@ -222,6 +232,13 @@ fn appended(tail: &[u8]) -> Result<(bool, Option<&[u8]>), FormatError> {
     let end =
         if is_base64 { data.iter().position(|byte| *byte == b'<').unwrap_or(data.len()) } else { data.len() };
     Ok((is_base64, Some(&data[..end])))
+}
+
+/// Returns the encoding that the start of the appended data states.
+fn encoding(start: &[u8]) -> Option<String> {
+    let elements = elements(std::str::from_utf8(start).ok()?, true).ok()?;
+    let element = elements.first().filter(|element| element.name == "AppendedData")?;
+    element.get("encoding").map(str::to_owned)
 }
 
 fn read_grid(
@@ -257,12 +274,14 @@ fn read_grid(
     let types = decoder.integers(&cell_array("types")?, cells)?;
     let connectivity = decoder.integers(&cell_array("connectivity")?, ends.last().copied().unwrap_or(0))?;
     let data = within("PointData").map(Element::array).collect::<Result<Vec<_>, _>>()?;
-    let chosen = displacement.choose(data.iter().map(|array| (array.name.as_str(), array.components)))?;
+    let names = data.iter().map(|array| (array.name.as_str(), array.components));
+    let is_unclear = displacement.is_unclear(names.clone());
+    let chosen = displacement.choose(names)?;
     let displacement = match chosen.map(|chosen| &data[chosen]) {
         Some(array) => Some((array.name.clone(), vectors(decoder.floats(array, points.saturating_mul(3))?))),
         None => None,
     };
-    Ok(Grid { points: positions, cells: Cells { types, ends, connectivity }, displacement })
+    Ok(Grid { points: positions, cells: Cells { types, ends, connectivity }, displacement, is_unclear })
 }
 
 fn vectors(numbers: Vec<f64>) -> Vec<DVec3> {

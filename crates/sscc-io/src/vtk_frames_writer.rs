@@ -1,0 +1,342 @@
+//! Writer for VTK: frames with their times as a `.pvd` collection, whole or not at all.
+
+use std::fmt::Write;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use quick_xml::escape::escape;
+use sscc::TriMesh;
+
+use crate::error::quoted;
+use crate::file::{check_target, folder, not_written, sync_folder, write_whole};
+use crate::modes::{is_collection, read_collection};
+use crate::part_folder::PartFolder;
+use crate::pose::check_pose;
+use crate::vtk_writer::vtu;
+use crate::{IoError, split_mesh_name};
+
+/// Writes frames of a mesh as a `.pvd` collection: `x.pvd`, and the files `x/x_000000.vtu`, `x/x_000001.vtu`, ..., which
+/// [`write_vtu_pose`](crate::write_vtu_pose) describes.
+///
+/// Files are written to a temporary folder beside `x`. [`VtkFramesWriter::finish`] renames it, and replaces an earlier collection of that
+/// name. Dropped before, it removes the folder, and what was there before is unchanged.
+pub struct VtkFramesWriter {
+    target: Target,
+    part: PartFolder,
+    frames: usize,
+    sets: String,
+}
+
+/// Where a collection goes.
+struct Target {
+    path: PathBuf,
+    /// Folder of its files.
+    folder: PathBuf,
+    /// Name of the folder.
+    name: String,
+}
+
+impl VtkFramesWriter {
+    /// Checks, before long work, that a collection can be written without loss of these inputs, as [`create`](Self::create) does
+    /// without inputs.
+    ///
+    /// # Errors
+    /// As [`create`](Self::create); when an input, which may be a file, `FILE#NAME`, a folder or a collection, has files in the folder
+    /// of the collection.
+    pub fn check(path: &Path, inputs: &[&Path]) -> Result<(), IoError> {
+        let target = Target::new(path)?;
+        match inputs.iter().find(|input| target.has_files_of(input)) {
+            None => target.check(),
+            Some(input) => {
+                let input = quoted(&input.display().to_string());
+                let cause = format!("its folder has files of the input {input}: choose another name");
+                Err(IoError::request(path, cause))
+            }
+        }
+    }
+
+    /// Begins a collection.
+    ///
+    /// # Errors
+    /// When the name is no text or does not end in `.pvd`; when its folder has files other than those of an earlier collection, which
+    /// the present `.pvd` file names; or when no folder can be created beside it.
+    pub fn create(path: &Path) -> Result<Self, IoError> {
+        let target = Target::new(path)?;
+        target.check()?;
+        let refused = |cause| not_written(path, cause);
+        let part = PartFolder::create_in(folder(path)).map_err(refused)?;
+        for name in ["new", "old"] {
+            fs::create_dir(part.path().join(name)).map_err(refused)?;
+        }
+        Ok(Self { target, part, frames: 0, sets: String::new() })
+    }
+
+    /// Writes the next frame, at a time (s).
+    ///
+    /// # Errors
+    /// As [`write_vtu_pose`](crate::write_vtu_pose).
+    pub fn push(
+        &mut self,
+        time: f64,
+        mesh: &TriMesh,
+        positions: &[DVec3],
+        colliding: &[bool],
+    ) -> Result<(), IoError> {
+        let name = &self.target.name;
+        let file = format!("{name}_{:06}.vtu", self.frames);
+        let shown = self.target.folder.join(&file);
+        check_pose(&shown, mesh, positions, colliding)?;
+        let written =
+            write_whole(&self.part.path().join("new").join(&file), &vtu(mesh, positions, colliding));
+        written.map_err(|error| match error {
+            IoError::System { cause, .. } => not_written(&shown, cause),
+            other => other,
+        })?;
+        let file = format!("{name}/{file}");
+        let _ = writeln!(self.sets, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>", escape(&file));
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Completes the collection: an earlier one is set aside, and removed when the new one is in place. Where the process ends in
+    /// between, it is whole in the temporary folder.
+    ///
+    /// # Errors
+    /// When the target has become one that [`create`](Self::create) refuses, or cannot be replaced. It is then unchanged.
+    pub fn finish(mut self) -> Result<(), IoError> {
+        let text = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n\
+             {}</Collection>\n</VTKFile>\n",
+            self.sets
+        );
+        self.target.check()?;
+        let Target { path, folder, .. } = &self.target;
+        let (new, old) = (self.part.path().join("new"), self.part.path().join("old"));
+        let new_file = self.part.path().join("new.pvd");
+        let refused = |cause| not_written(path, cause);
+        fs::write(&new_file, text).map_err(refused)?;
+        let mut moves = Vec::new();
+        for (present, aside) in [(path, "x.pvd"), (folder, "x")] {
+            if fs::symlink_metadata(present).is_ok() {
+                moves.push((present.clone(), old.join(aside)));
+            }
+        }
+        moves.extend([(new, folder.clone()), (new_file, path.clone())]);
+        self.part.rename_all(&moves).map_err(refused)?;
+        sync_folder(path);
+        Ok(())
+    }
+}
+
+impl Target {
+    fn new(path: &Path) -> Result<Self, IoError> {
+        let folder = path.with_extension("");
+        let name = folder.file_name().and_then(|name| name.to_str()).filter(|_| is_collection(path));
+        let Some(name) = name.map(str::to_owned) else {
+            return Err(IoError::request(
+                path,
+                "the name of a collection must be text in UTF-8 and end in .pvd",
+            ));
+        };
+        Ok(Self { path: path.to_owned(), folder, name })
+    }
+
+    /// Refuses a target that would be lost: all but the files of an earlier collection.
+    fn check(&self) -> Result<(), IoError> {
+        check_target(&self.path)?;
+        let refused = |cause| not_written(&self.folder, cause);
+        match fs::symlink_metadata(&self.folder) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(refused(error)),
+            Ok(found) if found.is_dir() => {}
+            Ok(_) => {
+                let cause = "is not a folder, which the files of the collection need: move it away, or choose another name";
+                return Err(IoError::request(&self.folder, cause));
+            }
+        }
+        let named = read_collection(&self.path).unwrap_or_default();
+        for entry in fs::read_dir(&self.folder).map_err(refused)? {
+            let entry = entry.map_err(refused)?;
+            let name = entry.file_name();
+            let file = folder(&self.path).join(&self.name).join(&name);
+            let is_own = entry.file_type().is_ok_and(|kind| kind.is_file())
+                && self.is_frame_name(&name.to_string_lossy())
+                && named.iter().any(|named| named.file == file);
+            if !is_own {
+                let cause = format!(
+                    "contains {}, which is not a file of an earlier collection {}: move it away, or choose another name",
+                    quoted(&name.to_string_lossy()),
+                    quoted(&format!("{}.pvd", self.name))
+                );
+                return Err(IoError::request(&self.folder, cause));
+            }
+        }
+        Ok(())
+    }
+
+    fn is_frame_name(&self, name: &str) -> bool {
+        let number = name.strip_prefix(&self.name).and_then(|rest| rest.strip_prefix('_'));
+        let number = number.and_then(|rest| rest.strip_suffix(".vtu"));
+        number.is_some_and(|digits| digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit()))
+    }
+
+    /// Whether an input is in the folder, or names files in it.
+    fn has_files_of(&self, input: &Path) -> bool {
+        let Ok(folder) = fs::canonicalize(&self.folder) else { return false };
+        let is_within = |file: &Path| fs::canonicalize(file).is_ok_and(|file| file.starts_with(&folder));
+        let (file, _) = split_mesh_name(input);
+        let names =
+            || read_collection(&file).is_ok_and(|files| files.iter().any(|named| is_within(&named.file)));
+        is_within(&file) || is_collection(&file) && names()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FrameReader;
+
+    fn mesh() -> TriMesh {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.1, 1e-300, -1.0 / 3.0)];
+        TriMesh::new(positions, vec![[0, 1, 2], [2, 1, 3]]).unwrap()
+    }
+
+    #[test]
+    fn frames_have_times() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a & b.pvd");
+        let mesh = mesh();
+        let mut writer = VtkFramesWriter::create(&path).unwrap();
+        let frames =
+            [0.0, 0.5, 2.0].map(|x| mesh.rest_positions().iter().map(|p| *p * x).collect::<Vec<_>>());
+        for (frame, time) in frames.iter().zip([0.25, 0.5, 1e-3]) {
+            writer.push(time, &mesh, frame, &[false; 2]).unwrap();
+        }
+        writer.finish().unwrap();
+        let reader = FrameReader::open(&path, &mesh, "m.obj".as_ref()).unwrap();
+        assert_eq!(reader.times(), Some(&[1e-3, 0.25, 0.5][..]));
+        let mut positions = Vec::new();
+        for (at, frame) in [2, 0, 1].into_iter().enumerate() {
+            reader.read(at, &mut positions).unwrap();
+            assert_eq!(positions, frames[frame]);
+        }
+        let other = TriMesh::new(mesh.rest_positions().to_vec(), vec![[0, 1, 2]]).unwrap();
+        let message = FrameReader::open(&path, &other, "m.obj".as_ref()).unwrap().read(0, &mut positions);
+        let message = message.unwrap_err().to_string();
+        assert!(message.contains("000002.vtu: the surface of this frame has 2 triangles"), "{message}");
+    }
+
+    fn write(path: &Path, frames: usize) -> Result<(), IoError> {
+        let mesh = mesh();
+        let mut writer = VtkFramesWriter::create(path)?;
+        for frame in 0..frames {
+            writer.push(frame as f64, &mesh, mesh.rest_positions(), &[false; 2])?;
+        }
+        writer.finish()
+    }
+
+    /// Names of all files in a folder and those in it, with their lengths.
+    fn content(folder: &Path) -> Vec<(PathBuf, u64)> {
+        let mut found = Vec::new();
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            found.push((path.clone(), fs::metadata(&path).unwrap().len()));
+            if path.is_dir() {
+                found.pop();
+                found.extend(content(&path));
+            }
+        }
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn nothing_is_left_of_an_incomplete_collection() {
+        let directory = tempfile::tempdir().unwrap();
+        let mesh = mesh();
+        let path = directory.path().join("x.pvd");
+        for earlier in [0, 2] {
+            if earlier > 0 {
+                write(&path, earlier).unwrap();
+            }
+            let before = content(directory.path());
+            let mut writer = VtkFramesWriter::create(&path).unwrap();
+            writer.push(0.0, &mesh, mesh.rest_positions(), &[true; 2]).unwrap();
+            let message = writer.push(1.0, &mesh, &[DVec3::NAN; 4], &[false; 2]).unwrap_err().to_string();
+            assert!(message.contains("x_000001.vtu: "), "{message}");
+            drop(writer);
+            assert_eq!(content(directory.path()), before);
+        }
+    }
+
+    #[test]
+    fn earlier_collections_are_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.pvd");
+        fs::create_dir(directory.path().join("x")).unwrap(); // empty
+        for frames in [3, 1, 2] {
+            write(&path, frames).unwrap();
+            let reader = FrameReader::open(&path, &mesh(), "m.obj".as_ref()).unwrap();
+            assert_eq!(
+                (reader.times().unwrap().len(), content(directory.path()).len()),
+                (frames, frames + 1)
+            );
+            assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2);
+        }
+    }
+
+    #[test]
+    fn other_files_are_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let path = at("x.pvd");
+        write(&path, 2).unwrap();
+        // Each is a folder that holds more than the files that the collection names.
+        for (name, is_removed) in [("x/notes.txt", false), ("x/x_000002.vtu", false), ("x.pvd", true)] {
+            let saved = fs::read(&path).unwrap();
+            if is_removed {
+                fs::remove_file(at(name)).unwrap()
+            } else {
+                fs::write(at(name), "a").unwrap()
+            }
+            let before = content(directory.path());
+            let message = VtkFramesWriter::create(&path).err().unwrap().to_string();
+            assert!(message.ends_with(
+                "which is not a file of an earlier collection 'x.pvd': move it away, or choose another name"
+            ), "{message}");
+            assert!(!message.contains('\n') && content(directory.path()) == before);
+            if is_removed { fs::write(at(name), saved).unwrap() } else { fs::remove_file(at(name)).unwrap() }
+        }
+        // It comes while frames are written.
+        let writer = VtkFramesWriter::create(&path).unwrap();
+        fs::write(at("x/notes.txt"), "a").unwrap();
+        assert!(writer.finish().unwrap_err().to_string().contains("contains 'notes.txt', which is not"));
+        assert_eq!(content(directory.path()).len(), 4);
+        fs::write(at("y"), "a").unwrap();
+        let message = VtkFramesWriter::create(&at("y.pvd")).err().unwrap().to_string();
+        assert!(message.contains("y: is not a folder, which the files"), "{message}");
+        fs::create_dir(at("z.pvd")).unwrap();
+        assert!(write(&at("z.pvd"), 1).unwrap_err().to_string().contains("z.pvd: is a directory"));
+        assert!(VtkFramesWriter::create(&at("z")).is_err() && !at("z").exists());
+    }
+
+    #[test]
+    fn inputs_are_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let path = at("x.pvd");
+        write(&path, 2).unwrap();
+        fs::copy(&path, at("other.pvd")).unwrap();
+        write(&at("free.pvd"), 1).unwrap();
+        for input in
+            ["x.pvd", "x.pvd#u", "other.pvd", "other.pvd#", "x", "x/x_000001.vtu", "x/x_000000.vtu#u"]
+        {
+            let message =
+                VtkFramesWriter::check(&path, &[&at("free.pvd"), &at(input)]).unwrap_err().to_string();
+            assert!(message.contains("x.pvd: its folder has files of the input"), "{input}: {message}");
+        }
+        VtkFramesWriter::check(&path, &[&at("free.pvd"), &at("missing")]).unwrap();
+    }
+}
