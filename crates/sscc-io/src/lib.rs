@@ -61,6 +61,7 @@
 //! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 
 mod allowance;
+mod collection_target;
 pub mod container;
 mod curves;
 mod error;

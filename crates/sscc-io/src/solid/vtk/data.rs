@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn blocks_have_any_size() {
         let layout = Layout { is_compressed: true, ..PLAIN };
-        let bytes: Vec<u8> = (0..100_000_u64).map(|i| (i * i >> 7) as u8).collect();
+        let bytes: Vec<u8> = (0..100_000_u64).map(|i| ((i * i) >> 7) as u8).collect();
         for size in [1, 7, BUFFER - 1, BUFFER, BUFFER + 1, 2 * BUFFER, bytes.len()] {
             let packed = zlib(&bytes, size);
             assert!(layout.unpack(&packed, bytes.len() as u64).unwrap() == bytes, "{size}");

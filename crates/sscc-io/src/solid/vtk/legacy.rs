@@ -207,18 +207,16 @@ impl Parser<'_, '_> {
                 let kind = self.numbers.kind()?;
                 self.skip(&name, components, count, kind)
             }
-            "SCALARS" => {
-                let kind = self.numbers.kind()?;
-                let components = self.components_of_scalars()?;
-                self.skip(&name, components, count, kind)
-            }
-            "VECTORS" => {
-                let kind = self.numbers.kind()?;
-                self.array(name, components, count, kind)
-            }
             _ => {
                 let kind = self.numbers.kind()?;
-                self.skip(&name, components, count, kind)
+                match keyword {
+                    "VECTORS" => self.array(name, components, count, kind),
+                    "SCALARS" => {
+                        let components = self.components_of_scalars()?;
+                        self.skip(&name, components, count, kind)
+                    }
+                    _ => self.skip(&name, components, count, kind),
+                }
             }
         }
     }
