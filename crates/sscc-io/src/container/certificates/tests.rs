@@ -321,8 +321,8 @@ fn other_kinds_and_newer_versions_are_rejected() {
     let model_file = ContainerWriter::new(MODEL).finish().unwrap();
     let message = |bytes: &[u8]| certificates_from_bytes(bytes).unwrap_err().to_string();
     assert_eq!(message(&model_file), "this is a model file, a certificate file was expected");
-    let newer = ContainerWriter::new(super::super::Kind { version: 8, ..CERTIFICATES }).finish().unwrap();
-    assert!(message(&newer).contains("written by a newer sscc (format version 8"));
+    let newer = ContainerWriter::new(super::super::Kind { version: 9, ..CERTIFICATES }).finish().unwrap();
+    assert!(message(&newer).contains("written by a newer sscc (format version 9"));
 }
 
 #[test]

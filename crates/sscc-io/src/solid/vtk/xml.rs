@@ -11,7 +11,7 @@ use super::grid::Grid;
 use super::xml_arrays::{Array, Data, Decoder};
 use crate::FormatError;
 use crate::allowance::Allowance;
-use crate::error::quoted;
+use crate::error::{cut, quoted};
 
 /// Beginning of the data that is no XML.
 const APPENDED: &[u8] = b"<AppendedData";
@@ -76,9 +76,9 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
     let mut lines = LineCounter { text: text.as_bytes(), at: 0, line: 1 };
     loop {
         let line = lines.line_of(reader.buffer_position());
-        let event = reader.read_event().map_err(|error| {
-            FormatError::line(lines.line_of(reader.error_position()), format!("malformed XML: {error}"))
-        })?;
+        let event = reader
+            .read_event()
+            .map_err(|error| malformed(lines.line_of(reader.error_position()), &error.to_string()))?;
         match event {
             Event::Start(start) => {
                 let element = element(&start, open.last(), line)?;
@@ -127,12 +127,17 @@ fn is_in_array(found: &[Element<'_>], open: &[usize]) -> bool {
     open.last().is_some_and(|number| found[*number].name == "DataArray")
 }
 
+/// The error of a line. The cause may name words of the file.
+fn malformed(line: usize, cause: &str) -> FormatError {
+    FormatError::line(line, format!("malformed XML: {}", cut(cause, 120)))
+}
+
 fn element<'a>(
     start: &BytesStart<'_>,
     parent: Option<&usize>,
     line: usize,
 ) -> Result<Element<'a>, FormatError> {
-    let refused = |cause: String| FormatError::line(line, format!("malformed XML: {cause}"));
+    let refused = |cause: String| malformed(line, &cause);
     let mut attributes = Vec::new();
     for attribute in start.attributes().with_checks(false) {
         let attribute = attribute.map_err(|error| refused(error.to_string()))?;
