@@ -32,6 +32,7 @@ def instances(
     return {
         "Answer": [certs.check(np.zeros(6)), certs.check(far), certs.check(far, 1), huge.check(far)],
         "Batch": [certs.check_many(draws), certs.check_many(draws[:0])],
+        "BodyPenetration": [sscc.BodyPenetration(-1e-300, 1e300, 0.1, 1e-9)],
         "Certificates": [certs, touching, huge],
         "Curve": [*detector.check(crossing).curves(), sscc.Curve(np.zeros((1, 3)), no_pairs, False)],
         "Detector": [detector, sscc.Detector(faces)],
