@@ -4,6 +4,10 @@ use std::env;
 use std::io;
 use std::path::Path;
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+
+/// Tests that run at the same time install one after the other: apt-get locks its lists.
+static TURN: Mutex<()> = Mutex::new(());
 
 /// Whether a program is on the path.
 pub fn has(program: &str) -> bool {
@@ -13,6 +17,7 @@ pub fn has(program: &str) -> bool {
 
 /// Installs packages. Returns whether that worked.
 pub fn install(packages: &[&str]) -> bool {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let apt = |arguments: &[&str]| -> io::Result<bool> {
         let mut apt = Command::new("apt-get");
         Ok(apt.args(arguments).env("DEBIAN_FRONTEND", "noninteractive").status()?.success())
