@@ -22,10 +22,16 @@ pub const BUILD_PROGRAMS: [&str; 4] = ["cmake", "make", "gcc", "g++"];
 /// The Debian package of Eigen, for an example and for assertions that are left out without it.
 pub const EIGEN_PACKAGE: &str = "libeigen3-dev";
 
+/// The Debian package of clang's sanitizers, which that of clang only recommends.
+const SANITIZERS_PACKAGE: &str = "libclang-rt-dev";
+
 /// Installs the packages of all programs that are missing. What cannot be installed is skipped, which then fails.
 pub fn install_missing() {
     let missing = PROGRAMS.iter().filter(|(program, _)| !debian::has(program));
     let mut packages: Vec<&str> = missing.map(|(_, package)| *package).collect();
+    if packages.contains(&"clang") {
+        packages.push(SANITIZERS_PACKAGE);
+    }
     if !Path::new("/usr/include/eigen3").exists() {
         packages.push(EIGEN_PACKAGE);
     }
@@ -63,7 +69,8 @@ mod tests {
         let text = fs::read_to_string(root().join(".github/workflows/test.yml")).unwrap();
         let line = text.lines().find(|line| line.contains("sudo apt-get install")).unwrap();
         let words: Vec<&str> = line.split_whitespace().collect();
-        for package in PROGRAMS.iter().map(|(_, package)| *package).chain([EIGEN_PACKAGE]) {
+        for package in PROGRAMS.iter().map(|(_, package)| *package).chain([EIGEN_PACKAGE, SANITIZERS_PACKAGE])
+        {
             assert!(words.contains(&package), "{package}");
         }
     }
