@@ -360,6 +360,16 @@ mutants! {
     CoarseBoxesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Boxes of nodes from exact bounds are not widened by a clearance.
     NodesOfClearanceNotWidened: CaughtBy("it certified_clearance::near_pairs_are_found_where_positions_must_be_exact");
+    /// With certificates boxes are widened by half of a clearance, but not by the rounding of distances and coordinates.
+    WidenedWithoutRounding: Covered("the rounding of AABBs of nodes, buckets and coarse positions is larger than errors of distances that occur; the bound of these errors needs the share");
+    /// The error of a shared volume omits that of clips.
+    VolumeWithoutClipError: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
+    /// The error of a shared volume omits that of the heights of steep planes.
+    VolumeWithoutSteepError: Covered("the error of clips is at least a quarter of it, and the factor of both has room for more");
+    /// A slope beyond the range of numbers is used.
+    SlopeBeyondRangeKept: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
+    /// Parts of a body may face inward and outward.
+    PartsFaceAnyWay: CaughtBy("it body_penetration::parts_face_one_way");
     /// With certificates triangles nearer than a clearance are separated as if they had to touch.
     SeparatedWithoutClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Widened boxes are not rounded.

@@ -25,7 +25,7 @@ impl<'q> WidenedMotion<'q> {
         let extent = (whole.upper - whole.lower).max_element();
         let half =
             right_or!((distance / 2.0).min(extent), WidenedByHalfOfClearance, (distance / 4.0).min(extent));
-        Self { motion, whole, margin: half + ROUNDING_SHARE * extent }
+        Self { motion, whole, margin: half + right_or!(ROUNDING_SHARE, WidenedWithoutRounding, 0.0) * extent }
     }
 }
 

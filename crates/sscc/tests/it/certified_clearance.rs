@@ -290,6 +290,53 @@ fn near_pairs_are_the_same_with_and_without_certificates() {
     );
 }
 
+/// A pair is near for the smallest number above its computed distance, and not for that distance: an attack on how wide AABBs are. Those of
+/// level sheets are exactly that far apart.
+#[test]
+fn near_pairs_are_found_up_to_their_own_distance() {
+    let (mut asked, mut exact) = (0, 0);
+    for seed in 0..cases(160_u64) {
+        let random = &mut Random::new(seed + 9_400_000);
+        // Two sheets, level but for a turn in every second model; the mode lowers the upper one.
+        let (gap, at) = (random.power(-3.0, 0.0), random.power(-2.0, 3.0) * random.signed());
+        let tilt = if seed % 2 == 0 { 0.0 } else { 0.1 * random.signed() };
+        let sheet = |z: f64| {
+            (0..60).map(move |i| {
+                let (x, y) = (f64::from(i / 2) * 0.1, f64::from(i % 2) * 0.1);
+                DVec3::new(x + at, y, z + at + tilt * x)
+            })
+        };
+        let faces = [0_u32, 60].into_iter().flat_map(|first| (first..first + 58).map(|i| [i, i + 1, i + 2]));
+        let mesh = TriMesh::new(sheet(0.0).chain(sheet(gap)).collect(), faces.collect()).unwrap();
+        let modes = (0..120).map(|v| if v < 60 { DVec3::ZERO } else { -DVec3::Z }).collect();
+        let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+        let certified = Clearance::new(0.9 * gap).unwrap().beyond_rings(40);
+        let Some(certificates) = certify(&model, &CertifyOptions::default(), certified) else { continue };
+        let scope = &certificates.parts().scope;
+        let mut query = Query::new(&model, &certificates).unwrap();
+        for _ in 0..4 {
+            let q = [gap * (0.3 + 0.6 * random.signed().abs())];
+            let near = near_by_brute_force(&model, scope, &q, &certified);
+            let Some(nearest) = near.iter().map(|pair| pair.distance).min_by(f64::total_cmp) else {
+                continue;
+            };
+            for distance in [nearest, nearest.next_up()] {
+                let clearance = Clearance::new(distance).unwrap().beyond_rings(40);
+                let expected = near_by_brute_force(&model, scope, &q, &clearance);
+                assert_eq!(expected.is_empty(), distance == nearest);
+                assert_eq!(
+                    query.within(&q, &clearance).unwrap(),
+                    expected,
+                    "model {seed}, {distance:e}, {q:?}"
+                );
+                exact += usize::from(!expected.is_empty());
+            }
+            asked += 1;
+        }
+    }
+    assert!(asked > cases(160) && exact == asked, "{asked} {exact}");
+}
+
 /// Where large displacements cancel, positions and boxes are computed in double precision: the boxes are as wide.
 #[test]
 fn near_pairs_are_found_where_positions_must_be_exact() {
