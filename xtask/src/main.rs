@@ -53,6 +53,9 @@ const TASKS: [Task; 18] = [
 ];
 
 fn main() -> ExitCode {
+    if std::env::var_os(public::AS_RUSTDOC).is_some() {
+        return public::rustdoc();
+    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let Some((name, rest)) = arguments.split_first() else { return help(&[]) };
     match TASKS.iter().find(|task| task.0 == name) {

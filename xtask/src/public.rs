@@ -11,8 +11,8 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::Path;
+use std::process::{Command, ExitCode};
 
 use serde_json::Value;
 
@@ -94,13 +94,27 @@ fn compare(found: &[Vec<String>], is_written: bool) -> Result<(), String> {
     }
 }
 
+/// Set where cargo runs this program in place of rustdoc.
+pub const AS_RUSTDOC: &str = "SSCC_XTASK_AS_RUSTDOC";
+
+/// Runs rustdoc with the arguments of this program and with unstable options allowed. If cargo itself allowed them, it would compile all
+/// dependencies again.
+pub fn rustdoc() -> ExitCode {
+    let status =
+        Command::new("rustdoc").args(std::env::args_os().skip(1)).env("RUSTC_BOOTSTRAP", "1").status();
+    match status {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        _ => ExitCode::FAILURE,
+    }
+}
+
 /// Runs rustdoc, and returns its JSON.
 fn documentation() -> Result<Value, String> {
-    let target = std::env::current_exe().ok().and_then(|xtask| Some(xtask.parent()?.parent()?.to_owned()));
-    let target: PathBuf = target.ok_or("the target folder is not known")?.join("public");
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let target = program.parent().and_then(Path::parent).ok_or("the target folder is not known")?;
     let mut command = cargo();
-    command.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..")).env("RUSTC_BOOTSTRAP", "1");
-    command.args(["rustdoc", "--quiet", "--package", "sscc", "--lib", "--target-dir"]).arg(&target);
+    command.current_dir(root()).env("RUSTDOC", &program).env(AS_RUSTDOC, "1");
+    command.args(["rustdoc", "--quiet", "--package", "sscc", "--lib", "--target-dir"]).arg(target);
     command.args(["--", "-Z", "unstable-options", "--output-format", "json", "--cap-lints", "allow"]);
     if !command.status().map_err(|error| error.to_string())?.success() {
         return Err("rustdoc failed".into());

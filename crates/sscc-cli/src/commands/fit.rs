@@ -9,7 +9,7 @@ use sscc_modes::{DisplacementFit, FittedConfiguration};
 
 use crate::args::Fit;
 use crate::outcome::Outcome;
-use crate::output::{Output, counted, length};
+use crate::output::{Output, counted, length, note};
 use crate::{interrupt, load};
 
 #[derive(Serialize)]
@@ -30,6 +30,7 @@ pub fn run(args: &Fit) -> Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let (mesh, modes) = (loaded.model.mesh(), loaded.model.modes());
     let frames = FrameReader::open(&args.positions, mesh, &args.model.path)?;
+    frames.warnings().iter().for_each(|line| note(format_args!("{}: {line}", args.positions.display())));
     let fit = DisplacementFit::new(modes).with_context(|| args.model.path.display().to_string())?;
     let (mut rows, mut positions) = (Vec::new(), Vec::new());
     for index in 0..frames.len() {

@@ -65,6 +65,12 @@ fn results_are_checked_as_they_are_deformed() {
         "{unclear:?}"
     );
     assert_eq!(sscc(folder, &["check", "unclear.vtu#U"]).code, Some(1));
+    collection(folder, "unclear.pvd", &[("unclear.vtu", 0.0), ("unclear.vtu", 1.0)]);
+    for args in [&["check", "result.vtu#", "--frames=unclear.vtu"][..], &["check", "unclear.pvd"]] {
+        let run = sscc(folder, args);
+        let lines = run.stderr.matches("the point data 'U' may be displacements or velocities").count();
+        assert_eq!((run.code, lines), (Some(0), 1), "{args:?}: {run:?}");
+    }
     let info = sscc(folder, &["info", "result.vtu"]);
     assert!(info.code == Some(0) && info.stdout.contains("2 tetrahedra"), "{info:?}");
 }

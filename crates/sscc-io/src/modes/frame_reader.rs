@@ -14,7 +14,7 @@ use super::vtk_frames::VtkFrames;
 use crate::file::{ending, unsupported};
 use crate::mesh_path::split_mesh_name;
 use crate::npy::Blocks;
-use crate::solid::vtk::is_vtk_name;
+use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::{FormatError, IoError};
 
 /// Memory for the positions of meshes from a folder, in bytes. Further meshes are read again.
@@ -30,6 +30,7 @@ pub struct FrameReader {
     /// Name of the mesh in messages.
     name: String,
     source: Source,
+    warnings: Vec<String>,
 }
 
 enum Source {
@@ -75,7 +76,19 @@ impl FrameReader {
             Source::Vtk { kept: vec![None; frames.len()], frames }
         };
         let name = format!("the mesh ({})", mesh_path.file_name().unwrap_or_default().display());
-        Ok(Self { path: path.to_owned(), mesh: mesh.clone(), name, source })
+        let warnings = match &source {
+            Source::Vtk { frames, .. } => frames.warnings()?,
+            Source::Folder { files, .. } if is_vtk_name(&files[0]) => {
+                read_surface(&files[0], &Displacement::ByName)?.1
+            }
+            _ => Vec::new(),
+        };
+        Ok(Self { path: path.to_owned(), mesh: mesh.clone(), name, source, warnings })
+    }
+
+    /// Returns lines about the first frame where it is a grid of VTK: which point data moves its points, or may be meant to.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Returns the number of frames, at least 1.

@@ -35,6 +35,11 @@ impl VtkFrames {
         self.files.len()
     }
 
+    /// Returns the lines about the content of the first frame.
+    pub fn warnings(&self) -> Result<Vec<String>, IoError> {
+        Ok(read_surface(&self.files[0], &self.displacement)?.1)
+    }
+
     /// Returns the positions of the vertices of a mesh in a frame. `other` names the mesh in messages.
     pub fn read(&self, frame: usize, mesh: &TriMesh, other: &str) -> Result<Vec<DVec3>, IoError> {
         positions_like(&self.files[frame], &self.displacement, mesh, "frame", other)

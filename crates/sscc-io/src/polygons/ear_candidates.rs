@@ -78,7 +78,7 @@ impl EarCandidates {
         low: DVec2,
         high: DVec2,
         work: &mut Work,
-        mut accepts: impl FnMut(usize) -> bool,
+        mut accepts: impl FnMut(usize, &mut Work) -> Result<bool, TooIntricate>,
     ) -> Result<bool, TooIntricate> {
         let ([x_0, y_0], [x_1, y_1]) = (self.cell(low), self.cell(high));
         for y in y_0..=y_1 {
@@ -86,8 +86,10 @@ impl EarCandidates {
             let row = y * self.count;
             let corners = &self.corners[self.starts[row + x_0] as usize..self.starts[row + x_1 + 1] as usize];
             work.take(1 + corners.len())?;
-            if corners.iter().any(|corner| accepts(*corner as usize)) {
-                return Ok(true);
+            for corner in corners {
+                if accepts(*corner as usize, work)? {
+                    return Ok(true);
+                }
             }
         }
         Ok(false)
@@ -110,9 +112,9 @@ mod tests {
         {
             let (low, high) = (DVec2::from(low), DVec2::from(high));
             let mut found = Vec::new();
-            let accepts = |at: usize| {
+            let accepts = |at: usize, _: &mut Work| {
                 found.push(at);
-                false
+                Ok(false)
             };
             assert_eq!(grid.any_in_box(low, high, &mut Work::new(), accepts), Ok(false));
             found.sort_unstable();
@@ -125,8 +127,11 @@ mod tests {
             assert!(expected.len() > 2 || found.len() < 10, "{found:?}");
         }
         let none = EarCandidates::of(&points[..3], 1);
-        assert_eq!(none.any_in_box(DVec2::ZERO, DVec2::ONE, &mut Work::of(0), |_| true), Err(TooIntricate));
+        assert_eq!(
+            none.any_in_box(DVec2::ZERO, DVec2::ONE, &mut Work::of(0), |_, _| Ok(true)),
+            Err(TooIntricate)
+        );
         let same = EarCandidates::of(&[DVec2::ONE; 5], 1);
-        assert_eq!(same.any_in_box(DVec2::ONE, DVec2::ONE, &mut Work::new(), |_| true), Ok(true));
+        assert_eq!(same.any_in_box(DVec2::ONE, DVec2::ONE, &mut Work::new(), |_, _| Ok(true)), Ok(true));
     }
 }

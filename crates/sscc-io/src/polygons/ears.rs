@@ -9,7 +9,7 @@ use glam::DVec2;
 use sscc::parts::orient2d;
 
 use super::ear_candidates::EarCandidates;
-use super::work::{TooIntricate, Work};
+use super::work::{STEPS_OF_EXACT_SIGNS, TooIntricate, Work};
 
 /// Cuts a polygon into triangles of its corners' numbers. All turn as the polygon does (`turn`: 1 left, -1 right); n
 /// corners give n - 2 triangles. None if there is no ear at some point, as where the polygon crosses itself.
@@ -146,8 +146,14 @@ impl<'a> Ring<'a> {
         let ear = self.ear(tip);
         let [a, b, c] = ear.map(|corner| self.points[corner as usize]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let blocks = |corner: usize| {
-            !self.is_cut[corner] && !ear.contains(&(corner as u32)) && self.enters(corner, [a, b, c])
+        let blocks = |corner: usize, work: &mut Work| {
+            let point = self.points[corner];
+            let is_in_box = point.cmpge(low).all() && point.cmple(high).all();
+            if !is_in_box || self.is_cut[corner] || ear.contains(&(corner as u32)) {
+                return Ok(false);
+            }
+            work.take(STEPS_OF_EXACT_SIGNS)?;
+            Ok(self.enters(corner, [a, b, c]))
         };
         Ok(!self.candidates.any_in_box(low, high, work, blocks)?)
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use sscc::parts::orient2d;
 
-use super::work::{TooIntricate, Work};
+use super::work::{STEPS_OF_EXACT_SIGNS, TooIntricate, Work};
 
 /// Whether no two edges of a polygon have a common point, apart from the corner of neighbours. Repeated corners, one after
 /// the other, count as one. Exact.
@@ -37,6 +37,7 @@ pub(super) fn is_simple(polygon: &[DVec2], work: &mut Work) -> Result<bool, TooI
             let are_neighbours = between == 1 || between == count - 1;
             let overlap = edge.side[0] <= other.side[1] && other.side[0] <= edge.side[1];
             if overlap && !are_neighbours {
+                work.take(STEPS_OF_EXACT_SIGNS)?;
                 let ends = |number: usize| [corner(number), corner(number + 1)];
                 if intersect_segment_segment(ends(edge.number), ends(other.number)) {
                     return Ok(false);

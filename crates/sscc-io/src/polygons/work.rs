@@ -6,6 +6,9 @@ const BASE_STEPS: u64 = 1 << 29;
 /// Further steps for each corner of a polygon that is no fan.
 const STEPS_OF_A_CORNER: u64 = 256;
 
+/// Steps of a test by exact signs of up to four determinants.
+pub(super) const STEPS_OF_EXACT_SIGNS: usize = 32;
+
 /// Steps that remain.
 pub(super) struct Work(u64);
 

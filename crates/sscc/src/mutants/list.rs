@@ -368,6 +368,14 @@ mutants! {
     VolumeWithoutSteepError: Covered("the error of clips is at least a quarter of it, and the factor of both has room for more");
     /// A slope beyond the range of numbers is used.
     SlopeBeyondRangeKept: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
+    /// A ball around a place outside of a body is taken as inside.
+    BallOutsideKept: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
+    /// The largest ball in a box of centres is bounded by half the way to the corners.
+    BallBoxOfHalfSize: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
+    /// The largest ball is bounded by half the distance from a triangle.
+    BallCornersShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
+    /// The largest ball is bounded by half the mean of two distances.
+    BallMeanShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
     /// Parts of a body may face inward and outward.
     PartsFaceAnyWay: CaughtBy("it body_penetration::parts_face_one_way");
     /// With certificates triangles nearer than a clearance are separated as if they had to touch.

@@ -1,6 +1,6 @@
 //! The volume that two bodies share and the largest ball in both, against known values.
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use sscc::parts::{BodyPenetration, body_penetration};
 use sscc::{CancelToken, Detector, Error, TriMesh};
 
@@ -162,6 +162,62 @@ fn tetrahedra_and_balls() {
 }
 
 /// Would fail if one direction were that of the whole mesh: the inverted part would take volume away.
+/// The radius of the largest ball within half-spaces `n . x <= offset` (unit normals), by trial of each four planes that it may touch.
+fn largest_ball(planes: &[(DVec3, f64)]) -> f64 {
+    let count = planes.len();
+    let mut largest = 0.0_f64;
+    for a in 0..count {
+        for b in 0..a {
+            for c in 0..b {
+                for d in 0..c {
+                    let [(n_a, h_a), rest @ ..] = [a, b, c, d].map(|k| planes[k]);
+                    // n . x + r = h for all four; their differences have no r.
+                    let rows = rest.map(|(n, h)| (n - n_a, h - h_a));
+                    let matrix = DMat3::from_cols(rows[0].0, rows[1].0, rows[2].0).transpose();
+                    if matrix.determinant().abs() < 1e-9 {
+                        continue;
+                    }
+                    let center = matrix.inverse() * DVec3::new(rows[0].1, rows[1].1, rows[2].1);
+                    let radius = h_a - n_a.dot(center);
+                    if planes.iter().all(|(n, h)| n.dot(center) + radius <= h + 1e-9) {
+                        largest = largest.max(radius);
+                    }
+                }
+            }
+        }
+    }
+    largest
+}
+
+#[test]
+fn the_largest_ball_is_that_of_all_planes() {
+    let mut random = Random::new(48);
+    let mut shared = 0;
+    for _ in 0..60 {
+        let bodies = [0, 1].map(|_| {
+            let mut corners: Vec<DVec3> = (0..4).map(|_| random.vector()).collect();
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| corners[k]);
+            if (b - a).cross(c - a).dot(d - a) < 0.0 {
+                corners.swap(2, 3);
+            }
+            TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap()
+        });
+        let plane = |mesh: &TriMesh, face: &[u32; 3]| {
+            let [a, b, c] = face.map(|v| mesh.rest_positions()[v as usize]);
+            let normal = (b - a).cross(c - a).normalize();
+            (normal, normal.dot(a))
+        };
+        let planes: Vec<_> =
+            bodies.iter().flat_map(|mesh| mesh.faces().iter().map(|face| plane(mesh, face))).collect();
+        let depth = 2.0 * largest_ball(&planes);
+        let found = penetration(&bodies[0], &bodies[1]);
+        assert!(found.depth <= depth + 1e-8, "{depth}: {found:?}");
+        assert!(depth <= found.depth + found.depth_error + 1e-8, "{depth}: {found:?}");
+        shared += usize::from(depth > 1e-3);
+    }
+    assert!(shared > 15, "{shared}");
+}
+
 #[test]
 fn parts_face_one_way() {
     let inverted =

@@ -102,7 +102,7 @@ fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) ->
     let near = sides.map(|side| nearest(&side.boxes, center));
     let mut inside = f64::INFINITY;
     for (side, (distance, _)) in sides.iter().zip(near) {
-        let is_inside = side.winding_number(center)? != 0;
+        let is_inside = right_or!(side.winding_number(center)? != 0, BallOutsideKept, true);
         inside = inside.min(if is_inside { distance } else { -distance });
     }
     *best = best.max(inside);
@@ -110,9 +110,15 @@ fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) ->
     let mut largest = [0.0_f64; 3];
     for corner in corners(center, half) {
         let [a, b] = triangles.each_ref().map(|triangle| distance_point_triangle(corner, triangle));
-        largest = [largest[0].max(a), largest[1].max(b), largest[2].max(0.5 * (a + b))];
+        largest = [
+            largest[0].max(right_or!(a, BallCornersShrunk, 0.5 * a)),
+            largest[1].max(b),
+            largest[2].max(right_or!(0.5, BallMeanShrunk, 0.25) * (a + b)),
+        ];
     }
-    let bound = largest.into_iter().fold(inside + half.length(), f64::min);
+    let bound = largest
+        .into_iter()
+        .fold(inside + right_or!(half.length(), BallBoxOfHalfSize, 0.5 * half.length()), f64::min);
     Ok(Cell { center, half, bound })
 }
 
