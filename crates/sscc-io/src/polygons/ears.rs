@@ -281,7 +281,7 @@ mod tests {
             let found = cut_ears(&points, 1, &mut work).unwrap();
             assert_eq!(found.map(|triangles| triangles.len()), Some(count - 2), "{number}");
             let steps = before - work.left();
-            assert!(steps < 2000 * count as u64, "{number}: {steps}");
+            assert!(steps < 500 * (STEPS_OF_EXACT_SIGNS * count) as u64, "{number}: {steps}");
         }
         let points: Vec<DVec2> = (0..count).map(comb).collect();
         assert_eq!(cut_ears(&points, 1, &mut Work::of(1000)), Err(TooIntricate));

@@ -1,13 +1,13 @@
 //! Limit on the work that polygons of a file may take.
 
-/// Steps for a file of any size: comparisons of boxes, of cells and of points; about a second.
+/// Steps for a file of any size: comparisons of boxes, of cells and of points; some seconds at most.
 const BASE_STEPS: u64 = 1 << 29;
 
 /// Further steps for each corner of a polygon that is no fan.
 const STEPS_OF_A_CORNER: u64 = 256;
 
 /// Steps of a test by exact signs of up to four determinants.
-pub(super) const STEPS_OF_EXACT_SIGNS: usize = 32;
+pub(super) const STEPS_OF_EXACT_SIGNS: usize = 8;
 
 /// Steps that remain.
 pub(super) struct Work(u64);
