@@ -71,7 +71,9 @@ impl<'w> MovingMesh<'w> {
         let classes = || WeldClasses::at(source.own_positions());
         Self::with_motion(source, 0, request, (watch, classes), |mesh, mut classes| {
             let mut reader = FrameReader::open(frames, mesh, &source.file)?;
-            reader.warnings().iter().for_each(|line| watch.warn(&format!("{}: {line}", frames.display())));
+            // A collection that is the mesh, too, has told them.
+            let lines = if frames == source.file { &[] } else { reader.warnings() };
+            lines.iter().for_each(|line| watch.warn(&format!("{}: {line}", frames.display())));
             watch.begin(Stage::Reading);
             let mut positions = Vec::new();
             for frame in 0..reader.len() {
