@@ -1,0 +1,132 @@
+//! Runs configurations: of the path that is farthest behind, the next one.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path as File, PathBuf};
+use std::time::{Duration, Instant};
+
+use crate::paths::{self, PATHS, Path};
+use crate::random::Random;
+use crate::record::Record;
+use crate::tally::Tally;
+
+/// Time between two writes of the record.
+const WRITE_EVERY: Duration = Duration::from_secs(10);
+
+/// Configurations of each path in a quick run, and the share of each.
+const QUICK: (u64, f64) = (3, 0.05);
+
+/// What to run.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// The time that this sitting takes; none: until all paths have as many answers as wanted.
+    pub time: Option<Duration>,
+    /// The seed; none: that of the record, or 1.
+    pub seed: Option<u64>,
+    /// The record.
+    pub record: PathBuf,
+    /// One path alone.
+    pub path: Option<String>,
+}
+
+/// One configuration; a panic is a wrong answer.
+fn configuration(path: &Path, seed: u64, number: u64, share: f64) -> Tally {
+    let mut random = Random::new(path.name, seed.wrapping_mul(1 << 32).wrapping_add(number));
+    let mut tally = Tally::default();
+    if catch_unwind(AssertUnwindSafe(|| (path.run)(&mut random, &mut tally, share))).is_err() {
+        tally.wrong(|| "the core or an oracle panicked (see standard error)".to_owned());
+    }
+    tally
+}
+
+/// The command that runs a configuration again.
+fn command(path: &Path, seed: u64, number: u64) -> String {
+    format!("cargo xtask soundness --path {} --seed {seed} --configuration {number}", path.name)
+}
+
+/// Runs a sitting. Returns the record at its end.
+///
+/// # Errors
+/// One line, where the record cannot be read or written, or where there is no such path.
+pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, String> {
+    let mut record = Record::read(&campaign.record, campaign.seed)?;
+    let chosen = campaign.path.as_deref().map(index_of).transpose()?;
+    let (start, mut written) = (Instant::now(), Instant::now());
+    loop {
+        let behind = |i: &usize| record.paths[*i].tally.done as f64 / PATHS[*i].wanted as f64;
+        let first = (0..PATHS.len()).filter(|i| chosen.is_none_or(|chosen| chosen == *i));
+        let Some(i) = first.min_by(|i, j| behind(i).total_cmp(&behind(j))) else { break };
+        let is_over = match campaign.time {
+            Some(time) => start.elapsed() >= time,
+            None => behind(&i) >= 1.0,
+        };
+        if is_over {
+            break;
+        }
+        let (path, counters) = (&PATHS[i], &mut record.paths[i]);
+        let (number, begin) = (counters.configurations, Instant::now());
+        let tally = configuration(path, record.seed, number, 1.0);
+        counters.configurations += 1;
+        counters.seconds += begin.elapsed().as_secs_f64();
+        if !tally.is_clean() {
+            let lines = failure(path, record.seed, number, &tally);
+            report(&lines);
+            append(&campaign.record.with_extension("failures"), &lines)?;
+        }
+        counters.tally.add(tally);
+        if written.elapsed() >= WRITE_EVERY {
+            record.write(&campaign.record)?;
+            written = Instant::now();
+        }
+    }
+    record.write(&campaign.record)?;
+    Ok(record)
+}
+
+fn index_of(name: &str) -> Result<usize, String> {
+    let names: Vec<&str> = PATHS.iter().map(|path| path.name).collect();
+    PATHS.iter().position(|path| path.name == name).ok_or_else(|| format!("no path '{name}'; there are: {}", names.join(", ")))
+}
+
+fn failure(path: &Path, seed: u64, number: u64, tally: &Tally) -> String {
+    let Tally { false_negatives, wrong, messages, .. } = tally;
+    let mut lines = format!("{}: {false_negatives} false negatives, {wrong} wrong\n", command(path, seed, number));
+    messages.iter().for_each(|message| lines += &format!("  {message}\n"));
+    lines
+}
+
+fn append(file: &File, lines: &str) -> Result<(), String> {
+    let mut options = OpenOptions::new();
+    let out = options.create(true).append(true).open(file).and_then(|mut out| out.write_all(lines.as_bytes()));
+    out.map_err(|error| format!("{}: {error}", file.display()))
+}
+
+/// Runs one configuration again.
+///
+/// # Errors
+/// One line where there is no such path.
+pub fn replay(name: &str, seed: u64, number: u64) -> Result<Tally, String> {
+    index_of(name)?;
+    let path = paths::find(name).ok_or("no such path")?;
+    Ok(configuration(path, seed, number, 1.0))
+}
+
+/// Runs the first configurations of each path in short form.
+pub fn run_quick(seed: u64, mut report: impl FnMut(&str)) -> Record {
+    let (configurations, share) = QUICK;
+    let mut record = Record::new(seed);
+    for (path, counters) in PATHS.iter().zip(&mut record.paths) {
+        for number in 0..configurations {
+            let begin = Instant::now();
+            let tally = configuration(path, seed, number, share);
+            if !tally.is_clean() {
+                report(&failure(path, seed, number, &tally));
+            }
+            counters.configurations += 1;
+            counters.seconds += begin.elapsed().as_secs_f64();
+            counters.tally.add(tally);
+        }
+    }
+    record
+}

@@ -1,0 +1,21 @@
+//! Exact predicates of the oracles. They share no code with the core: each is written for any kind of [`Number`], tried with
+//! intervals of doubles first, and decided with big integers where an interval contains 0.
+
+mod cones;
+mod interval;
+mod moving;
+mod number;
+mod segments;
+mod separation;
+mod triangles;
+mod vectors;
+mod whole;
+
+pub use moving::{Verdict, free_until};
+pub use triangles::{meet, meet_beyond_corner};
+
+/// A point as plain numbers.
+pub type Point = [f64; 3];
+
+/// The corners of a triangle.
+pub type Triangle = [Point; 3];
