@@ -1,4 +1,4 @@
-//! Runs configurations: of the path that is farthest behind, the next one.
+//! Runs configurations: the next one of the path that has taken the least time, of those with fewer answers than wanted.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path as File, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::exact::work;
 use crate::paths::{self, PATHS, Path};
 use crate::random::Random;
 use crate::record::Record;
@@ -34,6 +35,7 @@ pub struct Campaign {
 fn configuration(path: &Path, seed: u64, number: u64, share: f64) -> Tally {
     let mut random = Random::new(path.name, seed.wrapping_mul(1 << 32).wrapping_add(number));
     let mut tally = Tally::default();
+    work::begin();
     if catch_unwind(AssertUnwindSafe(|| (path.run)(&mut random, &mut tally, share))).is_err() {
         tally.wrong(|| "the core or an oracle panicked (see standard error)".to_owned());
     }
@@ -54,16 +56,8 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
     let chosen = campaign.path.as_deref().map(index_of).transpose()?;
     let (start, mut written) = (Instant::now(), Instant::now());
     loop {
-        let behind = |i: &usize| record.paths[*i].tally.done as f64 / PATHS[*i].wanted as f64;
-        let first = (0..PATHS.len()).filter(|i| chosen.is_none_or(|chosen| chosen == *i));
-        let Some(i) = first.min_by(|i, j| behind(i).total_cmp(&behind(j))) else { break };
-        let is_over = match campaign.time {
-            Some(time) => start.elapsed() >= time,
-            None => behind(&i) >= 1.0,
-        };
-        if is_over {
-            break;
-        }
+        let next = next_path(&record, chosen, campaign.time.is_some());
+        let Some(i) = next.filter(|_| campaign.time.is_none_or(|time| start.elapsed() < time)) else { break };
         let (path, counters) = (&PATHS[i], &mut record.paths[i]);
         let (number, begin) = (counters.configurations, Instant::now());
         let tally = configuration(path, record.seed, number, 1.0);
@@ -82,6 +76,15 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
     }
     record.write(&campaign.record)?;
     Ok(record)
+}
+
+/// The path that runs next; none if all are done, and no more than that is to be done.
+fn next_path(record: &Record, chosen: Option<usize>, beyond: bool) -> Option<usize> {
+    let all = || (0..PATHS.len()).filter(|i| chosen.is_none_or(|chosen| chosen == *i));
+    let is_open = |i: &usize| record.paths[*i].tally.done < PATHS[*i].wanted;
+    let seconds = |i: &usize| record.paths[*i].seconds;
+    let least = |i: &usize, j: &usize| seconds(i).total_cmp(&seconds(j));
+    all().filter(is_open).min_by(least).or_else(|| all().filter(|_| beyond).min_by(least))
 }
 
 fn index_of(name: &str) -> Result<usize, String> {

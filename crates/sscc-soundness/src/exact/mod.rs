@@ -1,5 +1,5 @@
 //! Exact predicates of the oracles. They share no code with the core: each is written for any kind of [`Number`], tried with
-//! intervals of doubles first, and decided with big integers where an interval contains 0.
+//! intervals of doubles first, and decided with whole numbers, of fixed width or big, where an interval contains 0.
 
 mod cones;
 mod interval;
@@ -10,6 +10,8 @@ mod separation;
 mod triangles;
 mod vectors;
 mod whole;
+mod wide;
+pub mod work;
 
 pub use moving::{Verdict, free_until};
 pub use triangles::{meet, meet_beyond_corner};

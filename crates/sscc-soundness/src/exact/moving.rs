@@ -10,7 +10,7 @@ use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
 use super::vectors::Vector;
 use super::whole::{Unit, Whole};
-use super::Triangle;
+use super::{Triangle, work};
 
 /// What is known of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +83,7 @@ fn meet_of<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
 /// Whether they have a common point at a time, exactly.
 pub fn meet_at(a: [&Triangle; 2], b: [&Triangle; 2], t: f64) -> bool {
     meet_of(&interval_at(a, t), &interval_at(b, t)).unwrap_or_else(|| {
+        work::count();
         let corners = a.iter().chain(&b).flat_map(|t| t.iter());
         let (unit, time) = (Unit::of(corners), Time::of(t));
         let number = |x: f64| unit.whole(x);

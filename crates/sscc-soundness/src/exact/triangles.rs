@@ -10,7 +10,8 @@ use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
 use super::vectors::{Vector, cross, dot, minus};
 use super::whole::Unit;
-use super::{Point, Triangle};
+use super::wide::fits;
+use super::{Point, Triangle, work};
 
 /// Whether the corners of one triangle are all strictly on one side of the plane of the other. False where it is not decided.
 fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {
@@ -32,6 +33,13 @@ fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool>
         }
     }
     (!undecided).then_some(false)
+}
+
+/// The same with numbers that decide.
+fn edges_meet_as<N: Number>(a: &Triangle, b: &Triangle, number: impl Fn(f64) -> N) -> bool {
+    let [x, y] = [a, b].map(|t| t.map(|p| p.map(&number)));
+    let is_apart = is_beside_plane(&x, &y) || is_beside_plane(&y, &x);
+    !is_apart && edges_meet(&x, &y).expect("whole numbers decide")
 }
 
 fn boxes_are_apart(a: &Triangle, b: &Triangle) -> bool {
@@ -63,9 +71,13 @@ pub fn meet(a: &Triangle, b: &Triangle) -> bool {
     if best_direction([a, b], &[*a], &[*b]).is_some_and(|n| is_separated(&[x], &[y], &n)) {
         return false;
     }
+    work::count();
     let unit = Unit::of(a.iter().chain(b));
-    let [x, y] = [a, b].map(|t| t.map(|p| p.map(|x| unit.whole(x))));
-    edges_meet(&x, &y).expect("whole numbers decide")
+    match unit.bits(a.iter().chain(b)) {
+        bits if fits::<4>(bits) => edges_meet_as(a, b, |x| unit.wide::<4>(x)),
+        bits if fits::<8>(bits) => edges_meet_as(a, b, |x| unit.wide::<8>(x)),
+        _ => edges_meet_as(a, b, |x| unit.whole(x)),
+    }
 }
 
 /// Whether two triangles with a common corner, given by their other corners, have another common point.
@@ -75,6 +87,7 @@ pub fn meet_beyond_corner(corner: Point, a: [Point; 2], b: [Point; 2]) -> bool {
     }
     let [x, y] = [a, b].map(|t| t.map(|p| p.map(Interval::of)));
     decide(&corner.map(Interval::of), &x, &y).unwrap_or_else(|| {
+        work::count();
         let unit = Unit::of(a.iter().chain(&b).chain([&corner]));
         let [x, y] = [a, b].map(|t| t.map(|p| p.map(|x| unit.whole(x))));
         decide(&corner.map(|x| unit.whole(x)), &x, &y).expect("whole numbers decide")

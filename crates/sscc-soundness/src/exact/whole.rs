@@ -2,8 +2,9 @@
 
 use num_bigint::{BigInt, Sign};
 
-use super::number::Number;
 use super::Point;
+use super::number::Number;
+use super::wide::Wide;
 
 /// A number in units of a [`Unit`], or of one of its powers.
 #[derive(Clone, Debug)]
@@ -32,6 +33,21 @@ impl Unit {
     pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
         let exponents = points.into_iter().flatten().filter_map(|x| Some(split(*x)?.1));
         Self(exponents.min().unwrap_or(0))
+    }
+
+    /// The bits of the largest coordinate in this unit.
+    pub fn bits<'p>(self, points: impl IntoIterator<Item = &'p Point>) -> i32 {
+        let sizes = points.into_iter().flatten().filter_map(|x| {
+            let (odd, exponent) = split(*x)?;
+            Some(exponent - self.0 + 64 - odd.unsigned_abs().leading_zeros() as i32)
+        });
+        sizes.max().unwrap_or(0)
+    }
+
+    /// A coordinate in this unit, of fixed width. It must fit.
+    pub fn wide<const N: usize>(self, x: f64) -> Wide<N> {
+        let (odd, exponent) = split(x).unwrap_or((0, self.0));
+        Wide::of(odd, exponent - self.0)
     }
 
     /// A coordinate in this unit.

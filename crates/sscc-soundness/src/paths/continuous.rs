@@ -5,6 +5,7 @@ use sscc::{Impact, Proof, Query};
 
 use super::moving_pairs::{Effort, Ends, attack_free, attack_impact};
 use super::some;
+use crate::exact::work;
 use crate::exact::Point;
 use crate::models::Extremes;
 use crate::oracle::Oracle;
@@ -27,7 +28,10 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let share = share * setup.share();
     let Ok(mut query) = Query::new(&setup.reduced, &setup.certificates) else { return };
     let mut last = setup.draw(random);
-    for _ in 0..some(200, share) {
+    for _ in 0..some(400, share) {
+        if work::is_spent() {
+            break;
+        }
         let step = random.power(-6.0, 0.0);
         let target = setup.draw(random);
         let q: Vec<f64> = last.iter().zip(&target).map(|(a, b)| a + step * (b - a)).collect();

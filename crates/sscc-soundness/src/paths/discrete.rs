@@ -5,6 +5,7 @@ use sscc::parts::ProvenShares;
 use sscc::{Proof, Query, Statistics};
 
 use super::some;
+use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;
 use crate::setup::{Setup, Wanted};
@@ -40,7 +41,10 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
     };
     let mut asker = Asker { setup: &setup, query, tally };
     let (mut free, mut colliding) = (vec![setup.certificates.center().to_vec()], Vec::new());
-    for _ in 0..some(300, share) {
+    for _ in 0..some(900, share) {
+        if work::is_spent() {
+            break;
+        }
         let q = setup.draw(random);
         match asker.ask(&q) {
             Some(true) => free.push(q),
@@ -48,8 +52,8 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
             None => {}
         }
     }
-    for _ in 0..some(6, share) {
-        if colliding.is_empty() {
+    for _ in 0..some(20, share) {
+        if colliding.is_empty() || work::is_spent() {
             break;
         }
         let (a, b) = (&free[random.below(free.len())], &colliding[random.below(colliding.len())]);
@@ -98,6 +102,9 @@ impl Asker<'_, '_> {
     fn bisect(&mut self, free: &[f64], colliding: &[f64], steps: usize) {
         let (mut lower, mut upper) = (0.0, 1.0);
         for _ in 0..steps {
+            if work::is_spent() {
+                break;
+            }
             let t = 0.5 * (lower + upper);
             let q: Vec<f64> = free.iter().zip(colliding).map(|(a, b)| a + t * (b - a)).collect();
             match self.ask(&q) {

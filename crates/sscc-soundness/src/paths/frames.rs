@@ -4,6 +4,7 @@ use sscc::glam::DVec3;
 use sscc::{ContactFilter, Detector, Neighbours};
 
 use super::{continuous, some};
+use crate::exact::work;
 use crate::exact::Point;
 use crate::models::{Extremes, Model};
 use crate::oracle::{Bounds, Oracle};
@@ -33,6 +34,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let share = share * if oracle.pairs(&model.points).len() < 400 { 1.0 } else { 0.05 };
     let mut last = model.points.clone();
     for _ in 0..some(60, share) {
+        if work::is_spent() {
+            break;
+        }
         let frame = next(random, &model, size, &last);
         let vectors = |points: &[Point]| points.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>();
         let place = || format!("{}: frame {frame:?}", model.name);

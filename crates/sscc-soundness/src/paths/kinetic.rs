@@ -3,6 +3,7 @@
 use sscc::{KineticQuery, Proof};
 
 use super::some;
+use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;
 use crate::setup::{Setup, Wanted, direction};
@@ -22,9 +23,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         tally.reach("refused models");
         return;
     };
-    for _ in 0..some(5, share) {
+    for _ in 0..some(12, share) {
         // The same query: a jump from one motion to the next.
-        motion(random, tally, &setup, &mut query, some(120, share));
+        motion(random, tally, &setup, &mut query, some(150, share));
     }
 }
 
@@ -40,6 +41,9 @@ fn motion(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kin
     let kind = random.below(4);
     let mut last = q.clone();
     for step in 0..steps {
+        if work::is_spent() {
+            break;
+        }
         match kind {
             // Away from the centre and back.
             0 => q.iter_mut().zip(&length).for_each(|(q, y)| *q += share * y * if step % 40 < 20 { 1.0 } else { -1.0 }),

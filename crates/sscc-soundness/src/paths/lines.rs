@@ -4,6 +4,7 @@
 use sscc::{Query, ResolveOptions, SweepOutcome};
 
 use super::some;
+use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;
 use crate::setup::{Setup, Wanted};
@@ -25,7 +26,10 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
     let center = setup.certificates.center().to_vec();
-    for _ in 0..some(80, share) {
+    for _ in 0..some(24, share) {
+        if work::is_spent() {
+            break;
+        }
         let q = setup.draw(random);
         let Ok(scale) = query.safe_scale(&q) else {
             tally.reach("refused q");
@@ -53,6 +57,9 @@ pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
     for _ in 0..some(80, share) {
+        if work::is_spent() {
+            break;
+        }
         let mut q = if random.one_in(2) { setup.certificates.center().to_vec() } else { setup.draw(random) };
         let mode = random.below(setup.model.rank);
         let to = setup.draw(random)[mode] * random.of(&[1.0, 3.0, -1.0]);
@@ -100,6 +107,9 @@ pub fn run_resolves(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
     for _ in 0..some(40, share) {
+        if work::is_spent() {
+            break;
+        }
         let q = setup.draw(random);
         let all = random.one_in(2);
         let Ok(resolved) = query.resolve(&q, &ResolveOptions::default().all(all)) else {

@@ -6,6 +6,7 @@ use sscc::{Detector, Impact};
 
 use super::moving_pairs::{Effort, Ends, attack_impact};
 use super::some;
+use crate::exact::work;
 use crate::exact::{Point, Triangle};
 use crate::models::Extremes;
 use crate::oracle::pairs_between;
@@ -61,6 +62,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let shapes = [&x, &y].map(|setup| PosedShape::new(&setup.reduced, &setup.certificates).ok());
     let [Some(mut a), Some(mut b)] = shapes else { return };
     for _ in 0..some(100, share) {
+        if work::is_spent() {
+            break;
+        }
         let q = [x.draw(random), y.draw(random)];
         let places = [Place::random(random, x.size), Place::random(random, x.size)];
         let (Ok(box_a), Ok(box_b)) = (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose())) else {
@@ -124,6 +128,9 @@ fn two_meshes(random: &mut Random, tally: &mut Tally, [x, y]: [&Setup; 2], count
     let (Ok(mesh_x), Ok(mesh_y)) = (mesh_of(&x.model), mesh_of(&y.model)) else { return };
     let (mut a, mut b) = (Detector::new(&mesh_x), Detector::new(&mesh_y));
     for _ in 0..count {
+        if work::is_spent() {
+            break;
+        }
         let q = [x.draw(random), y.draw(random)];
         let points = [x.model.positions(&q[0]), y.model.positions(&q[1])];
         let [p, r] = [&points[0], &points[1]].map(|p| p.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>());
