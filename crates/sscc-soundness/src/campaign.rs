@@ -15,8 +15,8 @@ use crate::tally::Tally;
 /// Time between two writes of the record.
 const WRITE_EVERY: Duration = Duration::from_secs(10);
 
-/// Configurations of each path in a quick run, and the share of each.
-const QUICK: (u64, f64) = (3, 0.05);
+/// The share of a configuration in a quick run.
+const QUICK: f64 = 0.1;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -89,19 +89,24 @@ fn next_path(record: &Record, chosen: Option<usize>, beyond: bool) -> Option<usi
 
 fn index_of(name: &str) -> Result<usize, String> {
     let names: Vec<&str> = PATHS.iter().map(|path| path.name).collect();
-    PATHS.iter().position(|path| path.name == name).ok_or_else(|| format!("no path '{name}'; there are: {}", names.join(", ")))
+    PATHS
+        .iter()
+        .position(|path| path.name == name)
+        .ok_or_else(|| format!("no path '{name}'; there are: {}", names.join(", ")))
 }
 
 fn failure(path: &Path, seed: u64, number: u64, tally: &Tally) -> String {
     let Tally { false_negatives, wrong, messages, .. } = tally;
-    let mut lines = format!("{}: {false_negatives} false negatives, {wrong} wrong\n", command(path, seed, number));
+    let mut lines =
+        format!("{}: {false_negatives} false negatives, {wrong} wrong\n", command(path, seed, number));
     messages.iter().for_each(|message| lines += &format!("  {message}\n"));
     lines
 }
 
 fn append(file: &File, lines: &str) -> Result<(), String> {
     let mut options = OpenOptions::new();
-    let out = options.create(true).append(true).open(file).and_then(|mut out| out.write_all(lines.as_bytes()));
+    let out =
+        options.create(true).append(true).open(file).and_then(|mut out| out.write_all(lines.as_bytes()));
     out.map_err(|error| format!("{}: {error}", file.display()))
 }
 
@@ -115,14 +120,23 @@ pub fn replay(name: &str, seed: u64, number: u64) -> Result<Tally, String> {
     Ok(configuration(path, seed, number, 1.0))
 }
 
-/// Runs the first configurations of each path in short form.
-pub fn run_quick(seed: u64, mut report: impl FnMut(&str)) -> Record {
-    let (configurations, share) = QUICK;
+/// Runs the first configurations of each path, or of a single one, in short form.
+///
+/// # Errors
+/// One line where there is no such path.
+pub fn run_quick(
+    seed: u64,
+    name: Option<&str>,
+    configurations: u64,
+    mut report: impl FnMut(&str),
+) -> Result<Record, String> {
+    let chosen = name.map(index_of).transpose()?;
     let mut record = Record::new(seed);
-    for (path, counters) in PATHS.iter().zip(&mut record.paths) {
-        for number in 0..configurations {
+    for (i, (path, counters)) in PATHS.iter().zip(&mut record.paths).enumerate() {
+        let count = if chosen.is_none_or(|chosen| chosen == i) { configurations } else { 0 };
+        for number in 0..count {
             let begin = Instant::now();
-            let tally = configuration(path, seed, number, share);
+            let tally = configuration(path, seed, number, QUICK);
             if !tally.is_clean() {
                 report(&failure(path, seed, number, &tally));
             }
@@ -131,5 +145,5 @@ pub fn run_quick(seed: u64, mut report: impl FnMut(&str)) -> Record {
             counters.tally.add(tally);
         }
     }
-    record
+    Ok(record)
 }

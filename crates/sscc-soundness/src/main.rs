@@ -7,8 +7,12 @@ use std::time::Duration;
 
 use sscc_soundness::{Campaign, Record, replay, run, run_quick};
 
-const USAGE: &str = "Usage: cargo xtask soundness [--hours H] [--seed S] [--record FILE] [--path NAME] [--quick]
+const USAGE: &str = "Usage: cargo xtask soundness [--hours H] [--seed S] [--record FILE] [--path NAME]
+       cargo xtask soundness --quick [--path NAME] [--configurations N] [--seed S]
        cargo xtask soundness --path NAME --configuration N [--seed S]    (one configuration again)";
+
+/// Configurations of each path in a quick run.
+const QUICK_CONFIGURATIONS: u64 = 3;
 
 /// What was typed.
 #[derive(Default)]
@@ -18,6 +22,7 @@ struct Arguments {
     record: Option<PathBuf>,
     path: Option<String>,
     configuration: Option<u64>,
+    configurations: Option<u64>,
     quick: bool,
 }
 
@@ -36,6 +41,7 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, Strin
                 parsed.hours = Some(hours.ok_or_else(wrong)?);
             }
             "--seed" => parsed.seed = Some(value.parse().map_err(|_| wrong())?),
+            "--configurations" => parsed.configurations = Some(value.parse().map_err(|_| wrong())?),
             "--configuration" => parsed.configuration = Some(value.parse().map_err(|_| wrong())?),
             "--record" => parsed.record = Some(value.into()),
             "--path" => parsed.path = Some(value),
@@ -50,7 +56,8 @@ fn is_clean(record: &Record) -> bool {
 }
 
 fn try_main() -> Result<bool, String> {
-    let Arguments { hours, seed, record, path, configuration, quick } = parse(std::env::args().skip(1))?;
+    let Arguments { hours, seed, record, path, configuration, configurations, quick } =
+        parse(std::env::args().skip(1))?;
     if let Some(number) = configuration {
         let path = path.ok_or("--configuration needs --path")?;
         let tally = replay(&path, seed.unwrap_or(1), number)?;
@@ -58,7 +65,8 @@ fn try_main() -> Result<bool, String> {
         return Ok(tally.is_clean());
     }
     if quick {
-        let record = run_quick(seed.unwrap_or(1), |lines| eprint!("{lines}"));
+        let count = configurations.unwrap_or(QUICK_CONFIGURATIONS);
+        let record = run_quick(seed.unwrap_or(1), path.as_deref(), count, |lines| eprint!("{lines}"))?;
         print!("{}", record.table());
         return Ok(is_clean(&record));
     }

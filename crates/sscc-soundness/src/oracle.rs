@@ -55,10 +55,11 @@ impl Oracle {
 
     fn relation(&self, (a, b): Pair) -> Relation {
         let [numbers_a, numbers_b] = [a, b].map(|t| self.faces[t as usize]);
-        let [classes_a, classes_b] = [numbers_a, numbers_b].map(|face| face.map(|v| self.classes[v as usize]));
+        let [classes_a, classes_b] =
+            [numbers_a, numbers_b].map(|face| face.map(|v| self.classes[v as usize]));
+        // Each number of a degenerate face counts once.
         let common = |x: [u32; 3], y: [u32; 3]| -> usize {
-            let both: BTreeSet<u32> = x.into_iter().filter(|v| y.contains(v)).collect();
-            both.len()
+            (0..3).filter(|i| y.contains(&x[*i]) && !x[..*i].contains(&x[*i])).count()
         };
         match common(numbers_a, numbers_b).max(common(classes_a, classes_b)) {
             0 => Relation::Counts,
@@ -103,7 +104,8 @@ impl Oracle {
 
     /// All pairs that count and collide, sorted.
     pub fn pairs(&self, positions: &[Point]) -> Vec<Pair> {
-        let boxes: Vec<Bounds> = (0..self.faces.len() as u32).map(|t| Bounds::of(&self.triangle(positions, t))).collect();
+        let boxes: Vec<Bounds> =
+            (0..self.faces.len() as u32).map(|t| Bounds::of(&self.triangle(positions, t))).collect();
         let mut found = Vec::new();
         overlapping(&boxes, |pair| {
             if self.collides(positions, pair) {

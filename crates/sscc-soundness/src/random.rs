@@ -7,7 +7,9 @@ pub struct Random(u64);
 impl Random {
     /// The stream of one configuration of a path.
     pub fn new(path: &str, seed: u64) -> Self {
-        let salt = path.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        let salt = path
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
         let mut random = Self(salt ^ seed.wrapping_mul(0xd6e8_feb8_6659_fd93));
         random.bits();
         random

@@ -46,10 +46,13 @@ impl Record {
         let name = file.display();
         let text = match fs::read_to_string(file) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::new(seed.unwrap_or(1))),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Self::new(seed.unwrap_or(1)));
+            }
             Err(error) => return Err(format!("{name}: {error}")),
         };
-        let record = Self::parse(&text).map_err(|error| format!("{name}: {error}; remove it to begin anew"))?;
+        let record =
+            Self::parse(&text).map_err(|error| format!("{name}: {error}; remove it to begin anew"))?;
         match seed {
             Some(seed) if seed != record.seed => {
                 Err(format!("{name}: its seed is {}, not {seed}; give another --record", record.seed))
@@ -95,7 +98,8 @@ impl Record {
     fn text(&self) -> String {
         let mut text = format!("{HEADER}\n");
         for (path, PathRecord { tally, configurations, seconds }) in PATHS.iter().zip(&self.paths) {
-            let reached: Vec<String> = tally.reached.iter().map(|(name, count)| format!("{name}: {count}")).collect();
+            let reached: Vec<String> =
+                tally.reached.iter().map(|(name, count)| format!("{name}: {count}")).collect();
             text += &format!(
                 "{},{},{},{},{},{configurations},{seconds:.0},{},{}\n",
                 path.name,
@@ -119,7 +123,9 @@ impl Record {
         for (path, PathRecord { tally, seconds, .. }) in PATHS.iter().zip(&self.paths) {
             let Tally { done, false_negatives, wrong, reached, .. } = tally;
             let (name, wanted) = (path.name, path.wanted);
-            table += &format!("{name:<15} {wanted:>10} {done:>10} {false_negatives:>6} {wrong:>6} {seconds:>8.0}\n");
+            table += &format!(
+                "{name:<15} {wanted:>10} {done:>10} {false_negatives:>6} {wrong:>6} {seconds:>8.0}\n"
+            );
             reached.iter().for_each(|(name, count)| table += &format!("{:17}{name}: {count}\n", ""));
             let missing = path.inner.iter().filter(|name| !reached.contains_key(**name));
             missing.for_each(|name| table += &format!("{:17}NOT REACHED: {name}\n", ""));
@@ -130,13 +136,16 @@ impl Record {
 
 fn parse_line(line: &str) -> Option<(u64, &str, PathRecord)> {
     let fields: Vec<&str> = line.splitn(9, ',').collect();
-    let [name, _, done, false_negatives, wrong, configurations, seconds, seed, reached] = fields[..] else { return None };
+    let [name, _, done, false_negatives, wrong, configurations, seconds, seed, reached] = fields[..] else {
+        return None;
+    };
     let count = |text: &str| text.parse::<u64>().ok();
     let pair = |text: &str| -> Option<(String, u64)> {
         let (name, number) = text.rsplit_once(": ")?;
         Some((name.to_owned(), count(number)?))
     };
-    let reached: Option<BTreeMap<String, u64>> = reached.split("; ").filter(|text| !text.is_empty()).map(pair).collect();
+    let reached: Option<BTreeMap<String, u64>> =
+        reached.split("; ").filter(|text| !text.is_empty()).map(pair).collect();
     let tally = Tally {
         done: count(done)?,
         false_negatives: count(false_negatives)?,

@@ -1,7 +1,10 @@
 //! A model of the core, its certificates, and the oracle for the same question.
 
 use sscc::glam::DVec3;
-use sscc::{Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, Modes, Neighbours, ReducedModel, TriMesh};
+use sscc::{
+    Certificates, CertifyOptions, ContactFilter, Error, Metric, MetricKind, Modes, Neighbours, ReducedModel,
+    TriMesh,
+};
 
 use crate::exact::Point;
 use crate::models::{Extremes, Model};
@@ -160,7 +163,8 @@ impl Setup {
 pub fn direction(random: &mut Random, model: &Model) -> Vec<f64> {
     let mut y: Vec<f64> = vec![0.0; model.rank];
     let scale = |k: usize| -> f64 {
-        let largest = model.modes.iter().skip(k).step_by(model.rank).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest =
+            model.modes.iter().skip(k).step_by(model.rank).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
         if largest > 0.0 { 1.0 / largest } else { 1.0 }
     };
     match random.below(6) {

@@ -65,7 +65,12 @@ impl Tally {
     }
 
     /// Compares sorted lists of pairs.
-    pub fn compare<P: PartialEq + std::fmt::Debug>(&mut self, found: &[P], exact: &[P], place: impl Fn() -> String) {
+    pub fn compare<P: PartialEq + std::fmt::Debug>(
+        &mut self,
+        found: &[P],
+        exact: &[P],
+        place: impl Fn() -> String,
+    ) {
         self.answer();
         self.reach_if(!exact.is_empty(), "colliding");
         if found == exact {

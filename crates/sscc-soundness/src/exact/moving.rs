@@ -47,7 +47,12 @@ impl Time {
 }
 
 /// Corners times the denominator, at a time.
-fn at<N: Number>(ends: [&Triangle; 2], time: &Time, number: &impl Fn(f64) -> N, plain: &impl Fn(f64) -> N) -> [Vector<N>; 3] {
+fn at<N: Number>(
+    ends: [&Triangle; 2],
+    time: &Time,
+    number: &impl Fn(f64) -> N,
+    plain: &impl Fn(f64) -> N,
+) -> [Vector<N>; 3] {
     let (numerator, denominator) = (plain(time.numerator), plain(time.denominator));
     let rest = denominator.minus(&numerator);
     std::array::from_fn(|i| {

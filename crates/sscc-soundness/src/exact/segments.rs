@@ -57,10 +57,7 @@ fn is_in_triangle<N: Number>(x: &Vector<N>, corners: &[Vector<N>; 3], normal: &V
 }
 
 /// Whether a segment and a triangle have a common point.
-pub fn segment_meets_triangle<N: Number>(
-    [p, q]: [&Vector<N>; 2],
-    corners: &[Vector<N>; 3],
-) -> Option<bool> {
+pub fn segment_meets_triangle<N: Number>([p, q]: [&Vector<N>; 2], corners: &[Vector<N>; 3]) -> Option<bool> {
     let [a, b, c] = corners;
     let (u, v) = (minus(b, a), minus(c, a));
     let normal = cross(&u, &v);

@@ -8,12 +8,15 @@ use super::{Point, Triangle};
 /// Directions that may separate two triangles.
 fn directions(a: &Triangle, b: &Triangle) -> Vec<Point> {
     let minus = |p: Point, q: Point| -> Point { std::array::from_fn(|c| p[c] - q[c]) };
-    let cross = |p: Point, q: Point| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let cross = |p: Point, q: Point| {
+        [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    };
     let edges = |t: &Triangle| -> [Point; 3] { std::array::from_fn(|i| minus(t[(i + 1) % 3], t[i])) };
     let middle = |t: &Triangle| -> Point { std::array::from_fn(|c| (t[0][c] + t[1][c] + t[2][c]) / 3.0) };
     let (ea, eb) = (edges(a), edges(b));
     let (na, nb) = (cross(ea[0], ea[1]), cross(eb[0], eb[1]));
-    let mut all = vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], minus(middle(b), middle(a)), na, nb];
+    let mut all =
+        vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], minus(middle(b), middle(a)), na, nb];
     all.extend(ea.iter().flat_map(|e| eb.iter().map(|f| cross(*e, *f))));
     all.extend(ea.iter().map(|e| cross(na, *e)).chain(eb.iter().map(|e| cross(nb, *e))));
     all.extend(a.iter().flat_map(|p| b.iter().map(|q| minus(*q, *p))));
@@ -48,7 +51,6 @@ fn gap(a: &[Triangle], b: &[Triangle], n: &Point) -> f64 {
     };
     a.iter().zip(b).map(at_end).fold(f64::INFINITY, f64::min)
 }
-
 
 /// The direction that separates two triangles best at some times, of those that their positions at one time suggest; none if
 /// none seems to.

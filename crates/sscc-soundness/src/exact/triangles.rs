@@ -21,6 +21,26 @@ fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {
     first.is_some_and(|s| s != 0) && side(&b[1]) == first && side(&b[2]) == first
 }
 
+/// The same in doubles, where these decide. With differences of at most E, F and D, a determinant is a sum of six products
+/// of three differences, each at most E F D, and eleven roundings; so its error is below `128 u E F D`.
+fn is_surely_beside_plane(a: &Triangle, b: &Triangle) -> bool {
+    let minus = |p: &Point, q: &Point| -> Point { std::array::from_fn(|c| p[c] - q[c]) };
+    let size = |p: &Point| p[0].abs().max(p[1].abs()).max(p[2].abs());
+    let (e, f) = (minus(&a[1], &a[0]), minus(&a[2], &a[0]));
+    let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+    let area = size(&e) * size(&f);
+    let sides = b.map(|p| {
+        let d = minus(&p, &a[0]);
+        let product = area * size(&d);
+        // Products of extreme numbers are left to intervals.
+        let is_ordinary = (1e-200..1e200).contains(&product) && area > 1e-200;
+        let height = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
+        let is_decided = is_ordinary && height.abs() > 64.0 * f64::EPSILON * product;
+        if is_decided { height.signum() } else { 0.0 }
+    });
+    sides[0] != 0.0 && sides[1] == sides[0] && sides[2] == sides[0]
+}
+
 fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
     let mut undecided = false;
     for (x, y) in [(a, b), (b, a)] {
@@ -44,9 +64,8 @@ fn edges_meet_as<N: Number>(a: &Triangle, b: &Triangle, number: impl Fn(f64) -> 
 
 fn boxes_are_apart(a: &Triangle, b: &Triangle) -> bool {
     (0..3).any(|c| {
-        let [[a_low, a_high], [b_low, b_high]] = [a, b].map(|t| {
-            [t[0][c].min(t[1][c]).min(t[2][c]), t[0][c].max(t[1][c]).max(t[2][c])]
-        });
+        let [[a_low, a_high], [b_low, b_high]] =
+            [a, b].map(|t| [t[0][c].min(t[1][c]).min(t[2][c]), t[0][c].max(t[1][c]).max(t[2][c])]);
         a_high < b_low || b_high < a_low
     })
 }
@@ -57,7 +76,7 @@ fn intervals(t: &Triangle) -> [Vector<Interval>; 3] {
 
 /// Whether two triangles have a common point, exactly.
 pub fn meet(a: &Triangle, b: &Triangle) -> bool {
-    if boxes_are_apart(a, b) {
+    if boxes_are_apart(a, b) || is_surely_beside_plane(a, b) || is_surely_beside_plane(b, a) {
         return false;
     }
     let [x, y] = [a, b].map(intervals);

@@ -22,7 +22,8 @@ fn split(x: f64) -> Option<(i64, i32)> {
     }
     let bits = x.to_bits();
     let (field, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let (magnitude, exponent) = if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
+    let (magnitude, exponent) =
+        if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
     let zeros = magnitude.trailing_zeros();
     let odd = magnitude >> zeros;
     Some((if x < 0.0 { -odd } else { odd }, exponent + zeros as i32))

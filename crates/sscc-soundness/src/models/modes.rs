@@ -24,7 +24,9 @@ fn affine(random: &mut Random, surface: &Surface) -> Mode {
     match random.below(4) {
         0 => each(surface, |_, _| a),
         // A turn, to first order.
-        1 => each(surface, |_, p| [a[1] * p[2] - a[2] * p[1], a[2] * p[0] - a[0] * p[2], a[0] * p[1] - a[1] * p[0]]),
+        1 => each(surface, |_, p| {
+            [a[1] * p[2] - a[2] * p[1], a[2] * p[0] - a[0] * p[2], a[0] * p[1] - a[1] * p[0]]
+        }),
         2 => each(surface, |_, p| along(a, p[axis])),
         _ => each(surface, |_, p| along(a, dot(b, p))),
     }

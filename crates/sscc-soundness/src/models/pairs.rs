@@ -34,7 +34,13 @@ pub fn triangle(random: &mut Random) -> Triangle {
 
 /// A point of a triangle: a corner, on an edge, or inside, with weights that are powers of two.
 fn point_of(random: &mut Random, t: &Triangle) -> Point {
-    let w = random.of(&[[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.25, 0.75, 0.0], [0.5, 0.25, 0.25], [0.125, 0.375, 0.5]]);
+    let w = random.of(&[
+        [1.0, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [0.25, 0.75, 0.0],
+        [0.5, 0.25, 0.25],
+        [0.125, 0.375, 0.5],
+    ]);
     let first = random.below(3);
     std::array::from_fn(|c| (0..3).map(|i| w[i] * t[(first + i) % 3][c]).sum())
 }
@@ -61,11 +67,13 @@ pub fn pair(random: &mut Random) -> (Triangle, Triangle) {
             b = b.map(|x| plus(x, by));
         }
         // In the plane of the other, as far as numbers go.
-        3 => b = std::array::from_fn(|_| {
-            let [x, y] = [random.signed(), random.signed()];
-            let (s, t) = (random.of(&[0.0, 1.0, 0.5, -0.25, x]), random.of(&[0.0, 1.0, 0.25, y]));
-            std::array::from_fn(|c| a[0][c] + s * (a[1][c] - a[0][c]) + t * (a[2][c] - a[0][c]))
-        }),
+        3 => {
+            b = std::array::from_fn(|_| {
+                let [x, y] = [random.signed(), random.signed()];
+                let (s, t) = (random.of(&[0.0, 1.0, 0.5, -0.25, x]), random.of(&[0.0, 1.0, 0.25, y]));
+                std::array::from_fn(|c| a[0][c] + s * (a[1][c] - a[0][c]) + t * (a[2][c] - a[0][c]))
+            })
+        }
         // Near the other.
         4 => {
             let far = random.power(-16.0, 0.0);

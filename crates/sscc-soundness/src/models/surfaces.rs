@@ -37,10 +37,15 @@ fn sheet(columns: usize, rows: usize, at: impl Fn(f64, f64) -> Point) -> (Vec<Po
 fn layers(random: &mut Random, least: usize) -> Surface {
     let count = 2 + random.below(4);
     let side = (((least / count) as f64 / 2.0).sqrt().ceil() as usize).max(2);
-    let (gap, wave) = (random.power(-15.0, -0.5), if random.one_in(2) { 0.0 } else { random.power(-3.0, -0.7) });
+    let (gap, wave) =
+        (random.power(-15.0, -0.5), if random.one_in(2) { 0.0 } else { random.power(-3.0, -0.7) });
     let turn = if random.one_in(2) { 0.0 } else { random.signed() };
-    let mut surface =
-        Surface { name: format!("{count} layers at {gap:.0e}"), points: vec![], faces: vec![], parts: vec![] };
+    let mut surface = Surface {
+        name: format!("{count} layers at {gap:.0e}"),
+        points: vec![],
+        faces: vec![],
+        parts: vec![],
+    };
     for layer in 0..count {
         let (points, faces) = sheet(side, side, |u, v| {
             let z = layer as f64 * gap + wave * (5.0 * u + 3.0 * v).sin();

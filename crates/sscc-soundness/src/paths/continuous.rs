@@ -5,8 +5,8 @@ use sscc::{Impact, Proof, Query};
 
 use super::moving_pairs::{Effort, Ends, attack_free, attack_impact};
 use super::some;
-use crate::exact::work;
 use crate::exact::Point;
+use crate::exact::work;
 use crate::models::Extremes;
 use crate::oracle::Oracle;
 use crate::random::Random;
@@ -28,7 +28,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let share = share * setup.share();
     let Ok(mut query) = Query::new(&setup.reduced, &setup.certificates) else { return };
     let mut last = setup.draw(random);
-    for _ in 0..some(400, share) {
+    for _ in 0..some(200, share) {
         if work::is_spent() {
             break;
         }

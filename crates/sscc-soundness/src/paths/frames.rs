@@ -4,8 +4,8 @@ use sscc::glam::DVec3;
 use sscc::{ContactFilter, Detector, Neighbours};
 
 use super::{continuous, some};
-use crate::exact::work;
 use crate::exact::Point;
+use crate::exact::work;
 use crate::models::{Extremes, Model};
 use crate::oracle::{Bounds, Oracle};
 use crate::random::Random;
@@ -25,7 +25,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let neighbours = if with_one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
     // Vertices that are welded at rest may move apart; only with the rule that excludes neighbours is that of no account.
     let weld = !with_one_vertex && random.one_in(2);
-    let Ok(mut detector) = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(weld)) else { return };
+    let Ok(mut detector) = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(weld)) else {
+        return;
+    };
     let mut oracle = Oracle::new(&model.faces, model.points.len(), with_one_vertex);
     if weld {
         oracle = oracle.welded(&model.points, &vec![[0.0; 3]; model.points.len()]);
@@ -47,7 +49,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
                 continue;
             }
         }
-        if random.one_in(3) && let Ok(impacts) = detector.continuous(&vectors(&last), &vectors(&frame)) {
+        if random.one_in(3)
+            && let Ok(impacts) = detector.continuous(&vectors(&last), &vectors(&frame))
+        {
             let impacts = impacts.to_vec();
             tally.reach("swept");
             let is_whole = !with_one_vertex;

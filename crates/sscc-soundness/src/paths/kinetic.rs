@@ -23,7 +23,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         tally.reach("refused models");
         return;
     };
-    for _ in 0..some(12, share) {
+    for _ in 0..some(6, share) {
         // The same query: a jump from one motion to the next.
         motion(random, tally, &setup, &mut query, some(150, share));
     }
@@ -46,7 +46,10 @@ fn motion(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kin
         }
         match kind {
             // Away from the centre and back.
-            0 => q.iter_mut().zip(&length).for_each(|(q, y)| *q += share * y * if step % 40 < 20 { 1.0 } else { -1.0 }),
+            0 => q
+                .iter_mut()
+                .zip(&length)
+                .for_each(|(q, y)| *q += share * y * if step % 40 < 20 { 1.0 } else { -1.0 }),
             1 => q.iter_mut().zip(&velocity).for_each(|(q, v)| *q += v),
             2 => {
                 let (s, c) = (step as f64 * 0.1).sin_cos();
@@ -62,7 +65,13 @@ fn motion(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kin
 }
 
 /// Compares one step; false where q is out of range.
-fn ask(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut KineticQuery, [last, q]: [&[f64]; 2]) -> bool {
+fn ask(
+    random: &mut Random,
+    tally: &mut Tally,
+    setup: &Setup,
+    query: &mut KineticQuery,
+    [last, q]: [&[f64]; 2],
+) -> bool {
     let place = || format!("{}: q={q:?} after {last:?}", setup.model.name);
     let exact = setup.oracle.pairs(&setup.model.positions(q));
     // Before the discrete query of this step, as a simulation asks.
@@ -94,7 +103,13 @@ fn ask(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kineti
 }
 
 /// A motion that ends in these pairs must list them.
-fn swept(tally: &mut Tally, query: &mut KineticQuery, ends: [&[f64]; 2], exact: &[(u32, u32)], place: &dyn Fn() -> String) {
+fn swept(
+    tally: &mut Tally,
+    query: &mut KineticQuery,
+    ends: [&[f64]; 2],
+    exact: &[(u32, u32)],
+    place: &dyn Fn() -> String,
+) {
     let Ok(impacts) = query.continuous(ends[0], ends[1]) else { return };
     tally.reach("swept");
     let missing = exact.iter().find(|pair| impacts.iter().all(|impact| impact.pair != **pair));

@@ -13,7 +13,12 @@ use crate::tally::Tally;
 /// A model for questions that take as long as some queries.
 fn setup(random: &mut Random, tally: &mut Tally) -> Option<(Setup, Query)> {
     let extremes = if random.one_in(3) { Extremes::All } else { Extremes::Shape };
-    let wanted = Wanted { triangles: random.of(&[130, 160, 220]), extremes, has_center: random.one_in(3), is_dense: random.one_in(4) };
+    let wanted = Wanted {
+        triangles: random.of(&[130, 160, 220]),
+        extremes,
+        has_center: random.one_in(3),
+        is_dense: random.one_in(4),
+    };
     let setup = Setup::random(random, &wanted).ok();
     tally.reach_if(setup.is_none(), "refused models");
     let setup = setup?;
@@ -44,11 +49,16 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
         for t in times.into_iter().filter(|t| *t > 0.0) {
             let q = at(t);
             if !setup.is_beyond_range(&q) && !setup.oracle.is_free(&setup.model.positions(&q)) {
-                tally.false_negative(|| format!("{}: safe scale {scale}, colliding at {t}: q={q:?}", setup.model.name));
+                tally.false_negative(|| {
+                    format!("{}: safe scale {scale}, colliding at {t}: q={q:?}", setup.model.name)
+                });
             }
         }
         let beyond = at(last * 1.01);
-        tally.reach_if(!setup.is_beyond_range(&beyond) && !setup.oracle.is_free(&setup.model.positions(&beyond)), "colliding beyond");
+        tally.reach_if(
+            !setup.is_beyond_range(&beyond) && !setup.oracle.is_free(&setup.model.positions(&beyond)),
+            "colliding beyond",
+        );
     }
 }
 

@@ -25,8 +25,16 @@ pub struct Path {
     pub run: fn(&mut Random, &mut Tally, f64),
 }
 
-const SEARCHES: &[&str] =
-    &["proof by local", "proof by search", "nodes by local", "boxes", "tests", "colliding", "within the tree", "exceptions"];
+const SEARCHES: &[&str] = &[
+    "proof by local",
+    "proof by search",
+    "nodes by local",
+    "boxes",
+    "tests",
+    "colliding",
+    "within the tree",
+    "exceptions",
+];
 
 /// All of them.
 pub const PATHS: [Path; 12] = [
@@ -57,15 +65,25 @@ pub const PATHS: [Path; 12] = [
     },
     Path { name: "centres", wanted: 200_000, inner: SEARCHES, run: discrete::run_centers },
     Path { name: "dense-metrics", wanted: 200_000, inner: SEARCHES, run: discrete::run_dense },
-    Path { name: "safe-scales", wanted: 100_000, inner: &["positive", "colliding beyond"], run: lines::run_scales },
-    Path { name: "sweeps", wanted: 100_000, inner: &["hit", "free", "colliding at start"], run: lines::run_sweeps },
-    Path { name: "resolves", wanted: 100_000, inner: &["resolved", "already free"], run: lines::run_resolves },
     Path {
-        name: "posed",
+        name: "safe-scales",
         wanted: 100_000,
-        inner: &["colliding", "two meshes", "swept"],
-        run: posed::run,
+        inner: &["positive", "colliding beyond"],
+        run: lines::run_scales,
     },
+    Path {
+        name: "sweeps",
+        wanted: 100_000,
+        inner: &["hit", "free", "colliding at start"],
+        run: lines::run_sweeps,
+    },
+    Path {
+        name: "resolves",
+        wanted: 100_000,
+        inner: &["resolved", "already free"],
+        run: lines::run_resolves,
+    },
+    Path { name: "posed", wanted: 100_000, inner: &["colliding", "two meshes", "swept"], run: posed::run },
     Path { name: "frames", wanted: 100_000, inner: &["colliding", "swept"], run: frames::run },
 ];
 

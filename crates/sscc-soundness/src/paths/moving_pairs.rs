@@ -62,7 +62,9 @@ fn ends(random: &mut Random) -> (Ends, Ends) {
         0 => ([a0, a0], [b0, b1]),
         1 => ([a0, shifted(a0, by)], [b0, shifted(b0, by.map(|x| -x))]),
         2 => ([a0, shifted(a0, by)], [b0, shifted(b0, by)]),
-        3 => ([a0, a0], [shifted(b0, [0.0, 0.0, 2.0]), shifted(b0, [0.0, 0.0, random.of(&[-2.0, 0.0, 1.0])])]),
+        3 => {
+            ([a0, a0], [shifted(b0, [0.0, 0.0, 2.0]), shifted(b0, [0.0, 0.0, random.of(&[-2.0, 0.0, 1.0])])])
+        }
         4 => ([a0, [a0[1], a0[2], a0[0]]], [b0, b0]),
         _ => ([a0, a1], [b0, b1]),
     };
@@ -100,9 +102,12 @@ pub fn attack_impact(random: &mut Random, tally: &mut Tally, a: &Ends, b: &Ends,
     tally.reach("impact checked");
     // Denominators of smaller times are too large to be exact in a double.
     if time > 1e-60 {
-        let until = if effort == Effort::Roots { time.next_down() } else { time * (1.0 - random.power(-9.0, -1.0)) };
+        let until =
+            if effort == Effort::Roots { time.next_down() } else { time * (1.0 - random.power(-9.0, -1.0)) };
         if let Verdict::Contact(t) = free_until([&a[0], &a[1]], [&b[0], &b[1]], until) {
-            tally.false_negative(|| format!("they meet at {t}, before the time of impact {time}: {a:?} {b:?}"));
+            tally.false_negative(|| {
+                format!("they meet at {t}, before the time of impact {time}: {a:?} {b:?}")
+            });
         }
     }
     let is_start = time == 0.0 && meet(&a[0], &b[0]);

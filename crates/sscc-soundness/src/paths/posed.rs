@@ -24,10 +24,15 @@ struct Place {
 impl Place {
     fn random(random: &mut Random, reach: f64) -> Self {
         let axis = DVec3::from_array(random.point()).normalize_or(DVec3::X);
-        let turn = if random.one_in(4) { DMat3::IDENTITY } else { DMat3::from_axis_angle(axis, 3.0 * random.signed()) };
+        let turn = if random.one_in(4) {
+            DMat3::IDENTITY
+        } else {
+            DMat3::from_axis_angle(axis, 3.0 * random.signed())
+        };
         let size = reach * random.power(-4.0, 0.0);
         let step = random.one_in(3);
-        let translation = random.point().map(|x| if step { (4.0 * x).round() * 0.25 * size } else { x * size });
+        let translation =
+            random.point().map(|x| if step { (4.0 * x).round() * 0.25 * size } else { x * size });
         Self { columns: [turn.x_axis, turn.y_axis, turn.z_axis].map(|c| c.to_array()), translation }
     }
 
@@ -67,7 +72,8 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         }
         let q = [x.draw(random), y.draw(random)];
         let places = [Place::random(random, x.size), Place::random(random, x.size)];
-        let (Ok(box_a), Ok(box_b)) = (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose())) else {
+        let (Ok(box_a), Ok(box_b)) = (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose()))
+        else {
             tally.reach("refused q");
             continue;
         };
@@ -75,7 +81,9 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         let mut found = Vec::new();
         a.colliding(&mut b, around, &mut found);
         let exact = pairs_between(&triangles(&x, &q[0], &places[0]), &triangles(&y, &q[1], &places[1]));
-        tally.compare(&found, &exact, || format!("{} and {}: q={q:?} at {places:?}", x.model.name, y.model.name));
+        tally.compare(&found, &exact, || {
+            format!("{} and {}: q={q:?} at {places:?}", x.model.name, y.model.name)
+        });
         if random.one_in(4) {
             swept(random, tally, [&x, &y], [&a, &b], &q, &places, &exact);
         }
@@ -110,7 +118,12 @@ fn swept(
     let there = pairs_between(&till, &still);
     let is_listed = |pair: &&(u32, u32)| impacts.iter().any(|impact| impact.pair == **pair);
     if let Some(pair) = exact.iter().chain(&there).find(|pair| !is_listed(pair)) {
-        tally.false_negative(|| format!("{} and {}: swept: {pair:?} collides at an end; q={q:?} {q_t1:?} {places:?} {to:?}", x.model.name, y.model.name));
+        tally.false_negative(|| {
+            format!(
+                "{} and {}: swept: {pair:?} collides at an end; q={q:?} {q_t1:?} {places:?} {to:?}",
+                x.model.name, y.model.name
+            )
+        });
     }
     for _ in 0..impacts.len().min(4) {
         let Impact { pair, time } = impacts[random.below(impacts.len())];
@@ -133,7 +146,8 @@ fn two_meshes(random: &mut Random, tally: &mut Tally, [x, y]: [&Setup; 2], count
         }
         let q = [x.draw(random), y.draw(random)];
         let points = [x.model.positions(&q[0]), y.model.positions(&q[1])];
-        let [p, r] = [&points[0], &points[1]].map(|p| p.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>());
+        let [p, r] =
+            [&points[0], &points[1]].map(|p| p.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>());
         let Ok(found) = a.against(&p, &mut b, &r) else {
             tally.reach("refused q");
             continue;
