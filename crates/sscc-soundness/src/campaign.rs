@@ -6,6 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path as File, PathBuf};
 use std::time::{Duration, Instant};
 
+use cpu_time::ThreadTime;
+
 use crate::exact::work;
 use crate::paths::{self, PATHS, Path};
 use crate::random::Random;
@@ -59,7 +61,7 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
         let next = next_path(&record, chosen, campaign.time.is_some());
         let Some(i) = next.filter(|_| campaign.time.is_none_or(|time| start.elapsed() < time)) else { break };
         let (path, counters) = (&PATHS[i], &mut record.paths[i]);
-        let (number, begin) = (counters.configurations, Instant::now());
+        let (number, begin) = (counters.configurations, ThreadTime::now());
         let tally = configuration(path, record.seed, number, 1.0);
         counters.configurations += 1;
         counters.seconds += begin.elapsed().as_secs_f64();
@@ -135,7 +137,7 @@ pub fn run_quick(
     for (i, (path, counters)) in PATHS.iter().zip(&mut record.paths).enumerate() {
         let count = if chosen.is_none_or(|chosen| chosen == i) { configurations } else { 0 };
         for number in 0..count {
-            let begin = Instant::now();
+            let begin = ThreadTime::now();
             let tally = configuration(path, seed, number, QUICK);
             if !tally.is_clean() {
                 report(&failure(path, seed, number, &tally));

@@ -28,7 +28,7 @@ pub struct PathRecord {
     pub tally: Tally,
     /// Configurations that were run: the number of the next one.
     pub configurations: u64,
-    /// The time that they took.
+    /// The time of the processor that they took.
     pub seconds: f64,
 }
 

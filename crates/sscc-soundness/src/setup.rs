@@ -93,7 +93,7 @@ impl Setup {
         let center = if wanted.has_center { Some(shift(random, &model, size)) } else { None };
         let with_one_vertex = random.one_in(3);
         let neighbours = if with_one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
-        let (weld, ignore_rest) = (random.one_in(2), random.one_in(6));
+        let (weld, ignore_rest) = (!random.one_in(6), random.one_in(6));
         let options = CertifyOptions::default()
             .metric(metric(random, &reduced, wanted.is_dense)?)
             .center(center)
@@ -201,6 +201,6 @@ fn reach(model: &Model, y: &[f64]) -> f64 {
 /// A centre that moves vertices by up to a third of the model's size.
 fn shift(random: &mut Random, model: &Model, size: f64) -> Vec<f64> {
     let y = direction(random, model);
-    let scale = size * random.power(-4.0, -0.5) / reach(model, &y);
+    let scale = size * random.power(-4.0, -1.3) / reach(model, &y);
     if scale.is_finite() { y.iter().map(|y| y * scale).collect() } else { vec![0.0; model.rank] }
 }

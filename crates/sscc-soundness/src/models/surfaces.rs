@@ -13,6 +13,8 @@ pub struct Surface {
     pub faces: Vec<[u32; 3]>,
     /// The part of each vertex: a layer, or 0.
     pub parts: Vec<usize>,
+    /// How near parts come to each other, about: noise stays below it, most of the time.
+    pub gap: f64,
 }
 
 /// A grid of squares, each as two triangles, at the places that a function of two shares has.
@@ -37,14 +39,16 @@ fn sheet(columns: usize, rows: usize, at: impl Fn(f64, f64) -> Point) -> (Vec<Po
 fn layers(random: &mut Random, least: usize) -> Surface {
     let count = 2 + random.below(4);
     let side = (((least / count) as f64 / 2.0).sqrt().ceil() as usize).max(2);
-    let (gap, wave) =
-        (random.power(-15.0, -0.5), if random.one_in(2) { 0.0 } else { random.power(-3.0, -0.7) });
+    let smallest = if random.one_in(5) { -15.0 } else { -8.0 };
+    let gap = random.power(smallest, -0.5);
+    let wave = if random.one_in(2) { 0.0 } else { random.power(-3.0, -0.7) };
     let turn = if random.one_in(2) { 0.0 } else { random.signed() };
     let mut surface = Surface {
         name: format!("{count} layers at {gap:.0e}"),
         points: vec![],
         faces: vec![],
         parts: vec![],
+        gap,
     };
     for layer in 0..count {
         let (points, faces) = sheet(side, side, |u, v| {
@@ -61,28 +65,35 @@ fn layers(random: &mut Random, least: usize) -> Surface {
 }
 
 fn roll(random: &mut Random, least: usize) -> Surface {
-    let (turns, gap) = (random.power(0.0, 0.6), random.power(-6.0, -0.7));
+    let (turns, gap) = (random.power(0.0, 0.6), random.power(-2.2, -0.7));
     let rows = 2 + random.below(4);
     let (points, faces) = sheet((least / (2 * rows)).max(4), rows, |u, v| {
         let angle = turns * std::f64::consts::TAU * u;
         let radius = 0.3 + gap * turns * u;
         [radius * angle.cos(), radius * angle.sin(), 0.5 * v]
     });
-    Surface { name: format!("roll at {gap:.0e}"), parts: vec![0; points.len()], points, faces }
+    Surface {
+        name: format!("roll at {gap:.0e}"),
+        parts: vec![0; points.len()],
+        points,
+        faces,
+        gap: 0.1 * gap,
+    }
 }
 
 fn needles(random: &mut Random, least: usize) -> Surface {
     let thin = random.power(-12.0, -3.0);
     let (points, faces) = sheet((least / 4).max(4), 2, |u, v| {
         let bend = (3.0 * u).sin();
-        [(9.0 * u).cos() + thin * v, (9.0 * u).sin() * (0.4 + 0.6 * u), 0.1 * bend + 0.5 * v * thin.sqrt()]
+        let radius = 0.4 + 0.6 * u;
+        [(9.0 * u).cos() * radius + thin * v, (9.0 * u).sin() * radius, 0.1 * bend + 0.5 * v * thin.sqrt()]
     });
-    Surface { name: format!("needles {thin:.0e}"), parts: vec![0; points.len()], points, faces }
+    Surface { name: format!("needles {thin:.0e}"), parts: vec![0; points.len()], points, faces, gap: thin }
 }
 
 /// A folded sheet in one plane, or along one line.
 fn flat(random: &mut Random, least: usize) -> Surface {
-    let (folds, is_line) = (1.0 + random.below(3) as f64, random.one_in(3));
+    let (folds, is_line) = (random.of(&[1.0, 1.0, 2.0, 3.0]), random.one_in(5));
     let side = ((least as f64 / 2.0).sqrt().ceil() as usize).max(4);
     let slope = if random.one_in(2) { [0.0, 0.0] } else { [random.signed(), random.signed()] };
     let (points, faces) = sheet(side, side, |u, v| {
@@ -91,7 +102,7 @@ fn flat(random: &mut Random, least: usize) -> Surface {
         [x, y, slope[0] * x + slope[1] * y]
     });
     let kind = if is_line { "collinear" } else { "flat" };
-    Surface { name: format!("{kind} mesh"), parts: vec![0; points.len()], points, faces }
+    Surface { name: format!("{kind} mesh"), parts: vec![0; points.len()], points, faces, gap: 1e-3 }
 }
 
 /// Small triangles with corners on a grid of integers: contacts of every exact kind.
@@ -108,14 +119,14 @@ fn soup(random: &mut Random, least: usize) -> Surface {
         faces.push(if random.one_in(3) { [first, first + 1, old] } else { [first, first + 1, first + 2] });
     }
     let parts = (0..points.len()).map(|v| v / 3).collect();
-    Surface { name: format!("soup of {size}"), points, faces, parts }
+    Surface { name: format!("soup of {size}"), points, faces, parts, gap: 1e-3 }
 }
 
 fn flexible(random: &mut Random) -> Surface {
     let kind = random.of(&Shape::ALL);
     let FlexibleShape { positions, faces, .. } = FlexibleShape::new(random.bits(), kind, 1);
     let points: Vec<Point> = positions.iter().map(|p| p.to_array()).collect();
-    Surface { name: format!("{kind:?}"), parts: vec![0; points.len()], points, faces }
+    Surface { name: format!("{kind:?}"), parts: vec![0; points.len()], points, faces, gap: 1e-3 }
 }
 
 /// A random surface of at least about so many triangles.
@@ -129,7 +140,8 @@ pub fn random(random: &mut Random, least: usize) -> Surface {
         _ => flexible(random),
     };
     if random.one_in(3) {
-        let noise = random.power(-16.0, -3.0);
+        let most = if random.one_in(6) { 1.0 } else { 0.1 * surface.gap };
+        let noise = most * random.power(-9.0, 0.0);
         surface.points.iter_mut().for_each(|p| {
             let by = random.point();
             *p = std::array::from_fn(|c| p[c] + noise * by[c]);

@@ -24,7 +24,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let with_one_vertex = random.one_in(3);
     let neighbours = if with_one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
     // Vertices that are welded at rest may move apart; only with the rule that excludes neighbours is that of no account.
-    let weld = !with_one_vertex && random.one_in(2);
+    let weld = !with_one_vertex && !random.one_in(6);
     let Ok(mut detector) = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(weld)) else {
         return;
     };
