@@ -5,6 +5,7 @@ mod cones;
 mod interval;
 mod moving;
 mod number;
+mod point;
 mod segments;
 mod separation;
 mod triangles;
@@ -14,10 +15,5 @@ mod wide;
 pub mod work;
 
 pub use moving::{Verdict, free_until};
+pub use point::{Point, Triangle};
 pub use triangles::{meet, meet_beyond_corner};
-
-/// A point as plain numbers.
-pub type Point = [f64; 3];
-
-/// The corners of a triangle.
-pub type Triangle = [Point; 3];

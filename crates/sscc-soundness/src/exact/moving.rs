@@ -6,11 +6,12 @@
 
 use super::interval::Interval;
 use super::number::Number;
+use super::point::Triangle;
 use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
 use super::vectors::Vector;
 use super::whole::{Unit, Whole};
-use super::{Triangle, work};
+use super::work;
 
 /// What is known of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

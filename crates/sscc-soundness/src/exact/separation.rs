@@ -2,8 +2,8 @@
 
 use super::interval::Interval;
 use super::number::Number;
+use super::point::{Point, Triangle};
 use super::vectors::{Vector, dot};
-use super::{Point, Triangle};
 
 /// Directions that may separate two triangles.
 fn directions(a: &Triangle, b: &Triangle) -> Vec<Point> {

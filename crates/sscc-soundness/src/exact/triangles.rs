@@ -6,12 +6,13 @@
 use super::cones::cones_meet;
 use super::interval::Interval;
 use super::number::Number;
+use super::point::{Point, Triangle};
 use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
 use super::vectors::{Vector, cross, dot, minus};
 use super::whole::Unit;
 use super::wide::fits;
-use super::{Point, Triangle, work};
+use super::work;
 
 /// Whether the corners of one triangle are all strictly on one side of the plane of the other. False where it is not decided.
 fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {

@@ -2,8 +2,8 @@
 
 use num_bigint::{BigInt, Sign};
 
-use super::Point;
 use super::number::Number;
+use super::point::Point;
 use super::wide::Wide;
 
 /// A number in units of a [`Unit`], or of one of its powers.

@@ -4,7 +4,7 @@
 use sscc::{Impact, Proof, Query};
 
 use super::moving_pairs::{Effort, Ends, attack_free, attack_impact};
-use super::some;
+use super::share::some;
 use crate::exact::Point;
 use crate::exact::work;
 use crate::models::Extremes;

@@ -4,7 +4,7 @@
 use sscc::parts::ProvenShares;
 use sscc::{Proof, Query, Statistics};
 
-use super::some;
+use super::share::some;
 use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;
@@ -57,7 +57,7 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
             break;
         }
         let (a, b) = (&free[random.below(free.len())], &colliding[random.below(colliding.len())]);
-        asker.bisect(a, b, some(48, share));
+        asker.bisect(a, b, 44);
     }
 }
 

@@ -3,7 +3,8 @@
 use sscc::glam::DVec3;
 use sscc::{ContactFilter, Detector, Neighbours};
 
-use super::{continuous, some};
+use super::continuous;
+use super::share::some;
 use crate::exact::Point;
 use crate::exact::work;
 use crate::models::{Extremes, Model};

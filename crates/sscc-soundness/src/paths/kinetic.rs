@@ -2,7 +2,7 @@
 
 use sscc::{KineticQuery, Proof};
 
-use super::some;
+use super::share::some;
 use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;

@@ -3,7 +3,7 @@
 
 use sscc::{Query, ResolveOptions, SweepOutcome};
 
-use super::some;
+use super::share::some;
 use crate::exact::work;
 use crate::models::Extremes;
 use crate::random::Random;

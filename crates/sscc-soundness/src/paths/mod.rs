@@ -8,6 +8,7 @@ mod kinetic;
 mod lines;
 mod moving_pairs;
 mod posed;
+mod share;
 mod triangle_pairs;
 
 use crate::random::Random;
@@ -90,9 +91,4 @@ pub const PATHS: [Path; 12] = [
 /// The path of that name.
 pub fn find(name: &str) -> Option<&'static Path> {
     PATHS.iter().find(|path| path.name == name)
-}
-
-/// How many of `count` a share asks for.
-fn some(count: usize, share: f64) -> usize {
-    ((count as f64 * share) as usize).clamp(1, count)
 }

@@ -6,7 +6,7 @@ use num_rational::BigRational;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
 use sscc_testing::{first_contact, squared_distance};
 
-use super::some;
+use super::share::some;
 use super::triangle_pairs::corners;
 use crate::exact::{Triangle, Verdict, free_until, meet};
 use crate::models::pairs;

@@ -5,7 +5,7 @@ use sscc::parts::{Pose, PosedShape, SweptShape};
 use sscc::{Detector, Impact};
 
 use super::moving_pairs::{Effort, Ends, attack_impact};
-use super::some;
+use super::share::some;
 use crate::exact::work;
 use crate::exact::{Point, Triangle};
 use crate::models::Extremes;

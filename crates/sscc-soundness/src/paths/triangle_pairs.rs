@@ -4,7 +4,7 @@ use sscc::glam::DVec3;
 use sscc::parts::{intersect_shared_vertex_pair, intersection_triangle_triangle};
 use sscc::{distance_triangle_triangle, intersect_triangle_triangle};
 
-use super::some;
+use super::share::some;
 use crate::exact::{Point, Triangle, meet, meet_beyond_corner};
 use crate::models::pairs;
 use crate::random::Random;
