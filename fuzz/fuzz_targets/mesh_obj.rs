@@ -9,7 +9,7 @@ fuzz_target!(|bytes: &[u8]| bounded(bytes, attack));
 
 fn attack(bytes: &[u8]) {
     one_line(sscc_io::mesh::obj::parse(bytes));
-    for by in GroupsBy::ALL {
-        one_line(sscc_io::mesh::obj::parse_groups(bytes, by));
+    for by in [GroupsBy::Group, GroupsBy::Object, GroupsBy::Mesh, GroupsBy::Material] {
+        one_line(sscc_io::mesh::obj::groups(bytes, by));
     }
 }

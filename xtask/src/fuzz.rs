@@ -18,6 +18,9 @@ const FLAGS: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-leve
 /// The triple without which the flags would also apply to build scripts.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
+/// The target that needs simulations, which take most of the time of the build.
+const SCENE: &str = "scene";
+
 /// Memory of a target (MB), and seconds for an input: the last resort beside the bounds that targets assert.
 const LIMITS: [&str; 3] = ["-rss_limit_mb=2048", "-malloc_limit_mb=512", "-timeout=20"];
 
@@ -44,8 +47,9 @@ fn fuzz(seconds: u32, names: &[String]) -> Result<(), String> {
     if let Some(name) = names.iter().find(|name| !all.contains(name)) {
         return Err(format!("no target '{name}'; there are: {}", all.join(", ")));
     }
-    let programs = build()?;
-    for name in all.iter().filter(|name| names.is_empty() || names.contains(name)) {
+    let chosen = || all.iter().filter(|name| names.is_empty() || names.contains(name));
+    let programs = build(chosen().any(|name| name == SCENE))?;
+    for name in chosen() {
         let folder = root().join("target/fuzz").join(name);
         fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         println!("== {name}, {seconds} s");
@@ -69,11 +73,12 @@ fn targets() -> Result<Vec<String>, String> {
     Ok(names)
 }
 
-/// Compiles them. Returns the folder of the programs.
-fn build() -> Result<PathBuf, String> {
+/// Compiles them, with or without [`SCENE`]. Returns the folder of the programs.
+fn build(with_scene: bool) -> Result<PathBuf, String> {
     let folder = root().join("target/fuzz-build");
     let mut build = cargo();
     build.args(["build", "--release", "--quiet", "--target", TARGET, "--target-dir"]).arg(&folder);
+    build.args(with_scene.then_some("--features=scenes"));
     build.env("RUSTFLAGS", FLAGS).env("RUSTC_BOOTSTRAP", "1");
     succeed(build.current_dir(root().join("fuzz")), "the targets cannot be built")?;
     Ok(folder.join(Path::new(TARGET).join("release")))

@@ -1,7 +1,7 @@
 //! Intervals of doubles that contain the exact number.
 //!
 //! A bound that is rounded to nearest is moved by one unit in the last place, so it is never inside. A sum or difference that
-//! rounds to 0 is exactly 0 (gradual underflow), and so is a product with 0.
+//! rounds to 0 is exactly 0 (gradual underflow), and so is a product with 0; a sum with 0 is exact.
 
 use super::number::Number;
 
@@ -23,14 +23,19 @@ impl Interval {
     }
 }
 
+/// Whether a sum is exact for sure.
+fn is_exact(x: f64, y: f64, sum: f64) -> bool {
+    sum == 0.0 || x == 0.0 || y == 0.0
+}
+
 fn sum_down(x: f64, y: f64) -> f64 {
     let sum = x + y;
-    if sum == 0.0 { sum } else { sum.next_down() }
+    if is_exact(x, y, sum) { sum } else { sum.next_down() }
 }
 
 fn sum_up(x: f64, y: f64) -> f64 {
     let sum = x + y;
-    if sum == 0.0 { sum } else { sum.next_up() }
+    if is_exact(x, y, sum) { sum } else { sum.next_up() }
 }
 
 impl Number for Interval {

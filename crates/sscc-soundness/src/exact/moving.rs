@@ -155,7 +155,7 @@ mod tests {
         let falls = |from: f64, to: f64, until: f64| {
             free_until([&FLOOR, &FLOOR], [&at_height(from), &at_height(to)], until)
         };
-        assert_eq!(falls(1.0, f64::from_bits(1), 1.0), Verdict::Free);
+        assert_eq!(falls(1.0, 1e-300, 1.0), Verdict::Free);
         assert_eq!(falls(1.0, 0.0, 1.0), Verdict::Contact(1.0));
         assert_eq!(falls(3.0, -1.0, 0.75), Verdict::Contact(0.75));
         assert_eq!(falls(3.0, -1.0, 0.749), Verdict::Free);

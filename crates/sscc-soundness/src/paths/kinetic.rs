@@ -25,7 +25,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     };
     for _ in 0..some(6, share) {
         // The same query: a jump from one motion to the next.
-        motion(random, tally, &setup, &mut query, some(150, share));
+        motion(random, tally, &setup, &mut query, 120);
     }
 }
 
