@@ -7,7 +7,6 @@ mod deny;
 mod digests;
 mod environment;
 mod extension;
-mod fuzz;
 mod kept_list;
 mod layers;
 mod lines;
@@ -33,7 +32,7 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 20] = [
+const TASKS: [Task; 19] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
@@ -50,7 +49,6 @@ const TASKS: [Task; 20] = [
         "[--hours H] [--seed S] [--quick] [--write]: attacks answers with exact arithmetic",
         soundness::run,
     ),
-    ("fuzz", "[--seconds N] [targets]: attacks readers with inputs of libFuzzer", fuzz::run),
     ("digests", "[--write]: the same bytes on every machine", digests::run),
     ("package", "[--verify]: packs the crates that are published", package::run),
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),

@@ -15,7 +15,7 @@ const REACHED: [(&str, &str); 9] = [
     ("moving-pairs", "impact checked"),
     ("moving-pairs", "proven free"),
     ("discrete", "proof by search"),
-    ("kinetic", "active pairs"),
+    ("kinetic", "searches"),
     ("continuous", "pairs proven free"),
     ("posed", "two meshes"),
     ("frames", "swept"),
