@@ -3,14 +3,14 @@
 //! A host can change the floating-point mode of a thread: audio threads often flush small numbers to zero. Then rounding
 //! bounds are too small, and a difference of two positions may be 0 though they differ. Meshes, certificates, queries,
 //! detectors and shapes check the mode when they are made, and so does every search; a query that the root's radius answers
-//! does not, since the check takes about a tenth of its time.
+//! does not, so that it stays one comparison.
 
 use std::hint::black_box;
 
 use crate::Error;
 
 /// Refuses a thread whose floating-point mode is not that of the proofs. No operand is a subnormal number but that of one
-/// comparison, since some processors take a hundred times longer for those.
+/// comparison, since some processors take much longer for those.
 ///
 /// # Errors
 /// [`Error::Arithmetic`].
