@@ -21,6 +21,7 @@ mod public;
 mod python;
 mod serial;
 mod site;
+mod soundness;
 mod sources;
 mod tally;
 mod test;
@@ -31,7 +32,7 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 18] = [
+const TASKS: [Task; 19] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
@@ -43,6 +44,11 @@ const TASKS: [Task; 18] = [
     ("lines", "counts the lines of the product", lines::run),
     ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
     ("mutants", "[names]: the tests catch wrong variants of the core", mutants::run),
+    (
+        "soundness",
+        "[--hours H] [--seed S] [--quick] [--write]: attacks answers with exact arithmetic",
+        soundness::run,
+    ),
     ("digests", "[--write]: the same bytes on every machine", digests::run),
     ("package", "[--verify]: packs the crates that are published", package::run),
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),

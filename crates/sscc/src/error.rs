@@ -7,6 +7,14 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A thread whose floating-point mode is not that of the proofs.
+    #[error(
+        "the floating-point mode of this thread is not that of the proofs: {what}; set round to nearest and gradual underflow"
+    )]
+    Arithmetic {
+        /// What the thread does.
+        what: &'static str,
+    },
     /// A mesh without faces.
     #[error("the mesh has no triangles")]
     NoFaces,

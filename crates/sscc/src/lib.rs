@@ -278,6 +278,7 @@ mod names;
 #[macro_use]
 mod setters;
 
+mod arithmetic;
 mod audit;
 mod bounds;
 mod cancel_token;

@@ -3,7 +3,7 @@
 use crate::sources::Crate;
 
 /// Crates whose messages are those of the command and of the tasks.
-const FRONT_ENDS: [&str; 3] = ["sscc-cli", "sscc-bench", "xtask"];
+const FRONT_ENDS: [&str; 4] = ["sscc-cli", "sscc-bench", "sscc-soundness", "xtask"];
 
 /// Returns the places where a library names a flag.
 pub fn flags(krate: &Crate) -> Vec<String> {

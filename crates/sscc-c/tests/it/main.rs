@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod answers;
+#[cfg(target_arch = "x86_64")]
+mod arithmetic;
 mod bad_input;
 mod callbacks;
 mod common;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::arithmetic::check_arithmetic;
 use crate::{Error, limits};
 
 /// A triangle mesh: rest positions (V, model unit) and faces (N, three vertex indices each).
@@ -22,9 +23,10 @@ impl TriMesh {
     /// Takes rest positions (model unit) and faces (indices into them).
     ///
     /// # Errors
-    /// When there is no face, a face names a vertex that does not exist, a coordinate is not finite or
+    /// When this thread does not compute as IEEE 754 says ([`Error::Arithmetic`]), there is no face, a face names a vertex that does not exist, a coordinate is not finite or
     /// larger than [`limits::LARGEST`], or there are more than `u32::MAX` vertices or faces.
     pub fn new(rest_positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, Error> {
+        check_arithmetic()?;
         if faces.is_empty() {
             return Err(Error::NoFaces);
         }

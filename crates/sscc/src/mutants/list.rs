@@ -430,4 +430,10 @@ mutants! {
     LocalEigenvalueUnproven: CaughtBy("lib query::smallest_stretch::tests::eigenvalues_of_tiny_matrices_are_lower_bounds");
     /// A certificate proves pairs of two nodes of its list.
     LocalRingWithRing: CaughtBy("lib query::local_proofs::tests::certificates_prove_their_node_and_its_pairs_with_their_list_alone");
+    /// A thread that rounds upward, or ties away from zero, is accepted.
+    UpwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    /// A thread that rounds downward or to zero is accepted.
+    DownwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    /// A thread that flushes small numbers to zero is accepted.
+    FlushingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
 }

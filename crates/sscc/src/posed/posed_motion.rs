@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::pose::Pose;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{InWorld, VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
@@ -53,6 +54,7 @@ impl<const E: usize> PosedMotion<E> {
         q: [&[f64]; E],
         pose: [&Pose; E],
     ) -> Result<Aabb, Error> {
+        check_arithmetic()?;
         let (mut all, mut all_own) = (0.0_f64, 0.0_f64);
         for (q, pose) in q.into_iter().zip(pose) {
             let own = model.check_coordinates(q)?;

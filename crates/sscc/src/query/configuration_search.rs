@@ -5,6 +5,7 @@ use super::configuration::Configuration;
 use super::context::QueryContext;
 use super::method::Method;
 use crate::Error;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::answer::{Proof, Statistics};
 use crate::detect::narrow_phase::{DiscreteHits, NarrowPhase};
 use crate::detect::search::Counters;
@@ -37,7 +38,7 @@ impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
     /// [`QueryContext::is_proven_free`] is false.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When this thread does not compute as the proofs assume, or it was cancelled.
     #[inline]
     pub(super) fn find(
         &mut self,
@@ -61,6 +62,7 @@ impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
         norm: f64,
         limit: usize,
     ) -> Result<Proof, Error> {
+        check_arithmetic()?;
         let Self { certified, narrow } = self;
         if context.method == Method::BruteForce {
             let positions = |v| ends.map(|end| context.model.position(v, end.q));

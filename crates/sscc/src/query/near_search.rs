@@ -9,6 +9,7 @@ use super::configuration::Configuration;
 use super::configuration_check::ConfigurationCheck;
 use super::context::QueryContext;
 use super::widened_motion::WidenedMotion;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::{ClearanceHits, NarrowPhase, NearPair};
 use crate::detect::vertex_motion::DeformedMotion;
@@ -68,6 +69,7 @@ impl NearSearch {
         if self.context.is_proven_free(configuration.norm) {
             return Ok(Statistics::PROVEN_FREE);
         }
+        check_arithmetic()?;
         self.context.detect.cancel = cancel.cloned();
         self.narrow.distance = clearance.distance();
         let Configuration { norm, reach, .. } = configuration;

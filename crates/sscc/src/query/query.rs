@@ -9,6 +9,7 @@ use super::configuration_search::{DiscreteSearch, SweptSearch};
 use super::context::QueryContext;
 use super::method::Method;
 use super::near_search::NearSearch;
+use crate::arithmetic::check_arithmetic;
 use crate::certificates::CertificateParts;
 use crate::certificates::Scope;
 use crate::detect::answer::Statistics;
@@ -73,6 +74,7 @@ impl Query {
         certificates: &Certificates,
         method: Method,
     ) -> Result<Self, Error> {
+        check_arithmetic()?;
         certificates.check_model(model)?;
         let CertificateParts { hierarchy, scope, .. } = certificates.parts();
         Ok(Self::build(model, Some(certificates), Arc::clone(scope), Arc::clone(hierarchy), method))
@@ -88,6 +90,7 @@ impl Query {
         scope: impl Into<Arc<Scope>>,
         method: Method,
     ) -> Result<Self, Error> {
+        check_arithmetic()?;
         let scope = scope.into();
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         model.check_coordinates(&scope.center)?;

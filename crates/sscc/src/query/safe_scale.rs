@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::local_scales::LocalScales;
 use super::query::Query;
+use crate::arithmetic::check_arithmetic;
 use crate::bounds::{ConfigurationLine, MovingAabb};
 use crate::certificates::PairTree;
 use crate::certificates::StoredPair;
@@ -28,6 +29,7 @@ impl Query {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
+        check_arithmetic()?;
         self.forget();
         self.norm = self.measure(q)?.norm;
         let line = ConfigurationLine::new(&self.context.model, &self.context.scope.center, q);

@@ -6,6 +6,7 @@ use super::executor::{Executor, ThreadExecutor};
 use super::node_radii::NodeRadii;
 use super::pair_tree_builder::PairTreeBuilder;
 use super::preparation::Preparation;
+use crate::arithmetic::check_arithmetic;
 use crate::certificates::pair_tree::{PairEntry, PairTree};
 use crate::certificates::{CertificateParts, Certificates, CertifyOptions, LocalCertificates};
 use crate::hierarchy::{Hierarchy, Node};
@@ -23,6 +24,7 @@ impl Certificates {
         options: &CertifyOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
+        check_arithmetic()?;
         on_threads(options.threads, || {
             let preparation = Preparation::new(model, options, progress)?;
             let mut executor = ThreadExecutor { preparation: &preparation, progress };

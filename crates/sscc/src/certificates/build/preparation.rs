@@ -7,6 +7,7 @@ use super::global_radius::{farthest_radius, global_radius};
 use super::node_groups::NodeGroups;
 use super::radius_search::RadiusSearch;
 use super::radius_search_context::RadiusSearchContext;
+use crate::arithmetic::check_arithmetic;
 use crate::bounds::NodePairBounds;
 use crate::certificates::local::compute_local_certificates;
 use crate::certificates::{CertifyOptions, Digest, LocalCertificates, Scope, default_exceptions, is_reach};
@@ -45,6 +46,7 @@ impl Preparation {
         options: &CertifyOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
+        check_arithmetic()?;
         if !(options.epsilon > 0.0 && options.epsilon < 1.0) {
             return Err(Error::Option { name: "epsilon", value: options.epsilon, wanted: "between 0 and 1" });
         }

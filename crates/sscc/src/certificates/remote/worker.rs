@@ -3,6 +3,7 @@
 use super::job::Job;
 use super::job_result::JobResult;
 use super::seal::Key;
+use crate::arithmetic::check_arithmetic;
 use crate::certificates::CertifyOptions;
 use crate::certificates::build::{AddedPairLimit, Preparation, run_task};
 use crate::parallel::on_threads;
@@ -36,6 +37,7 @@ impl ShardWorker {
     /// # Errors
     /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; when `progress` cancels.
     pub fn run(&self, job: &[u8], progress: &dyn Progress) -> Result<Vec<u8>, Error> {
+        check_arithmetic()?;
         let name = Key::name(job);
         let job = Job::read(&self.preparation.hierarchy, self.key.open("a job", job)?)
             .ok_or_else(|| Error::Shard("a job is not of this hierarchy".to_owned()))?;

@@ -10,6 +10,7 @@ use super::clearance_search::ClearanceSearch;
 use super::components::Components;
 use super::detector_search::{DetectorSearch, Refit};
 use super::given_motion::GivenMotion;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::answer::Statistics;
 use crate::detect::context::Context;
 use crate::detect::layout::Layout;
@@ -203,6 +204,7 @@ impl Detector {
         &mut self,
         positions: [&'x [DVec3]; E],
     ) -> Result<GivenMotion<'x, E>, Error> {
+        check_arithmetic()?;
         self.statistics = self.statistics.forget();
         for x in positions {
             check_count(x.len(), self.vertex_count)?;

@@ -10,6 +10,7 @@ use super::region_pairs::RegionPairs;
 use super::region_search::RegionSearch;
 use super::safe_distance::SafeDistances;
 use super::step_history::StepHistory;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Counters;
@@ -237,6 +238,7 @@ impl KineticQuery {
     }
 
     fn find_beyond_root(&mut self, configuration: Configuration<'_>) -> Result<(), Error> {
+        check_arithmetic()?;
         let Configuration { q, norm, .. } = configuration;
         let metric = &self.query.context.scope.metric;
         let mut step = self.history.distance(metric, q);
