@@ -1,34 +1,62 @@
 //! `cargo xtask digests`: prints digests of certificates and answers of five small models, and compares them with those in
 //! [`RECORD`], which are the same on every machine.
 
+use std::env;
 use std::fs;
-use std::process::ExitCode;
+use std::path::Path;
+use std::process::{Command, ExitCode};
 
 use crate::program::{cargo, exit_code, output, root, usage};
 
 /// The record, below the root.
 const RECORD: &str = "docs/records/digests.txt";
 
+/// What is said of the example where it fails.
+const FAILURE: &str = "the digests cannot be computed";
+
 /// Compares, or with `--write` writes the record.
 pub fn run(arguments: &[String]) -> ExitCode {
     match arguments {
-        [] => exit_code(compare(false)),
-        [flag] if flag == "--write" => exit_code(compare(true)),
+        [] => exit_code(print(false)),
+        [flag] if flag == "--write" => exit_code(print(true)),
         _ => usage("digests [--write]    (digests of certificates and answers; --write: writes the record)"),
     }
 }
 
-fn compare(write: bool) -> Result<(), String> {
+/// Writes the models and the bytes of certificates and answers to a folder, and compares their digests. With `is_built`, `cargo
+/// test` has built the example.
+pub fn write_bytes(folder: &Path, is_built: bool) -> Result<(), String> {
+    if !is_built {
+        return compare(&compute(Some(folder))?);
+    }
+    // Another set of features would compile all dependencies of the example once more.
+    let program = env::current_exe().map_err(|error| error.to_string())?;
+    let program = program.with_file_name("examples").join(format!("digests{}", env::consts::EXE_SUFFIX));
+    compare(&output(Command::new(program).arg(folder), FAILURE)?)
+}
+
+/// Runs the example, and returns what it prints.
+fn compute(folder: Option<&Path>) -> Result<String, String> {
     let mut program = cargo();
     program
-        .args(["run", "--quiet", "--package", "sscc-examples", "--example", "digests"])
+        .args(["run", "--quiet", "--package", "sscc-examples", "--example", "digests", "--"])
+        .args(folder)
         .current_dir(root());
-    let found = output(&mut program, "the digests cannot be computed")?;
+    output(&mut program, FAILURE)
+}
+
+/// Prints the digests, and compares them or writes the record.
+fn print(write: bool) -> Result<(), String> {
+    let found = compute(None)?;
     print!("{found}");
-    let path = root().join(RECORD);
-    if write {
-        return fs::write(&path, found).map_err(|error| format!("{RECORD}: {error}"));
+    if !write {
+        return compare(&found);
     }
+    fs::write(root().join(RECORD), found).map_err(|error| format!("{RECORD}: {error}"))
+}
+
+fn compare(found: &str) -> Result<(), String> {
+    let path = root().join(RECORD);
     let record = fs::read_to_string(&path).map_err(|error| format!("{RECORD}: {error}"))?;
     match found.lines().zip(record.lines()).find(|(found, record)| found != record) {
         Some((found, record)) => Err(format!("{RECORD} has '{}', found '{}'", record.trim(), found.trim())),

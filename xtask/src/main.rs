@@ -24,6 +24,7 @@ mod site;
 mod sources;
 mod tally;
 mod test;
+mod wasm;
 mod wheel;
 
 use std::process::ExitCode;
@@ -31,11 +32,12 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 18] = [
+const TASKS: [Task; 19] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
     ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
+    ("wasm", "[--test]: builds the package for npm, and tests it in Node and in a browser", wasm::run),
     ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),

@@ -5,6 +5,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
+use std::sync::{Mutex, PoisonError};
 
 use crate::debian;
 use crate::program::{cargo, run_and_forward};
@@ -77,7 +78,7 @@ pub fn test(log: &Path, is_command_built: bool) -> Tally {
 }
 
 /// Checks that Node is installed and new enough.
-fn node() -> Result<(), String> {
+pub fn node() -> Result<(), String> {
     let output = Command::new("node").arg("--version").output();
     let output =
         output.map_err(|_| format!("Node {}.{} or newer is not installed", MIN_NODE.0, MIN_NODE.1))?;
@@ -101,8 +102,16 @@ fn npm(arguments: &[&str]) -> Result<(), String> {
     }
 }
 
+/// Checks that a browser and the program that drives it are installed. With `install`, tries to install a browser.
+pub fn browser(install: bool) -> Result<(), String> {
+    self::install().and_then(|()| chromium(install))
+}
+
 /// Installs the packages of the lock file, if they are not installed.
 fn install() -> Result<(), String> {
+    // Tests that run at the same time install them once.
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let viewer = root().join("viewer");
     let lock =
         fs::read(viewer.join("package-lock.json")).map_err(|e| format!("viewer/package-lock.json: {e}"))?;
@@ -176,11 +185,16 @@ fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
     let mut text = String::new();
     let success = run_and_forward(&mut tests, |line| text.extend([line, "\n"]))
         .map_err(|e| format!("npm cannot be run: {e}"))?;
-    let mut tally = results(&text);
+    Ok(tally(success, &text))
+}
+
+/// The results of a run whose output is TAP.
+pub fn tally(success: bool, text: &str) -> Tally {
+    let mut tally = results(text);
     if !success && tally.failed == 0 {
         tally.failed = 1;
     }
-    Ok(tally)
+    tally
 }
 
 /// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. Skipped and cancelled tests count as
