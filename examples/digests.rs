@@ -63,11 +63,14 @@ fn run() -> Result<(), Box<dyn Error>> {
             blake3::hash(&answers)
         );
         if let Some(out) = &out {
+            let weld = model.mesh().has_split_vertices();
             let model = model_to_bytes(&model, &ModelInfo::new("", "digests"))?;
             for (part, bytes) in [("model", &model), ("certificates", &bytes), ("answers", &answers)] {
                 fs::write(out.join(format!("{name}.{part}")), bytes)?;
             }
-            listed.push(json!({"name": name, "neighbours": neighbours.to_string(), "motion": motion}));
+            listed.push(
+                json!({"name": name, "neighbours": neighbours.to_string(), "weld": weld, "motion": motion}),
+            );
         }
     }
     if let Some(out) = &out {

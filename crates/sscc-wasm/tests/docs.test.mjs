@@ -27,6 +27,6 @@ test("the programs of the document print what it shows", () => {
 
 test("the program of the README runs", () => {
     const [, program] = /```js\n(.*?)```/s.exec(readFileSync(readme, "utf8"));
-    const bytes = `import { readFileSync } from "node:fs";\nconst bytes = readFileSync(${JSON.stringify(join(process.env.SSCC_DIGESTS, "mouth.model"))});\n`;
+    const bytes = `import { readFileSync } from "node:fs";\nconst bytes = readFileSync(${JSON.stringify(join(process.env.SSCC_DIGESTS, "strips.model"))});\n`;
     assert.equal(run(bytes + program.replace(/(query\.discrete.*);/, "console.log($1.length);")), "0\n");
 });

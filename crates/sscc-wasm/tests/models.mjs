@@ -50,10 +50,10 @@ function answers({ Query }, model, certificates, motion) {
 export async function compare(sscc, read) {
     const models = JSON.parse(new TextDecoder().decode(await read("models.json")));
     const differences = [];
-    for (const { name, neighbours, motion } of models) {
+    for (const { name, neighbours, weld, motion } of models) {
         const file = await read(`${name}.model`);
         const model = sscc.Model.load(file);
-        const computed = model.certify({ neighbours });
+        const computed = model.certify({ neighbours, weld });
         const loaded = sscc.Certificates.load(await read(`${name}.certificates`));
         for (const [what, found, wanted] of [
             ["model", model.toBytes(), file],
