@@ -200,7 +200,7 @@ fn reports() {
     let report = ["--report", "page.html"];
     let package = |more: &str| fs::create_dir_all(folder.join("package").join(more)).unwrap();
     // The page without a program.
-    run(&report).success();
+    assert_eq!(run(&report).code, Some(0));
     let plain = fs::read_to_string(folder.join("page.html")).unwrap();
     assert!(
         plain.contains("\"root_radius\"") && !plain.contains("script-src 'unsafe-inline' 'wasm-unsafe-eval'")
@@ -221,7 +221,7 @@ fn reports() {
     assert!(!folder.join("page.html").exists());
     // The page with one.
     fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
-    run(&with).success();
+    assert_eq!(run(&with).code, Some(0));
     let html = fs::read_to_string(folder.join("page.html")).unwrap();
     assert!(
         html.contains("let ssccPackage = 1;")
