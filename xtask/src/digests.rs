@@ -1,18 +1,14 @@
 //! `cargo xtask digests`: prints digests of certificates and answers of five small models, and compares them with those in
 //! [`RECORD`], which are the same on every machine.
 
-use std::env;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use crate::program::{cargo, exit_code, output, root, usage};
 
 /// The record, below the root.
 const RECORD: &str = "docs/records/digests.txt";
-
-/// What is said of the example where it fails.
-const FAILURE: &str = "the digests cannot be computed";
 
 /// Compares, or with `--write` writes the record.
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -23,16 +19,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
 }
 
-/// Writes the models and the bytes of certificates and answers to a folder, and compares their digests. With `is_built`, `cargo
-/// test` has built the example.
-pub fn write_bytes(folder: &Path, is_built: bool) -> Result<(), String> {
-    if !is_built {
-        return compare(&compute(Some(folder))?);
-    }
-    // Another set of features would compile all dependencies of the example once more.
-    let program = env::current_exe().map_err(|error| error.to_string())?;
-    let program = program.with_file_name("examples").join(format!("digests{}", env::consts::EXE_SUFFIX));
-    compare(&output(Command::new(program).arg(folder), FAILURE)?)
+/// Writes the models and the bytes of certificates and answers to a folder, and compares their digests.
+pub fn write_bytes(folder: &Path) -> Result<(), String> {
+    compare(&compute(Some(folder))?)
 }
 
 /// Runs the example, and returns what it prints.
@@ -42,7 +31,7 @@ fn compute(folder: Option<&Path>) -> Result<String, String> {
         .args(["run", "--quiet", "--package", "sscc-examples", "--example", "digests", "--"])
         .args(folder)
         .current_dir(root());
-    output(&mut program, FAILURE)
+    output(&mut program, "the digests cannot be computed")
 }
 
 /// Prints the digests, and compares them or writes the record.

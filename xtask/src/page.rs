@@ -5,7 +5,6 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::sync::{Mutex, PoisonError};
 
 use crate::debian;
 use crate::program::{cargo, run_and_forward};
@@ -109,9 +108,6 @@ pub fn browser(install: bool) -> Result<(), String> {
 
 /// Installs the packages of the lock file, if they are not installed.
 fn install() -> Result<(), String> {
-    // Tests that run at the same time install them once.
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let viewer = root().join("viewer");
     let lock =
         fs::read(viewer.join("package-lock.json")).map_err(|e| format!("viewer/package-lock.json: {e}"))?;

@@ -10,9 +10,9 @@ use crate::page;
 use crate::program::{cargo, root, run_and_forward, succeed};
 use crate::tally::{SkipLog, Tally};
 
-/// Runs the tests of the package in `folder`. With `is_built`, `cargo test` has built the command.
-pub fn run(log: &Path, folder: &Path, is_built: bool) -> Tally {
-    let prepared = native_bytes(folder, is_built).and_then(|digests| Ok((digests, command(is_built)?)));
+/// Runs the tests of the package in `folder`.
+pub fn run(log: &Path, folder: &Path) -> Tally {
+    let prepared = native_bytes(folder).and_then(|digests| Ok((digests, command()?)));
     let (digests, command) = match prepared {
         Ok(prepared) => prepared,
         Err(line) => {
@@ -45,20 +45,18 @@ pub fn run(log: &Path, folder: &Path, is_built: bool) -> Tally {
 }
 
 /// Writes the native certificates and answers of five models, whose digests are those of the record. Returns their folder.
-fn native_bytes(package: &Path, is_built: bool) -> Result<PathBuf, String> {
+fn native_bytes(package: &Path) -> Result<PathBuf, String> {
     let folder = package.with_file_name("digests");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    digests::write_bytes(&folder, is_built)?;
+    digests::write_bytes(&folder)?;
     Ok(folder)
 }
 
-/// The command of this build.
-fn command(is_built: bool) -> Result<PathBuf, String> {
-    if !is_built {
-        let mut build = cargo();
-        build.args(["build", "--package", "sscc-cli"]).current_dir(root());
-        succeed(&mut build, "the command cannot be built")?;
-    }
+/// Builds the command. Returns its path.
+fn command() -> Result<PathBuf, String> {
+    let mut build = cargo();
+    build.args(["build", "--package", "sscc-cli"]).current_dir(root());
+    succeed(&mut build, "the command cannot be built")?;
     // It is in the folder of this program.
     let program = env::current_exe().map_err(|error| error.to_string())?;
     Ok(program.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)))

@@ -21,7 +21,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         [] => exit_code(build()),
         [flag] if flag == "--test" => {
             let log = SkipLog::new();
-            let tally = test(log.path(), false);
+            let tally = test(log.path());
             log.conclude(tally)
         }
         _ => {
@@ -38,8 +38,8 @@ fn build() -> Result<(), String> {
     Ok(())
 }
 
-/// Builds a package and tests it. With `is_built`, `cargo test` has built the command.
-pub fn test(log: &Path, is_built: bool) -> Tally {
+/// Builds a package and tests it.
+fn test(log: &Path) -> Tally {
     println!("== WebAssembly");
     let found = page::node().and_then(|()| Toolchain::find(SkipLog::is_strict()));
     let toolchain = match found {
@@ -48,7 +48,7 @@ pub fn test(log: &Path, is_built: bool) -> Tally {
     };
     let folder = root().join("target/npm-test/sscc");
     match package::build_to_test(&toolchain, &folder) {
-        Ok(()) => checks::run(log, &folder, is_built),
+        Ok(()) => checks::run(log, &folder),
         Err(line) => {
             println!("error: {line}");
             Tally::BROKEN
