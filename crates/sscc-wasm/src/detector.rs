@@ -3,7 +3,7 @@
 use sscc::TriMesh;
 use wasm_bindgen::prelude::*;
 
-use crate::arrays::{numbers, points, rows};
+use crate::arrays::{self, numbers, points, triangles};
 use crate::impacts::Impacts;
 use crate::options::{Options, json};
 use crate::statistics::Statistics;
@@ -18,10 +18,10 @@ impl Detector {
     #[wasm_bindgen(constructor)]
     pub fn new(
         positions: &[f64],
-        faces: &[u32],
+        #[wasm_bindgen(unchecked_param_type = "Uint32Array | number[]")] faces: &[f64],
         #[wasm_bindgen(unchecked_optional_param_type = "FilterOptions")] options: JsValue,
     ) -> Result<Detector, JsError> {
-        let mesh = TriMesh::new(points("positions", positions)?, rows("faces", faces)?.to_vec())?;
+        let mesh = TriMesh::new(points("positions", positions)?, triangles(faces)?)?;
         let filter = Options::parse(json(&options)?.as_deref())?.filter_alone(&mesh)?;
         Ok(Self(sscc::Detector::with_filter(&mesh, &filter)?))
     }
@@ -31,10 +31,10 @@ impl Detector {
         Ok(numbers(self.0.discrete(&points("positions", positions)?)?))
     }
 
-    /// At most so many of the pairs; which ones is not fixed. `statistics.complete` tells whether they are all.
+    /// At most so many of the pairs, all without a limit; which ones is not fixed. `statistics.complete` tells whether they are all.
     #[wasm_bindgen(js_name = discreteAtMost)]
-    pub fn discrete_at_most(&mut self, positions: &[f64], limit: usize) -> Result<Vec<u32>, JsError> {
-        Ok(numbers(self.0.discrete_at_most(&points("positions", positions)?, limit)?))
+    pub fn discrete_at_most(&mut self, positions: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
+        Ok(numbers(self.0.discrete_at_most(&points("positions", positions)?, arrays::limit(limit)?)?))
     }
 
     /// The pairs that touch while all vertices move on straight lines from `x0` to `x1`.

@@ -4,7 +4,7 @@ use sscc::{Modes, ReducedModel, TriMesh};
 use sscc_io::{ModelInfo, container, gltf};
 use wasm_bindgen::prelude::*;
 
-use crate::arrays::{coordinates, points, rows};
+use crate::arrays::{coordinates, points, triangles};
 use crate::certificates::Certificates;
 use crate::options::{Options, json};
 
@@ -22,8 +22,12 @@ impl Model {
     /// Makes a model of V vertices, F triangles and r modes. `positions`: 3 coordinates for each vertex. `faces`: 3 vertex numbers for
     /// each triangle. `modes`: the matrix of 3V rows and r columns, row by row.
     #[wasm_bindgen(constructor)]
-    pub fn new(positions: &[f64], faces: &[u32], modes: &[f64]) -> Result<Model, JsError> {
-        let mesh = TriMesh::new(points("positions", positions)?, rows("faces", faces)?.to_vec())?;
+    pub fn new(
+        positions: &[f64],
+        #[wasm_bindgen(unchecked_param_type = "Uint32Array | number[]")] faces: &[f64],
+        modes: &[f64],
+    ) -> Result<Model, JsError> {
+        let mesh = TriMesh::new(points("positions", positions)?, triangles(faces)?)?;
         let (rows, vertices) = (positions.len(), mesh.rest_positions().len());
         let rank = modes.len().checked_div(rows).unwrap_or(0);
         if rank * rows != modes.len() {
@@ -127,7 +131,7 @@ mod tests {
         let positions =
             [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 1.0, 1.0];
         let modes: Vec<f64> = (0..18).map(|row| f64::from(u8::from(row >= 9 && row % 3 == 2))).collect();
-        Model::new(&positions, &[0, 1, 2, 3, 4, 5], &modes).ok().unwrap()
+        Model::new(&positions, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0], &modes).ok().unwrap()
     }
 
     #[test]

@@ -23,7 +23,7 @@ export interface CertifyOptions extends FilterOptions {
     /** How far radii may reach, in units of the global radius, at least 1 (default). */
     reach?: number;
     /** The q from which radii are measured; 0 by default. */
-    center?: number[];
+    center?: number[] | Float64Array;
     /** Pairs that collide at rest never count, nor do those within so many rings of them. */
     ignoreRest?: number;
 }
@@ -51,19 +51,63 @@ enum Scheme {
 
 #[wasm_bindgen]
 extern "C" {
-    /// None for what has no JSON, such as functions. An error for circles.
+    /// None for what has no JSON. An error for circles, and where the replacement of a value fails.
     #[wasm_bindgen(js_namespace = JSON, catch)]
-    fn stringify(value: &JsValue) -> Result<Option<String>, JsValue>;
+    fn stringify(
+        value: &JsValue,
+        replacement: &Closure<dyn FnMut(String, JsValue) -> Result<JsValue, JsValue>>,
+    ) -> Result<Option<String>, JsValue>;
+
+    /// Whether a value is a typed array.
+    #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
+    fn is_typed_array(value: &JsValue) -> bool;
+
+    /// A plain array of the same items.
+    #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
+    fn plain_array(value: &JsValue) -> Result<JsValue, JsValue>;
 }
+
+/// What is said of options that are none at all.
+const NO_OBJECT: &str = "it is no plain object";
 
 /// An object as JSON; none for `undefined`.
 pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
     if options.is_undefined() {
         return Ok(None);
     }
-    match stringify(options) {
+    let refused = |cause: &str| JsError::new(&OptionsError(cause.to_owned()).to_string());
+    match stringify(options, &Closure::new(replaced)) {
         Ok(Some(text)) => Ok(Some(text)),
-        _ => Err(JsError::new("options: it is no plain object")),
+        Ok(None) => Err(refused(NO_OBJECT)),
+        Err(error) => Err(refused(error.as_string().as_deref().unwrap_or(NO_OBJECT))),
+    }
+}
+
+/// What JSON has in place of a value. An error for values that JSON would leave out, or make null.
+fn replaced(key: String, value: JsValue) -> Result<JsValue, JsValue> {
+    let refused = |cause: String| Err(JsValue::from_str(&cause));
+    if key.is_empty() && !value.is_object() {
+        return refused(NO_OBJECT.to_owned());
+    }
+    if is_typed_array(&value) {
+        return plain_array(&value);
+    }
+    match value.as_f64() {
+        Some(number) if !number.is_finite() => {
+            refused(format!("{} is {number}: it must be finite", name(&key)))
+        }
+        _ if value.is_function() || value.is_symbol() => {
+            refused(format!("{} is no value of an option", name(&key)))
+        }
+        _ => Ok(value),
+    }
+}
+
+/// How a message names a key: those of arrays are numbers.
+fn name(key: &str) -> String {
+    match key.parse::<usize>() {
+        Ok(at) => format!("item {at} of an array"),
+        Err(_) => key.to_owned(),
     }
 }
 
@@ -71,6 +115,9 @@ impl Options {
     /// Reads options from JSON. An unknown key is an error.
     pub fn parse(json: Option<&str>) -> Result<Self, OptionsError> {
         json.map_or(Ok(Self::default()), |json| {
+            if !json.starts_with('{') {
+                return Err(OptionsError(NO_OBJECT.to_owned()));
+            }
             serde_json::from_str(json).map_err(|error| {
                 let text = error.to_string();
                 let cause = text.split_once(" at line").map_or(text.as_str(), |(cause, _)| cause);

@@ -2,7 +2,7 @@
 
 use wasm_bindgen::prelude::*;
 
-use crate::arrays::numbers;
+use crate::arrays::{self, numbers};
 use crate::certificates::Certificates;
 use crate::impacts::Impacts;
 use crate::model::Model;
@@ -25,10 +25,10 @@ impl Query {
         Ok(numbers(self.0.discrete(q)?))
     }
 
-    /// At most so many of the pairs; which ones is not fixed. `statistics.complete` tells whether they are all.
+    /// At most so many of the pairs, all without a limit; which ones is not fixed. `statistics.complete` tells whether they are all.
     #[wasm_bindgen(js_name = discreteAtMost)]
-    pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<Vec<u32>, JsError> {
-        Ok(numbers(self.0.discrete_at_most(q, limit)?))
+    pub fn discrete_at_most(&mut self, q: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
+        Ok(numbers(self.0.discrete_at_most(q, arrays::limit(limit)?)?))
     }
 
     /// Whether any pair collides at q.

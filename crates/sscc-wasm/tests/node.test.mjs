@@ -31,6 +31,10 @@ test("a model is made, certified, stored and queried", () => {
     assert.deepEqual([...query.discrete(Float64Array.of(-1))], [0, 1]);
     assert.equal(query.isColliding([-1]), true);
     assert.equal(query.count([-1]), 1);
+    for (const [limit, pairs] of [[0, []], [1, [0, 1]], [2 ** 32, [0, 1]], [Infinity, [0, 1]], [undefined, [0, 1]]]) {
+        assert.deepEqual([...query.discreteAtMost([-1], limit)], pairs, `${limit}`);
+        assert.equal(query.statistics.complete, pairs.length > 0, `${limit}`);
+    }
     assert.deepEqual([...query.discrete([-0.5])], []);
     const { statistics } = query;
     assert.deepEqual([statistics.complete, statistics.rootCertified, statistics.proof], [true, true, "radius"]);
@@ -40,6 +44,12 @@ test("a model is made, certified, stored and queried", () => {
     assert.deepEqual([...impacts.pairs], [0, 1]);
     assert.ok(Math.abs(impacts.times[0] - 0.5) < 1e-9);
     assert.ok(query.safeScale([-2]) <= 0.5);
+});
+
+test("a centre may be a typed array", () => {
+    const bytes = (center) => two().certify({ center }).toBytes();
+    assert.deepEqual(bytes(Float64Array.of(0.25)), bytes([0.25]));
+    assert.notDeepEqual(bytes([0.25]), bytes([0]));
 });
 
 test("a detector needs no modes", () => {
@@ -65,6 +75,13 @@ test("bad input is an error of one line, and the module goes on", () => {
         [() => new Model(positions.subarray(1), faces, modes), /positions has 17 numbers/],
         [() => new Model(positions, [0, 1], modes), /faces has 2 numbers/],
         [() => new Model(positions, [0, 1, 9], modes), /9/],
+        [() => new Model(positions, [0, 1, Number.NaN], modes), /faces\[2\] is NaN; it must be a vertex number/],
+        [() => new Model(positions, [0, 1.9, 2], modes), /faces\[1\] is 1.9;/],
+        [() => new Model(positions, [4294967296, 1, 2], modes), /faces\[0\] is 4294967296;/],
+        [() => new Detector(positions, [0, 1, -1]), /faces\[2\] is -1;/],
+        [() => query.discreteAtMost([-1], Number.NaN), /the limit is NaN/],
+        [() => query.discreteAtMost([-1], -1), /the limit is -1/],
+        [() => new Detector(positions, faces).discreteAtMost(positions, 0.5), /the limit is 0.5/],
         [() => new Model(positions, faces, modes.subarray(1)), /modes has 17 numbers/],
         [() => new Model(positions, faces, []), /mode/],
         [() => new Model([Number.NaN, ...positions.subarray(1)], faces, modes), /NaN|finite/],
@@ -76,8 +93,15 @@ test("bad input is an error of one line, and the module goes on", () => {
         [() => model.certify({ neighbour: "exclude" }), /options: unknown field `neighbour`/],
         [() => model.certify({ neighbours: "all" }), /include-one-vertex/],
         [() => model.certify({ epsilon: 2 }), /epsilon/],
+        [() => model.certify({ epsilon: Number.NaN }), /options: epsilon is NaN: it must be finite/],
+        [() => model.certify({ reach: Infinity }), /options: reach is inf/],
+        [() => model.certify({ epsilon: () => 0.1 }), /options: epsilon is no value/],
         [() => model.certify({ center: [1, 2] }), /1/],
-        [() => model.certify("paper"), /options: /],
+        [() => model.certify({ center: Float64Array.of(1, 2) }), /1/],
+        [() => model.certify({ center: Float64Array.of(Number.NaN) }), /options: item 0 of an array is NaN/],
+        [() => model.certify([]), /options: it is no plain object/],
+        [() => model.certify(Number.NaN), /options: it is no plain object/],
+        [() => model.certify("paper"), /options: it is no plain object/],
         [() => model.certify(() => 1), /options: it is no plain object/],
         [() => new Query(other, model.certify()), /another model|other model/],
         [() => query.discrete([]), /0/],

@@ -19,14 +19,16 @@ import init, { type CertifyOptions, Certificates, Detector, Model, Query } from 
 await init();
 const x = new Float64Array(18);
 const model: Model = new Model(x, new Uint32Array(6), x);
-const options: CertifyOptions = { neighbours: "include-one-vertex", weld: true, scheme: "paper", center: [0], ignoreRest: 1 };
+const options: CertifyOptions = { neighbours: "include-one-vertex", weld: true, scheme: "paper", center: new Float64Array(1), ignoreRest: 1 };
 const certificates: Certificates = model.certify(options);
 const names: string[] = model.modeNames;
 const q: Float64Array = model.defaultQ ?? new Float64Array(model.rank);
 const query = new Query(model, certificates);
 const pairs: Uint32Array = query.discrete(q);
+const some: Uint32Array[] = [query.discreteAtMost(q, Infinity), query.discreteAtMost(q)];
 const proof: "radius" | "local" | "search" = query.statistics.proof;
 const times: Float64Array = query.continuous(q, q).times;
+const plain = new Detector(x, [0, 1, 2]);
 const detector = new Detector(x, new Uint32Array(6), { neighbours: "include-folded" });
 // @ts-expect-error An option that does not exist.
 model.certify({ neighbour: "exclude" });
@@ -36,7 +38,7 @@ new Detector(x, new Uint32Array(6), { neighbours: "all" });
 new Detector(x, new Uint32Array(6), { epsilon: 0.1 });
 // @ts-expect-error Certificates are computed or loaded.
 new Certificates();
-export { detector, names, pairs, proof, times };
+export { detector, names, pairs, plain, proof, some, times };
 `;
 
 test("a program with the types of the package is checked", () => {
