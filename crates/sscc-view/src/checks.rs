@@ -6,6 +6,7 @@ use std::path::Path;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use serde::Serialize;
+use serde_json::Value;
 use sscc::{Certificates, ReducedModel};
 use sscc_io::container::{certificates_to_bytes, model_to_bytes};
 use sscc_io::{ModelInfo, read_whole};
@@ -16,6 +17,9 @@ use crate::{Arrays, ViewError};
 /// The files of the npm package that a report contains.
 const SCRIPT: &str = "script/sscc.js";
 const MODULE: &str = "sscc_bg.wasm";
+
+/// The file of the package with its version.
+const MANIFEST: &str = "package.json";
 
 /// How the script begins: the page calls that name.
 const START: &str = "let ssccPackage";
@@ -31,8 +35,9 @@ impl WasmPackage {
     /// Reads the package.
     ///
     /// # Errors
-    /// If a file of it cannot be read, or is none of the package.
+    /// If a file of it cannot be read, or is none of the package, or if the package has another version than this crate.
     pub fn read(folder: &Path) -> Result<Self, ViewError> {
+        check_version(&folder.join(MANIFEST))?;
         let (script, module) = (folder.join(SCRIPT), folder.join(MODULE));
         let text = String::from_utf8(read_whole(&script)?).ok().filter(|text| text.starts_with(START));
         let bytes = read_whole(&module)?;
@@ -41,6 +46,20 @@ impl WasmPackage {
             true => Ok(Self { script: text, module: bytes }),
             false => Err(ViewError::Package(module)),
         }
+    }
+}
+
+/// Refuses a package of another version: its answers may differ from those of this program.
+fn check_version(manifest: &Path) -> Result<(), ViewError> {
+    let refused = || ViewError::Package(manifest.to_path_buf());
+    let value: Value = serde_json::from_slice(&read_whole(manifest)?).map_err(|_| refused())?;
+    match value["version"].as_str().filter(|_| value["name"] == "sscc") {
+        Some(env!("CARGO_PKG_VERSION")) => Ok(()),
+        Some(found) => Err(ViewError::PackageVersion {
+            path: manifest.to_path_buf(),
+            found: found.escape_debug().to_string(),
+        }),
+        None => Err(refused()),
     }
 }
 

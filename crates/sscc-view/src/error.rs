@@ -32,6 +32,18 @@ pub enum ViewError {
     /// A file that is not of the npm package.
     #[error("{}: not a file of the npm package sscc, which cargo xtask wasm builds", .0.display())]
     Package(PathBuf),
+    /// A package of another version.
+    #[error(
+        "{}: the package has version {found}, sscc has {}: build it by cargo xtask wasm of the same version",
+        .path.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    PackageVersion {
+        /// The file with the version.
+        path: PathBuf,
+        /// The version.
+        found: String,
+    },
     /// A model or its certificates cannot be stored.
     #[error(transparent)]
     Format(#[from] sscc_io::FormatError),

@@ -209,6 +209,19 @@ fn reports() {
     fs::remove_file(folder.join("page.html")).unwrap();
     let with = [&report[..], &["--wasm", "package"]].concat();
     let script = Path::new("package").join("script").join("sscc.js").display().to_string();
+    let manifest = Path::new("package").join("package.json").display().to_string();
+    assert!(run(&with).refusal().contains(&format!("{manifest}: not found")));
+    package("");
+    for (content, cause) in [
+        ("{}", "package.json: not a file of the npm package sscc"),
+        ("sscc", "package.json: not a file of the npm package sscc"),
+        (r#"{"name":"sscc","version":"0.0.1"}"#, "package.json: the package has version 0.0.1, sscc has "),
+    ] {
+        fs::write(folder.join(&manifest), content).unwrap();
+        assert!(run(&with).refusal().contains(cause), "{content}");
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    fs::write(folder.join(&manifest), format!(r#"{{"name":"sscc","version":"{version}"}}"#)).unwrap();
     assert!(run(&with).refusal().contains(&format!("{script}: not found")));
     package("script");
     fs::write(folder.join(&script), "alert(1)").unwrap();
