@@ -143,7 +143,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
             r: () => modes.reset(),
             l: () => loadQ(shared),
         }),
-        ...(certificates && { k: () => certificates.cycle(), b: () => certificates.toggleBoxes() }),
+        ...(source.live && certificates && { k: () => certificates.cycle(), b: () => certificates.toggleBoxes() }),
     });
     await player.begin();
     contacts?.changed();

@@ -90,6 +90,11 @@ test("sliders of a report check every shape with the network off", async () => {
         assert.equal(await page.getByRole("button", { name }).count(), 0, name);
     await page.getByRole("tab", { name: "About" }).click();
     assert.match(await page.locator(".about").innerText(), /checks each shape itself/);
+    // Nor has it one for the nodes that these keys show in the live page.
+    for (const key of ["k", "b"]) {
+        await page.keyboard.press(key);
+        assert.ok(await page.locator(".message").isHidden(), `${key}: ${await page.locator(".message").innerText()}`);
+    }
     await context.close();
 
     const other = await open(browser, pathToFileURL(plain).href, { offline: true });
