@@ -37,7 +37,11 @@ const TASKS: [Task; 19] = [
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
     ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
-    ("wasm", "[--test]: builds the package for npm, and tests it in Node and in a browser", wasm::run),
+    (
+        "wasm",
+        "[--test [--release]]: builds the package for npm, or tests it in Node and in a browser",
+        wasm::run,
+    ),
     ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),

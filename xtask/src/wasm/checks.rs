@@ -12,7 +12,7 @@ use crate::tally::{SkipLog, Tally};
 
 /// Runs the tests of the package in `folder`.
 pub fn run(log: &Path, folder: &Path) -> Tally {
-    let prepared = native_bytes(folder).and_then(|digests| Ok((digests, command()?)));
+    let prepared = native_bytes().and_then(|digests| Ok((digests, command()?)));
     let (digests, command) = match prepared {
         Ok(prepared) => prepared,
         Err(line) => {
@@ -45,8 +45,8 @@ pub fn run(log: &Path, folder: &Path) -> Tally {
 }
 
 /// Writes the native certificates and answers of five models, whose digests are those of the record. Returns their folder.
-fn native_bytes(package: &Path) -> Result<PathBuf, String> {
-    let folder = package.with_file_name("digests");
+fn native_bytes() -> Result<PathBuf, String> {
+    let folder = root().join("target/npm-test/digests");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     digests::write_bytes(&folder)?;
     Ok(folder)

@@ -5,8 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::toolchain::{TARGET, Toolchain, cache};
+use super::toolchain::{TARGET, Toolchain, cargo_home, renamed};
 use crate::program::{cargo, root, succeed};
+
+/// The module.
+const MODULE: &str = "sscc_bg.wasm";
 
 /// The files of `crates/sscc-wasm/npm`, and the licences.
 const FILES: [&str; 3] = ["package.json", "node.js", "README.md"];
@@ -14,27 +17,37 @@ const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
 /// Builds the package that is published in `folder`: small and fast, and without paths of this machine.
 pub fn build(toolchain: &Toolchain, folder: &Path) -> Result<(), String> {
-    let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
-    let registry = env::var_os("CARGO_HOME").map_or_else(|| home.join(".cargo"), PathBuf::from);
-    let flags = [(root(), "sscc"), (registry, "cargo")]
-        .map(|(path, name)| format!("--remap-path-prefix={}={name}", path.display()))
-        .join(" ");
-    let module = compile(toolchain, "wasm", &flags, &root().join("target/wasm"))?;
-    assemble(&module, folder)
+    let flags = [renamed(&root(), "sscc"), renamed(&cargo_home(), "cargo")];
+    let module = compile(toolchain, "wasm", &flags)?;
+    assemble(&module, folder)?;
+    let bytes = fs::read(folder.join(MODULE)).map_err(|error| format!("{MODULE}: {error}"))?;
+    let home = env::var_os("HOME").map(PathBuf::from);
+    match [Some(root()), Some(cargo_home()), home].into_iter().flatten().find(|path| has_path(&bytes, path)) {
+        Some(path) => Err(format!("{MODULE} has a path of this machine, below {}", path.display())),
+        None => Ok(()),
+    }
 }
 
-/// Builds a package to test in `folder`: quickly, with assertions. Dependencies are kept in the cache.
+/// Whether bytes have a path below a folder.
+fn has_path(bytes: &[u8], folder: &Path) -> bool {
+    let text = format!("{}/", folder.display());
+    text.len() > 1 && bytes.windows(text.len()).any(|part| part == text.as_bytes())
+}
+
+/// Builds a package to test in `folder`: quickly, with assertions.
 pub fn build_to_test(toolchain: &Toolchain, folder: &Path) -> Result<(), String> {
-    assemble(&compile(toolchain, "dev", "", &cache().join("target"))?, folder)
+    assemble(&compile(toolchain, "dev", &[])?, folder)
 }
 
 /// Compiles the module. Returns its path.
-fn compile(toolchain: &Toolchain, profile: &str, flags: &str, target: &Path) -> Result<PathBuf, String> {
-    let mut build = toolchain.cargo(flags);
+fn compile(toolchain: &Toolchain, profile: &str, flags: &[String]) -> Result<PathBuf, String> {
+    // Of this checkout alone: cargo takes what another one compiled for its own where the files of this are older.
+    let target = root().join("target/wasm");
+    let mut build = toolchain.cargo(flags)?;
     build
         .args(["build", "--package", "sscc-wasm", "--lib", "--target", TARGET, "--profile", profile])
         .arg("--target-dir")
-        .arg(target)
+        .arg(&target)
         .env("CARGO_INCREMENTAL", "0")
         .current_dir(root());
     succeed(&mut build, "the module cannot be compiled")?;
@@ -49,8 +62,8 @@ fn assemble(module: &Path, folder: &Path) -> Result<(), String> {
     fs::create_dir_all(folder).map_err(io)?;
     bindgen(module, folder)?;
     // The script for pages without modules runs the same module.
-    let same = folder.join("script/sscc_bg.wasm");
-    if fs::read(&same).map_err(io)? != fs::read(folder.join("sscc_bg.wasm")).map_err(io)? {
+    let same = folder.join("script").join(MODULE);
+    if fs::read(&same).map_err(io)? != fs::read(folder.join(MODULE)).map_err(io)? {
         return Err("the modules of both kinds of scripts differ".to_owned());
     }
     fs::remove_file(same).map_err(io)?;
@@ -65,7 +78,7 @@ fn assemble(module: &Path, folder: &Path) -> Result<(), String> {
 
 /// Writes the scripts and types of a module by the program in `xtask/bindgen`.
 fn bindgen(module: &Path, folder: &Path) -> Result<(), String> {
-    let target = cache().join("bindgen");
+    let target = root().join("target/bindgen");
     let mut build = cargo();
     build
         .args(["build", "--quiet", "--locked", "--target-dir"])
@@ -88,6 +101,13 @@ mod tests {
         let version = |name: &str| packages.iter().find(|p| p["name"].as_str() == Some(name));
         let found = version("wasm-bindgen").or(version("wasm-bindgen-cli-support")).unwrap();
         found["version"].as_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn paths_below_a_folder_are_found() {
+        let bytes = b"\0asm\x01/home/me/.cargo/registry/src\0";
+        assert!(has_path(bytes, Path::new("/home/me")) && has_path(bytes, Path::new("/home/me/.cargo")));
+        assert!(!has_path(bytes, Path::new("/home/m")) && !has_path(bytes, Path::new("")));
     }
 
     #[test]
