@@ -1,19 +1,25 @@
 //! Prints a digest of the certificates, and one of the answers, of five small models that are made in code. They are the same
 //! on every machine: `cargo xtask digests` compares them with `docs/records/digests.txt`.
 //!
-//! `cargo run --release -p sscc-examples --example digests`
+//! `cargo run --release -p sscc-examples --example digests [FOLDER]`. With a folder, the models, the q, and the bytes of certificates and
+//! answers are also written there, for programs in other languages: `models.json` lists them.
 #![allow(clippy::print_stdout)]
 
+use std::env;
 use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use glam::DVec3;
+use serde_json::json;
 use sscc::{
     Certificates, CertifyOptions, ContactFilter, KineticQuery, Modes, Neighbours, Query, ReducedModel,
     TriMesh,
 };
 use sscc_examples::{exit_code, mouth_glb};
-use sscc_io::container::certificates_to_bytes;
+use sscc_io::ModelInfo;
+use sscc_io::container::{certificates_to_bytes, model_to_bytes};
 use sscc_modes::polynomial_modes;
 use sscc_modes::shapes::spring_of;
 
@@ -25,65 +31,85 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
+    let out = env::args_os().nth(1).map(PathBuf::from);
     let folder = tempfile::tempdir()?;
+    let mut listed = Vec::new();
     let mouth = sscc_io::load_model(&mouth_glb(folder.path())?, None)?.0;
-    let options = CertifyOptions::default;
-    let touching = ContactFilter::new(Neighbours::IncludeOneVertex);
+    let (exclude, include) = (Neighbours::Exclude, Neighbours::IncludeOneVertex);
     let dense = ReducedModel::new(spring_of(60, 6), polynomial_modes(&spring_of(60, 6))?)?;
-    for (name, model, options, reach) in [
+    for (name, model, neighbours, reach) in [
         // One mode for each wave along the axis.
-        ("waves", waves(spring_of(100, 8), 6)?, options(), 0.3),
+        ("waves", waves(spring_of(100, 8), 6)?, exclude, 0.3),
         // All modes move all vertices, and a dense metric would not differ from the area's.
-        ("polynomials", dense, options(), 0.1),
+        ("polynomials", dense, exclude, 0.1),
         // Morph targets of single precision, with seams that are welded.
-        ("mouth", mouth, options(), 3.0),
+        ("mouth", mouth, exclude, 3.0),
         // Each vertex is moved by few modes, as in a skin.
-        ("strips", strips(0.2)?, options(), 3.0),
+        ("strips", strips(0.2)?, exclude, 3.0),
         // Strips that cross at rest: exceptions; pairs with a common vertex count.
-        ("crossing", strips(0.0)?, options().filter(touching), 0.5),
+        ("crossing", strips(0.0)?, include, 0.5),
     ] {
+        let filter = (neighbours != exclude).then(|| ContactFilter::new(neighbours));
+        let options = CertifyOptions::default().filter(filter);
         let certificates = Certificates::compute(&model, &options, &())?;
         let bytes = certificates_to_bytes(&certificates)?;
-        let (answers, colliding) = answers(&model, &certificates, reach)?;
+        let motion = motion(model.rank(), reach);
+        let (answers, colliding) = answers(&model, &certificates, &motion)?;
         println!(
             "{name}: {} triangles, {} modes, {colliding} of {SAMPLES} collide\n  certificates {}\n  answers      {}",
             model.mesh().faces().len(),
             model.rank(),
             blake3::hash(&bytes),
-            answers.finalize()
+            blake3::hash(&answers)
         );
+        if let Some(out) = &out {
+            let weld = model.mesh().has_split_vertices();
+            let model = model_to_bytes(&model, &ModelInfo::new("", "digests"))?;
+            for (part, bytes) in [("model", &model), ("certificates", &bytes), ("answers", &answers)] {
+                fs::write(out.join(format!("{name}.{part}")), bytes)?;
+            }
+            listed.push(
+                json!({"name": name, "neighbours": neighbours.to_string(), "weld": weld, "motion": motion}),
+            );
+        }
+    }
+    if let Some(out) = &out {
+        fs::write(out.join("models.json"), serde_json::to_string(&listed)?)?;
     }
     Ok(())
 }
 
-/// Hashes pairs and times of all kinds of queries. Returns the number of q that collide, too.
+/// The q of a motion.
+fn motion(rank: usize, reach: f64) -> Vec<Vec<f64>> {
+    let share = |sample: usize| sample as f64 / SAMPLES as f64;
+    let weight = |k: usize, share: f64| reach * share * libm::sin((k * k + 1) as f64 + 2.0 * share);
+    (0..SAMPLES).map(|sample| (0..rank).map(|k| weight(k, share(sample))).collect()).collect()
+}
+
+/// The bytes of pairs and times of all kinds of queries, and the number of q that collide.
 fn answers(
     model: &ReducedModel,
     certificates: &Certificates,
-    reach: f64,
-) -> Result<(blake3::Hasher, usize), Box<dyn Error>> {
+    motion: &[Vec<f64>],
+) -> Result<(Vec<u8>, usize), Box<dyn Error>> {
     let mut query = Query::new(model, certificates)?;
     let mut kinetic = KineticQuery::new(model, certificates)?;
-    let (mut hash, mut colliding) = (blake3::Hasher::new(), 0);
-    let mut before = vec![0.0; model.rank()];
-    for sample in 0..SAMPLES {
-        let share = sample as f64 / SAMPLES as f64;
-        let q: Vec<f64> =
-            (0..model.rank()).map(|k| reach * share * libm::sin((k * k + 1) as f64 + 2.0 * share)).collect();
-        let pairs = query.discrete(&q)?.to_vec();
+    let (mut bytes, mut colliding) = (Vec::new(), 0);
+    let mut before = &vec![0.0; model.rank()];
+    for q in motion {
+        let pairs = query.discrete(q)?.to_vec();
         colliding += usize::from(!pairs.is_empty());
-        assert_eq!(pairs, kinetic.discrete(&q)?, "two methods differ");
-        let mut add = |bytes: &[u8]| _ = hash.update(bytes);
-        pairs.iter().for_each(|&(a, b)| add(&[a.to_le_bytes(), b.to_le_bytes()].concat()));
-        add(&query.safe_scale(&q)?.to_le_bytes());
-        for impact in query.continuous(&before, &q)? {
-            add(&impact.pair.0.to_le_bytes());
-            add(&impact.pair.1.to_le_bytes());
-            add(&impact.time.to_le_bytes());
+        assert_eq!(pairs, kinetic.discrete(q)?, "two methods differ");
+        pairs.iter().for_each(|&(a, b)| bytes.extend([a.to_le_bytes(), b.to_le_bytes()].concat()));
+        bytes.extend(query.safe_scale(q)?.to_le_bytes());
+        for impact in query.continuous(before, q)? {
+            bytes.extend(impact.pair.0.to_le_bytes());
+            bytes.extend(impact.pair.1.to_le_bytes());
+            bytes.extend(impact.time.to_le_bytes());
         }
         before = q;
     }
-    Ok((hash, colliding))
+    Ok((bytes, colliding))
 }
 
 /// A mesh with modes that are waves along z.

@@ -32,7 +32,7 @@ export interface App {
     readonly shape: Shape;
     readonly pose: Pose;
     readonly motion: Motion;
-    /** Null in a report. */
+    /** Null in a report that cannot check q. */
     readonly checker: Checker | null;
     /** Null where WebGL is missing. */
     readonly stage: Stage | null;

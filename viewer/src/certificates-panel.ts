@@ -41,7 +41,7 @@ export class CertificatesPanel {
             oninput: () => this.levelChanged(),
         });
         this.boxes = h("input", { type: "checkbox", id: "boxes", onchange: () => this.refreshBoxes() });
-        const live = app.checker !== null && app.stage !== null;
+        const live = app.source.live && app.stage !== null;
         this.element = h(
             "div",
             { class: "certificates" },

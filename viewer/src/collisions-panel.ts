@@ -24,12 +24,14 @@ export class CollisionsPanel {
     private at = -1;
 
     constructor(private readonly app: App) {
+        // Only the server has this method.
+        if (!app.source.live) this.compare.checked = false;
         this.element = h(
             "div",
             { class: "collisions" },
             h("h2", {}, "Cost of this query"),
             this.counters,
-            h("label", { class: "check" }, this.compare, "also measure the traditional method"),
+            app.source.live && h("label", { class: "check" }, this.compare, "also measure the traditional method"),
             this.heading,
             h("p", { class: "hint" }, "N flies to the next pair, H shows what is cut away in front of it."),
             this.list,
@@ -87,13 +89,20 @@ export class CollisionsPanel {
     private answered(): void {
         const answer = this.current();
         const traditional = this.traditional?.serial === this.app.pose.serial ? this.traditional.answer : null;
+        const { live } = this.app.source;
         const cells = (name: string, a: string, b = ""): HTMLElement =>
             h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, a), h("td", {}, b));
         const number = (value: number | undefined): string =>
             value === undefined ? "…" : value.toLocaleString("en");
         const ratio = answer && traditional ? traditional.microseconds / answer.microseconds : null;
         this.counters.replaceChildren(
-            h("tr", {}, h("td", {}), h("th", { scope: "col" }, "sscc"), h("th", { scope: "col" }, "traditional")),
+            h(
+                "tr",
+                {},
+                h("td", {}),
+                h("th", { scope: "col" }, "sscc"),
+                live && h("th", { scope: "col" }, "traditional"),
+            ),
             cells(
                 "time",
                 answer ? duration(answer.microseconds) : "…",
@@ -103,7 +112,7 @@ export class CollisionsPanel {
             cells("nodes opened", number(answer?.opened)),
             cells("AABB tests", number(answer?.box_tests)),
             cells("triangle tests", number(answer?.triangle_tests)),
-            cells("speed-up", ratio ? `${digits(ratio, ratio < 100 ? 2 : 3)} ×` : ""),
+            ...(live ? [cells("speed-up", ratio ? `${digits(ratio, ratio < 100 ? 2 : 3)} ×` : "")] : []),
         );
         this.showPairs(answer);
     }

@@ -27,13 +27,13 @@ export class ModesPanel {
         const actions = {
             set: (mode: number, value: number) => this.set(mode, value),
             vibrate: (mode: number) => this.vibrate(mode),
-            toCollision: app.checker ? (mode: number) => this.toCollision(mode) : null,
+            toCollision: app.source.live ? (mode: number) => this.toCollision(mode) : null,
         };
         this.rows = Array.from({ length: shape.model.rank }, (_, k) => new ModeRow(shape, k, actions));
         this.names = this.rows.map((_, k) => shape.modeName(k).toLowerCase());
         this.shown = new Float64Array(shape.model.rank).fill(Number.NaN);
         this.list = h("div", { class: "mode-list" }, ...this.rows.map((row) => row.element));
-        this.sweeps = app.checker
+        this.sweeps = app.source.live
             ? new Sweeps(
                   app,
                   this.rows,
@@ -48,7 +48,7 @@ export class ModesPanel {
             title: "show only modes whose names have all of these words (/)",
             oninput: () => this.refilter(),
         });
-        const marks = app.checker ? intervalSearch(app, this.rows, () => this.named()) : null;
+        const marks = app.source.live ? intervalSearch(app, this.rows, () => this.named()) : null;
         if (shape.model.intervals)
             showMarks(app, this.rows, shape.model.intervals, Float64Array.from(shape.model.default_q));
         this.element = h(
@@ -59,7 +59,7 @@ export class ModesPanel {
                 "p",
                 { class: "hint" },
                 "Drag a slider, or type any weight; a double click resets it. ~ vibrates the mode",
-                app.checker ? ", ⇥ moves along it to the first self-collision." : ".",
+                app.source.live ? ", ⇥ moves along it to the first self-collision." : ".",
             ),
             h("div", { class: "find" }, this.filter, this.found, this.sweeps?.element ?? null, marks),
             this.list,
@@ -172,7 +172,7 @@ export class ModesPanel {
             { class: "actions" },
             button("Reset", "reset q to the centre of the certificates (R)", () => this.reset()),
             button("Random", "show a random q (X)", () => this.random()),
-            app.checker &&
+            app.source.live &&
                 button("To a collision", "move along a random direction to the first self-collision (C)", () =>
                     this.randomCollision(),
                 ),

@@ -50,7 +50,7 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     const stage = openStage(layout, frames);
     const shape = await arriving;
     const pose = new Pose(Float64Array.from(shape.model.default_q));
-    const checker = source.live ? new Checker(source) : null;
+    const checker = source.checks ? new Checker(source) : null;
     const motion = new Motion(frames, pose, checker);
     const shared: App = {
         source,
@@ -138,12 +138,12 @@ export async function page(source: Source, layout: Layout): Promise<void> {
                 modes.find();
             },
             v: () => modes.vibrate(modes.focused() ?? 0),
-            c: checker ? () => modes.randomCollision() : undefined,
+            c: source.live ? () => modes.randomCollision() : undefined,
             x: () => modes.random(),
             r: () => modes.reset(),
             l: () => loadQ(shared),
         }),
-        ...(certificates && { k: () => certificates.cycle(), b: () => certificates.toggleBoxes() }),
+        ...(source.live && certificates && { k: () => certificates.cycle(), b: () => certificates.toggleBoxes() }),
     });
     await player.begin();
     contacts?.changed();
@@ -167,9 +167,10 @@ function summary(source: Source): Tab[] {
     const rows = scene.summary.map(([label, value]) =>
         h("tr", {}, h("th", { scope: "row" }, label), h("td", {}, value)),
     );
+    const checks = source.checks ? " It checks each shape itself, by the core of sscc within it." : "";
     const text = source.live
         ? "This page exchanges data only with the program on this machine."
-        : "This report is one file. It loads no other file and uses no network.";
+        : `This report is one file. It loads no other file and uses no network.${checks}`;
     return [
         {
             name: "About",

@@ -123,6 +123,16 @@ export interface Report {
     scene: Scene;
     /** Base64. */
     arrays: Record<string, string>;
+    /** What checks q within the report; most reports have none. */
+    checks?: ChecksData | null;
+}
+
+/** The core as WebAssembly: its script, and the names of arrays that are compressed by zlib. */
+export interface ChecksData {
+    script: string;
+    module: string;
+    model: string;
+    certificates: string;
 }
 
 export interface Answer {

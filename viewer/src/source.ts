@@ -1,4 +1,5 @@
 /** The two sources of the page's data: the local server, or the report within the page. */
+import { LocalChecks } from "./local-checks";
 import { completeScene } from "./mesh";
 import type { Report, Scene } from "./protocol";
 
@@ -9,7 +10,10 @@ export class RequestError extends Error {}
 export class ConnectionError extends Error {}
 
 export interface Source {
+    /** Whether there is a server. */
     readonly live: boolean;
+    /** Whether `/api/check` is answered: by the server, or within the report. */
+    readonly checks: boolean;
     readonly scene: Scene;
     array(name: string): Promise<ArrayBuffer>;
     /** Sends a request to the server; a report has no server, and throws. */
@@ -25,9 +29,12 @@ export async function openSource(): Promise<Source> {
 
 class ReportSource implements Source {
     readonly live = false;
+    readonly checks: boolean;
     readonly scene: Scene;
+    private local: Promise<LocalChecks> | null = null;
     constructor(private readonly report: Report) {
         this.scene = completeScene(report.scene);
+        this.checks = Boolean(report.checks);
     }
     async array(name: string): Promise<ArrayBuffer> {
         const text = this.report.arrays[name];
@@ -37,16 +44,21 @@ class ReportSource implements Source {
         for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
         return bytes.buffer;
     }
-    ask<T>(): Promise<T> {
-        return Promise.reject(new RequestError("a report has no server for this request"));
+    async ask<T>(path: string, body?: unknown): Promise<T> {
+        const { checks } = this.report;
+        if (path !== "/api/check" || !checks) throw new RequestError("a report has no server for this request");
+        this.local ??= LocalChecks.open(checks, (name) => this.array(name));
+        const { q, serial } = body as { q: number[]; serial: number };
+        return (await this.local).check(q, serial) as T;
     }
-    bytes(): Promise<ArrayBuffer> {
-        return this.ask();
+    bytes(path: string): Promise<ArrayBuffer> {
+        return this.ask(path);
     }
 }
 
 class LiveSource implements Source {
     readonly live = true;
+    readonly checks = true;
     private constructor(
         private readonly token: string,
         public scene: Scene,

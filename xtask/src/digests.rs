@@ -2,6 +2,7 @@
 //! [`RECORD`], which are the same on every machine.
 
 use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 
 use crate::program::{cargo, exit_code, output, root, usage};
@@ -12,23 +13,39 @@ const RECORD: &str = "docs/records/digests.txt";
 /// Compares, or with `--write` writes the record.
 pub fn run(arguments: &[String]) -> ExitCode {
     match arguments {
-        [] => exit_code(compare(false)),
-        [flag] if flag == "--write" => exit_code(compare(true)),
+        [] => exit_code(print(false)),
+        [flag] if flag == "--write" => exit_code(print(true)),
         _ => usage("digests [--write]    (digests of certificates and answers; --write: writes the record)"),
     }
 }
 
-fn compare(write: bool) -> Result<(), String> {
+/// Writes the models and the bytes of certificates and answers to a folder, and compares their digests.
+pub fn write_bytes(folder: &Path) -> Result<(), String> {
+    compare(&compute(Some(folder))?)
+}
+
+/// Runs the example, and returns what it prints.
+fn compute(folder: Option<&Path>) -> Result<String, String> {
     let mut program = cargo();
     program
-        .args(["run", "--quiet", "--package", "sscc-examples", "--example", "digests"])
+        .args(["run", "--quiet", "--package", "sscc-examples", "--example", "digests", "--"])
+        .args(folder)
         .current_dir(root());
-    let found = output(&mut program, "the digests cannot be computed")?;
+    output(&mut program, "the digests cannot be computed")
+}
+
+/// Prints the digests, and compares them or writes the record.
+fn print(write: bool) -> Result<(), String> {
+    let found = compute(None)?;
     print!("{found}");
-    let path = root().join(RECORD);
-    if write {
-        return fs::write(&path, found).map_err(|error| format!("{RECORD}: {error}"));
+    if !write {
+        return compare(&found);
     }
+    fs::write(root().join(RECORD), found).map_err(|error| format!("{RECORD}: {error}"))
+}
+
+fn compare(found: &str) -> Result<(), String> {
+    let path = root().join(RECORD);
     let record = fs::read_to_string(&path).map_err(|error| format!("{RECORD}: {error}"))?;
     match found.lines().zip(record.lines()).find(|(found, record)| found != record) {
         Some((found, record)) => Err(format!("{RECORD} has '{}', found '{}'", record.trim(), found.trim())),

@@ -25,6 +25,7 @@ mod soundness;
 mod sources;
 mod tally;
 mod test;
+mod wasm;
 mod wheel;
 
 use std::process::ExitCode;
@@ -37,6 +38,11 @@ const TASKS: [Task; 19] = [
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
     ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
+    (
+        "wasm",
+        "[--test [--release]]: builds the package for npm, or tests it in Node and in a browser",
+        wasm::run,
+    ),
     ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),

@@ -77,7 +77,7 @@ pub fn test(log: &Path, is_command_built: bool) -> Tally {
 }
 
 /// Checks that Node is installed and new enough.
-fn node() -> Result<(), String> {
+pub fn node() -> Result<(), String> {
     let output = Command::new("node").arg("--version").output();
     let output =
         output.map_err(|_| format!("Node {}.{} or newer is not installed", MIN_NODE.0, MIN_NODE.1))?;
@@ -99,6 +99,11 @@ fn npm(arguments: &[&str]) -> Result<(), String> {
         Ok(_) => Err(format!("`npm {}` failed in viewer/ (see above)", arguments.join(" "))),
         Err(error) => Err(format!("npm cannot be run: {error}")),
     }
+}
+
+/// Checks that a browser and the program that drives it are installed. With `install`, tries to install a browser.
+pub fn browser(install: bool) -> Result<(), String> {
+    self::install().and_then(|()| chromium(install))
 }
 
 /// Installs the packages of the lock file, if they are not installed.
@@ -176,11 +181,16 @@ fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
     let mut text = String::new();
     let success = run_and_forward(&mut tests, |line| text.extend([line, "\n"]))
         .map_err(|e| format!("npm cannot be run: {e}"))?;
-    let mut tally = results(&text);
+    Ok(tally(success, &text))
+}
+
+/// The results of a run whose output is TAP.
+pub fn tally(success: bool, text: &str) -> Tally {
+    let mut tally = results(text);
     if !success && tally.failed == 0 {
         tally.failed = 1;
     }
-    Ok(tally)
+    tally
 }
 
 /// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. Skipped and cancelled tests count as

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
 //! package, of the page, of the site and of C, at the same time: none keeps two cores busy. With arguments for `cargo test` it runs the
-//! tests of the crates only.
+//! tests of the crates only. The package for npm has its own task, `cargo xtask wasm --test`.
 //!
 //! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
 //! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.

@@ -86,6 +86,6 @@ impl Animation<'_> {
             sound: None,
             costs: Some(costs),
         });
-        Ok(Report { scene, arrays }.html()?)
+        Ok(Report { scene, arrays, checks: None }.html()?)
     }
 }

@@ -1,5 +1,7 @@
 //! Errors of the page, its reports and its server.
 
+use std::path::PathBuf;
+
 use sscc::{Certificates, ReducedModel};
 
 /// An error of the page: a model that it cannot show, or a request that it cannot answer.
@@ -24,6 +26,27 @@ pub enum ViewError {
     /// A file is not a report.
     #[error("not a report of sscc: {0}")]
     NotAReport(String),
+    /// A file of the npm package cannot be read.
+    #[error(transparent)]
+    File(#[from] sscc_io::IoError),
+    /// A file that is not of the npm package.
+    #[error("{}: not a file of the npm package sscc, which cargo xtask wasm builds", .0.display())]
+    Package(PathBuf),
+    /// A package of another version.
+    #[error(
+        "{}: the package has version {found}, sscc has {}: build it by cargo xtask wasm of the same version",
+        .path.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    PackageVersion {
+        /// The file with the version.
+        path: PathBuf,
+        /// The version.
+        found: String,
+    },
+    /// A model or its certificates cannot be stored.
+    #[error(transparent)]
+    Format(#[from] sscc_io::FormatError),
     /// An error of the operating system.
     #[error(transparent)]
     System(#[from] std::io::Error),

@@ -8,6 +8,7 @@
 
 mod animation_report;
 mod arrays;
+mod checks;
 mod error;
 mod extremal;
 mod levels;
@@ -29,6 +30,7 @@ mod simulation;
 
 pub use animation_report::Animation;
 pub use arrays::Arrays;
+pub use checks::{Checks, WasmPackage};
 pub use error::ViewError;
 pub use extremal::{Extremal, extremal};
 pub use levels::{Level, levels};

@@ -33,6 +33,14 @@ pub(crate) fn with_json(json: &str) -> String {
     [&head, BEFORE, &json, AFTER, tail].concat()
 }
 
+/// Returns a page that may also run modules of WebAssembly that are within it.
+pub(crate) fn allowing_modules(page: String) -> String {
+    // Policies are in the head alone.
+    let (head, rest) = page.split_once("<body>").unwrap_or((&page, ""));
+    let scripts = "script-src 'unsafe-inline'";
+    [&head.replace(scripts, &format!("{scripts} 'wasm-unsafe-eval'")), "<body>", rest].concat()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,8 +3,8 @@
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::page::{json_in, with_data, with_json};
-use crate::{Arrays, Scene, ViewError};
+use crate::page::{allowing_modules, json_in, with_data, with_json};
+use crate::{Arrays, Checks, Scene, ViewError};
 
 /// A report: a scene and its arrays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -13,6 +13,9 @@ pub struct Report {
     pub scene: Scene,
     /// The arrays that the scene names.
     pub arrays: Arrays,
+    /// What checks q within the report; none: it shows what is recorded, and what the root's radius proves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checks: Option<Checks>,
 }
 
 impl Report {
@@ -21,18 +24,23 @@ impl Report {
     /// # Errors
     /// If a value cannot be written as JSON. The types of a scene exclude this.
     pub fn html(&self) -> serde_json::Result<String> {
-        with_data(self)
+        let html = with_data(self)?;
+        Ok(if self.checks.is_some() { allowing_modules(html) } else { html })
     }
 
     /// Returns this program's page with the data of the report `html`. All other parts of `html` are dropped, since
     /// another program may have written them.
     ///
     /// # Errors
-    /// If `html` contains no report.
+    /// If `html` contains no report, or one with a program.
     pub fn rebuild(html: &str) -> Result<String, ViewError> {
         let json = json_in(html).ok_or_else(|| ViewError::NotAReport("it has no data".into()))?;
-        let _: ReportKeys =
+        let keys: ReportKeys =
             serde_json::from_str(json).map_err(|error| ViewError::NotAReport(error.to_string()))?;
+        if keys.checks.is_some() {
+            let advice = "it has a program to check shapes; open it in a browser if you trust its source";
+            return Err(ViewError::NotAReport(advice.into()));
+        }
         Ok(with_json(json))
     }
 }
@@ -44,4 +52,34 @@ struct ReportKeys {
     _scene: IgnoredAny,
     #[serde(rename = "arrays")]
     _arrays: IgnoredAny,
+    checks: Option<IgnoredAny>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_with_a_program_is_not_taken_over() {
+        let html = |json: &str| with_json(json);
+        assert!(Report::rebuild(&html("{\"scene\":{},\"arrays\":{}}")).is_ok());
+        assert!(Report::rebuild(&html("{\"scene\":{},\"arrays\":{},\"checks\":null}")).is_ok());
+        for json in [
+            "{\"scene\":{},\"arrays\":{},\"checks\":{\"script\":\"alert(1)\"}}",
+            "{\"scene\":{},\"arrays\":{},\"\\u0063hecks\":{}}",
+            "{\"scene\":{},\"arrays\":{},\"checks\":null,\"checks\":{}}",
+        ] {
+            assert!(Report::rebuild(&html(json)).is_err(), "{json}");
+        }
+    }
+
+    #[test]
+    fn only_reports_that_check_may_run_modules() {
+        let scene = Scene::new("a");
+        let plain = Report { scene, arrays: Arrays::default(), checks: None }.html().unwrap();
+        let allowed = "script-src 'unsafe-inline' 'wasm-unsafe-eval'";
+        assert!(!plain.contains("wasm-unsafe-eval'"));
+        // The policy of reports, and that of the page.
+        assert_eq!(allowing_modules(plain).matches(allowed).count(), 2);
+    }
 }

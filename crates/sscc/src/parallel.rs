@@ -1,8 +1,9 @@
-//! Work on several threads, with the feature `parallel`; without it, everything runs on the calling thread. Results are the same.
+//! Work on several threads, with the feature `parallel`; without it, and in WebAssembly, everything runs on the calling thread.
+//! Results are the same.
 
 /// Runs `work` with a number of threads (none: all cores).
 pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
-    #[cfg(feature = "parallel")]
+    #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
     if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         return pool.install(work);
     }
@@ -27,12 +28,12 @@ pub(crate) fn map_with<I: Send, S, R: Send>(
     f: impl Fn(&mut S, I) -> R + Sync + Send,
 ) -> Vec<R> {
     let items: Vec<I> = items.into_iter().collect();
-    #[cfg(feature = "parallel")]
+    #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
     {
         use rayon::prelude::*;
         items.into_par_iter().with_max_len(grain).map_init(scratch, f).collect()
     }
-    #[cfg(not(feature = "parallel"))]
+    #[cfg(not(all(feature = "parallel", not(target_family = "wasm"))))]
     {
         let (_, mut scratch) = (grain, scratch());
         items.into_iter().map(|item| f(&mut scratch, item)).collect()
@@ -41,8 +42,8 @@ pub(crate) fn map_with<I: Send, S, R: Send>(
 
 /// Does two things, at the same time where there are threads.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
-    #[cfg(feature = "parallel")]
+    #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
     return rayon::join(a, b);
-    #[cfg(not(feature = "parallel"))]
+    #[cfg(not(all(feature = "parallel", not(target_family = "wasm"))))]
     (a(), b())
 }

@@ -95,14 +95,14 @@ impl InstructionSet {
     #[inline(always)]
     pub(crate) fn prefetch<T>(self, data: &[T]) {
         match self {
-            Self::Baseline => {}
+            Self::Baseline => _ = data,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(simd) => avx2::prefetch(simd, data),
         }
     }
 }
 
-/// Two vectors of four numbers, which SSE2 and NEON have.
+/// Two vectors of four numbers, which SSE2, NEON and WebAssembly have.
 #[derive(Clone, Copy)]
 pub(crate) struct Baseline;
 

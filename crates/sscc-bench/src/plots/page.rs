@@ -44,7 +44,7 @@ impl BenchPage {
             let x = Axis::logarithmic("triangles");
             scene.plots.push(plot(scenario, x, records, |record| record.triangles as f64));
         }
-        Ok(Report { scene, arrays: Arrays::default() }.html()?)
+        Ok(Report { scene, arrays: Arrays::default(), checks: None }.html()?)
     }
 }
 

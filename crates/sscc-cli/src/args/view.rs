@@ -13,10 +13,12 @@ use clap::Args;
         "sscc view head.glb --no-open --port 8080"
         "sscc view demo/"
         "sscc view spring.model.safetensors --compare-metrics"
+        "sscc view spring.model.safetensors --report spring.html --wasm target/npm/sscc"
     ),
     after_help = "\
 The server listens on this machine only, and its address contains a random token. The page works offline. Ctrl-C or \
 SIGTERM stops the server.\n\
+A report is the page as one file, which can be mailed. With --wasm its sliders check every shape, with the network off.\n\
 MODEL may be a folder with a report, as written by sscc simulate or sscc demo --out: the page then shows the report, \
 and takes no options of models.\n\
 The certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a flag that contradicts \
@@ -38,6 +40,12 @@ pub struct View {
     /// displacement metric, over the number of modes; certificates for each number are computed first
     #[arg(long)]
     pub compare_metrics: bool,
+    /// Write the page to this file (.html), in place of a server
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_open"])]
+    pub report: Option<PathBuf>,
+    /// Folder of the npm package `sscc`: the report checks shapes itself, without a server
+    #[arg(long, value_name = "DIR", requires = "report")]
+    pub wasm: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
 }

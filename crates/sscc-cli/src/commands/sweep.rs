@@ -100,7 +100,7 @@ fn write_report(
         ("samples of each weight".into(), rows.first().map_or(0, |row| row.samples.len()).to_string()),
         ("not tested".into(), LeftOut::of(certificates.filter()).to_string()),
     ];
-    let html = Report { scene, arrays }.html().with_context(in_report)?;
+    let html = Report { scene, arrays, checks: None }.html().with_context(in_report)?;
     ensure!(
         html.len() as u64 <= MAX_REPORT_BYTES,
         "{}: the page would have more than {} MiB: sweep a model with fewer vertices or modes, or see sscc view",

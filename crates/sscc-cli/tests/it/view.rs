@@ -191,3 +191,64 @@ fn refusals() {
         &["the model's own metric is displacement (diagonal), not a diagonal energy metric"],
     );
 }
+
+#[test]
+fn reports() {
+    let folder = strips();
+    let folder = folder.path();
+    let run = |more: &[&str]| sscc(folder, &[&["view"], &MODEL[..], more].concat());
+    let report = ["--report", "page.html"];
+    let package = |more: &str| fs::create_dir_all(folder.join("package").join(more)).unwrap();
+    // The page without a program.
+    assert_eq!(run(&report).code, Some(0));
+    let plain = fs::read_to_string(folder.join("page.html")).unwrap();
+    assert!(
+        plain.contains("\"root_radius\"") && !plain.contains("script-src 'unsafe-inline' 'wasm-unsafe-eval'")
+    );
+    // What is no package is refused, and no file is written.
+    fs::remove_file(folder.join("page.html")).unwrap();
+    let with = [&report[..], &["--wasm", "package"]].concat();
+    let script = Path::new("package").join("script").join("sscc.js").display().to_string();
+    let manifest = Path::new("package").join("package.json").display().to_string();
+    assert!(run(&with).refusal().contains(&format!("{manifest}: not found")));
+    package("");
+    for (content, cause) in [
+        ("{}", "package.json: not a file of the npm package sscc"),
+        ("sscc", "package.json: not a file of the npm package sscc"),
+        (r#"{"name":"sscc","version":"0.0.1"}"#, "package.json: the package has version 0.0.1, sscc has "),
+    ] {
+        fs::write(folder.join(&manifest), content).unwrap();
+        assert!(run(&with).refusal().contains(cause), "{content}");
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    fs::write(folder.join(&manifest), format!(r#"{{"name":"sscc","version":"{version}"}}"#)).unwrap();
+    assert!(run(&with).refusal().contains(&format!("{script}: not found")));
+    package("script");
+    fs::write(folder.join(&script), "alert(1)").unwrap();
+    let module = folder.join("package/sscc_bg.wasm");
+    fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
+    assert!(run(&with).refusal().contains("sscc.js: not a file of the npm package sscc"));
+    fs::write(folder.join(&script), "let ssccPackage = 1;").unwrap();
+    fs::write(&module, "<html>").unwrap();
+    assert!(run(&with).refusal().contains("sscc_bg.wasm: not a file of the npm package sscc"));
+    assert!(!folder.join("page.html").exists());
+    // The page with one.
+    fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
+    assert_eq!(run(&with).code, Some(0));
+    let html = fs::read_to_string(folder.join("page.html")).unwrap();
+    assert!(
+        html.contains("let ssccPackage = 1;")
+            && html.contains("script-src 'unsafe-inline' 'wasm-unsafe-eval'")
+    );
+    // It is no file for other folders to take over: a server does not run its script.
+    fs::rename(folder.join("page.html"), folder.join("package/report.html")).unwrap();
+    let served = sscc(folder, &["view", "package", "--no-open"]);
+    assert!(served.refusal().contains("report.html: not a report of sscc: it has a program"));
+    // Options.
+    assert!(
+        run(&["--report", "page.txt"])
+            .refusal()
+            .contains("page.txt: the name of the output must end in .html")
+    );
+    assert!(sscc(folder, &["view", ".", "--report", "page.html"]).refusal().contains("--report"));
+}

@@ -74,7 +74,10 @@ impl<'a> Accessors<'a> {
         let layout = Layout { component, width, normalized: accessor.normalized };
         let mut values = match accessor.buffer_view {
             Some(view) => self.numbers(view, accessor.byte_offset, accessor.count, layout)?,
-            None => vec![0.0; accessor.count * width],
+            None => {
+                let len = accessor.count.checked_mul(width);
+                vec![0.0; len.ok_or_else(|| refused("it has more numbers than memory has bytes".into()))?]
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let Some(of_index) = Component::from_code(sparse.indices.component_type).filter(|c| c.is_index())

@@ -179,7 +179,7 @@ impl MeshReport {
             scene.plots.push(costs);
         }
         (scene.models, scene.playback) = (models, Some(playback));
-        let html = Report { scene, arrays }.html()?;
+        let html = Report { scene, arrays, checks: None }.html()?;
         if html.len() as u64 > MAX_REPORT_BYTES { Err(ViewError::TooLarge) } else { Ok(html) }
     }
 }

@@ -37,5 +37,5 @@ pub fn simulation_report(run: &FinishedRun, progress: &dyn Progress) -> Result<S
     let (playback, notes) = playback(run, progress, &mut arrays)?;
     scene.playback = playback;
     scene.summary.extend(notes.into_iter().map(|note| ("note".to_owned(), note)));
-    Ok(Report { scene, arrays }.html()?)
+    Ok(Report { scene, arrays, checks: None }.html()?)
 }

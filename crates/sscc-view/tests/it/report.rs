@@ -13,7 +13,7 @@ fn a_report_contains_all_its_data() {
     let (mut scene, arrays) = scene(&model, &certificates);
     scene.title = "</script><img src=x onerror=alert(1)>".into();
     scene.summary.push(("a".into(), "<!-- & \u{2028}".into()));
-    let html = Report { scene: scene.clone(), arrays: arrays.clone() }.html().unwrap();
+    let html = Report { scene: scene.clone(), arrays: arrays.clone(), checks: None }.html().unwrap();
 
     let start = "<script type=\"application/json\" id=\"sscc-report\">";
     let [before, rest] = html.split(start).collect::<Vec<_>>()[..] else {
@@ -41,7 +41,7 @@ fn a_report_is_rebuilt_from_its_data_alone() {
     let (model, certificates) = strips();
     let (mut scene, arrays) = scene(&model, &certificates);
     scene.title = "</script><img src=x onerror=alert(1)>".into();
-    let html = Report { scene, arrays }.html().unwrap();
+    let html = Report { scene, arrays, checks: None }.html().unwrap();
     let hostile = html.replacen("<head>", "<head><script>steal()</script>", 1) + "<script>steal()</script>";
     assert_eq!(Report::rebuild(&hostile).unwrap(), html);
     // Only the data of another program's page are used.

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc::MetricKind;
-use sscc_io::LoadedModel;
-use sscc_view::{Live, MAX_REPORT_BYTES, Plot, Report, Scene, Server, metric_comparison};
+use sscc_io::{LoadedModel, write_whole};
+use sscc_view::{
+    Checks, Live, MAX_REPORT_BYTES, Plot, Report, Scene, Server, WasmPackage, metric_comparison,
+};
 
 use crate::args::{Model, Options, View};
 use crate::interrupt;
@@ -24,6 +26,10 @@ pub fn run(args: &View) -> Result<Outcome> {
     if path.is_dir() {
         return show_report(args, &path.join(REPORT));
     }
+    if let Some(report) = &args.report {
+        load::check_output(report, ".html", &[path])?;
+    }
+    let package = args.wasm.as_deref().map(WasmPackage::read).transpose()?;
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let certificates = match &args.certificates {
@@ -31,17 +37,36 @@ pub fn run(args: &View) -> Result<Outcome> {
         None => load::certificates_now(&loaded, &args.model, &args.options)?,
     };
     let comparison = if args.compare_metrics { Some(compare_metrics(&loaded, path)?) } else { None };
-    let server = bind(args)?;
     let name = file_name(path);
     let in_model = || path.display().to_string();
-    let (described, arrays) = model_scene(&loaded, &certificates, &name, None).with_context(in_model)?;
+    let (described, mut arrays) = model_scene(&loaded, &certificates, &name, None).with_context(in_model)?;
     let mut scene = Scene::new(&name);
     scene.models.push(described);
     scene.plots.extend(comparison);
+    if let Some(report) = &args.report {
+        let checks = package.map(|package| Checks::new(&package, model, &certificates, &mut arrays));
+        let checks = checks.transpose().with_context(in_model)?;
+        return write_report(report, &Report { scene, arrays, checks });
+    }
+    let server = bind(args)?;
     let live = Live::new(model, &certificates, scene, arrays, Some(interrupt::token().clone()))
         .with_context(in_model)?;
     announce(args, &server)?;
     server.serve(&live, &interrupt::is_interrupted)?;
+    Ok(Outcome::Done)
+}
+
+/// Writes the page to a file.
+fn write_report(path: &Path, report: &Report) -> Result<Outcome> {
+    let html = report.html().with_context(|| path.display().to_string())?;
+    ensure!(
+        html.len() as u64 <= MAX_REPORT_BYTES,
+        "{}: the page would have more than {} MiB: choose a model with fewer vertices or modes, or leave out --report",
+        path.display(),
+        MAX_REPORT_BYTES >> 20
+    );
+    write_whole(path, html.as_bytes())?;
+    note(format_args!("{}: {:.1} MB", path.display(), html.len() as f64 / 1e6));
     Ok(Outcome::Done)
 }
 
@@ -84,7 +109,7 @@ fn show_report(args: &View, report: &Path) -> Result<Outcome> {
 
 /// Returns the first typed option that applies to models only.
 fn first_model_option(args: &View) -> Option<&'static str> {
-    let View { model, certificates, port: _, no_open: _, compare_metrics, options } = args;
+    let View { model, certificates, port: _, no_open: _, compare_metrics, report, wasm: _, options } = args;
     let Model { path: _, modes, mesh_name } = model;
     let Options {
         epsilon,
@@ -106,6 +131,7 @@ fn first_model_option(args: &View) -> Option<&'static str> {
         (mesh_name.is_some(), "--mesh-name"),
         (certificates.is_some(), "--certificates"),
         (*compare_metrics, "--compare-metrics"),
+        (report.is_some(), "--report"),
         (epsilon.is_some(), "--epsilon"),
         (metric.is_some(), "--metric"),
         (center.is_some(), "--center"),

@@ -1,0 +1,50 @@
+//! Collisions of any mesh at given positions.
+
+use sscc::TriMesh;
+use wasm_bindgen::prelude::*;
+
+use crate::arrays::{self, numbers, points, triangles};
+use crate::impacts::Impacts;
+use crate::options::{Options, json};
+use crate::statistics::Statistics;
+
+/// Answers which triangles of a deforming mesh collide, without modes.
+#[wasm_bindgen]
+pub struct Detector(sscc::Detector);
+
+#[wasm_bindgen]
+impl Detector {
+    /// Makes a detector. `positions`: 3 coordinates for each vertex, at any pose. `faces`: 3 vertex numbers for each triangle.
+    #[wasm_bindgen(constructor)]
+    pub fn new(
+        positions: &[f64],
+        #[wasm_bindgen(unchecked_param_type = "Uint32Array | number[]")] faces: &[f64],
+        #[wasm_bindgen(unchecked_optional_param_type = "FilterOptions")] options: JsValue,
+    ) -> Result<Detector, JsError> {
+        let mesh = TriMesh::new(points("positions", positions)?, triangles(faces)?)?;
+        let filter = Options::parse(json(&options)?.as_deref())?.filter_alone(&mesh)?;
+        Ok(Self(sscc::Detector::with_filter(&mesh, &filter)?))
+    }
+
+    /// All colliding pairs at these positions (3V numbers), sorted, 2 triangle numbers for each. No pairs are a proof.
+    pub fn discrete(&mut self, positions: &[f64]) -> Result<Vec<u32>, JsError> {
+        Ok(numbers(self.0.discrete(&points("positions", positions)?)?))
+    }
+
+    /// At most so many of the pairs, all without a limit; which ones is not fixed. `statistics.complete` tells whether they are all.
+    #[wasm_bindgen(js_name = discreteAtMost)]
+    pub fn discrete_at_most(&mut self, positions: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
+        Ok(numbers(self.0.discrete_at_most(&points("positions", positions)?, arrays::limit(limit)?)?))
+    }
+
+    /// The pairs that touch while all vertices move on straight lines from `x0` to `x1`.
+    pub fn continuous(&mut self, x0: &[f64], x1: &[f64]) -> Result<Impacts, JsError> {
+        Ok(self.0.continuous(&points("x0", x0)?, &points("x1", x1)?)?.into())
+    }
+
+    /// What the last answer took.
+    #[wasm_bindgen(getter)]
+    pub fn statistics(&self) -> Statistics {
+        self.0.statistics().into()
+    }
+}

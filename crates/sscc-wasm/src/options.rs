@@ -1,0 +1,209 @@
+//! Options of certificates and detectors: objects of JavaScript.
+
+use serde::Deserialize;
+use sscc::{CertifyOptions, ContactFilter, Neighbours, TriMesh};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r#"
+/** Which pairs of triangles count. */
+export interface FilterOptions {
+    /** Whether pairs with common vertices count; "exclude" by default. "include-folded" is for detectors alone. */
+    neighbours?: "exclude" | "include-one-vertex" | "include-folded";
+    /** Whether vertices of equal positions (and modes) are one, for adjacency alone; by default in models of glTF files. */
+    weld?: boolean;
+}
+
+/** How certificates are computed. */
+export interface CertifyOptions extends FilterOptions {
+    /** "full" by default; "paper" takes less time and memory, and queries beyond the root's radius more. */
+    scheme?: "full" | "paper";
+    /** Relative tolerance of the root's radius, in (0, 1); 0.1 by default. */
+    epsilon?: number;
+    /** How far radii may reach, in units of the global radius, at least 1 (default). */
+    reach?: number;
+    /** The q from which radii are measured; 0 by default. */
+    center?: number[] | Float64Array;
+    /** Pairs that collide at rest never count, nor do those within so many rings of them. */
+    ignoreRest?: number;
+}
+"#;
+
+/// Options as they are given.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+pub struct Options {
+    neighbours: Option<String>,
+    weld: Option<bool>,
+    scheme: Option<Scheme>,
+    epsilon: Option<f64>,
+    reach: Option<f64>,
+    center: Option<Vec<f64>>,
+    ignore_rest: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Scheme {
+    Full,
+    Paper,
+}
+
+#[wasm_bindgen]
+extern "C" {
+    /// None for what has no JSON. An error for circles, and where the replacement of a value fails.
+    #[wasm_bindgen(js_namespace = JSON, catch)]
+    fn stringify(
+        value: &JsValue,
+        replacement: &Closure<dyn FnMut(String, JsValue) -> Result<JsValue, JsValue>>,
+    ) -> Result<Option<String>, JsValue>;
+
+    /// Whether a value is a typed array.
+    #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
+    fn is_typed_array(value: &JsValue) -> bool;
+
+    /// A plain array of the same items.
+    #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
+    fn plain_array(value: &JsValue) -> Result<JsValue, JsValue>;
+}
+
+/// What is said of options that are none at all.
+const NO_OBJECT: &str = "it is no plain object";
+
+/// An object as JSON; none for `undefined`.
+pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
+    if options.is_undefined() {
+        return Ok(None);
+    }
+    let refused = |cause: &str| JsError::new(&OptionsError(cause.to_owned()).to_string());
+    match stringify(options, &Closure::new(replaced)) {
+        Ok(Some(text)) => Ok(Some(text)),
+        Ok(None) => Err(refused(NO_OBJECT)),
+        Err(error) => Err(refused(error.as_string().as_deref().unwrap_or(NO_OBJECT))),
+    }
+}
+
+/// What JSON has in place of a value. An error for values that JSON would leave out, or make null.
+fn replaced(key: String, value: JsValue) -> Result<JsValue, JsValue> {
+    let refused = |cause: String| Err(JsValue::from_str(&cause));
+    if key.is_empty() && !value.is_object() {
+        return refused(NO_OBJECT.to_owned());
+    }
+    if is_typed_array(&value) {
+        return plain_array(&value);
+    }
+    match value.as_f64() {
+        Some(number) if !number.is_finite() => {
+            refused(format!("{} is {number}: it must be finite", name(&key)))
+        }
+        _ if value.is_function() || value.is_symbol() => {
+            refused(format!("{} is no value of an option", name(&key)))
+        }
+        _ => Ok(value),
+    }
+}
+
+/// How a message names a key: those of arrays are numbers.
+fn name(key: &str) -> String {
+    match key.parse::<usize>() {
+        Ok(at) => format!("item {at} of an array"),
+        Err(_) => key.to_owned(),
+    }
+}
+
+impl Options {
+    /// Reads options from JSON. An unknown key is an error.
+    pub fn parse(json: Option<&str>) -> Result<Self, OptionsError> {
+        json.map_or(Ok(Self::default()), |json| {
+            if !json.starts_with('{') {
+                return Err(OptionsError(NO_OBJECT.to_owned()));
+            }
+            serde_json::from_str(json).map_err(|error| {
+                let text = error.to_string();
+                let cause = text.split_once(" at line").map_or(text.as_str(), |(cause, _)| cause);
+                OptionsError(cause.to_owned())
+            })
+        })
+    }
+
+    /// The options for certificates of a model with this mesh.
+    pub fn for_mesh(self, mesh: &TriMesh) -> Result<CertifyOptions, sscc::Error> {
+        let mut options = CertifyOptions::default()
+            .filter(self.filter(mesh)?)
+            .center(self.center)
+            .ignore_rest(self.ignore_rest);
+        if let Some(Scheme::Paper) = self.scheme {
+            options = options.budget(0).local_budget(0);
+        }
+        if let Some(epsilon) = self.epsilon {
+            options = options.epsilon(epsilon);
+        }
+        if let Some(reach) = self.reach {
+            options = options.reach(reach);
+        }
+        Ok(options)
+    }
+
+    /// The contact filter, where there are no other options.
+    pub fn filter_alone(&self, mesh: &TriMesh) -> Result<ContactFilter, OptionsError> {
+        let Self { neighbours: _, weld: _, scheme, epsilon, reach, center, ignore_rest } = self;
+        if scheme.is_some()
+            || epsilon.is_some()
+            || reach.is_some()
+            || center.is_some()
+            || ignore_rest.is_some()
+        {
+            return Err(OptionsError("a detector has the options neighbours and weld alone".to_owned()));
+        }
+        self.filter(mesh).map_err(|error| OptionsError(error.to_string()))
+    }
+
+    fn filter(&self, mesh: &TriMesh) -> Result<ContactFilter, sscc::Error> {
+        let filter = match &self.neighbours {
+            Some(name) => ContactFilter::new(name.parse::<Neighbours>()?).weld(mesh.has_split_vertices()),
+            None => ContactFilter::of(mesh),
+        };
+        Ok(match self.weld {
+            Some(weld) => filter.weld(weld),
+            None => filter,
+        })
+    }
+}
+
+/// Options that are none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptionsError(String);
+
+impl std::fmt::Display for OptionsError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "options: {}", self.0)
+    }
+}
+
+impl std::error::Error for OptionsError {}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn options_that_are_none_are_refused_in_one_line() {
+        let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+        let refused = |json: &str| {
+            Options::parse(Some(json)).and_then(|options| options.filter_alone(&mesh).map(|_| ()))
+        };
+        assert!(refused("{\"neighbours\":\"include-one-vertex\",\"weld\":true}").is_ok());
+        assert!(refused("{}").is_ok());
+        for json in
+            ["{\"neighbour\":1}", "{\"neighbours\":\"all\"}", "{\"weld\":1}", "[]", "3", "{\"epsilon\":0.1}"]
+        {
+            let error = refused(json).unwrap_err().to_string();
+            assert!(
+                error.starts_with("options: ") && !error.contains('\n') && !error.contains("line"),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,134 @@
+// The package in Node. SSCC_PACKAGE is its folder, SSCC_DIGESTS that of the native bytes.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { compare } from "./models.mjs";
+
+const folder = process.env.SSCC_PACKAGE;
+const { exports } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+const sscc = await import(pathToFileURL(join(folder, exports["."].node)));
+await sscc.default();
+const { Certificates, Detector, Model, Query } = sscc;
+
+/** Two triangles above each other, and a mode that moves the upper one along z. */
+const positions = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1);
+const faces = Uint32Array.of(0, 1, 2, 3, 4, 5);
+const modes = Float64Array.from({ length: 18 }, (_, row) => (row >= 9 && row % 3 === 2 ? 1 : 0));
+const two = () => new Model(positions, faces, modes);
+
+test("certificates and answers of five models have the native bytes", async () => {
+    const read = async (name) => new Uint8Array(readFileSync(join(process.env.SSCC_DIGESTS, name)));
+    assert.deepEqual(await compare(sscc, read), { models: 5, differences: [] });
+});
+
+test("a model is made, certified, stored and queried", () => {
+    const model = two();
+    assert.deepEqual([model.vertexCount, model.triangleCount, model.rank], [6, 2, 1]);
+    const certificates = model.certify();
+    const query = new Query(Model.load(model.toBytes()), Certificates.load(certificates.toBytes()));
+    assert.deepEqual([...query.discrete(Float64Array.of(-1))], [0, 1]);
+    assert.equal(query.isColliding([-1]), true);
+    assert.equal(query.count([-1]), 1);
+    for (const [limit, pairs] of [[0, []], [1, [0, 1]], [2 ** 32, [0, 1]], [Infinity, [0, 1]], [undefined, [0, 1]]]) {
+        assert.deepEqual([...query.discreteAtMost([-1], limit)], pairs, `${limit}`);
+        assert.equal(query.statistics.complete, pairs.length > 0, `${limit}`);
+    }
+    assert.deepEqual([...query.discrete([-0.5])], []);
+    const { statistics } = query;
+    assert.deepEqual([statistics.complete, statistics.rootCertified, statistics.proof], [true, true, "radius"]);
+    assert.ok(statistics.norm < certificates.rootRadius);
+    assert.ok(certificates.norm([-0.5]) === statistics.norm);
+    const impacts = query.continuous([0], [-2]);
+    assert.deepEqual([...impacts.pairs], [0, 1]);
+    assert.ok(Math.abs(impacts.times[0] - 0.5) < 1e-9);
+    assert.ok(query.safeScale([-2]) <= 0.5);
+});
+
+test("a centre may be a typed array", () => {
+    const bytes = (center) => two().certify({ center }).toBytes();
+    assert.deepEqual(bytes(Float64Array.of(0.25)), bytes([0.25]));
+    assert.notDeepEqual(bytes([0.25]), bytes([0]));
+});
+
+test("a detector needs no modes", () => {
+    const detector = new Detector(positions, faces);
+    assert.deepEqual([...detector.discrete(positions)], []);
+    const model = two();
+    const touching = model.positions([-1]);
+    assert.deepEqual([...detector.discrete(touching)], [0, 1]);
+    assert.deepEqual([...detector.discreteAtMost(touching, 1)], [0, 1]);
+    assert.deepEqual([...detector.continuous(positions, model.positions([-3])).pairs], [0, 1]);
+    // A quad folded flat: its triangles have two vertices in common.
+    const folded = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0.2, 0.2, 0);
+    const quad = Uint32Array.of(0, 1, 2, 1, 0, 3);
+    assert.equal(new Detector(folded, quad).discrete(folded).length, 0);
+    assert.equal(new Detector(folded, quad, { neighbours: "include-folded" }).discrete(folded).length, 2);
+});
+
+test("bad input is an error of one line, and the module goes on", () => {
+    const model = two();
+    const query = new Query(model, model.certify());
+    const other = new Model(positions, faces, modes.map((u) => 2 * u));
+    for (const [act, cause] of [
+        [() => new Model(positions.subarray(1), faces, modes), /positions has 17 numbers/],
+        [() => new Model(positions, [0, 1], modes), /faces has 2 numbers/],
+        [() => new Model(positions, [0, 1, 9], modes), /9/],
+        [() => new Model(positions, [0, 1, Number.NaN], modes), /faces\[2\] is NaN; it must be a vertex number/],
+        [() => new Model(positions, [0, 1.9, 2], modes), /faces\[1\] is 1.9;/],
+        [() => new Model(positions, [4294967296, 1, 2], modes), /faces\[0\] is 4294967296;/],
+        [() => new Detector(positions, [0, 1, -1]), /faces\[2\] is -1;/],
+        [() => query.discreteAtMost([-1], Number.NaN), /the limit is NaN/],
+        [() => query.discreteAtMost([-1], -1), /the limit is -1/],
+        [() => new Detector(positions, faces).discreteAtMost(positions, 0.5), /the limit is 0.5/],
+        [() => new Model(positions, faces, modes.subarray(1)), /modes has 17 numbers/],
+        [() => new Model(positions, faces, []), /mode/],
+        [() => new Model([Number.NaN, ...positions.subarray(1)], faces, modes), /NaN|finite/],
+        [() => Model.load(new Uint8Array(0)), /./],
+        [() => Model.load(model.toBytes().subarray(0, 100)), /./],
+        [() => Model.load(model.toBytes(), "Mesh"), /meshName/],
+        [() => Model.load(new TextEncoder().encode('{"asset":{"version":"2.0"}}')), /./],
+        [() => Certificates.load(model.toBytes()), /./],
+        [() => model.certify({ neighbour: "exclude" }), /options: unknown field `neighbour`/],
+        [() => model.certify({ neighbours: "all" }), /include-one-vertex/],
+        [() => model.certify({ epsilon: 2 }), /epsilon/],
+        [() => model.certify({ epsilon: Number.NaN }), /options: epsilon is NaN: it must be finite/],
+        [() => model.certify({ reach: Infinity }), /options: reach is inf/],
+        [() => model.certify({ epsilon: () => 0.1 }), /options: epsilon is no value/],
+        [() => model.certify({ center: [1, 2] }), /1/],
+        [() => model.certify({ center: Float64Array.of(1, 2) }), /1/],
+        [() => model.certify({ center: Float64Array.of(Number.NaN) }), /options: item 0 of an array is NaN/],
+        [() => model.certify([]), /options: it is no plain object/],
+        [() => model.certify(Number.NaN), /options: it is no plain object/],
+        [() => model.certify("paper"), /options: it is no plain object/],
+        [() => model.certify(() => 1), /options: it is no plain object/],
+        [() => new Query(other, model.certify()), /another model|other model/],
+        [() => query.discrete([]), /0/],
+        [() => query.discrete([Number.NaN]), /NaN/],
+        [() => new Detector(positions, faces, { epsilon: 0.1 }), /options: a detector/],
+        [() => new Detector(positions, faces).discrete(positions.subarray(3)), /5|15/],
+    ]) {
+        assert.throws(act, (error) => {
+            assert.ok(error instanceof Error && !(error instanceof WebAssembly.RuntimeError), `${act}: ${error}`);
+            assert.match(error.message, cause, `${act}`);
+            assert.ok(!error.message.includes("\n"), error.message);
+            return true;
+        });
+    }
+    assert.deepEqual([...query.discrete([-1])], [0, 1]);
+});
+
+test("memory that is freed is used again", () => {
+    const model = two();
+    const query = new Query(model, model.certify());
+    const { memory } = sscc.initSync();
+    const before = memory.buffer.byteLength;
+    for (let i = 0; i < 20_000; i++) query.discrete([-1]);
+    for (let i = 0; i < 200; i++) {
+        const [made, detector] = [two(), new Detector(positions, faces)];
+        made.free();
+        detector.free();
+    }
+    assert.ok(memory.buffer.byteLength <= before + 131_072, `${before} to ${memory.buffer.byteLength} bytes`);
+});
