@@ -64,7 +64,7 @@ pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row_len: usi
 
 /// Four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
 /// their widest extent. None where they do not lie well within a half-space.
-fn enclose_in_pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
+pub(super) fn enclose_in_pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
     let axis = d.iter().map(|d| d.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
     let mut flat = [DVec3::ZERO; 9];
     for (flat, d) in flat.iter_mut().zip(d) {

@@ -1,0 +1,187 @@
+//! Certificates: the hierarchy, which must be a partition, and the radii that queries rely on.
+
+use crate::container::Container;
+use crate::refusal::{Refusal, input};
+
+/// A bucket has at most so many triangles, and is not the root. The pair tree ends at buckets.
+const BUCKET: u32 = 64;
+/// Levels of a hierarchy, at most.
+const MAX_LEVELS: usize = 256;
+/// No pair of a node's children is stored.
+const NO_PAIRS: u32 = u32::MAX;
+
+/// A node: its triangles are a range of the order, its children a range of the nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Node {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    first_child: u32,
+    pub(crate) children: u32,
+}
+
+impl Node {
+    pub(crate) fn children(&self) -> std::ops::Range<u32> {
+        self.first_child..self.first_child + self.children
+    }
+}
+
+/// A node pair of the pair tree.
+#[derive(Clone, Copy)]
+pub(crate) struct StoredPair {
+    pub(crate) radius: f64,
+    /// Its index among its siblings, stored or not.
+    pub(crate) which: u32,
+    /// Where the list of its children starts.
+    pub(crate) start: u32,
+}
+
+/// Hierarchy and radii.
+pub(crate) struct Certificates {
+    pub(crate) digest: [u8; 32],
+    pub(crate) nodes: Vec<Node>,
+    order: Vec<u32>,
+    pub(crate) node_radii: Vec<f64>,
+    pub(crate) root_pair_radii: Vec<f64>,
+    /// 0: there is no pair tree.
+    pub(crate) pair_limit: f64,
+    starts: Vec<u32>,
+    radii: Vec<f32>,
+    links: Vec<u32>,
+}
+
+impl Certificates {
+    pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self, Refusal> {
+        let digest = file.shaped::<u8>("model_digest", &[Some(32)])?.try_into().unwrap_or_default();
+        let nodes: Vec<Node> = file
+            .shaped::<u32>("nodes", &[None, Some(4)])?
+            .as_chunks()
+            .0
+            .iter()
+            .map(|&[first, count, first_child, children]| Node { first, count, first_child, children })
+            .collect();
+        let order = file.shaped("order", &[Some(triangles)])?;
+        check_partition(&nodes, &order)?;
+        let children = nodes[0].children as usize;
+        let root_pairs = children * children.saturating_sub(1) / 2;
+        let has_tree = file.has("pair_limit");
+        let pair_limit = if has_tree { file.one::<f64>("pair_limit")? } else { 0.0 };
+        let list = |name| if has_tree { file.shaped::<u32>(name, &[None]) } else { Ok(Vec::new()) };
+        let (starts, links) = (list("pair_starts")?, list("pair_links")?);
+        let this = Self {
+            digest,
+            node_radii: file.shaped("node_radii", &[Some(nodes.len())])?,
+            root_pair_radii: file.shaped("root_pair_radii", &[Some(root_pairs)])?,
+            pair_limit,
+            radii: if has_tree { file.shaped("pair_radii", &[Some(links.len())])? } else { Vec::new() },
+            starts,
+            links,
+            nodes,
+            order,
+        };
+        let is_radius = |radius: &f64| *radius >= 0.0;
+        let is_small_radius = |radius: &f32| *radius >= 0.0;
+        if !this.node_radii.iter().chain(&this.root_pair_radii).chain([&pair_limit]).all(is_radius)
+            || !this.radii.iter().all(is_small_radius)
+        {
+            return input("a radius is negative or not a number");
+        }
+        let starts = if pair_limit > 0.0 { this.nodes.len() } else { 0 };
+        if pair_limit.is_infinite() || this.starts.len() != starts {
+            return input("the limit or the starts of the pair tree do not fit the hierarchy");
+        }
+        Ok(this)
+    }
+
+    /// The triangles of a node.
+    pub(crate) fn triangles(&self, n: u32) -> &[u32] {
+        let node = self.nodes[n as usize];
+        &self.order[node.first as usize..][..node.count as usize]
+    }
+
+    /// Whether queries test a node as a whole: the pair tree has no pairs within it.
+    pub(crate) fn is_bucket(&self, n: u32) -> bool {
+        n != 0 && self.nodes[n as usize].count <= BUCKET
+    }
+
+    /// The children of a node pair in the pair tree; none where both are at most as large as buckets.
+    pub(crate) fn split(&self, [n, m]: [u32; 2]) -> Option<Vec<[u32; 2]>> {
+        let [node_n, node_m] = [n, m].map(|n| self.nodes[n as usize]);
+        if node_n.count.max(node_m.count) <= BUCKET || (node_n.children == 0 && node_m.children == 0) {
+            return None;
+        }
+        let is_first = node_m.children == 0 || (node_n.children > 0 && node_n.count >= node_m.count);
+        let first = |child| [child, m];
+        let second = |child| [n, child];
+        Some(if is_first {
+            node_n.children().map(first).collect()
+        } else {
+            node_m.children().map(second).collect()
+        })
+    }
+
+    /// The stored pairs of a node's children.
+    pub(crate) fn stored_of_node(&self, n: u32) -> Result<Vec<StoredPair>, Refusal> {
+        match self.starts[n as usize] {
+            NO_PAIRS => Ok(Vec::new()),
+            start => self.stored(start),
+        }
+    }
+
+    /// The number of node pairs in the pair tree.
+    pub(crate) fn stored_pairs(&self) -> usize {
+        self.links.len()
+    }
+
+    /// The list of siblings from a start on.
+    pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>, Refusal> {
+        let mut list = Vec::new();
+        for (&radius, &link) in self.radii.iter().zip(&self.links).skip(start as usize).take(8) {
+            let (start, which) = (link & ((1 << 28) - 1), link >> 28 & 7);
+            list.push(StoredPair { radius: f64::from(radius), which, start });
+            if link >> 31 == 1 {
+                return Ok(list);
+            }
+        }
+        input("pair tree: a list of siblings does not end")
+    }
+}
+
+/// Whether each triangle is listed once, and the triangles of each node are the disjoint union of its children's.
+fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
+    let mut seen = vec![false; order.len()];
+    for &a in order {
+        match seen.get_mut(a as usize) {
+            Some(seen) if !*seen => *seen = true,
+            _ => return input("hierarchy: a triangle is listed twice or does not exist"),
+        }
+    }
+    let wrong = || input("hierarchy: a node is not the disjoint union of its children");
+    let Some(root) = nodes.first() else { return wrong() };
+    if (root.first, root.count as usize) != (0, order.len()) {
+        return input("hierarchy: the root does not have all triangles");
+    }
+    let (mut next, mut levels) = (1_u64, vec![0_usize; nodes.len()]);
+    for (n, node) in nodes.iter().enumerate() {
+        if node.children == 0 {
+            continue;
+        }
+        let end = u64::from(node.first_child) + u64::from(node.children);
+        if node.children < 2 || u64::from(node.first_child) != next || end > nodes.len() as u64 {
+            return wrong();
+        }
+        next = end;
+        let mut first = u64::from(node.first);
+        for child in node.children() {
+            let part = nodes[child as usize];
+            if u64::from(part.first) != first || part.count == 0 {
+                return wrong();
+            }
+            first += u64::from(part.count);
+            levels[child as usize] = levels[n] + 1;
+        }
+        if first != u64::from(node.first) + u64::from(node.count) || levels[n] >= MAX_LEVELS {
+            return wrong();
+        }
+    }
+    if next == nodes.len() as u64 { Ok(()) } else { input("hierarchy: some nodes have no parent") }
+}

@@ -1,0 +1,122 @@
+//! The model: faces, positions at rest, modes; and its digest together with the scope of certificates.
+
+use crate::container::Container;
+use crate::refusal::{Refusal, input};
+use crate::scope::Scope;
+
+/// Coordinates are at most 2^200.
+const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
+
+/// A mesh and its modes, as a file gives them.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) faces: Vec<[u32; 3]>,
+    pub(crate) rank: usize,
+    /// `modes[(3 vertex + component) rank + k]`
+    pub(crate) modes: Vec<f64>,
+}
+
+impl Model {
+    /// A model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
+    ///
+    /// # Errors
+    /// When sizes do not fit each other, a face names no vertex, or a number is not finite or beyond 2^200.
+    pub fn new(
+        positions: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        modes: Vec<f64>,
+        rank: usize,
+    ) -> Result<Self, Refusal> {
+        if faces.is_empty() || rank == 0 || positions.len().checked_mul(3 * rank) != Some(modes.len()) {
+            return input("model: the modes are not a matrix of three rows for each vertex");
+        }
+        if faces.as_flattened().iter().any(|i| *i as usize >= positions.len()) {
+            return input("model: a face names a vertex that does not exist");
+        }
+        let mut numbers = positions.as_flattened().iter().chain(&modes);
+        if !numbers.all(|x| x.abs() <= LARGEST) {
+            return input("model: a number is not finite, or beyond 2^200");
+        }
+        Ok(Self { positions, faces, rank, modes })
+    }
+
+    /// Parses a `*.model.safetensors` file.
+    ///
+    /// # Errors
+    /// When it is damaged, of another kind or version, or no model.
+    pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
+        let file = Container::parse(bytes, "sscc.model", 3)?;
+        let positions = file.shaped::<f64>("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let faces = file.shaped::<u32>("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let (modes, shape) = file.tensor::<f64>("modes")?;
+        match *shape {
+            [vertices, 3, rank] if vertices == positions.len() => Self::new(positions, faces, modes, rank),
+            _ => input("tensor 'modes' has another shape"),
+        }
+    }
+
+    /// The three rows of a vertex.
+    pub(crate) fn modes_of(&self, vertex: usize) -> &[f64] {
+        &self.modes[vertex * 3 * self.rank..][..3 * self.rank]
+    }
+
+    /// The position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
+    pub(crate) fn computed_position(&self, vertex: usize, q: &[f64]) -> [f64; 3] {
+        let modes = self.modes_of(vertex);
+        std::array::from_fn(|c| {
+            let row = modes[c * self.rank..][..self.rank].iter();
+            row.zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
+        })
+    }
+
+    /// BLAKE3 of the model and the scope: named lists one after the other, each with its length; all numbers in 64 bits.
+    pub(crate) fn digest(&self, scope: &Scope, classes: &[u32]) -> [u8; 32] {
+        let mut hasher = blake3::Hasher::new();
+        let mut list = |name: &str, count: usize, numbers: &mut dyn Iterator<Item = u64>| {
+            hasher.update(name.as_bytes()).update(&(count as u64).to_le_bytes());
+            numbers.for_each(|n| {
+                hasher.update(&n.to_le_bytes());
+            });
+        };
+        let (rank, vertices) = (self.rank, self.positions.len());
+        list("faces", self.faces.len(), &mut integers(self.faces.as_flattened()));
+        list("positions", vertices, &mut reals(self.positions.as_flattened()));
+        list("rank", rank, &mut std::iter::empty());
+        // Vector by vector: the three components of each mode of a vertex.
+        let mut modes = (0..vertices).flat_map(|i| {
+            let rows = self.modes_of(i);
+            (0..rank).flat_map(move |k| (0..3).map(move |c| rows[c * rank + k].to_bits()))
+        });
+        list("modes", vertices * rank, &mut modes);
+        let factor = &scope.factor;
+        list(if scope.is_dense { "factor" } else { "scales" }, factor.len(), &mut reals(factor));
+        let neighbours = if scope.one_vertex { "include-one-vertex" } else { "exclude-adjacent" };
+        list(neighbours, 0, &mut std::iter::empty());
+        if scope.center.iter().any(|x| *x != 0.0) {
+            list("center", rank, &mut reals(&scope.center));
+        }
+        if scope.weld {
+            list("weld", classes.len(), &mut integers(classes));
+        }
+        for (name, pairs) in [("ignored", &scope.ignored), ("exceptions", &scope.exceptions)] {
+            if !pairs.is_empty() {
+                list(name, pairs.len(), &mut integers(pairs.as_flattened()));
+            }
+        }
+        if let Some(groups) = &scope.groups {
+            list("groups", groups.of_triangles.len(), &mut integers(&groups.of_triangles));
+            let name = if groups.others_count { "ignored-groups" } else { "only-groups" };
+            list(name, groups.listed.len(), &mut integers(groups.listed.as_flattened()));
+        }
+        *hasher.finalize().as_bytes()
+    }
+}
+
+fn integers(numbers: &[u32]) -> impl Iterator<Item = u64> {
+    numbers.iter().map(|n| u64::from(*n))
+}
+
+fn reals(numbers: &[f64]) -> impl Iterator<Item = u64> {
+    numbers.iter().map(|x| x.to_bits())
+}

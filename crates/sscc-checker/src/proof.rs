@@ -1,0 +1,282 @@
+//! The file of a proof, and the check of its entries. `docs/formats.md` has the format.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use crate::affine::{AffineMap, AffineWitness};
+use crate::certificates::Certificates;
+use crate::corners::{Corner, Direction, Triangle, quarters};
+use crate::dyadic::{Dyadic, Vector, vector};
+use crate::entries::Entry;
+use crate::node_maps::{NodeMaps, numbers_of_map};
+use crate::refusal::{Refusal, input, proof};
+use crate::scaled::{Radius, ScaledModel};
+use crate::scope::{CountedPairs, Simplices};
+
+const MAGIC: &[u8; 8] = b"SSCCPRF1";
+/// Quarters within quarters, at most.
+const MAX_DEPTH: usize = 64;
+
+/// Witnesses of node pairs.
+const DIRECTION: u8 = b'd';
+const NOTHING_COUNTS: u8 = b'n';
+const SPLIT_FIRST: u8 = b'1';
+const SPLIT_SECOND: u8 = b'2';
+const TRIANGLES: u8 = b't';
+/// Witnesses of triangle pairs; smaller numbers are those of a direction that came before.
+const NEW_DIRECTION: u8 = 255;
+const NEW_MAP: u8 = 254;
+const LAST_MAP: u8 = 253;
+const QUARTER_FIRST: u8 = 252;
+const QUARTER_SECOND: u8 = 251;
+
+/// The parts of a proof.
+pub(crate) struct Proof<'a> {
+    pub(crate) digest: &'a [u8],
+    /// How many entries there are, proven or not.
+    pub(crate) entries: u64,
+    rank: u32,
+    nodes: u32,
+    maps: &'a [u8],
+    /// The number of each proven entry, ascending, and its witnesses.
+    pub(crate) proven: Vec<(usize, &'a [u8])>,
+}
+
+/// Bytes that are read from the front.
+struct Bytes<'a>(&'a [u8]);
+
+impl<'a> Bytes<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
+        match self.0.split_at_checked(count) {
+            Some((front, rest)) => {
+                self.0 = rest;
+                Ok(front)
+            }
+            None => proof("it ends too early"),
+        }
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
+        Ok(self.take(N)?.try_into().unwrap_or([0; N]))
+    }
+
+    fn real(&mut self) -> Result<f64, Refusal> {
+        match f64::from_le_bytes(self.array()?) {
+            x if x.is_finite() => Ok(x),
+            _ => proof("a number is not finite"),
+        }
+    }
+
+    fn vector(&mut self) -> Result<Vector, Refusal> {
+        Ok(vector([self.real()?, self.real()?, self.real()?]))
+    }
+}
+
+impl<'a> Proof<'a> {
+    pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+        let mut bytes = Bytes(bytes);
+        if bytes.take(MAGIC.len()).ok() != Some(MAGIC) {
+            return input("not a proof written by sscc certify --proof");
+        }
+        let digest = bytes.take(32)?;
+        let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
+        let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
+        let numbers = numbers_of_map(rank as usize).checked_mul(nodes as usize);
+        let maps = bytes.take(numbers.and_then(|count| count.checked_mul(8)).unwrap_or(usize::MAX))?;
+        let mut proven: Vec<(usize, &[u8])> = Vec::new();
+        for _ in 0..count {
+            let index = u64::from_le_bytes(bytes.array()?);
+            let length = u32::from_le_bytes(bytes.array()?);
+            let is_next = proven.last().is_none_or(|(last, _)| (*last as u64) < index);
+            if !is_next || index >= entries {
+                return proof(format!("entry {index} is out of order, or does not exist"));
+            }
+            proven.push((index as usize, bytes.take(length as usize)?));
+        }
+        if !bytes.0.is_empty() {
+            return proof("there are bytes after its end");
+        }
+        Ok(Self { digest, entries, rank, nodes, maps, proven })
+    }
+}
+
+/// What the checks of all entries share.
+pub(crate) struct Check<'a> {
+    pub(crate) certificates: &'a Certificates,
+    pub(crate) counted: &'a CountedPairs<'a>,
+    pub(crate) scaled: &'a ScaledModel,
+    pub(crate) model: &'a crate::Model,
+}
+
+impl Check<'_> {
+    /// Checks all entries that are proven, on several threads.
+    pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
+        let nodes = self.certificates.nodes.len();
+        if (file.rank as usize, file.nodes as usize) != (self.scaled.rank, nodes) {
+            return proof("it has another number of modes or nodes than the certificates");
+        }
+        let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
+        let (next, refused) = (AtomicUsize::new(0), Mutex::new(None::<(usize, Refusal)>));
+        let work = || {
+            while let Some((index, bytes)) = file.proven.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Err(refusal) = self.entry(&maps, entries[*index], bytes) {
+                    let mut refused = refused.lock().unwrap_or_else(PoisonError::into_inner);
+                    if refused.as_ref().is_none_or(|(first, _)| index < first) {
+                        *refused = Some((*index, refusal));
+                    }
+                    return;
+                }
+            }
+        };
+        thread::scope(|scope| (0..threads.max(1)).for_each(|_| drop(scope.spawn(work))));
+        match refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            None => Ok(()),
+            Some((index, refusal)) => {
+                let Entry { nodes: [n, m], radius } = entries[index];
+                proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
+            }
+        }
+    }
+
+    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8]) -> Result<(), Refusal> {
+        let radius = self.scaled.radius(entry.radius);
+        let mut reader = EntryReader { check: self, maps, radius, bytes: Bytes(bytes) };
+        // Nothing is closer to the centre than it is.
+        if entry.radius > 0.0 {
+            reader.nodes(entry.nodes)?;
+        }
+        if reader.bytes.0.is_empty() { Ok(()) } else { proof("there are witnesses after its end") }
+    }
+}
+
+/// Reads and checks the witnesses of an entry.
+struct EntryReader<'a> {
+    check: &'a Check<'a>,
+    maps: &'a NodeMaps<'a>,
+    radius: Radius,
+    bytes: Bytes<'a>,
+}
+
+impl EntryReader<'_> {
+    /// All pairs between two nodes, or within one.
+    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+        let Check { certificates, counted, .. } = self.check;
+        let children = |n: u32| certificates.nodes[n as usize].children();
+        match self.bytes.array()? {
+            [DIRECTION] => {
+                let dir = self.bytes.vector()?;
+                let is_apart = n != m && self.maps.are_apart([n, m], &dir, &self.radius);
+                if is_apart {
+                    Ok(())
+                } else {
+                    proof(format!("the direction does not separate nodes {n} and {m}"))
+                }
+            }
+            [NOTHING_COUNTS] => match self.pairs([n, m]).find(|[a, b]| !counted.simplices(*a, *b).is_empty())
+            {
+                Some([a, b]) => proof(format!("triangles {a} and {b} count")),
+                None => Ok(()),
+            },
+            [SPLIT_FIRST] if n != m && !children(n).is_empty() => {
+                children(n).try_for_each(|child| self.nodes([child, m]))
+            }
+            [SPLIT_SECOND] if n != m && !children(m).is_empty() => {
+                children(m).try_for_each(|child| self.nodes([n, child]))
+            }
+            [TRIANGLES] => self.triangles([n, m]),
+            [other] => proof(format!("{other} is no witness of nodes {n} and {m}")),
+        }
+    }
+
+    /// The pairs of triangles between two nodes, or within one.
+    fn pairs(&self, [n, m]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+        let [x, y] = [n, m].map(|n| self.check.certificates.triangles(n));
+        let rest = move |i: usize| if n == m { &y[i + 1..] } else { y };
+        x.iter().enumerate().flat_map(move |(i, a)| rest(i).iter().map(move |b| [*a, *b]))
+    }
+
+    fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
+        let counted = self.check.counted;
+        let (mut directions, mut map) = (Vec::new(), None);
+        for [a, b] in self.pairs(nodes).collect::<Vec<_>>() {
+            for simplices in counted.simplices(a, b) {
+                let tag = self.bytes.array()?;
+                if !self.simplices(simplices, tag, &mut directions, &mut map)? {
+                    return proof(format!("the witness of triangles {a} and {b} does not hold"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a witness of two simplices holds.
+    fn simplices(
+        &mut self,
+        simplices: Simplices,
+        [tag]: [u8; 1],
+        directions: &mut Vec<Direction>,
+        map: &mut Option<AffineMap>,
+    ) -> Result<bool, Refusal> {
+        let scaled = self.check.scaled;
+        let known = match tag {
+            NEW_DIRECTION => {
+                directions.push(Direction::new(scaled, self.bytes.vector()?));
+                directions.last_mut()
+            }
+            _ => directions.get_mut(usize::from(tag)),
+        };
+        if tag < QUARTER_SECOND || tag == NEW_DIRECTION {
+            return Ok(known.is_some_and(|dir| dir.separates(scaled, simplices, &self.radius)));
+        }
+        let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
+        self.parts([&x, &y], tag, directions, map, 0)
+    }
+
+    /// The same for parts of triangles.
+    fn parts(
+        &mut self,
+        [x, y]: [&Triangle; 2],
+        tag: u8,
+        directions: &mut Vec<Direction>,
+        map: &mut Option<AffineMap>,
+        depth: usize,
+    ) -> Result<bool, Refusal> {
+        let scaled = self.check.scaled;
+        match tag {
+            QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
+                for part in quarters(if tag == QUARTER_FIRST { x } else { y }) {
+                    let pair = if tag == QUARTER_FIRST { [&part, y] } else { [x, &part] };
+                    let [tag] = self.bytes.array()?;
+                    if !self.parts(pair, tag, directions, map, depth + 1)? {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
+            }
+            QUARTER_FIRST | QUARTER_SECOND => Ok(false),
+            NEW_MAP | LAST_MAP => {
+                if tag == NEW_MAP {
+                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real().map(Dyadic::of));
+                    *map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
+                }
+                let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
+                let mut pyramid: [Vector; 4] = Default::default();
+                for u in &mut pyramid {
+                    *u = self.bytes.vector()?;
+                }
+                let witness = AffineWitness { dir, rate, pyramid };
+                Ok(map.as_ref().is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
+            }
+            NEW_DIRECTION => {
+                let dir = Direction::new(scaled, self.bytes.vector()?);
+                let separates = dir.separates_corners(x, y, &self.radius);
+                directions.push(dir);
+                Ok(separates)
+            }
+            _ => Ok(directions
+                .get(usize::from(tag))
+                .is_some_and(|dir| dir.separates_corners(x, y, &self.radius))),
+        }
+    }
+}
