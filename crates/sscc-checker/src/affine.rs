@@ -90,10 +90,7 @@ impl AffineMap {
                 let map = (0..3).map(|l| &self.gradient[(3 * c + l) * rank + k] * &d[l]).sum();
                 &(&j.modes[ck] - &i.modes[ck]) - &map
             });
-            let square = residual.map(|e| e.square()).sum();
-            if square > largest {
-                largest = square;
-            }
+            largest.raise(residual.map(|e| e.square()).sum());
         }
         largest
     }

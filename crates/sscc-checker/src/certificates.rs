@@ -1,7 +1,7 @@
 //! Certificates: the hierarchy, which must be a partition, and the radii that queries rely on.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, input, require};
 
 /// A bucket has at most so many triangles, and is not the root. The pair tree ends at buckets.
 const BUCKET: u32 = 64;
@@ -64,7 +64,7 @@ impl Certificates {
         let children = nodes[0].children as usize;
         let root_pairs = children * children.saturating_sub(1) / 2;
         let has_tree = file.has("pair_limit");
-        let pair_limit = if has_tree { file.one::<f64>("pair_limit")? } else { 0.0 };
+        let pair_limit = if has_tree { file.shaped("pair_limit", &[Some(1)])?[0] } else { 0.0 };
         let list = |name| if has_tree { file.shaped::<u32>(name, &[None]) } else { Ok(Vec::new()) };
         let (starts, links) = (list("pair_starts")?, list("pair_links")?);
         let this = Self {
@@ -79,16 +79,13 @@ impl Certificates {
             order,
         };
         let is_radius = |radius: &f64| *radius >= 0.0;
-        let is_small_radius = |radius: &f32| *radius >= 0.0;
-        if !this.node_radii.iter().chain(&this.root_pair_radii).chain([&pair_limit]).all(is_radius)
-            || !this.radii.iter().all(is_small_radius)
-        {
-            return input("a radius is negative or not a number");
-        }
+        let are_radii =
+            this.node_radii.iter().chain(&this.root_pair_radii).chain([&pair_limit]).all(is_radius)
+                && this.radii.iter().all(|radius| *radius >= 0.0);
+        require(are_radii, "a radius is negative or not a number")?;
         let starts = if pair_limit > 0.0 { this.nodes.len() } else { 0 };
-        if pair_limit.is_infinite() || this.starts.len() != starts {
-            return input("the limit or the starts of the pair tree do not fit the hierarchy");
-        }
+        let fits = pair_limit.is_finite() && this.starts.len() == starts;
+        require(fits, "the limit or the starts of the pair tree do not fit the hierarchy")?;
         Ok(this)
     }
 
@@ -110,13 +107,8 @@ impl Certificates {
             return None;
         }
         let is_first = node_m.children == 0 || (node_n.children > 0 && node_n.count >= node_m.count);
-        let first = |child| [child, m];
-        let second = |child| [n, child];
-        Some(if is_first {
-            node_n.children().map(first).collect()
-        } else {
-            node_m.children().map(second).collect()
-        })
+        let children = if is_first { node_n.children() } else { node_m.children() };
+        Some(children.map(|child| if is_first { [child, m] } else { [n, child] }).collect())
     }
 
     /// The stored pairs of a node's children.
@@ -148,40 +140,27 @@ impl Certificates {
 
 /// Whether each triangle is listed once, and the triangles of each node are the disjoint union of its children's.
 fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
-    let mut seen = vec![false; order.len()];
-    for &a in order {
-        match seen.get_mut(a as usize) {
-            Some(seen) if !*seen => *seen = true,
-            _ => return input("hierarchy: a triangle is listed twice or does not exist"),
-        }
-    }
-    let wrong = || input("hierarchy: a node is not the disjoint union of its children");
-    let Some(root) = nodes.first() else { return wrong() };
-    if (root.first, root.count as usize) != (0, order.len()) {
-        return input("hierarchy: the root does not have all triangles");
-    }
+    let mut sorted = order.to_vec();
+    sorted.sort_unstable();
+    let is_each_listed = sorted.iter().enumerate().all(|(a, listed)| *listed as usize == a);
+    require(is_each_listed, "hierarchy: a triangle is listed twice or does not exist")?;
+    let has_all = nodes.first().is_some_and(|root| (root.first, root.count as usize) == (0, order.len()));
+    require(has_all, "hierarchy: the root does not have all triangles")?;
     let (mut next, mut levels) = (1_u64, vec![0_usize; nodes.len()]);
-    for (n, node) in nodes.iter().enumerate() {
-        if node.children == 0 {
-            continue;
-        }
+    for (n, node) in nodes.iter().enumerate().filter(|(_, node)| node.children > 0) {
         let end = u64::from(node.first_child) + u64::from(node.children);
-        if node.children < 2 || u64::from(node.first_child) != next || end > nodes.len() as u64 {
-            return wrong();
-        }
-        next = end;
-        let mut first = u64::from(node.first);
-        for child in node.children() {
+        let has_children =
+            node.children >= 2 && u64::from(node.first_child) == next && end <= nodes.len() as u64;
+        let (mut is_union, mut first) = (has_children && levels[n] < MAX_LEVELS, u64::from(node.first));
+        for child in node.children().filter(|_| has_children) {
             let part = nodes[child as usize];
-            if u64::from(part.first) != first || part.count == 0 {
-                return wrong();
-            }
+            is_union &= u64::from(part.first) == first && part.count > 0;
             first += u64::from(part.count);
             levels[child as usize] = levels[n] + 1;
         }
-        if first != u64::from(node.first) + u64::from(node.count) || levels[n] >= MAX_LEVELS {
-            return wrong();
-        }
+        is_union &= first == u64::from(node.first) + u64::from(node.count);
+        require(is_union, "hierarchy: a node is not the disjoint union of its children")?;
+        next = end;
     }
-    if next == nodes.len() as u64 { Ok(()) } else { input("hierarchy: some nodes have no parent") }
+    require(next == nodes.len() as u64, "hierarchy: some nodes have no parent")
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, input, require};
 
 /// What comes before the 64 digits of the digest.
 const PREFIX: &str = r#"{"__metadata__":{"blake3":""#;
@@ -50,20 +50,14 @@ impl<'a> Container<'a> {
     /// Parses a file. `format`: its kind; `newest`: the newest version that is understood.
     pub(crate) fn parse(bytes: &'a [u8], format: &str, newest: u64) -> Result<Self, Refusal> {
         let is_sealed = bytes.len() >= DIGITS.end && bytes[LENGTH..].starts_with(PREFIX.as_bytes());
-        if !is_sealed {
-            return input("not a file written by sscc");
-        }
+        require(is_sealed, "not a file written by sscc")?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes[..DIGITS.start]).update(&[b'0'; 64]).update(&bytes[DIGITS.end..]);
-        if hasher.finalize().to_hex().as_bytes() != &bytes[DIGITS] {
-            return input("its content does not match its BLAKE3 digest");
-        }
-        let Self { texts, tensors } = Self::parse_header(bytes)
-            .ok_or_else(|| Refusal::Input("its header is not one of a safetensors file".into()))?;
-        let file = Self { texts, tensors };
-        if file.text("format")? != format {
-            return input(format!("its format is not '{format}'"));
-        }
+        let is_whole = hasher.finalize().to_hex().as_bytes() == &bytes[DIGITS];
+        require(is_whole, "its content does not match its BLAKE3 digest")?;
+        let file =
+            Self::parse_header(bytes).ok_or_else(|| Refusal::Input("its header is not known".into()))?;
+        require(file.text("format")? == format, "it is of another kind")?;
         match file.text("version")?.parse() {
             Ok(version) if (1..=newest).contains(&version) => Ok(file),
             _ => input(format!("its version is not one from 1 to {newest}")),
@@ -127,18 +121,12 @@ impl<'a> Container<'a> {
         Ok(numbers)
     }
 
-    /// The one number of a tensor.
-    pub(crate) fn one<T: Number>(&self, name: &str) -> Result<T, Refusal> {
-        self.shaped(name, &[Some(1)]).map(|numbers| numbers[0])
-    }
-
     /// The pairs of a tensor of two columns, which must be ascending, the smaller number first.
     pub(crate) fn pairs(&self, name: &str) -> Result<Vec<[u32; 2]>, Refusal> {
         let numbers = self.shaped::<u32>(name, &[None, Some(2)])?;
         let pairs = numbers.as_chunks().0.to_vec();
-        if !pairs.is_sorted_by(|a, b| a < b) || pairs.iter().any(|[a, b]| a > b) {
-            return input(format!("tensor '{name}' is not a sorted list of pairs"));
-        }
+        let is_sorted = pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|[a, b]| a <= b);
+        require(is_sorted, "pairs are not in order")?;
         Ok(pairs)
     }
 }

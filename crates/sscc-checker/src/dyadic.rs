@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 use std::iter::Sum;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -54,6 +54,13 @@ impl Dyadic {
         Self { mantissa: self.mantissa.clone(), exponent: self.exponent + power }
     }
 
+    /// Takes the larger one of this number and another.
+    pub(crate) fn raise(&mut self, other: Self) {
+        if other > *self {
+            *self = other;
+        }
+    }
+
     pub(crate) fn square(&self) -> Self {
         self * self
     }
@@ -85,13 +92,6 @@ impl Dyadic {
         let exponent = self.exponent - divisor.exponent - shift as i64;
         Self { mantissa: (&self.mantissa << shift) / &divisor.mantissa, exponent }
     }
-
-    /// Both mantissas at the smaller exponent of two numbers.
-    fn align(&self, other: &Self) -> (IBig, IBig, i64) {
-        let exponent = self.exponent.min(other.exponent);
-        let shifted = |x: &Self| &x.mantissa << (x.exponent - exponent) as usize;
-        (shifted(self), shifted(other), exponent)
-    }
 }
 
 impl Add for &Dyadic {
@@ -100,18 +100,19 @@ impl Add for &Dyadic {
         if self.is_zero() {
             return other.clone();
         }
-        if other.is_zero() {
-            return self.clone();
+        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
+        if low.is_zero() {
+            return high.clone();
         }
-        let (a, b, exponent) = self.align(other);
-        Dyadic { mantissa: a + b, exponent }
+        let shift = (high.exponent - low.exponent) as usize;
+        Dyadic { mantissa: (&high.mantissa << shift) + &low.mantissa, exponent: low.exponent }
     }
 }
 
 impl Sub for &Dyadic {
     type Output = Dyadic;
     fn sub(self, other: Self) -> Dyadic {
-        self + &-other
+        self + &Dyadic { mantissa: -&other.mantissa, exponent: other.exponent }
     }
 }
 
@@ -119,13 +120,6 @@ impl Mul for &Dyadic {
     type Output = Dyadic;
     fn mul(self, other: Self) -> Dyadic {
         Dyadic { mantissa: &self.mantissa * &other.mantissa, exponent: self.exponent + other.exponent }
-    }
-}
-
-impl Neg for &Dyadic {
-    type Output = Dyadic;
-    fn neg(self) -> Dyadic {
-        Dyadic { mantissa: -&self.mantissa, exponent: self.exponent }
     }
 }
 
@@ -154,8 +148,7 @@ impl Ord for Dyadic {
         if self.is_zero() || other.is_zero() || self.is_positive() != other.is_positive() {
             return self.mantissa.cmp(&other.mantissa);
         }
-        let (a, b, _) = self.align(other);
-        a.cmp(&b)
+        (self - other).mantissa.cmp(&IBig::ZERO)
     }
 }
 

@@ -49,8 +49,8 @@ impl Walk<'_> {
             let stored = certificates.stored_of_node(n)?;
             return self.siblings(&pairs, &stored, &|which| radius.max(of_root(which)));
         }
-        let radii = (0..pairs.len()).map(|which| radius.max(of_root(which)));
-        self.entries.extend(pairs.iter().zip(radii).map(|(&nodes, radius)| Entry { nodes, radius }));
+        let entry = |(which, &nodes)| Entry { nodes, radius: radius.max(of_root(which)) };
+        self.entries.extend(pairs.iter().enumerate().map(entry));
         Ok(())
     }
 

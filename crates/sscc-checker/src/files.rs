@@ -24,7 +24,7 @@ impl Model {
         let bytes = read(mesh)?;
         let named = |path: &Path| {
             let name = path.display().to_string();
-            move |refusal: Refusal| Refusal::Input(format!("{name}: {refusal}"))
+            move |refusal: Refusal| refusal.of(&name)
         };
         let Some(path) = modes else { return Self::from_container(&bytes).map_err(named(mesh)) };
         let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(named(mesh))?;
@@ -68,16 +68,11 @@ fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal
             (_, 1) => 10 + usize::from(u16::from_le_bytes(*bytes.get(8..10)?.first_chunk()?)),
             _ => 12 + u32::from_le_bytes(*bytes.get(8..12)?.first_chunk()?) as usize,
         };
-        let header = std::str::from_utf8(bytes.get(10..length)?).ok()?;
+        let header = String::from_utf8_lossy(bytes.get(10..length)?);
         let is_known = header.contains("'<f8'") && header.contains("'fortran_order': False");
         let shape = header.split_once('(')?.1.split_once(')')?.0;
-        let shape: Option<Vec<usize>> = shape
-            .split(',')
-            .map(str::trim)
-            .filter(|axis| !axis.is_empty())
-            .map(|axis| axis.parse().ok())
-            .collect();
-        let rank = match *shape?.as_slice() {
+        let axes = shape.split(',').map(|axis| axis.trim().parse::<usize>().ok());
+        let rank = match *axes.collect::<Option<Vec<_>>>()?.as_slice() {
             [rows, rank] if rows == 3 * vertices => rank,
             [first, 3, rank] if first == vertices => rank,
             _ => return None,
@@ -87,10 +82,8 @@ fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal
         (is_known && numbers.len() == size && bytes.len() - length == 8 * size).then_some((numbers, rank))
     };
     parsed().ok_or_else(|| {
-        Refusal::Input(format!(
-            "not an .npy file of float64, C order, of the shape ({}, r) or ({vertices}, 3, r)",
-            3 * vertices
-        ))
+        let rows = 3 * vertices;
+        Refusal::Input(format!("not an .npy file of float64 in C order, ({rows}, r) or ({vertices}, 3, r)"))
     })
 }
 

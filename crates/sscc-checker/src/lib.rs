@@ -25,9 +25,8 @@ pub use model::Model;
 pub use refusal::Refusal;
 
 use certificates::Certificates;
-use container::Container;
 use proof::{Check, Proof};
-use scaled::ScaledModel;
+use refusal::require;
 use scope::{CountedPairs, Scope};
 
 /// What was confirmed.
@@ -45,30 +44,20 @@ pub struct Confirmed {
 /// [`Refusal::Input`] where a file is damaged, of another model, or of a kind that is not checked; [`Refusal::Proof`] where the
 /// proof does not hold.
 pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
-    let named = |name: &'static str| {
-        move |refusal: Refusal| match refusal {
-            Refusal::Input(line) => Refusal::Input(format!("{name}: {line}")),
-            Refusal::Proof(line) => Refusal::Proof(format!("{name}: {line}")),
-        }
-    };
-    let of_certificates = named("certificates");
-    let file = Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;
+    let of_certificates = |refusal: Refusal| refusal.of("certificates");
+    let of_proof = |refusal: Refusal| refusal.of("proof");
+    let file = container::Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;
     let scope = Scope::read(&file, model).map_err(of_certificates)?;
     let certificates = Certificates::read(&file, model.faces.len()).map_err(of_certificates)?;
     let counted = CountedPairs::new(model, &scope);
-    if model.digest(&scope, &counted.classes) != certificates.digest {
-        return Err(Refusal::Input(
-            "certificates: they are of another model or scope: the digests differ".into(),
-        ));
-    }
+    let is_of_model = model.digest(&scope, &counted.classes) == certificates.digest;
+    require(is_of_model, "certificates: of another model or scope: the digests differ")?;
     exceptions::check(model, &scope, &counted).map_err(of_certificates)?;
-    let scaled = ScaledModel::new(model, &scope).map_err(of_certificates)?;
+    let scaled = scaled::ScaledModel::new(model, &scope).map_err(of_certificates)?;
     let entries = entries::entries(&certificates).map_err(of_certificates)?;
-    let of_proof = named("proof");
     let proof = Proof::parse(proof).map_err(of_proof)?;
-    if proof.digest != certificates.digest || proof.entries != entries.len() as u64 {
-        return Err(Refusal::Input("proof: it is of other certificates".into()));
-    }
+    let is_theirs = proof.digest == certificates.digest && proof.entries == entries.len() as u64;
+    require(is_theirs, "proof: of other certificates")?;
     let check = Check { certificates: &certificates, counted: &counted, scaled: &scaled, model };
     check.run(&proof, &entries, threads).map_err(of_proof)?;
     Ok(Confirmed { entries: entries.len(), proven: proof.proven.len() })

@@ -23,18 +23,13 @@ fn run(paths: &[PathBuf]) -> Result<Confirmed, Refusal> {
 #[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is the program")]
 fn main() -> ExitCode {
     let paths: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
-    match run(&paths) {
-        Ok(Confirmed { entries, proven }) if proven == entries => {
-            println!("confirmed: all {entries} entries");
-            ExitCode::SUCCESS
-        }
+    let refusal = match run(&paths) {
         Ok(Confirmed { entries, proven }) => {
             println!("confirmed: {proven} of {entries} entries");
-            ExitCode::SUCCESS
+            return ExitCode::SUCCESS;
         }
-        Err(refusal) => {
-            eprintln!("error: {refusal}");
-            ExitCode::from(if matches!(refusal, Refusal::Proof(_)) { 1 } else { 2 })
-        }
-    }
+        Err(refusal) => refusal,
+    };
+    eprintln!("error: {refusal}");
+    ExitCode::from(if matches!(refusal, Refusal::Proof(_)) { 1 } else { 2 })
 }

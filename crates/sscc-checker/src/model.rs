@@ -1,7 +1,7 @@
 //! The model: faces, positions at rest, modes; and its digest together with the scope of certificates.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, input, require};
 use crate::scope::Scope;
 
 /// Coordinates are at most 2^200.
@@ -28,16 +28,13 @@ impl Model {
         modes: Vec<f64>,
         rank: usize,
     ) -> Result<Self, Refusal> {
-        if faces.is_empty() || rank == 0 || positions.len().checked_mul(3 * rank) != Some(modes.len()) {
-            return input("model: the modes are not a matrix of three rows for each vertex");
-        }
-        if faces.as_flattened().iter().any(|i| *i as usize >= positions.len()) {
-            return input("model: a face names a vertex that does not exist");
-        }
-        let mut numbers = positions.as_flattened().iter().chain(&modes);
-        if !numbers.all(|x| x.abs() <= LARGEST) {
-            return input("model: a number is not finite, or beyond 2^200");
-        }
+        let fits =
+            !faces.is_empty() && rank > 0 && positions.len().checked_mul(3 * rank) == Some(modes.len());
+        require(fits, "model: the modes are not a matrix of three rows for each vertex")?;
+        let has_vertices = faces.as_flattened().iter().all(|i| (*i as usize) < positions.len());
+        require(has_vertices, "model: a face names a vertex that does not exist")?;
+        let is_in_range = positions.as_flattened().iter().chain(&modes).all(|x| x.abs() <= LARGEST);
+        require(is_in_range, "model: a number is not finite, or beyond 2^200")?;
         Ok(Self { positions, faces, rank, modes })
     }
 

@@ -7,7 +7,7 @@
 use std::sync::OnceLock;
 
 use crate::certificates::Certificates;
-use crate::dyadic::{Dyadic, Vector, dot, minus, squared_norm};
+use crate::dyadic::{Dyadic, Vector, dot, minus};
 use crate::inequality::stays_open;
 use crate::model::Model;
 use crate::scaled::{Radius, ScaledModel};
@@ -76,11 +76,6 @@ impl<'a> NodeMaps<'a> {
         vertices.sort_unstable();
         vertices.dedup();
         let (mut half, mut squares) = (Vector::default(), Vector::default());
-        let raise = |largest: &mut Dyadic, x: Dyadic| {
-            if x > *largest {
-                *largest = x;
-            }
-        };
         for i in vertices {
             let offset = minus(&self.scaled.positions[i as usize], &center);
             for c in 0..3 {
@@ -88,8 +83,8 @@ impl<'a> NodeMaps<'a> {
                     let map = (0..3).map(|j| &offset[j] * &gradient[(3 * j + c) * rank + k]);
                     &(a - &modes[c * rank + k]) - &map.sum()
                 });
-                raise(&mut squares[c], squared_norm(&residual.collect::<Vec<_>>()));
-                raise(&mut half[c], offset[c].abs());
+                squares[c].raise(residual.map(|e| e.square()).sum());
+                half[c].raise(offset[c].abs());
             }
         }
         NodeBox { center, half, residual: squares.map(|x| x.root_up()), modes, gradient }

@@ -1,7 +1,6 @@
 //! The file of a proof, and the check of its entries. `docs/formats.md` has the format.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use crate::affine::{AffineMap, AffineWitness};
@@ -10,7 +9,7 @@ use crate::corners::{Corner, Direction, Triangle, quarters};
 use crate::dyadic::{Dyadic, Vector, vector};
 use crate::entries::Entry;
 use crate::node_maps::{NodeMaps, numbers_of_map};
-use crate::refusal::{Refusal, input, proof};
+use crate::refusal::{Refusal, proof, require};
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::{CountedPairs, Simplices};
 
@@ -76,9 +75,7 @@ impl<'a> Bytes<'a> {
 impl<'a> Proof<'a> {
     pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
         let mut bytes = Bytes(bytes);
-        if bytes.take(MAGIC.len()).ok() != Some(MAGIC) {
-            return input("not a proof written by sscc certify --proof");
-        }
+        require(bytes.take(MAGIC.len()).ok() == Some(MAGIC), "not a proof of certificates")?;
         let digest = bytes.take(32)?;
         let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
         let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
@@ -117,31 +114,32 @@ impl Check<'_> {
             return proof("it has another number of modes or nodes than the certificates");
         }
         let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
-        let (next, refused) = (AtomicUsize::new(0), Mutex::new(None::<(usize, Refusal)>));
+        let next = AtomicUsize::new(0);
         let work = || {
-            while let Some((index, bytes)) = file.proven.get(next.fetch_add(1, Ordering::Relaxed)) {
+            loop {
+                let (index, bytes) = file.proven.get(next.fetch_add(1, Ordering::Relaxed))?;
                 if let Err(refusal) = self.entry(&maps, entries[*index], bytes) {
-                    let mut refused = refused.lock().unwrap_or_else(PoisonError::into_inner);
-                    if refused.as_ref().is_none_or(|(first, _)| index < first) {
-                        *refused = Some((*index, refusal));
-                    }
-                    return;
+                    return Some((*index, refusal));
                 }
             }
         };
-        thread::scope(|scope| (0..threads.max(1)).for_each(|_| drop(scope.spawn(work))));
-        match refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            None => Ok(()),
-            Some((index, refusal)) => {
-                let Entry { nodes: [n, m], radius } = entries[index];
-                proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
-            }
-        }
+        let refused = thread::scope(|scope| {
+            let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
+            let failed = |_| Some((0, Refusal::Proof("a thread failed".into())));
+            threads
+                .into_iter()
+                .filter_map(|t| t.join().unwrap_or_else(failed))
+                .min_by_key(|(index, _)| *index)
+        });
+        let Some((index, refusal)) = refused else { return Ok(()) };
+        let Entry { nodes: [n, m], radius } = entries[index];
+        proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
     }
 
     fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8]) -> Result<(), Refusal> {
         let radius = self.scaled.radius(entry.radius);
-        let mut reader = EntryReader { check: self, maps, radius, bytes: Bytes(bytes) };
+        let mut reader =
+            EntryReader { check: self, maps, radius, bytes: Bytes(bytes), directions: Vec::new(), map: None };
         // Nothing is closer to the centre than it is.
         if entry.radius > 0.0 {
             reader.nodes(entry.nodes)?;
@@ -156,6 +154,9 @@ struct EntryReader<'a> {
     maps: &'a NodeMaps<'a>,
     radius: Radius,
     bytes: Bytes<'a>,
+    /// Of the last list of triangles: its directions, and the last affine map.
+    directions: Vec<Direction>,
+    map: Option<AffineMap>,
 }
 
 impl EntryReader<'_> {
@@ -197,12 +198,10 @@ impl EntryReader<'_> {
     }
 
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
-        let counted = self.check.counted;
-        let (mut directions, mut map) = (Vec::new(), None);
+        (self.directions, self.map) = (Vec::new(), None);
         for [a, b] in self.pairs(nodes).collect::<Vec<_>>() {
-            for simplices in counted.simplices(a, b) {
-                let tag = self.bytes.array()?;
-                if !self.simplices(simplices, tag, &mut directions, &mut map)? {
+            for simplices in self.check.counted.simplices(a, b) {
+                if !self.simplices(simplices)? {
                     return proof(format!("the witness of triangles {a} and {b} does not hold"));
                 }
             }
@@ -210,55 +209,50 @@ impl EntryReader<'_> {
         Ok(())
     }
 
-    /// Whether a witness of two simplices holds.
-    fn simplices(
-        &mut self,
-        simplices: Simplices,
-        [tag]: [u8; 1],
-        directions: &mut Vec<Direction>,
-        map: &mut Option<AffineMap>,
-    ) -> Result<bool, Refusal> {
+    /// Whether the next witness holds for two simplices.
+    fn simplices(&mut self, simplices: Simplices) -> Result<bool, Refusal> {
         let scaled = self.check.scaled;
-        let known = match tag {
-            NEW_DIRECTION => {
-                directions.push(Direction::new(scaled, self.bytes.vector()?));
-                directions.last_mut()
+        let [tag] = self.bytes.array()?;
+        match self.direction(tag)? {
+            Some(number) => Ok(self.directions[number].separates(scaled, simplices, &self.radius)),
+            None => {
+                let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
+                self.parts([&x, &y], tag, 0)
             }
-            _ => directions.get_mut(usize::from(tag)),
-        };
-        if tag < QUARTER_SECOND || tag == NEW_DIRECTION {
-            return Ok(known.is_some_and(|dir| dir.separates(scaled, simplices, &self.radius)));
         }
-        let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
-        self.parts([&x, &y], tag, directions, map, 0)
     }
 
-    /// The same for parts of triangles.
-    fn parts(
-        &mut self,
-        [x, y]: [&Triangle; 2],
-        tag: u8,
-        directions: &mut Vec<Direction>,
-        map: &mut Option<AffineMap>,
-        depth: usize,
-    ) -> Result<bool, Refusal> {
+    /// The number of the direction that a witness names, if it names one; a new one is read.
+    fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
+        if tag == NEW_DIRECTION {
+            self.directions.push(Direction::new(self.check.scaled, self.bytes.vector()?));
+            return Ok(Some(self.directions.len() - 1));
+        }
+        let is_known = tag < QUARTER_SECOND && usize::from(tag) < self.directions.len();
+        Ok(is_known.then_some(tag.into()))
+    }
+
+    /// Whether a witness holds for triangles, or parts of them.
+    fn parts(&mut self, [x, y]: [&Triangle; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
         let scaled = self.check.scaled;
+        if let Some(number) = self.direction(tag)? {
+            return Ok(self.directions[number].separates_corners(x, y, &self.radius));
+        }
         match tag {
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
                 for part in quarters(if tag == QUARTER_FIRST { x } else { y }) {
                     let pair = if tag == QUARTER_FIRST { [&part, y] } else { [x, &part] };
                     let [tag] = self.bytes.array()?;
-                    if !self.parts(pair, tag, directions, map, depth + 1)? {
+                    if !self.parts(pair, tag, depth + 1)? {
                         return Ok(false);
                     }
                 }
                 Ok(true)
             }
-            QUARTER_FIRST | QUARTER_SECOND => Ok(false),
             NEW_MAP | LAST_MAP => {
                 if tag == NEW_MAP {
                     let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real().map(Dyadic::of));
-                    *map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
+                    self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
                 }
                 let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
                 let mut pyramid: [Vector; 4] = Default::default();
@@ -266,17 +260,10 @@ impl EntryReader<'_> {
                     *u = self.bytes.vector()?;
                 }
                 let witness = AffineWitness { dir, rate, pyramid };
-                Ok(map.as_ref().is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
+                let map = self.map.as_ref();
+                Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
             }
-            NEW_DIRECTION => {
-                let dir = Direction::new(scaled, self.bytes.vector()?);
-                let separates = dir.separates_corners(x, y, &self.radius);
-                directions.push(dir);
-                Ok(separates)
-            }
-            _ => Ok(directions
-                .get(usize::from(tag))
-                .is_some_and(|dir| dir.separates_corners(x, y, &self.radius))),
+            _ => Ok(false),
         }
     }
 }

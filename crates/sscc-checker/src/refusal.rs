@@ -13,17 +13,31 @@ pub enum Refusal {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Input(line) | Self::Proof(line) => f.write_str(line),
-        }
+        let (Self::Input(line) | Self::Proof(line)) = self;
+        f.write_str(line)
     }
 }
 
 impl std::error::Error for Refusal {}
 
+impl Refusal {
+    /// The same with the name of the file before it.
+    pub(crate) fn of(self, name: &str) -> Self {
+        match self {
+            Self::Input(line) => Self::Input(format!("{name}: {line}")),
+            Self::Proof(line) => Self::Proof(format!("{name}: {line}")),
+        }
+    }
+}
+
 /// Refuses an input.
 pub(crate) fn input<T>(line: impl Into<String>) -> Result<T, Refusal> {
     Err(Refusal::Input(line.into()))
+}
+
+/// Refuses an input unless something holds.
+pub(crate) fn require(holds: bool, line: &str) -> Result<(), Refusal> {
+    if holds { Ok(()) } else { input(line) }
 }
 
 /// Refuses a proof.

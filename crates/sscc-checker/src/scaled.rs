@@ -61,13 +61,8 @@ impl ScaledModel {
                 let out = &mut this.modes[(3 * i + c) * rank..][..rank];
                 out.iter_mut().zip(&columns).for_each(|(a, column)| *a = product(column, false));
                 let magnitudes: Vec<Dyadic> = columns.iter().map(|column| product(column, true)).collect();
-                let rate = squared_norm(&magnitudes).root_up();
-                if magnitude > this.rest_errors[c] {
-                    this.rest_errors[c] = magnitude;
-                }
-                if rate > this.rate_errors[c] {
-                    this.rate_errors[c] = rate;
-                }
+                this.rest_errors[c].raise(magnitude);
+                this.rate_errors[c].raise(squared_norm(&magnitudes).root_up());
             }
         }
         // Rounding to nearest: each product once, each of r sums once, so at most gamma_(r+1) <= (r + 2) 2^-53 of the

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::container::Container;
 use crate::model::Model;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, input, require};
 
 /// Metric, centre and contact filter of certificates.
 pub(crate) struct Scope {
@@ -29,9 +29,7 @@ pub(crate) struct Groups {
 
 impl Scope {
     pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self, Refusal> {
-        if file.has("clearance") {
-            return input("certificates with a clearance are not checked: leave out --clearance");
-        }
+        require(!file.has("clearance"), "certificates with a clearance are not checked")?;
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
         let factor: Vec<f64> = if is_dense {
@@ -46,35 +44,19 @@ impl Scope {
             });
         let center = file.shaped::<f64>("center", &[Some(rank)])?;
         let is_finite = factor.iter().chain(&center).all(|x| x.is_finite());
-        if !is_finite || !is_triangular || (!is_dense && factor.iter().any(|s| *s <= 0.0)) {
-            return input("metric or centre: a number is out of range");
-        }
-        let one_vertex = match file.text("neighbours")? {
-            "exclude" => false,
-            "include-one-vertex" => true,
-            other => return input(format!("neighbours '{other}' are not known")),
-        };
-        let weld = match file.text("weld")? {
-            "none" => false,
-            "equal" => true,
-            other => return input(format!("weld '{other}' is not known")),
-        };
+        let is_positive = is_dense || factor.iter().all(|s| *s > 0.0);
+        require(is_finite && is_triangular && is_positive, "metric or centre: a number is out of range")?;
+        let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
+        let weld = is_second(file, "weld", ["none", "equal"])?;
         let triangles = model.faces.len();
         let pairs = |name: &str| -> Result<Vec<[u32; 2]>, Refusal> {
             let pairs = if file.has(name) { file.pairs(name)? } else { Vec::new() };
-            match pairs.iter().find(|[a, b]| a == b || *b as usize >= triangles) {
-                Some(_) => {
-                    input(format!("tensor '{name}' names a triangle that does not exist, or one twice"))
-                }
-                None => Ok(pairs),
-            }
+            let are_triangles = pairs.iter().all(|[a, b]| a != b && (*b as usize) < triangles);
+            require(are_triangles, "a pair names a triangle that does not exist, or one twice")?;
+            Ok(pairs)
         };
         let groups = if file.has("groups") {
-            let others_count = match file.text("group_pairs")? {
-                "ignored" => true,
-                "counted" => false,
-                other => return input(format!("group_pairs '{other}' are not known")),
-            };
+            let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
             let of_triangles = file.shaped("groups", &[Some(triangles)])?;
             Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? })
         } else {
@@ -82,6 +64,14 @@ impl Scope {
         };
         let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
+    }
+}
+
+/// Whether a text of the file is the second one of two.
+fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
+    match values.iter().position(|value| Ok(*value) == file.text(key)) {
+        Some(which) => Ok(which == 1),
+        None => input(format!("text '{key}' is missing or not known")),
     }
 }
 
