@@ -8,6 +8,7 @@ mod affine;
 mod certificates;
 mod container;
 mod corners;
+mod digest;
 mod dyadic;
 mod entries;
 mod exceptions;
@@ -50,7 +51,7 @@ pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -
     let scope = Scope::read(&file, model).map_err(of_certificates)?;
     let certificates = Certificates::read(&file, model.faces.len()).map_err(of_certificates)?;
     let counted = CountedPairs::new(model, &scope);
-    let is_of_model = model.digest(&scope, &counted.classes) == certificates.digest;
+    let is_of_model = digest::digest(model, &scope, &counted.classes) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
     exceptions::check(model, &scope, &counted).map_err(of_certificates)?;
     let scaled = scaled::ScaledModel::new(model, &scope).map_err(of_certificates)?;

@@ -8,6 +8,7 @@ use crate::certificates::Certificates;
 use crate::corners::{Corner, Direction, Triangle, quarters};
 use crate::dyadic::{Dyadic, Vector, vector};
 use crate::entries::Entry;
+use crate::model::Model;
 use crate::node_maps::{NodeMaps, numbers_of_map};
 use crate::refusal::{Refusal, proof, require};
 use crate::scaled::{Radius, ScaledModel};
@@ -103,7 +104,7 @@ pub(crate) struct Check<'a> {
     pub(crate) certificates: &'a Certificates,
     pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
-    pub(crate) model: &'a crate::Model,
+    pub(crate) model: &'a Model,
 }
 
 impl Check<'_> {
