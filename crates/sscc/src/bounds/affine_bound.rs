@@ -20,7 +20,7 @@
 use glam::DVec3;
 
 use super::affine_fit::AffineFit;
-use super::cone_rate::{bound_rate_in_cone, enclose_in_pyramid};
+use super::cone_rate::{PYRAMID_MARGIN, bound_rate_in_cone, enclose_in_pyramid};
 use super::pair_corners::PairCorners;
 use super::strain::{StrainGram, bound_rate, strain_gram};
 use crate::model::ScaledModel;
@@ -98,7 +98,8 @@ impl AffineBound {
         }
         match terms.slower_than(sufficient) {
             Some(wanted) => {
-                let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted);
+                let rate =
+                    bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted, PYRAMID_MARGIN);
                 over_all_directions.max(terms.bound(rate))
             }
             None => over_all_directions,
@@ -115,9 +116,11 @@ impl AffineBound {
     ) -> Option<(f64, [DVec3; 4])> {
         let terms = self.terms(&pair, model);
         let wanted = terms.slower_than(radius)?;
-        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted);
+        // Corners of sub-triangles are rounded; the pyramid of a witness must contain the exact ones.
+        let margin = PYRAMID_MARGIN + 8.0 * model.rounding.at_rest(DVec3::ONE) / pair.rest_distance;
+        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted, margin);
         let is_proven = terms.bound(rate) >= radius;
-        enclose_in_pyramid(pair.differences)
+        enclose_in_pyramid(pair.differences, margin)
             .filter(|_| is_proven)
             .map(|pyramid| (rate * ROUND_UP + terms.rate_rounding, pyramid))
     }
