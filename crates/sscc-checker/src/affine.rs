@@ -20,8 +20,9 @@ use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
 use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 
-/// Cones of a witness, at most.
+/// Cones of a witness, at most, and cones within cones, each of which makes numbers longer.
 const MAX_CONES: usize = 1024;
+const MAX_DEPTH: usize = 64;
 
 /// An affine map: nine rows, `G_cj` at `3 c + j`; and the products of its six symmetric parts.
 pub(crate) struct AffineMap {
@@ -67,7 +68,8 @@ impl AffineMap {
         let [u0, u1, u2, u3] = pyramid;
         let mut cones = 0;
         let squared_rate = rate.square();
-        if ![[u0, u1, u2], [u0, u2, u3]].into_iter().all(|cone| self.holds(cone, &squared_rate, &mut cones)) {
+        let mut holds = |cone| self.holds(cone, &squared_rate, &mut cones, 0);
+        if !holds([u0, u1, u2]) || !holds([u0, u2, u3]) {
             return false;
         }
         let Some(gap) = differences.iter().map(|d| dot(dir, d)).min() else { return false };
@@ -96,7 +98,7 @@ impl AffineMap {
     }
 
     /// Whether the rate holds on the cone of three directions, which is halved as often as necessary.
-    fn holds(&self, cone: [&Vector; 3], squared_rate: &Dyadic, cones: &mut usize) -> bool {
+    fn holds(&self, cone: [&Vector; 3], squared_rate: &Dyadic, cones: &mut usize, depth: usize) -> bool {
         *cones += 1;
         let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
         let is_slow = |&(i, j): &(usize, usize)| {
@@ -110,7 +112,7 @@ impl AffineMap {
         if pairs[3..].iter().all(is_slow) {
             return true;
         }
-        if *cones >= MAX_CONES {
+        if *cones >= MAX_CONES || depth >= MAX_DEPTH {
             return false;
         }
         let length = |(i, j): (usize, usize)| squared_norm(&minus(cone[i], cone[j]));
@@ -118,7 +120,8 @@ impl AffineMap {
         let longest = edges.into_iter().fold(edges[0], |l, e| if length(e) > length(l) { e } else { l });
         let [u, v, w] = [longest.0, longest.1, 3 - longest.0 - longest.1].map(|i| cone[i]);
         let middle: Vector = std::array::from_fn(|c| (&u[c] + &v[c]).times_power(-1));
-        self.holds([u, &middle, w], squared_rate, cones) && self.holds([&middle, v, w], squared_rate, cones)
+        let halves = [[u, &middle, w], [&middle, v, w]];
+        halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))
     }
 
     /// `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.

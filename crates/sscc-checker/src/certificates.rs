@@ -1,10 +1,12 @@
 //! Certificates: the hierarchy, which must be a partition, and the radii that queries rely on.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Refusal, claim, proof, require};
 
-/// A bucket has at most so many triangles, and is not the root. The pair tree ends at buckets.
+/// A bucket has at most so many triangles, and is not the root. The pair tree ends at buckets. Leaves have no more, either.
 const BUCKET: u32 = 64;
+/// Children of a node, at most.
+const MAX_CHILDREN: u32 = 4;
 /// Levels of a hierarchy, at most.
 const MAX_LEVELS: usize = 256;
 /// No pair of a node's children is stored.
@@ -52,18 +54,16 @@ pub(crate) struct Certificates {
 impl Certificates {
     pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self, Refusal> {
         let digest = file.shaped::<u8>("model_digest", &[Some(32)])?.try_into().unwrap_or_default();
-        let nodes: Vec<Node> = file
-            .shaped::<u32>("nodes", &[None, Some(4)])?
-            .as_chunks()
-            .0
-            .iter()
-            .map(|&[first, count, first_child, children]| Node { first, count, first_child, children })
-            .collect();
+        let rows = file.shaped::<u32>("nodes", &[None, Some(4)])?;
+        let node =
+            |&[first, count, first_child, children]: &[u32; 4]| Node { first, count, first_child, children };
+        let nodes: Vec<Node> = rows.as_chunks().0.iter().map(node).collect();
         let order = file.shaped("order", &[Some(triangles)])?;
         check_partition(&nodes, &order)?;
         let children = nodes[0].children as usize;
         let root_pairs = children * children.saturating_sub(1) / 2;
-        let has_tree = file.has("pair_limit");
+        let is_old = matches!(file.text("version")?, "1" | "2" | "3");
+        let has_tree = !is_old && file.has("pair_limit");
         let pair_limit = if has_tree { file.shaped("pair_limit", &[Some(1)])?[0] } else { 0.0 };
         let list = |name| if has_tree { file.shaped::<u32>(name, &[None]) } else { Ok(Vec::new()) };
         let (starts, links) = (list("pair_starts")?, list("pair_links")?);
@@ -78,10 +78,9 @@ impl Certificates {
             nodes,
             order,
         };
-        let is_radius = |radius: &f64| *radius >= 0.0;
+        let reals = [&this.node_radii[..], &this.root_pair_radii, &[pair_limit]].concat();
         let are_radii =
-            this.node_radii.iter().chain(&this.root_pair_radii).chain([&pair_limit]).all(is_radius)
-                && this.radii.iter().all(|radius| *radius >= 0.0);
+            reals.iter().all(|radius| *radius >= 0.0) && this.radii.iter().all(|radius| *radius >= 0.0);
         require(are_radii, "a radius is negative or not a number")?;
         let starts = if pair_limit > 0.0 { this.nodes.len() } else { 0 };
         let fits = pair_limit.is_finite() && this.starts.len() == starts;
@@ -93,6 +92,13 @@ impl Certificates {
     pub(crate) fn triangles(&self, n: u32) -> &[u32] {
         let node = self.nodes[n as usize];
         &self.order[node.first as usize..][..node.count as usize]
+    }
+
+    /// The pairs of triangles between two nodes, or within one.
+    pub(crate) fn pairs(&self, [n, m]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+        let [x, y] = [n, m].map(|n| self.triangles(n));
+        let rest = move |i: usize| if n == m { &y[i + 1..] } else { y };
+        x.iter().enumerate().flat_map(move |(i, a)| rest(i).iter().map(move |b| [*a, *b]))
     }
 
     /// Whether queries test a node as a whole: the pair tree has no pairs within it.
@@ -134,7 +140,7 @@ impl Certificates {
                 return Ok(list);
             }
         }
-        input("pair tree: a list of siblings does not end")
+        proof("pair tree: a list of siblings does not end")
     }
 }
 
@@ -143,24 +149,31 @@ fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
     let is_each_listed = sorted.iter().enumerate().all(|(a, listed)| *listed as usize == a);
-    require(is_each_listed, "hierarchy: a triangle is listed twice or does not exist")?;
+    claim(is_each_listed, "hierarchy: a triangle is listed twice or does not exist")?;
     let has_all = nodes.first().is_some_and(|root| (root.first, root.count as usize) == (0, order.len()));
-    require(has_all, "hierarchy: the root does not have all triangles")?;
+    claim(has_all, "hierarchy: the root does not have all triangles")?;
+    let are_small = nodes.iter().all(|node| node.children > 0 || node.count <= BUCKET);
+    claim(are_small, "hierarchy: a leaf has more than 64 triangles")?;
     let (mut next, mut levels) = (1_u64, vec![0_usize; nodes.len()]);
     for (n, node) in nodes.iter().enumerate().filter(|(_, node)| node.children > 0) {
         let end = u64::from(node.first_child) + u64::from(node.children);
-        let has_children =
-            node.children >= 2 && u64::from(node.first_child) == next && end <= nodes.len() as u64;
-        let (mut is_union, mut first) = (has_children && levels[n] < MAX_LEVELS, u64::from(node.first));
-        for child in node.children().filter(|_| has_children) {
+        let has_children = (2..=MAX_CHILDREN).contains(&node.children)
+            && u64::from(node.first_child) == next
+            && end <= nodes.len() as u64;
+        claim(
+            has_children,
+            "hierarchy: a node has other children than two to four nodes after the last ones",
+        )?;
+        let (mut is_union, mut first) = (levels[n] < MAX_LEVELS, u64::from(node.first));
+        for child in node.children() {
             let part = nodes[child as usize];
             is_union &= u64::from(part.first) == first && part.count > 0;
             first += u64::from(part.count);
             levels[child as usize] = levels[n] + 1;
         }
         is_union &= first == u64::from(node.first) + u64::from(node.count);
-        require(is_union, "hierarchy: a node is not the disjoint union of its children")?;
+        claim(is_union, "hierarchy: a node is not the disjoint union of its children")?;
         next = end;
     }
-    require(next == nodes.len() as u64, "hierarchy: some nodes have no parent")
+    claim(next == nodes.len() as u64, "hierarchy: some nodes have no parent")
 }

@@ -1,11 +1,11 @@
 //! Entries: node pairs that together have all pairs of triangles, each with the largest radius that a query relies on.
 //!
-//! The walk begins at the root and follows the hierarchy and the pair tree alone, so no pair of triangles is missing: the
+//! The traversal begins at the root and follows the hierarchy and the pair tree alone, so no pair of triangles is missing: the
 //! pairs within a node are those within each child and those between two children, and the pairs between two nodes are those
 //! between the parts of one and the other.
 
 use crate::certificates::{Certificates, StoredPair};
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, proof};
 
 /// Two nodes, or one twice, and the radius below which their pairs that count must be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,19 +16,19 @@ pub(crate) struct Entry {
 
 /// All entries, in the order in which proofs number them.
 pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal> {
-    let mut walk = Walk { certificates, entries: Vec::new(), visited: 0 };
-    walk.within(0, 0.0)?;
-    Ok(walk.entries)
+    let mut traversal = Traversal { certificates, entries: Vec::new(), visited: 0 };
+    traversal.within(0, 0.0)?;
+    Ok(traversal.entries)
 }
 
-struct Walk<'a> {
+struct Traversal<'a> {
     certificates: &'a Certificates,
     entries: Vec<Entry>,
     /// Stored pairs so far; more visits than pairs mean a circle.
     visited: usize,
 }
 
-impl Walk<'_> {
+impl Traversal<'_> {
     /// The pairs within a node that is inside nodes with a radius.
     fn within(&mut self, n: u32, around: f64) -> Result<(), Refusal> {
         let certificates = self.certificates;
@@ -45,13 +45,11 @@ impl Walk<'_> {
         let pairs: Vec<[u32; 2]> =
             children.clone().flat_map(|a| (a + 1..children.end).map(move |b| [a, b])).collect();
         let of_root = |which: usize| if n == 0 { certificates.root_pair_radii[which] } else { 0.0 };
-        if certificates.pair_limit > 0.0 && !certificates.is_bucket(n) {
-            let stored = certificates.stored_of_node(n)?;
-            return self.siblings(&pairs, &stored, &|which| radius.max(of_root(which)));
-        }
-        let entry = |(which, &nodes)| Entry { nodes, radius: radius.max(of_root(which)) };
-        self.entries.extend(pairs.iter().enumerate().map(entry));
-        Ok(())
+        // Without a pair tree, and within a bucket, no pairs are stored, and the others are free below no limit.
+        let has_pairs = certificates.pair_limit > 0.0 && !certificates.is_bucket(n);
+        let stored = if has_pairs { certificates.stored_of_node(n)? } else { Vec::new() };
+        let limit = if has_pairs { certificates.pair_limit } else { 0.0 };
+        self.siblings(&pairs, &stored, limit, &|which| radius.max(of_root(which)))
     }
 
     /// Siblings in the pair tree: those that are stored, and the others, which are free below the limit.
@@ -59,16 +57,16 @@ impl Walk<'_> {
         &mut self,
         pairs: &[[u32; 2]],
         stored: &[StoredPair],
+        limit: f64,
         radius: &dyn Fn(usize) -> f64,
     ) -> Result<(), Refusal> {
         self.visited += stored.len();
         let is_listed = |which: u32| (which as usize) < pairs.len();
-        let limit = self.certificates.pair_limit;
         if self.visited > self.certificates.stored_pairs()
             || !stored.is_sorted_by(|a, b| a.which < b.which)
             || !stored.iter().all(|entry| is_listed(entry.which) && entry.radius < limit)
         {
-            return input("pair tree: an entry is listed twice, does not exist, or is not below the limit");
+            return proof("pair tree: an entry is listed twice, does not exist, or is not below the limit");
         }
         for (which, &nodes) in pairs.iter().enumerate() {
             match stored.iter().find(|entry| entry.which as usize == which) {
@@ -84,7 +82,7 @@ impl Walk<'_> {
             None => self.entries.push(Entry { nodes, radius }),
             Some(pairs) => {
                 let stored = self.certificates.stored(entry.start)?;
-                self.siblings(&pairs, &stored, &|_| radius)?;
+                self.siblings(&pairs, &stored, self.certificates.pair_limit, &|_| radius)?;
             }
         }
         Ok(())

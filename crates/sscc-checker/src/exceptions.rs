@@ -2,7 +2,7 @@
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
 use crate::model::Model;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, proof};
 use crate::scope::{CountedPairs, Scope};
 
 /// Checks that exceptions are what the rule says.
@@ -10,12 +10,12 @@ pub(crate) fn check(model: &Model, scope: &Scope, counted: &CountedPairs<'_>) ->
     for &[a, b] in &scope.exceptions {
         let simplices = counted.with_exceptions(a, b);
         if simplices.is_empty() {
-            return input(format!("exception: triangles {a} and {b} do not count"));
+            return proof(format!("exception: triangles {a} and {b} do not count"));
         }
         let corners =
             |simplex: [u32; 3]| simplex.map(|i| vector(model.computed_position(i as usize, &scope.center)));
         if simplices.iter().all(|[x, y]| are_disjoint(&corners(*x), &corners(*y))) {
-            return input(format!("exception: triangles {a} and {b} do not collide at the centre"));
+            return proof(format!("exception: triangles {a} and {b} do not collide at the centre"));
         }
     }
     Ok(())

@@ -30,13 +30,15 @@ use proof::{Check, Proof};
 use refusal::require;
 use scope::{CountedPairs, Scope};
 
-/// What was confirmed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What was confirmed: radii, of the pairs that count.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confirmed {
     /// The entries into which all pairs of triangles are divided.
     pub entries: usize,
     /// Those that were proven: all of them, or a sample.
     pub proven: usize,
+    /// What is left out, as text: numbers of pairs, groups of triangles, local certificates.
+    pub scope: String,
 }
 
 /// Checks a proof. `certificates`, `proof`: the bytes of the files.
@@ -61,5 +63,9 @@ pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -
     require(is_theirs, "proof: of other certificates")?;
     let check = Check { certificates: &certificates, counted: &counted, scaled: &scaled, model };
     check.run(&proof, &entries, threads).map_err(of_proof)?;
-    Ok(Confirmed { entries: entries.len(), proven: proof.proven.len() })
+    let groups = if scope.groups.is_some() { "pairs of groups" } else { "no groups" };
+    let local = if file.has("local_nodes") { "; local certificates are not checked" } else { "" };
+    let [exceptions, ignored] = [&scope.exceptions, &scope.ignored].map(Vec::len);
+    let scope = format!("left out: {exceptions} exceptions, {ignored} ignored pairs, {groups}{local}");
+    Ok(Confirmed { entries: entries.len(), proven: proof.proven.len(), scope })
 }

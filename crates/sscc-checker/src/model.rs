@@ -27,8 +27,8 @@ impl Model {
         modes: Vec<f64>,
         rank: usize,
     ) -> Result<Self, Refusal> {
-        let fits =
-            !faces.is_empty() && rank > 0 && positions.len().checked_mul(3 * rank) == Some(modes.len());
+        let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
+        let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
         require(fits, "model: the modes are not a matrix of three rows for each vertex")?;
         let has_vertices = faces.as_flattened().iter().all(|i| (*i as usize) < positions.len());
         require(has_vertices, "model: a face names a vertex that does not exist")?;

@@ -52,8 +52,8 @@ impl<'a> NodeMaps<'a> {
     pub(crate) fn are_apart(&self, [n, m]: [u32; 2], dir: &Vector, radius: &Radius) -> bool {
         let [n, m] = [n, m].map(|n| self.boxes[n as usize].get_or_init(|| self.compute(n)));
         let [rest_error, rate_error] = self.scaled.errors(dir);
-        let residuals = dot(&dir.clone().map(|d| d.abs()), &m.residual);
-        let rate = &(&residuals + &dot(&dir.clone().map(|d| d.abs()), &n.residual)) + &rate_error;
+        let along = |residual: &Vector| dot(&dir.clone().map(|d| d.abs()), residual);
+        let rate = &(&along(&m.residual) + &along(&n.residual)) + &rate_error;
         let [of_n, of_m] = [n, m].map(|node| node.corners(dir, self.scaled.rank));
         of_m.iter().all(|(at_m, row_m)| {
             of_n.iter().all(|(at_n, row_n)| {

@@ -48,13 +48,9 @@ struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
     fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
-        match self.0.split_at_checked(count) {
-            Some((front, rest)) => {
-                self.0 = rest;
-                Ok(front)
-            }
-            None => proof("it ends too early"),
-        }
+        let Some((front, rest)) = self.0.split_at_checked(count) else { return proof("it ends too early") };
+        self.0 = rest;
+        Ok(front)
     }
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
@@ -127,10 +123,8 @@ impl Check<'_> {
         let refused = thread::scope(|scope| {
             let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
             let failed = |_| Some((0, Refusal::Proof("a thread failed".into())));
-            threads
-                .into_iter()
-                .filter_map(|t| t.join().unwrap_or_else(failed))
-                .min_by_key(|(index, _)| *index)
+            let refused = threads.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
+            refused.min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
         let Entry { nodes: [n, m], radius } = entries[index];
@@ -139,8 +133,8 @@ impl Check<'_> {
 
     fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8]) -> Result<(), Refusal> {
         let radius = self.scaled.radius(entry.radius);
-        let mut reader =
-            EntryReader { check: self, maps, radius, bytes: Bytes(bytes), directions: Vec::new(), map: None };
+        let (bytes, directions) = (Bytes(bytes), Vec::new());
+        let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
         // Nothing is closer to the centre than it is.
         if entry.radius > 0.0 {
             reader.nodes(entry.nodes)?;
@@ -165,43 +159,32 @@ impl EntryReader<'_> {
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         let Check { certificates, counted, .. } = self.check;
         let children = |n: u32| certificates.nodes[n as usize].children();
+        let has = |n: u32| !children(n).is_empty();
+        let counts = |&[a, b]: &[u32; 2]| !counted.simplices(a, b).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
                 let dir = self.bytes.vector()?;
-                let is_apart = n != m && self.maps.are_apart([n, m], &dir, &self.radius);
-                if is_apart {
-                    Ok(())
-                } else {
-                    proof(format!("the direction does not separate nodes {n} and {m}"))
+                if n != m && self.maps.are_apart([n, m], &dir, &self.radius) {
+                    return Ok(());
                 }
+                proof(format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => match self.pairs([n, m]).find(|[a, b]| !counted.simplices(*a, *b).is_empty())
-            {
+            [NOTHING_COUNTS] => match certificates.pairs([n, m]).find(counts) {
                 Some([a, b]) => proof(format!("triangles {a} and {b} count")),
                 None => Ok(()),
             },
-            [SPLIT_FIRST] if n != m && !children(n).is_empty() => {
-                children(n).try_for_each(|child| self.nodes([child, m]))
-            }
-            [SPLIT_SECOND] if n != m && !children(m).is_empty() => {
-                children(m).try_for_each(|child| self.nodes([n, child]))
-            }
-            [TRIANGLES] => self.triangles([n, m]),
+            [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
+            [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
+            [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
             [other] => proof(format!("{other} is no witness of nodes {n} and {m}")),
         }
     }
 
-    /// The pairs of triangles between two nodes, or within one.
-    fn pairs(&self, [n, m]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
-        let [x, y] = [n, m].map(|n| self.check.certificates.triangles(n));
-        let rest = move |i: usize| if n == m { &y[i + 1..] } else { y };
-        x.iter().enumerate().flat_map(move |(i, a)| rest(i).iter().map(move |b| [*a, *b]))
-    }
-
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
         (self.directions, self.map) = (Vec::new(), None);
-        for [a, b] in self.pairs(nodes).collect::<Vec<_>>() {
-            for simplices in self.check.counted.simplices(a, b) {
+        let Check { certificates, counted, .. } = self.check;
+        for [a, b] in certificates.pairs(nodes) {
+            for simplices in counted.simplices(a, b) {
                 if !self.simplices(simplices)? {
                     return proof(format!("the witness of triangles {a} and {b} does not hold"));
                 }
@@ -226,6 +209,8 @@ impl EntryReader<'_> {
     /// The number of the direction that a witness names, if it names one; a new one is read.
     fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
         if tag == NEW_DIRECTION {
+            // One beyond those with a number is forgotten.
+            self.directions.truncate(QUARTER_SECOND.into());
             self.directions.push(Direction::new(self.check.scaled, self.bytes.vector()?));
             return Ok(Some(self.directions.len() - 1));
         }
@@ -256,10 +241,8 @@ impl EntryReader<'_> {
                     self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
                 }
                 let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
-                let mut pyramid: [Vector; 4] = Default::default();
-                for u in &mut pyramid {
-                    *u = self.bytes.vector()?;
-                }
+                let mut direction = || self.bytes.vector();
+                let pyramid = [direction()?, direction()?, direction()?, direction()?];
                 let witness = AffineWitness { dir, rate, pyramid };
                 let map = self.map.as_ref();
                 Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))

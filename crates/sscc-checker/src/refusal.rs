@@ -5,9 +5,9 @@ use std::fmt;
 /// One line: the place and the cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// A file cannot be read, or is of another model: nothing was checked.
+    /// A file cannot be read, is damaged, or is of another model: nothing was checked.
     Input(String),
-    /// The proof does not hold.
+    /// The proof does not hold, or the certificates do not have the parts that they should have.
     Proof(String),
 }
 
@@ -22,11 +22,10 @@ impl std::error::Error for Refusal {}
 
 impl Refusal {
     /// The same with the name of the file before it.
-    pub(crate) fn of(self, name: &str) -> Self {
-        match self {
-            Self::Input(line) => Self::Input(format!("{name}: {line}")),
-            Self::Proof(line) => Self::Proof(format!("{name}: {line}")),
-        }
+    pub(crate) fn of(mut self, name: &str) -> Self {
+        let (Self::Input(line) | Self::Proof(line)) = &mut self;
+        line.insert_str(0, &format!("{name}: "));
+        self
     }
 }
 
@@ -38,6 +37,11 @@ pub(crate) fn input<T>(line: impl Into<String>) -> Result<T, Refusal> {
 /// Refuses an input unless something holds.
 pub(crate) fn require(holds: bool, line: &str) -> Result<(), Refusal> {
     if holds { Ok(()) } else { input(line) }
+}
+
+/// Refuses certificates unless something holds.
+pub(crate) fn claim(holds: bool, line: &str) -> Result<(), Refusal> {
+    if holds { Ok(()) } else { proof(line) }
 }
 
 /// Refuses a proof.

@@ -3,6 +3,9 @@
 //! `q - center = T z'` with a matrix T of short numbers that is nearly the inverse of the factor S: `S T = I + D`, `|D| <=
 //! delta` in the Frobenius norm. Then `z = S (q - center) = (I + D) z'`, and `|z| < R` implies `|z'| < R / (1 - delta)`. All
 //! rates are over z', with the modes `A = U T`; so nothing else is rounded but R, upwards.
+//!
+//! The positions at the centre are the computed ones, from which witnesses are found. How far they are from the exact ones is
+//! part of the rounding.
 
 use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
 use crate::model::Model;
@@ -19,13 +22,13 @@ pub(crate) enum Radius {
     Infinite,
 }
 
-/// Positions at the centre, modes A, and the rounding of computed positions.
+/// Computed positions at the centre, modes A, and the rounding of computed positions.
 pub(crate) struct ScaledModel {
     pub(crate) rank: usize,
     pub(crate) positions: Vec<Vector>,
     /// Three rows for each vertex.
     modes: Vec<Dyadic>,
-    /// For each axis a bound of the error of each computed coordinate: this, and `rate_errors |z'|`.
+    /// For each axis a bound of the difference of each computed coordinate to `positions + A z'`: this, and `rate_errors |z'|`.
     rest_errors: Vector,
     rate_errors: Vector,
     delta: Dyadic,
@@ -46,13 +49,16 @@ impl ScaledModel {
             rate_errors: Vector::default(),
             delta,
         };
+        let mut center_errors = Vector::default();
         for i in (0..used.len()).filter(|i| used[*i]) {
             let rest = vector(model.positions[i]);
+            this.positions[i] = vector(model.computed_position(i, &scope.center));
             for c in 0..3 {
                 let row = &model.modes_of(i)[c * rank..][..rank];
                 let row: Vec<Dyadic> = row.iter().map(|u| Dyadic::of(*u)).collect();
                 let moved = || row.iter().zip(&center).map(|(u, x)| u * x);
-                this.positions[i][c] = &rest[c] + &moved().sum();
+                let exact = &rest[c] + &moved().sum();
+                center_errors[c].raise((&exact - &this.positions[i][c]).abs());
                 let magnitude = &rest[c].abs() + &moved().map(|x| x.abs()).sum();
                 let product = |column: &Column, is_abs: bool| -> Dyadic {
                     let terms = column.iter().map(|(k, t)| &row[*k] * t);
@@ -68,7 +74,8 @@ impl ScaledModel {
         // Rounding to nearest: each product once, each of r sums once, so at most gamma_(r+1) <= (r + 2) 2^-53 of the
         // magnitudes, and 2^-1075 for each product that underflows.
         let (gamma, least) = (Dyadic::new(rank as i64 + 2, -53), Dyadic::new(rank as i64 + 2, -1074));
-        this.rest_errors = this.rest_errors.map(|x| &(&x * &gamma).round_up(64) + &least);
+        let error = |c: usize| &(&this.rest_errors[c] * &gamma) + &center_errors[c];
+        this.rest_errors = std::array::from_fn(|c| &error(c).round_up(64) + &least);
         this.rate_errors = this.rate_errors.map(|x| (&x * &gamma).round_up(64));
         Ok(this)
     }

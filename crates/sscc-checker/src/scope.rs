@@ -32,16 +32,15 @@ impl Scope {
         require(!file.has("clearance"), "certificates with a clearance are not checked")?;
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
-        let factor: Vec<f64> = if is_dense {
-            file.shaped("metric_factor", &[Some(rank), Some(rank)])?
-        } else {
-            file.shaped("metric_scales", &[Some(rank)])?
+        let factor: Vec<f64> = match is_dense {
+            true => file.shaped("metric_factor", &[Some(rank), Some(rank)])?,
+            false => file.shaped("metric_scales", &[Some(rank)])?,
         };
-        let is_triangular = !is_dense
-            || (0..rank).all(|i| {
-                let row = &factor[i * rank..][..rank];
-                row[..i].iter().all(|s| *s == 0.0) && row[i] > 0.0
-            });
+        let is_row = |i: usize| {
+            let row = &factor[i * rank..][..rank];
+            row[..i].iter().all(|s| *s == 0.0) && row[i] > 0.0
+        };
+        let is_triangular = !is_dense || (0..rank).all(is_row);
         let center = file.shaped::<f64>("center", &[Some(rank)])?;
         let is_finite = factor.iter().chain(&center).all(|x| x.is_finite());
         let is_positive = is_dense || factor.iter().all(|s| *s > 0.0);
@@ -55,13 +54,12 @@ impl Scope {
             require(are_triangles, "a pair names a triangle that does not exist, or one twice")?;
             Ok(pairs)
         };
-        let groups = if file.has("groups") {
+        let mut groups = None;
+        if file.has("groups") {
             let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
             let of_triangles = file.shaped("groups", &[Some(triangles)])?;
-            Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? })
-        } else {
-            None
-        };
+            groups = Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? });
+        }
         let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
     }
@@ -106,11 +104,8 @@ impl<'a> CountedPairs<'a> {
     /// counts, or is an exception.
     pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
         let pair = [a.min(b), a.max(b)];
-        if self.scope.exceptions.binary_search(&pair).is_ok() {
-            Vec::new()
-        } else {
-            self.with_exceptions(a, b)
-        }
+        let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
+        if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
     }
 
     /// The same for exceptions, too.

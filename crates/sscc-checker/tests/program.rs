@@ -20,7 +20,8 @@ fn files_that_are_not_what_they_should_be_are_refused_in_one_line() {
         (&["a.obj", "a.obj", "a.obj", "a.obj"], "a.obj: not an .npy file"),
         (&["a.obj", "u.npy", "a.obj", "a.obj"], "certificates: not a file written by sscc"),
         (&["a.obj", "a.obj", "a.obj"], "a.obj: not a file written by sscc"),
-        (&["a.obj"], "usage: "),
+        (&["a.obj"], "three or four files are needed"),
+        (&[], "three or four files are needed"),
     ] {
         let output = Command::new(env!("CARGO_BIN_EXE_sscc-checker"))
             .args(args)
@@ -30,7 +31,10 @@ fn files_that_are_not_what_they_should_be_are_refused_in_one_line() {
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{message}");
         assert!(message.starts_with(&format!("error: {cause}")), "{message}");
-        assert!(cause == "usage: " || message.lines().count() == 1, "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
     }
     fs::remove_dir_all(folder).unwrap();
+    let help = Command::new(env!("CARGO_BIN_EXE_sscc-checker")).arg("--help").output().unwrap();
+    assert_eq!((help.status.code(), help.stderr.len()), (Some(0), 0));
+    assert!(help.stdout.starts_with(b"usage: sscc-checker "));
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use sscc::parts::Prover;
 use sscc::{Certificates, Clearance, ReducedModel};
 use sscc_io::container::certificates_to_bytes;
-use sscc_io::write_whole;
+use sscc_io::{ProofFile, write_whole};
 use sscc_sim::{CertificateRequest, ZeroRadius};
 use sscc_view::Picture;
 
@@ -91,6 +91,10 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         write_whole(path, &picture.png)?;
     }
     write_whole(&args.output, &bytes)?;
+    // Last, for there is no use of a proof without its certificates.
+    let proof = proof
+        .map(|(file, report)| file.finish().map(|proof_bytes| ProofReport { proof_bytes, ..report }))
+        .transpose()?;
 
     let tree = &certificates.parts().pair_tree;
     let report = Report {
@@ -133,25 +137,27 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the proof of the certificates, or of a sample of their entries.
+/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report has no bytes yet.
 fn write_proof(
     args: &Certify,
     path: &Path,
     model: &ReducedModel,
     certificates: &Certificates,
-) -> anyhow::Result<ProofReport> {
+) -> anyhow::Result<(ProofFile, ProofReport)> {
     let start = Instant::now();
     let prover = Prover::new(model, certificates).with_context(|| path.display().to_string())?;
     let numbers = prover.sample(args.proof_sample.map_or(usize::MAX, |count| count as usize), PROOF_SEED);
     let threads = Some(load::threads(&args.options.threads));
     let written = sscc_io::write_proof(path, &prover, &numbers, threads, &Bar::new("proving"));
     interrupt::check()?;
-    Ok(ProofReport {
+    let file = written?;
+    let report = ProofReport {
         proof_entries: prover.entries(),
         proven_entries: numbers.len(),
-        proof_bytes: written?,
+        proof_bytes: 0,
         proof_seconds: start.elapsed().as_secs_f64(),
-    })
+    };
+    Ok((file, report))
 }
 
 impl ProofReport {

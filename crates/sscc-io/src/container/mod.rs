@@ -25,7 +25,7 @@ pub use certificates::{
 };
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
-pub use proof::write_proof;
+pub use proof::{ProofFile, write_proof};
 pub use reader::Container;
 pub use tensor::{ANY, Tensor};
 pub use writer::ContainerWriter;

@@ -13,18 +13,18 @@ pub(super) struct ProofEntry {
 
 /// All entries, in the order of their numbers.
 pub(super) fn proof_entries(parts: &CertificateParts) -> Vec<ProofEntry> {
-    let mut walk = Walk { parts, hierarchy: &parts.hierarchy, entries: Vec::new() };
-    walk.within(0, 0.0);
-    walk.entries
+    let mut traversal = Traversal { parts, hierarchy: &parts.hierarchy, entries: Vec::new() };
+    traversal.within(0, 0.0);
+    traversal.entries
 }
 
-struct Walk<'a> {
+struct Traversal<'a> {
     parts: &'a CertificateParts,
     hierarchy: &'a Hierarchy,
     entries: Vec<ProofEntry>,
 }
 
-impl Walk<'_> {
+impl Traversal<'_> {
     fn within(&mut self, n: u32, around: f64) {
         let parts = self.parts;
         let radius = around.max(parts.node_radii[n as usize]);

@@ -124,7 +124,7 @@ struct EntryProver<'a> {
 impl EntryProver<'_> {
     /// The number of an entry, the length of its witnesses, and these.
     fn prove(&mut self, number: usize) -> Result<Vec<u8>, Error> {
-        let unproven = |what: String| Error::Certificates(format!("entry {number} has no proof: {what}"));
+        let unproven = |what: String| Error::Unproven(format!("entry {number} has no proof: {what}"));
         let entry = self.prover.entries.get(number).ok_or_else(|| unproven("it does not exist".into()))?;
         self.out.clear();
         if entry.radius > 0.0
