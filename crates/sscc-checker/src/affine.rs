@@ -109,11 +109,9 @@ impl AffineMap {
         if !pairs[..3].iter().all(is_slow) {
             return false;
         }
-        if pairs[3..].iter().all(is_slow) {
-            return true;
-        }
-        if *cones >= MAX_CONES || depth >= MAX_DEPTH {
-            return false;
+        let are_slow = pairs[3..].iter().all(is_slow);
+        if are_slow || *cones >= MAX_CONES || depth >= MAX_DEPTH {
+            return are_slow;
         }
         let length = |(i, j): (usize, usize)| squared_norm(&minus(cone[i], cone[j]));
         let edges = [(0, 1), (1, 2), (2, 0)];

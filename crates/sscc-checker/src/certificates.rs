@@ -48,7 +48,8 @@ pub(crate) struct Certificates {
     pub(crate) pair_limit: f64,
     starts: Vec<u32>,
     radii: Vec<f32>,
-    links: Vec<u32>,
+    /// One for each node pair of the pair tree.
+    pub(crate) links: Vec<u32>,
 }
 
 impl Certificates {
@@ -119,15 +120,8 @@ impl Certificates {
 
     /// The stored pairs of a node's children.
     pub(crate) fn stored_of_node(&self, n: u32) -> Result<Vec<StoredPair>, Refusal> {
-        match self.starts[n as usize] {
-            NO_PAIRS => Ok(Vec::new()),
-            start => self.stored(start),
-        }
-    }
-
-    /// The number of node pairs in the pair tree.
-    pub(crate) fn stored_pairs(&self) -> usize {
-        self.links.len()
+        let start = self.starts[n as usize];
+        if start == NO_PAIRS { Ok(Vec::new()) } else { self.stored(start) }
     }
 
     /// The list of siblings from a start on.

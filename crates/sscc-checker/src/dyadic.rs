@@ -97,13 +97,10 @@ impl Dyadic {
 impl Add for &Dyadic {
     type Output = Dyadic;
     fn add(self, other: Self) -> Dyadic {
-        if self.is_zero() {
-            return other.clone();
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other } else { self }.clone();
         }
         let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
-        if low.is_zero() {
-            return high.clone();
-        }
         let shift = (high.exponent - low.exponent) as usize;
         Dyadic { mantissa: (&high.mantissa << shift) + &low.mantissa, exponent: low.exponent }
     }
@@ -153,16 +150,13 @@ impl Ord for Dyadic {
 }
 
 /// `a . b` of two rows.
-pub(crate) fn dot<'x>(
-    a: impl IntoIterator<Item = &'x Dyadic>,
-    b: impl IntoIterator<Item = &'x Dyadic>,
-) -> Dyadic {
-    a.into_iter().zip(b).map(|(a, b)| a * b).sum()
+pub(crate) fn dot(a: &[Dyadic], b: &[Dyadic]) -> Dyadic {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The sum of the squares of a row.
-pub(crate) fn squared_norm<'x>(row: impl IntoIterator<Item = &'x Dyadic>) -> Dyadic {
-    row.into_iter().map(Dyadic::square).sum()
+pub(crate) fn squared_norm(row: &[Dyadic]) -> Dyadic {
+    row.iter().map(Dyadic::square).sum()
 }
 
 /// Three numbers.

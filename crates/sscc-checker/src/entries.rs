@@ -62,7 +62,7 @@ impl Traversal<'_> {
     ) -> Result<(), Refusal> {
         self.visited += stored.len();
         let is_listed = |which: u32| (which as usize) < pairs.len();
-        if self.visited > self.certificates.stored_pairs()
+        if self.visited > self.certificates.links.len()
             || !stored.is_sorted_by(|a, b| a.which < b.which)
             || !stored.iter().all(|entry| is_listed(entry.which) && entry.radius < limit)
         {

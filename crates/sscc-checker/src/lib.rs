@@ -41,6 +41,16 @@ pub struct Confirmed {
     pub scope: String,
 }
 
+impl Confirmed {
+    /// # Errors
+    /// When not all entries were proven: whoever wrote the proof chose the sample.
+    pub fn of_all_entries(self) -> Result<Self, Refusal> {
+        let cause =
+            format!("proof: it has {} of {} entries; --sample accepts this", self.proven, self.entries);
+        if self.proven == self.entries { Ok(self) } else { Err(Refusal::Proof(cause)) }
+    }
+}
+
 /// Checks a proof. `certificates`, `proof`: the bytes of the files.
 ///
 /// # Errors

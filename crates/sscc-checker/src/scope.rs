@@ -67,10 +67,8 @@ impl Scope {
 
 /// Whether a text of the file is the second one of two.
 fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
-    match values.iter().position(|value| Ok(*value) == file.text(key)) {
-        Some(which) => Ok(which == 1),
-        None => input(format!("text '{key}' is missing or not known")),
-    }
+    let which = values.iter().position(|value| Ok(*value) == file.text(key));
+    which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
 }
 
 /// Two simplices by vertices: triangles, or an edge whose last vertex is there twice.
