@@ -45,9 +45,10 @@ impl Confirmed {
     /// # Errors
     /// When not all entries were proven: whoever wrote the proof chose the sample.
     pub fn of_all_entries(self) -> Result<Self, Refusal> {
+        let Self { entries, proven, .. } = &self;
         let cause =
-            format!("proof: it has {} of {} entries; --sample accepts this", self.proven, self.entries);
-        if self.proven == self.entries { Ok(self) } else { Err(Refusal::Proof(cause)) }
+            format!("proof: it has {proven} of {entries} entries: samples are accepted on request alone");
+        if proven == entries { Ok(self) } else { Err(Refusal::Proof(cause)) }
     }
 }
 

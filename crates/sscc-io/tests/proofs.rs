@@ -203,7 +203,7 @@ fn dropped_pairs_are_refused() {
     let confirmed = check(&model, &file, &sample).unwrap();
     assert_eq!((confirmed.proven, confirmed.entries), (all.len(), all.len() + 1));
     assert_eq!(confirmed.scope, "left out: 0 exceptions, 0 ignored pairs, no groups");
-    assert!(refusal(confirmed.of_all_entries(), true).contains("--sample"));
+    assert!(refusal(confirmed.of_all_entries(), true).contains("samples are accepted on request"));
     // Bytes that are missing, and bytes that follow.
     assert!(refusal(check(&model, &file, &proof[..proof.len() - 1]), true).contains("too early"));
     assert!(refusal(check(&model, &file, &[&proof[..], b"x"].concat()), true).contains("after its end"));
