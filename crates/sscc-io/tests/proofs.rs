@@ -290,6 +290,22 @@ fn exceptions_must_be_those_of_the_rule() {
     assert!(prover.prove(&all, None, &()).unwrap_err().to_string().contains("has no proof"));
 }
 
+/// One byte must not ask for the pairs of triangles of large nodes.
+#[test]
+fn lists_of_triangles_are_for_leaves_alone() {
+    let model = sheet();
+    let certificates = certify(&model, &CertifyOptions::default().budget(0));
+    let file = certificates_to_bytes(&certificates).unwrap();
+    let prover = Prover::new(&model, &certificates).unwrap();
+    let lines = (0..prover.entries()).filter_map(|number| {
+        let entry = [&(number as u64).to_le_bytes()[..], &1_u32.to_le_bytes(), b"t"].concat();
+        check(&model, &file, &[prover.header(1), entry].concat()).err()
+    });
+    let lines: Vec<String> = lines.map(|refusal| refusal.to_string()).collect();
+    assert!(lines.iter().any(|line| line.contains("116 is no witness of nodes")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("too early")), "{lines:?}");
+}
+
 /// A proof in which anything was changed is refused, or a proof.
 #[test]
 fn damaged_proofs_never_confirm_more_than_is_true() {
