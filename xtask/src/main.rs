@@ -9,6 +9,7 @@ mod environment;
 mod extension;
 mod kept_list;
 mod layers;
+mod lemmas;
 mod lines;
 mod lint;
 mod msrv;
@@ -33,7 +34,7 @@ use std::process::ExitCode;
 /// A task: its name, its arguments and its purpose, and what runs it.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
-const TASKS: [Task; 19] = [
+const TASKS: [Task; 20] = [
     ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
     ("python", "[arguments for pytest]: tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
@@ -47,6 +48,7 @@ const TASKS: [Task; 19] = [
     ("serial", "tests of the core without threads", serial::run),
     ("lint", "formatting, lints, documentation", lint::run),
     ("layers", "the order of crates, modules and files", layers::run),
+    ("lemmas", "proves the rounding lemmas of docs/proofs with Gappa", lemmas::run),
     ("lines", "counts the lines of the product", lines::run),
     ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
     ("mutants", "[names]: the tests catch wrong variants of the core", mutants::run),

@@ -1,6 +1,6 @@
 //! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
-//! package, of the page, of the site and of C, at the same time: none keeps two cores busy. With arguments for `cargo test` it runs the
-//! tests of the crates only. The package for npm has its own task, `cargo xtask wasm --test`.
+//! package, of the page, of the site and of C, and the lemmas, at the same time: none keeps two cores busy. With arguments for `cargo test`
+//! it runs the tests of the crates only. The package for npm has its own task, `cargo xtask wasm --test`.
 //!
 //! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
 //! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
@@ -11,7 +11,7 @@ use std::thread;
 
 use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
-use crate::{c, page, python, site};
+use crate::{c, lemmas, page, python, site};
 
 /// Runs all tests; with arguments for `cargo test`, those of the crates only.
 pub fn run(arguments: &[String]) -> ExitCode {
@@ -20,7 +20,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     if arguments.is_empty() {
         let path = log.path();
         tally += thread::scope(|scope| {
-            let page = scope.spawn(|| site::test(path) + page::test(path, true));
+            let page = scope.spawn(|| site::test(path) + page::test(path, true) + lemmas::test(path, true));
             let c = scope.spawn(|| c::test(path, true));
             let python = python::test(&[], path, true);
             [page, c].into_iter().fold(python, |sum, tests| sum + tests.join().unwrap_or(Tally::BROKEN))

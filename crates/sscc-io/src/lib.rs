@@ -94,7 +94,9 @@ mod vtk_frames_writer;
 mod vtk_writer;
 mod wav;
 
-pub use container::{ModelInfo, read_certificates, read_model, write_certificates, write_model};
+pub use container::{
+    ModelInfo, ProofFile, read_certificates, read_model, write_certificates, write_model, write_proof,
+};
 pub use curves::{write_obj_curves, write_ply_curves};
 pub use error::{FormatError, IoError, Place};
 pub use file::{check_writable, folder, read_whole, write_whole};

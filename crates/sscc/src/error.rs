@@ -268,6 +268,9 @@ pub enum Error {
     /// Parts of certificates that do not fit together.
     #[error("the certificates are damaged: {0}; certify the model anew")]
     Certificates(String),
+    /// An entry of certificates without a proof: they are wrong, or the program is.
+    #[error("{0}")]
+    Unproven(String),
     /// A job or a result of certificates computed by several processes that is damaged, foreign or could not be computed.
     #[error("shards: {0}")]
     Shard(String),

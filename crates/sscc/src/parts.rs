@@ -12,8 +12,8 @@
 
 pub use crate::certificates::{
     BUILD, CertificateParts, DEFAULT_BUDGET, DEFAULT_EPSILON, DEFAULT_LOCAL_BUDGET, DEFAULT_REACH, Digest,
-    LocalBounds, LocalCertificates, PairTree, RunJobs, Scope, ShardWorker, check_filter, compute_in_shards,
-    default_exceptions, is_reach, is_within_reach,
+    LocalBounds, LocalCertificates, PairTree, Prover, RunJobs, Scope, ShardWorker, check_filter,
+    compute_in_shards, default_exceptions, is_reach, is_within_reach,
 };
 pub use crate::curves::{
     ContactCurve, ContactCurves, CurvePoint, MeshFeature, PairContact, Surface, contact_curves,

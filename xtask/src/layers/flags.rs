@@ -1,4 +1,4 @@
-//! Libraries name no flags of the command: they name settings, which each front end calls by its own name.
+//! Libraries name no flags of the command: they name settings, which each front end calls by its own name. A program (`main.rs`) is one.
 
 use crate::sources::Crate;
 
@@ -10,7 +10,8 @@ pub fn flags(krate: &Crate) -> Vec<String> {
     if FRONT_ENDS.contains(&krate.name.as_str()) {
         return Vec::new();
     }
-    let lines = krate.files.iter().flat_map(|file| file.lines.iter().map(|line| (&file.path, line)));
+    let files = krate.files.iter().filter(|file| !file.path.ends_with("src/main.rs"));
+    let lines = files.flat_map(|file| file.lines.iter().map(|line| (&file.path, line)));
     let violation = |(path, (number, line)): (&String, &(usize, String))| {
         let flag = flag_in(line)?;
         Some(format!("{path}:{number}: names the flag {flag}: libraries name a setting (sscc_io::Setting)"))

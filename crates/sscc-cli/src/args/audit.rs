@@ -11,9 +11,10 @@ use clap::Args;
 #[command(
     help_template = with_examples!(
         "sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --samples 2000"
+        "sscc audit spring.model.safetensors --certificates spring.sscc.safetensors --exact --samples 2000"
     ),
     after_help = "\
-Exit codes: 0 no violation, 1 a collision refutes a certificate, 2 error."
+Exit codes: 0 no violation, 1 a collision refutes a certificate (--exact: a proof does not hold), 2 error."
 )]
 pub struct Audit {
     #[command(flatten)]
@@ -21,12 +22,16 @@ pub struct Audit {
     /// The certificates to attack
     #[arg(long, value_name = "FILE")]
     pub certificates: PathBuf,
-    /// Number of configurations to test
+    /// Number of configurations to test; with --exact of entries to prove
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: u32,
     /// Seed of the pseudo-random numbers; the same seed gives the same configurations
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Instead of attacks, prove --samples of the entries into which all pairs of triangles are divided, and check the proof in
+    /// exact arithmetic by a program that shares no code with the one that certifies
+    #[arg(long)]
+    pub exact: bool,
     #[command(flatten)]
     pub options: Options,
     #[command(flatten)]

@@ -15,6 +15,7 @@ use sscc::Clearance;
         "sscc certify bunny.model.safetensors -o large.sscc.safetensors --budget 256 --reach 32"
         "sscc certify face.obj --modes face.U.float -o face.sscc.safetensors --metric mass --scheme paper"
         "sscc certify spring.model.safetensors -o near.sscc.safetensors --clearance 0.01 --rings 3"
+        "sscc certify spring.model.safetensors -o spring.sscc.safetensors --proof spring.proof --proof-sample 1000"
         "sscc certify head.glb --mesh-name Head -o head.sscc.safetensors --picture head.png"
     )
 )]
@@ -28,6 +29,13 @@ pub struct Certify {
     /// each of the first four modes
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
+    /// Also write why each radius holds (.proof): `sscc-checker MODEL CERTIFICATES FILE` confirms it in exact arithmetic. Not for
+    /// --clearance
+    #[arg(long, value_name = "FILE", conflicts_with = "clearance")]
+    pub proof: Option<PathBuf>,
+    /// With --proof: prove N of the entries into which all pairs of triangles are divided, spread over all [default: all]
+    #[arg(long, value_name = "N", requires = "proof", value_parser = clap::value_parser!(u32).range(1..))]
+    pub proof_sample: Option<u32>,
     #[command(flatten)]
     pub clearance: CertifiedClearance,
     #[command(flatten)]

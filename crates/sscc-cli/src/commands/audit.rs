@@ -1,8 +1,13 @@
-//! `sscc audit`: attacks certificates, and reports violations and tightness.
+//! `sscc audit`: attacks certificates, and reports violations and tightness; or has a proof of them checked.
+
+use std::time::Instant;
 
 use anyhow::Context;
 use serde::Serialize;
-use sscc::AuditOptions;
+use sscc::parts::Prover;
+use sscc::{AuditOptions, Certificates, ReducedModel};
+use sscc_checker::Refusal;
+use sscc_io::read_whole;
 use sscc_sim::CertificateRequest;
 
 use crate::args::Audit;
@@ -25,6 +30,9 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
     let request = load::request(&loaded, &args.model, &args.options)?;
+    if args.exact {
+        return audit_exactly(args, model, &request.read(&args.certificates, model)?);
+    }
     // Those of a clearance are attacked with near pairs.
     let request = CertificateRequest { any_clearance: true, ..request };
     let certificates = request.read(&args.certificates, model)?;
@@ -75,4 +83,66 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     }
     out.finish()?;
     Ok(if found.violations.is_empty() { Outcome::Done } else { Outcome::Finding })
+}
+
+#[derive(Serialize)]
+struct ExactReport {
+    entries: usize,
+    proven: usize,
+    seconds: f64,
+    /// Why the proof does not hold; null if it does.
+    refused: Option<String>,
+}
+
+/// Proves a sample of the entries of certificates, and has the proof checked in exact arithmetic.
+fn audit_exactly(args: &Audit, model: &ReducedModel, certificates: &Certificates) -> anyhow::Result<Outcome> {
+    let (start, named) = (Instant::now(), || args.certificates.display().to_string());
+    let threads = load::threads(&args.options.threads);
+    let prover = Prover::new(model, certificates).with_context(named)?;
+    let numbers = prover.sample(args.samples as usize, args.seed);
+    let mut proof = prover.header(numbers.len());
+    let bar = Bar::new("proving");
+    let witnesses = prover.prove(&numbers, Some(threads), &bar);
+    interrupt::check()?;
+    let refused = match witnesses {
+        Ok(witnesses) => {
+            proof.extend(witnesses);
+            let file = read_whole(&args.certificates)?;
+            match sscc_checker::check(&checked_model(model)?, &file, &proof, threads) {
+                Ok(_) => None,
+                Err(Refusal::Proof(line)) => Some(line),
+                Err(refusal @ Refusal::Input(_)) => return Err(refusal).with_context(named),
+            }
+        }
+        Err(error) => Some(error.to_string()),
+    };
+    interrupt::check()?;
+    let report = ExactReport {
+        entries: prover.entries(),
+        proven: numbers.len(),
+        seconds: start.elapsed().as_secs_f64(),
+        refused,
+    };
+    let mut out = Output::new();
+    if args.json.json {
+        out.json(&report)?;
+    } else {
+        let [proven, all] = [report.proven, report.entries].map(|count| grouped(count as u64));
+        match &report.refused {
+            None => out.line(format_args!("{proven} of {all} entries confirmed in exact arithmetic"))?,
+            Some(line) => out.line(format_args!("NOT CONFIRMED: {line}"))?,
+        }
+    }
+    out.finish()?;
+    Ok(if report.refused.is_none() { Outcome::Done } else { Outcome::Finding })
+}
+
+/// The model for the checker, which compares its digest with that of the certificates.
+fn checked_model(model: &ReducedModel) -> anyhow::Result<sscc_checker::Model> {
+    let (mesh, modes) = (model.mesh(), model.modes());
+    let positions = mesh.rest_positions().iter().map(|p| p.to_array()).collect();
+    let by_axis = modes.displacements().chunks_exact(modes.rank());
+    let by_axis =
+        by_axis.flat_map(|of_vertex| (0..3).flat_map(move |axis| of_vertex.iter().map(move |u| u[axis])));
+    Ok(sscc_checker::Model::new(positions, mesh.faces().to_vec(), by_axis.collect(), modes.rank())?)
 }

@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use anyhow::{Context, bail};
 use serde::Serialize;
-use sscc::{Certificates, Clearance};
+use sscc::parts::Prover;
+use sscc::{Certificates, Clearance, ReducedModel};
 use sscc_io::container::certificates_to_bytes;
-use sscc_io::write_whole;
+use sscc_io::{ProofFile, write_whole};
 use sscc_sim::{CertificateRequest, ZeroRadius};
 use sscc_view::Picture;
 
@@ -17,6 +18,10 @@ use crate::interrupt;
 use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, counted, grouped, length, note};
+use crate::progress::Bar;
+
+/// The seed of samples of entries.
+const PROOF_SEED: u64 = 1;
 
 #[derive(Serialize)]
 struct Report {
@@ -37,6 +42,17 @@ struct Report {
     clearance: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rings: Option<u32>,
+    /// Absent without `--proof`.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    proof: Option<ProofReport>,
+}
+
+#[derive(Serialize)]
+struct ProofReport {
+    proof_entries: usize,
+    proven_entries: usize,
+    proof_bytes: u64,
+    proof_seconds: f64,
 }
 
 pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
@@ -48,6 +64,9 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     load::check_output(&args.output, ".sscc.safetensors", &inputs)?;
     if let Some(path) = &args.picture {
         load::check_output(path, ".png", &inputs)?;
+    }
+    if let Some(path) = &args.proof {
+        load::check_output(path, ".proof", &inputs)?;
     }
     let loaded = load::model(&args.model)?;
     let model = &loaded.model;
@@ -66,11 +85,16 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         drawn.with_context(|| path.display().to_string())
     };
     let picture = args.picture.as_ref().map(draw).transpose()?;
+    let proof = args.proof.as_ref().map(|path| write_proof(args, path, model, &certificates)).transpose()?;
     interrupt::check()?;
     if let (Some(path), Some(picture)) = (&args.picture, &picture) {
         write_whole(path, &picture.png)?;
     }
     write_whole(&args.output, &bytes)?;
+    // Last, for there is no use of a proof without its certificates.
+    let proof = proof
+        .map(|(file, report)| file.finish().map(|proof_bytes| ProofReport { proof_bytes, ..report }))
+        .transpose()?;
 
     let tree = &certificates.parts().pair_tree;
     let report = Report {
@@ -88,6 +112,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         exceptions: certificates.exceptions().len(),
         clearance: clearance.map(|clearance| clearance.distance()),
         rings: clearance.map(|clearance| clearance.rings()),
+        proof,
     };
     let zero_radius = ZeroRadius::find(model, &certificates, &request, interrupt::token())?;
     let mut out = Output::new();
@@ -99,6 +124,9 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         for line in report.lines(metric, &promise, tree.limit(), &args.output) {
             out.line(line)?;
         }
+        if let (Some(path), Some(proof)) = (&args.proof, &report.proof) {
+            out.line(proof.line(path))?;
+        }
         if let Some(path) = &args.picture {
             out.line(format_args!("picture        {}", path.display()))?;
         }
@@ -107,6 +135,39 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     let notes = [zero_radius.map(|reason| zero_radius::note(&reason)), picture.and_then(|drawn| drawn.note)];
     notes.into_iter().flatten().for_each(note);
     Ok(Outcome::Done)
+}
+
+/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report has no bytes yet.
+fn write_proof(
+    args: &Certify,
+    path: &Path,
+    model: &ReducedModel,
+    certificates: &Certificates,
+) -> anyhow::Result<(ProofFile, ProofReport)> {
+    let start = Instant::now();
+    let prover = Prover::new(model, certificates).with_context(|| path.display().to_string())?;
+    let numbers = prover.sample(args.proof_sample.map_or(usize::MAX, |count| count as usize), PROOF_SEED);
+    let threads = Some(load::threads(&args.options.threads));
+    let written = sscc_io::write_proof(path, &prover, &numbers, threads, &Bar::new("proving"));
+    interrupt::check()?;
+    let file = written?;
+    let report = ProofReport {
+        proof_entries: prover.entries(),
+        proven_entries: numbers.len(),
+        proof_bytes: 0,
+        proof_seconds: start.elapsed().as_secs_f64(),
+    };
+    Ok((file, report))
+}
+
+impl ProofReport {
+    fn line(&self, path: &Path) -> String {
+        let [all, proven] = [self.proof_entries, self.proven_entries].map(|count| grouped(count as u64));
+        let entries =
+            if all == proven { format!("all {all} entries") } else { format!("{proven} of {all} entries") };
+        let (bytes, seconds) = (grouped(self.proof_bytes), self.proof_seconds);
+        format!("proof          {}: {entries} ({bytes} bytes, {seconds:.2} s)", path.display())
+    }
 }
 
 /// Returns the meaning of the root's radius as text.

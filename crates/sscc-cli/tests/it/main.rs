@@ -23,6 +23,7 @@ mod modes;
 mod penetration;
 mod picture;
 mod places;
+mod proof;
 mod readers;
 mod readme;
 mod real_data;

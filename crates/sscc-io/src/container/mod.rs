@@ -15,6 +15,7 @@ mod local_certificates;
 mod mass_data;
 mod metric;
 mod model;
+mod proof;
 mod reader;
 mod tensor;
 mod writer;
@@ -24,6 +25,7 @@ pub use certificates::{
 };
 pub use kind::{CERTIFICATES, Kind, MODEL};
 pub use model::{ModelInfo, model_from_bytes, model_to_bytes, read_model, write_model};
+pub use proof::{ProofFile, write_proof};
 pub use reader::Container;
 pub use tensor::{ANY, Tensor};
 pub use writer::ContainerWriter;

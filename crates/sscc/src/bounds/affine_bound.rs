@@ -20,7 +20,7 @@
 use glam::DVec3;
 
 use super::affine_fit::AffineFit;
-use super::cone_rate::bound_rate_in_cone;
+use super::cone_rate::{PYRAMID_MARGIN, bound_rate_in_cone, enclose_in_pyramid};
 use super::pair_corners::PairCorners;
 use super::strain::{StrainGram, bound_rate, strain_gram};
 use crate::model::ScaledModel;
@@ -46,6 +46,29 @@ pub(super) struct AffinePair<'a> {
     pub(super) squared_residual: f64,
 }
 
+/// The terms of the bound beside the rate.
+struct AffineTerms {
+    /// A lower bound of the rest distance.
+    delta: f64,
+    at_rest: f64,
+    slack: f64,
+    rate_rounding: f64,
+}
+
+impl AffineTerms {
+    fn bound(&self, rate: f64) -> f64 {
+        let Self { delta, at_rest, slack, rate_rounding } = *self;
+        radius_down(delta - at_rest, ((rate * ROUND_UP + rate_rounding) * delta + slack) * ROUND_UP)
+    }
+
+    /// A rate with a sufficient bound, hardly smaller than the largest one.
+    fn slower_than(&self, sufficient: f64) -> Option<f64> {
+        let Self { delta, at_rest, slack, rate_rounding } = *self;
+        let wanted = ((delta - at_rest) / sufficient - slack) / delta - rate_rounding;
+        (wanted > 0.0).then_some(wanted * (1.0 - 1e-9))
+    }
+}
+
 impl AffineBound {
     pub(super) fn new(row_len: usize) -> Self {
         Self { row_len, fit: AffineFit::new(row_len), gram: [[0.0; 6]; 6], rate: 0.0 }
@@ -68,30 +91,58 @@ impl AffineBound {
 
     /// The bound of two triangles among the points.
     pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, model: &ScaledModel) -> f64 {
-        let rounding = &model.rounding;
-        let delta = pair.rest_distance;
-        let residual = self.fit.residual_up(pair.squared_residual, rounding);
-        let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
-        let required = right_or!(model.required.along_unit(), AffineWithoutClearance, Default::default());
-        let at_rest = rounding.at_rest(axes) + required.at_rest;
-        let per_norm =
-            right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0) + required.per_norm;
-        let slack = (residual + per_norm) * ROUND_UP;
-        let rate_rounding = 8.0 * f64::EPSILON * self.fit.frobenius();
-        let bound = |rate: f64| {
-            radius_down(delta - at_rest, ((rate * ROUND_UP + rate_rounding) * delta + slack) * ROUND_UP)
-        };
-        let over_all_directions = bound(self.rate);
+        let terms = self.terms(&pair, model);
+        let over_all_directions = terms.bound(self.rate);
         if over_all_directions >= sufficient {
             return over_all_directions;
         }
-        // The largest rate that gives a sufficient bound.
-        let wanted = ((delta - at_rest) / sufficient - slack) / delta - rate_rounding;
-        if wanted.is_nan() || wanted <= 0.0 {
-            return over_all_directions;
+        match terms.slower_than(sufficient) {
+            Some(wanted) => {
+                let rate =
+                    bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted, PYRAMID_MARGIN);
+                over_all_directions.max(terms.bound(rate))
+            }
+            None => over_all_directions,
         }
-        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted * (1.0 - 1e-9));
-        over_all_directions.max(bound(rate))
+    }
+
+    /// The rate over a pyramid of directions that proves two triangles apart below a radius, and the pyramid; none if that
+    /// fails.
+    pub(super) fn witness(
+        &self,
+        pair: AffinePair<'_>,
+        radius: f64,
+        model: &ScaledModel,
+    ) -> Option<(f64, [DVec3; 4])> {
+        let terms = self.terms(&pair, model);
+        let wanted = terms.slower_than(radius)?;
+        // Corners of sub-triangles are rounded; the pyramid of a witness must contain the exact ones.
+        let margin = PYRAMID_MARGIN + 8.0 * model.rounding.at_rest(DVec3::ONE) / pair.rest_distance;
+        let rate = bound_rate_in_cone(pair.differences, &self.gram, self.row_len, wanted, margin);
+        let is_proven = terms.bound(rate) >= radius;
+        enclose_in_pyramid(pair.differences, margin)
+            .filter(|_| is_proven)
+            .map(|pyramid| (rate * ROUND_UP + terms.rate_rounding, pyramid))
+    }
+
+    fn terms(&self, pair: &AffinePair<'_>, model: &ScaledModel) -> AffineTerms {
+        let rounding = &model.rounding;
+        let residual = self.fit.residual_up(pair.squared_residual, rounding);
+        let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
+        let required = right_or!(model.required.along_unit(), AffineWithoutClearance, Default::default());
+        let per_norm =
+            right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0) + required.per_norm;
+        AffineTerms {
+            delta: pair.rest_distance,
+            at_rest: rounding.at_rest(axes) + required.at_rest,
+            slack: (residual + per_norm) * ROUND_UP,
+            rate_rounding: 8.0 * f64::EPSILON * self.fit.frobenius(),
+        }
+    }
+
+    /// Nine rows of the map: `G_cj` at `3 c + j`.
+    pub(super) fn gradient(&self) -> &[f64] {
+        self.fit.gradient()
     }
 
     /// The bound of two triangles by an affine map of their own six corners.

@@ -18,6 +18,9 @@ use super::strain::StrainGram;
 /// Cones of one triangle pair, at most (docs/notes/bounds.md#affine-bounds-and-directions).
 const MAX_CONES: usize = 48;
 
+/// How much wider than the directions their pyramid is on each side, at height 1: for its own rounding.
+pub(super) const PYRAMID_MARGIN: f64 = 1e-12;
+
 struct Cone {
     rate: f64,
     directions: [DVec3; 3],
@@ -25,8 +28,14 @@ struct Cone {
 
 /// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite where the directions do not fit into a narrow cone.
-pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row_len: usize, mut wanted: f64) -> f64 {
-    let Some(corners) = enclose_in_pyramid(d) else { return f64::INFINITY };
+pub(super) fn bound_rate_in_cone(
+    d: &[DVec3; 9],
+    gram: &StrainGram,
+    row_len: usize,
+    mut wanted: f64,
+    margin: f64,
+) -> f64 {
+    let Some(corners) = enclose_in_pyramid(d, margin) else { return f64::INFINITY };
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if !trace.is_finite() {
         return f64::INFINITY;
@@ -64,7 +73,7 @@ pub(super) fn bound_rate_in_cone(d: &[DVec3; 9], gram: &StrainGram, row_len: usi
 
 /// Four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
 /// their widest extent. None where they do not lie well within a half-space.
-fn enclose_in_pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
+pub(super) fn enclose_in_pyramid(d: &[DVec3; 9], margin: f64) -> Option<[DVec3; 4]> {
     let axis = d.iter().map(|d| d.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
     let mut flat = [DVec3::ZERO; 9];
     for (flat, d) in flat.iter_mut().zip(d) {
@@ -83,7 +92,7 @@ fn enclose_in_pyramid(d: &[DVec3; 9]) -> Option<[DVec3; 4]> {
         let (lower, upper) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(*v), u.max(*v)));
         // The frame is orthonormal, and the points lie in its plane, up to a few roundings (at most 20 long).
-        (lower - 1e-12, upper + 1e-12)
+        (lower - margin, upper + margin)
     };
     let ((s0, s1), (t0, t1)) = (range(along), range(across));
     let corner = |s: f64, t: f64| (axis + along * s + across * t).normalize();

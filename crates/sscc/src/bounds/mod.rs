@@ -2,7 +2,7 @@
 //! section 5).
 //!
 //! Files that bound: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
-//! `node_pair`, `configuration_line`, `upper_bound`. The other files are their parts.
+//! `node_pair`, `configuration_line`, `upper_bound`. `pair_witness` tells why the bound of a triangle pair holds. The other files are their parts.
 //!
 //! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
 //! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any
@@ -20,6 +20,7 @@ mod node_modes;
 mod node_pair;
 mod pair_corners;
 mod pair_refiner;
+mod pair_witness;
 mod separating_direction;
 mod strain;
 mod sub_triangle;
@@ -30,7 +31,9 @@ mod upper_bound;
 pub(crate) use affine_fit::AffineFit;
 pub(crate) use configuration_line::{ConfigurationLine, MovingAabb};
 pub(crate) use leaf_pair::LeafPair;
+pub(crate) use node_modes::NodeModes;
 pub(crate) use node_pair::{NodePairBounds, NodePairScratch};
 pub(crate) use pair_corners::PairCorners;
 pub(crate) use pair_refiner::{PairRefiner, RefinementTarget};
+pub(crate) use pair_witness::{PairWitness, WitnessList};
 pub(crate) use separating_direction::{CornerProjections, bound_along};

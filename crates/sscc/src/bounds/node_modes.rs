@@ -8,16 +8,16 @@ use crate::model::mode_rows::{add_scaled, dot};
 use crate::model::rounding::{ROUND_UP, norm_up};
 
 /// The AABB of a node at rest with centre c, and its modes `A_i = A_c + G (p_i - c) + E_i`. Rows are over the modes.
-pub(super) struct NodeModes {
-    pub(super) center: DVec3,
+pub(crate) struct NodeModes {
+    pub(crate) center: DVec3,
     /// Half extents of the AABB, rounded up.
     pub(super) half: DVec3,
     /// An upper bound of the residuals: `|E_i' dir| <= dir.abs().dot(residual)`.
     pub(super) residual: DVec3,
     /// Modes at the centre: three rows.
-    pub(super) modes: Vec<f64>,
+    pub(crate) modes: Vec<f64>,
     /// Three rows for each direction j: `(G e_j)_c` at `3 j + c`.
-    pub(super) gradient: Vec<f64>,
+    pub(crate) gradient: Vec<f64>,
 }
 
 impl NodeModes {

@@ -103,6 +103,23 @@ impl NodePairBounds {
         if gap == DVec3::ZERO { None } else { scale_direction(inverse * gap) }
     }
 
+    /// The modes of a node.
+    pub(crate) fn of_node(&self, n: u32) -> &NodeModes {
+        &self.nodes[n as usize]
+    }
+
+    /// A direction that proves two nodes apart below a radius, if one of those that are tried does.
+    pub(crate) fn witness(
+        &self,
+        model: &ScaledModel,
+        (n, m): NodePair,
+        radius: f64,
+        scratch: &mut NodePairScratch,
+    ) -> Option<DVec3> {
+        let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
+        scratch.instructions.run(NodeWitness { n, m, radius, model, scratch })
+    }
+
     /// A certified lower bound for two nodes. The search for a larger one ends at `sufficient`.
     pub(crate) fn bound(
         &self,
@@ -132,27 +149,53 @@ impl Kernel for NodeBound<'_> {
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) -> f64 {
         let Self { n, m, sufficient, model, scratch } = self;
-        let between = m.center - n.center;
-        let half = n.half + m.half;
-        let gap = n.gap(m);
-        if gap == DVec3::ZERO {
-            return 0.0;
-        }
-        let inverse = inverse_gram(n, m, scratch);
         let mut best = 0.0_f64;
-        for candidate in [inverse * between, inverse * gap, between, gap] {
-            let Some(dir) = scale_direction(candidate) else { continue };
-            // Half extents are larger than the boxes, so this gap is smaller than theirs.
-            if dir.dot(between) - dir.abs().dot(half) > 0.0 {
-                best = best.max(bound_corners_along(n, m, dir, model, scratch));
-                // The first direction is usually the best one: where it gives little, so do the others.
-                if best >= sufficient || best < LEAST_FIRST_SHARE * sufficient {
-                    break;
-                }
+        for dir in candidates(n, m, scratch) {
+            best = best.max(bound_corners_along(n, m, dir, model, scratch));
+            // The first direction is usually the best one: where it gives little, so do the others.
+            if best >= sufficient || best < LEAST_FIRST_SHARE * sufficient {
+                break;
             }
         }
         best
     }
+}
+
+/// A direction for which the bound of two nodes is at least a radius.
+struct NodeWitness<'n> {
+    n: &'n NodeModes,
+    m: &'n NodeModes,
+    radius: f64,
+    model: &'n ScaledModel,
+    scratch: &'n mut NodePairScratch,
+}
+
+impl Kernel for NodeWitness<'_> {
+    type Output = Option<DVec3>;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> Option<DVec3> {
+        let Self { n, m, radius, model, scratch } = self;
+        let mut directions = candidates(n, m, scratch);
+        directions.find(|dir| bound_corners_along(n, m, *dir, model, scratch) >= radius)
+    }
+}
+
+/// The directions that are tried, as far as they separate the AABBs; none where these touch.
+#[inline(always)]
+fn candidates(
+    n: &NodeModes,
+    m: &NodeModes,
+    scratch: &mut NodePairScratch,
+) -> impl Iterator<Item = DVec3> + use<> {
+    let between = m.center - n.center;
+    let half = n.half + m.half;
+    let gap = n.gap(m);
+    let inverse = if gap == DVec3::ZERO { DMat3::ZERO } else { inverse_gram(n, m, scratch) };
+    // Half extents are larger than the boxes, so this gap is smaller than theirs.
+    let is_separating = move |dir: &DVec3| dir.dot(between) - dir.abs().dot(half) > 0.0;
+    let tried = [inverse * between, inverse * gap, between, gap].into_iter();
+    tried.filter(move |_| gap != DVec3::ZERO).filter_map(scale_direction).filter(is_separating)
 }
 
 /// The inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for

@@ -14,7 +14,6 @@ use super::sub_triangle::{MAX_DEPTH, SubPair};
 use super::upper_bound::{Ray, RelativeModes};
 use crate::geometry::nearest_to_origin;
 use crate::min_heap::MinHeapEntry;
-use crate::model::mode_rows::squared_distance;
 use crate::model::{ScaledModel, scale_direction};
 
 /// How far the bound of a triangle pair is refined.
@@ -46,12 +45,12 @@ impl RefinementTarget {
 
 /// Bounds triangle pairs. Owns the scratch memory for it.
 pub(crate) struct PairRefiner<'m> {
-    model: &'m ScaledModel,
+    pub(super) model: &'m ScaledModel,
     /// The modes of the corners of sub-triangles: 18 rows.
-    corner_modes: Vec<f64>,
-    projections: CornerProjections,
+    pub(super) corner_modes: Vec<f64>,
+    pub(super) projections: CornerProjections,
     relative: RelativeModes,
-    affine: AffineBound,
+    pub(super) affine: AffineBound,
     /// Sub-triangles by their lower bound and, to break ties, a serial number.
     open: BinaryHeap<MinHeapEntry<u32, SubPair>>,
     /// The direction that gave the largest bound of the last pair.
@@ -121,13 +120,7 @@ impl<'m> PairRefiner<'m> {
                     target.lower_upper_bound(upper);
                 }
             }
-            // Divide the sub-triangle whose modes vary more, so that both shrink alike.
-            let variation = |corners: &[&[f64]; 3], depth: u8| {
-                let d = |i: usize, j: usize| squared_distance(corners[i], corners[j]);
-                d(0, 1).max(d(1, 2)).max(d(0, 2)) * 0.25_f64.powi(i32::from(depth))
-            };
-            let is_a_divided =
-                variation(&pair.modes_a, part.depth_a) >= variation(&pair.modes_b, part.depth_b);
+            let is_a_divided = part.is_first_divided(pair);
             let depth = if is_a_divided { part.depth_a } else { part.depth_b };
             if depth >= MAX_DEPTH {
                 settled = settled.min(lower);
@@ -146,7 +139,7 @@ impl<'m> PairRefiner<'m> {
     }
 
     /// The largest of the cheap bounds of two (sub-)triangles.
-    fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
+    pub(super) fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
         self.best_direction = None;
         let model = self.model;
         let differences = pair.differences();

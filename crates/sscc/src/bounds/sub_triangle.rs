@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::pair_corners::PairCorners;
 use crate::geometry::TwoTriangles;
+use crate::model::mode_rows::squared_distance;
 
 /// Triangles are halved at most this often in each direction, so that corner weights are exact.
 pub(super) const MAX_DEPTH: u8 = 20;
@@ -37,6 +38,15 @@ impl SubPair {
             modes_a: combine_modes(&pair.modes_a, &self.a, modes_a),
             modes_b: combine_modes(&pair.modes_b, &self.b, modes_b),
         }
+    }
+
+    /// Which of the two to divide: that whose modes vary more, so that both shrink alike.
+    pub(super) fn is_first_divided(&self, pair: &PairCorners<'_>) -> bool {
+        let variation = |corners: &[&[f64]; 3], depth: u8| {
+            let d = |i: usize, j: usize| squared_distance(corners[i], corners[j]);
+            d(0, 1).max(d(1, 2)).max(d(0, 2)) * 0.25_f64.powi(i32::from(depth))
+        };
+        variation(&pair.modes_a, self.depth_a) >= variation(&pair.modes_b, self.depth_b)
     }
 
     /// The four pairs with the quarters of the sub-triangle of a, or of b.

@@ -12,6 +12,7 @@ mod local;
 mod options;
 mod pair_tree;
 mod pair_tree_validation;
+mod proof;
 mod remote;
 mod scope;
 #[cfg(test)]
@@ -35,5 +36,6 @@ pub use options::{
 };
 pub use pair_tree::PairTree;
 pub(crate) use pair_tree::{StoredPair, sibling_pairs};
+pub use proof::Prover;
 pub use remote::{BUILD, RunJobs, ShardWorker, compute_in_shards};
 pub use scope::Scope;

@@ -24,7 +24,7 @@ fn rates_that_cancel_are_not_too_small() {
             .collect();
         let gram: StrainGram =
             std::array::from_fn(|i| std::array::from_fn(|j| strains.iter().map(|s| s[i] * s[j]).sum()));
-        let rate = bound_rate_in_cone(&[u; 9], &gram, rank.next_multiple_of(4), f64::INFINITY);
+        let rate = bound_rate_in_cone(&[u; 9], &gram, rank.next_multiple_of(4), f64::INFINITY, 1e-12);
         let here = strains.iter().map(|s| form(s) * form(s)).sum::<f64>().sqrt();
         // The strains are rounded, too.
         assert!(here <= rate * (1.0 + 1e-6), "case {case}: {here:e} above {rate:e}");

@@ -128,7 +128,7 @@ fn cone_rate_is_never_too_small() {
             forms.map(|f| f * f).sum::<f64>().sqrt()
         };
         for wanted in [0.0, 0.1, f64::INFINITY] {
-            let rate = bound_rate_in_cone(&d, &gram, rank.next_multiple_of(4), wanted);
+            let rate = bound_rate_in_cone(&d, &gram, rank.next_multiple_of(4), wanted, 1e-12);
             for sample in 0..60 {
                 let u: DVec3 = if sample < 9 {
                     d[sample]

@@ -1,0 +1,146 @@
+//! Affine witnesses of two triangles that are near and move almost as one.
+//!
+//! With any affine map G of the modes, `A_j - A_i = G d_ij + E_ij` at the corners, and so for all points of the two triangles
+//! with convex combinations of E. Let d be the difference of two points at the centre and `u = d / |d|`. Their difference at z
+//! has along u at least
+//!
+//! ```text
+//! |d| - (g |d| + e) |z|,    g >= |u'G(.)u| for all u in the cone of the d,   e >= |E_ij|
+//! ```
+//!
+//! and `|d|` is at least the smallest gap of the corners along a direction n over `|n|`. So the two are apart where
+//! `delta - e0 - (g delta + e + e1) |z|` is positive, with the rounding e0 and e1 of computed positions along u.
+//!
+//! The cone: four directions, a pyramid that contains all differences of corners, and so of points. On the cone of three
+//! directions `|u'G u| |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric part of `u_i'G u_j`.
+//! Where that is more than g, the cone is halved.
+
+use crate::corners::{Triangle, differences};
+use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
+use crate::inequality::stays_open;
+use crate::scaled::{Radius, ScaledModel};
+
+/// Cones of a witness, at most, and cones within cones, each of which makes numbers longer.
+const MAX_CONES: usize = 1024;
+const MAX_DEPTH: usize = 64;
+
+/// An affine map: nine rows, `G_cj` at `3 c + j`; and the products of its six symmetric parts.
+pub(crate) struct AffineMap {
+    gradient: Vec<Dyadic>,
+    products: [[Dyadic; 6]; 6],
+}
+
+/// What a proof gives beside the map.
+pub(crate) struct AffineWitness {
+    pub(crate) dir: Vector,
+    pub(crate) rate: f64,
+    pub(crate) pyramid: [Vector; 4],
+}
+
+impl AffineMap {
+    pub(crate) fn new(gradient: Vec<Dyadic>) -> Self {
+        let rank = gradient.len() / 9;
+        let row = |c: usize, j: usize| &gradient[(3 * c + j) * rank..][..rank];
+        let parts: [Vec<Dyadic>; 6] = std::array::from_fn(|part| match part {
+            0..3 => row(part, part).to_vec(),
+            _ => {
+                let (c, j) = ((part + 1) % 3, (part + 2) % 3);
+                row(c, j).iter().zip(row(j, c)).map(|(a, b)| a + b).collect()
+            }
+        });
+        let products = std::array::from_fn(|i| std::array::from_fn(|j| dot(&parts[i], &parts[j])));
+        Self { gradient, products }
+    }
+
+    /// Whether the witness proves two triangles apart below a radius.
+    pub(crate) fn separates(
+        &self,
+        model: &ScaledModel,
+        [x, y]: [&Triangle; 2],
+        AffineWitness { dir, rate, pyramid }: &AffineWitness,
+        radius: &Radius,
+    ) -> bool {
+        let differences = differences(x, y);
+        if *rate < 0.0 || !is_inside(pyramid, &differences) {
+            return false;
+        }
+        let rate = Dyadic::of(*rate);
+        let [u0, u1, u2, u3] = pyramid;
+        let mut cones = 0;
+        let squared_rate = rate.square();
+        let mut holds = |cone| self.holds(cone, &squared_rate, &mut cones, 0);
+        if !holds([u0, u1, u2]) || !holds([u0, u2, u3]) {
+            return false;
+        }
+        let Some(gap) = differences.iter().map(|d| dot(dir, d)).min() else { return false };
+        let residual = self.largest_residual(x, y, &differences).root_up();
+        // All but the gap is for a unit direction, whose components are at most 1.
+        let length = squared_norm(dir).root_up();
+        let [rest_error, rate_error] = model.errors(&std::array::from_fn(|_| Dyadic::new(1, 0)));
+        let closing = &(&gap * &rate) + &(&length * &(&residual + &rate_error));
+        stays_open(&(&gap - &(&length * &rest_error)), &closing, &Dyadic::default(), radius)
+    }
+
+    /// The largest squared residual of the nine pairs of corners.
+    fn largest_residual(&self, x: &Triangle, y: &Triangle, differences: &[Vector]) -> Dyadic {
+        let rank = self.gradient.len() / 9;
+        let mut largest = Dyadic::default();
+        for (ij, d) in differences.iter().enumerate() {
+            let (i, j) = (&x[ij / 3], &y[ij % 3]);
+            let residual = (0..3 * rank).map(|ck| {
+                let (c, k) = (ck / rank, ck % rank);
+                let map = (0..3).map(|l| &self.gradient[(3 * c + l) * rank + k] * &d[l]).sum();
+                &(&j.modes[ck] - &i.modes[ck]) - &map
+            });
+            largest.raise(residual.map(|e| e.square()).sum());
+        }
+        largest
+    }
+
+    /// Whether the rate holds on the cone of three directions, which is halved as often as necessary.
+    fn holds(&self, cone: [&Vector; 3], squared_rate: &Dyadic, cones: &mut usize, depth: usize) -> bool {
+        *cones += 1;
+        let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+        let is_slow = |&(i, j): &(usize, usize)| {
+            let cosine = dot(cone[i], cone[j]);
+            cosine.is_positive() && squared_rate * &cosine.square() >= self.squared_form(cone[i], cone[j])
+        };
+        // A direction of the cone that is itself too fast stays in one of the halves.
+        if !pairs[..3].iter().all(is_slow) {
+            return false;
+        }
+        let are_slow = pairs[3..].iter().all(is_slow);
+        if are_slow || *cones >= MAX_CONES || depth >= MAX_DEPTH {
+            return are_slow;
+        }
+        let length = |(i, j): (usize, usize)| squared_norm(&minus(cone[i], cone[j]));
+        let edges = [(0, 1), (1, 2), (2, 0)];
+        let longest = edges.into_iter().fold(edges[0], |l, e| if length(e) > length(l) { e } else { l });
+        let [u, v, w] = [longest.0, longest.1, 3 - longest.0 - longest.1].map(|i| cone[i]);
+        let middle: Vector = std::array::from_fn(|c| (&u[c] + &v[c]).times_power(-1));
+        let halves = [[u, &middle, w], [&middle, v, w]];
+        halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))
+    }
+
+    /// `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
+    fn squared_form(&self, u: &Vector, v: &Vector) -> Dyadic {
+        let parts: [Dyadic; 6] = std::array::from_fn(|part| match part {
+            0..3 => &u[part] * &v[part],
+            _ => {
+                let (c, j) = ((part + 1) % 3, (part + 2) % 3);
+                (&(&u[c] * &v[j]) + &(&u[j] * &v[c])).times_power(-1)
+            }
+        });
+        self.products.iter().zip(&parts).map(|(row, part)| part * &dot(row, &parts)).sum()
+    }
+}
+
+/// Whether the cones of the directions 0, 1, 2 and 0, 2, 3 of a pyramid contain all these vectors: both turn the same way, and
+/// each vector is on the inner side of the four planes. The plane through 0 and 2 then tells in which of the two it is.
+fn is_inside(pyramid: &[Vector; 4], vectors: &[Vector]) -> bool {
+    let [u0, u1, u2, u3] = pyramid;
+    let turns = |u: &Vector, v: &Vector, w: &Vector| dot(&cross(u, v), w).is_positive();
+    let planes = [cross(u0, u1), cross(u1, u2), cross(u2, u3), cross(u3, u0)];
+    let is_inner = |v: &Vector| planes.iter().all(|plane| dot(plane, v) >= Dyadic::default());
+    turns(u0, u1, u2) && turns(u0, u2, u3) && vectors.iter().all(is_inner)
+}

@@ -1,0 +1,215 @@
+//! Numbers `m 2^e` with an integer m of any length: sums and products are exact, and every f64 is one.
+
+use std::cmp::Ordering;
+use std::iter::Sum;
+use std::ops::{Add, Mul, Sub};
+
+use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
+use dashu_int::{IBig, UBig};
+
+/// A number `m 2^e`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Dyadic {
+    mantissa: IBig,
+    exponent: i64,
+}
+
+/// Roots and quotients have at least this many binary digits.
+const ROOT_BITS: usize = 64;
+
+impl Dyadic {
+    pub(crate) fn new(mantissa: i64, exponent: i64) -> Self {
+        Self { mantissa: mantissa.into(), exponent }
+    }
+
+    /// The exact value of a finite number; 0 for others, which readers refuse.
+    pub(crate) fn of(x: f64) -> Self {
+        let bits = x.to_bits();
+        let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
+        let (mantissa, exponent) =
+            if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+        if mantissa == 0 || biased == 0x7ff {
+            return Self::default();
+        }
+        // Short mantissas make short products.
+        let zeros = mantissa.trailing_zeros();
+        let mantissa = mantissa >> zeros;
+        Self::new(if x < 0.0 { -mantissa } else { mantissa }, exponent + i64::from(zeros))
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.mantissa.is_zero()
+    }
+
+    pub(crate) fn is_positive(&self) -> bool {
+        self.mantissa > IBig::ZERO
+    }
+
+    pub(crate) fn abs(&self) -> Self {
+        Self { mantissa: self.mantissa.clone().unsigned_abs().into(), exponent: self.exponent }
+    }
+
+    /// The number times a power of two.
+    pub(crate) fn times_power(&self, power: i64) -> Self {
+        Self { mantissa: self.mantissa.clone(), exponent: self.exponent + power }
+    }
+
+    /// Takes the larger one of this number and another.
+    pub(crate) fn raise(&mut self, other: Self) {
+        if other > *self {
+            *self = other;
+        }
+    }
+
+    pub(crate) fn square(&self) -> Self {
+        self * self
+    }
+
+    /// A number with at most `bits` digits that is at least this one, which is not negative.
+    pub(crate) fn round_up(&self, bits: usize) -> Self {
+        let cut = self.mantissa.bit_len().saturating_sub(bits);
+        if cut == 0 {
+            return self.clone();
+        }
+        Self { mantissa: (&self.mantissa >> cut) + IBig::ONE, exponent: self.exponent + cut as i64 }
+    }
+
+    /// An upper bound of the root of a number that is not negative: too large by less than a part of 2^-60.
+    pub(crate) fn root_up(&self) -> Self {
+        if !self.is_positive() {
+            return Self::default();
+        }
+        let Self { mantissa, exponent } = self.round_up(2 * ROOT_BITS);
+        let mut shift = (2 * ROOT_BITS).saturating_sub(mantissa.bit_len());
+        shift += (exponent - shift as i64).rem_euclid(2) as usize;
+        let shifted: UBig = (mantissa << shift).unsigned_abs();
+        Self { mantissa: IBig::from(shifted.sqrt()) + IBig::ONE, exponent: (exponent - shift as i64) / 2 }
+    }
+
+    /// The quotient by a positive number to about so many digits.
+    pub(crate) fn divided_by(&self, divisor: &Self, bits: usize) -> Self {
+        let shift = (bits + divisor.mantissa.bit_len()).saturating_sub(self.mantissa.bit_len());
+        let exponent = self.exponent - divisor.exponent - shift as i64;
+        Self { mantissa: (&self.mantissa << shift) / &divisor.mantissa, exponent }
+    }
+}
+
+impl Add for &Dyadic {
+    type Output = Dyadic;
+    fn add(self, other: Self) -> Dyadic {
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other } else { self }.clone();
+        }
+        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
+        let shift = (high.exponent - low.exponent) as usize;
+        Dyadic { mantissa: (&high.mantissa << shift) + &low.mantissa, exponent: low.exponent }
+    }
+}
+
+impl Sub for &Dyadic {
+    type Output = Dyadic;
+    fn sub(self, other: Self) -> Dyadic {
+        self + &Dyadic { mantissa: -&other.mantissa, exponent: other.exponent }
+    }
+}
+
+impl Mul for &Dyadic {
+    type Output = Dyadic;
+    fn mul(self, other: Self) -> Dyadic {
+        Dyadic { mantissa: &self.mantissa * &other.mantissa, exponent: self.exponent + other.exponent }
+    }
+}
+
+impl Sum for Dyadic {
+    fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
+        numbers.fold(Self::default(), |sum, x| &sum + &x)
+    }
+}
+
+impl PartialEq for Dyadic {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Dyadic {}
+
+impl PartialOrd for Dyadic {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Dyadic {
+    fn cmp(&self, other: &Self) -> Ordering {
+        if self.is_zero() || other.is_zero() || self.is_positive() != other.is_positive() {
+            return self.mantissa.cmp(&other.mantissa);
+        }
+        (self - other).mantissa.cmp(&IBig::ZERO)
+    }
+}
+
+/// `a . b` of two rows.
+pub(crate) fn dot(a: &[Dyadic], b: &[Dyadic]) -> Dyadic {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The sum of the squares of a row.
+pub(crate) fn squared_norm(row: &[Dyadic]) -> Dyadic {
+    row.iter().map(Dyadic::square).sum()
+}
+
+/// Three numbers.
+pub(crate) type Vector = [Dyadic; 3];
+
+pub(crate) fn vector(x: [f64; 3]) -> Vector {
+    x.map(Dyadic::of)
+}
+
+pub(crate) fn minus(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|c| &a[c] - &b[c])
+}
+
+pub(crate) fn cross(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|c| {
+        let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+        &(&a[d] * &b[e]) - &(&a[e] * &b[d])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_and_products_are_exact() {
+        let numbers = [0.0, 1.0, -0.1, 1e300, -3e-310, f64::MIN_POSITIVE, 5e-324, 0.75];
+        for x in numbers {
+            for y in numbers {
+                let (a, b) = (Dyadic::of(x), Dyadic::of(y));
+                assert_eq!(a.partial_cmp(&b), x.partial_cmp(&y), "{x} {y}");
+                assert_eq!(&(&a + &b) - &b, a);
+                assert_eq!(&(&a + &b).square() - &(&a - &b).square(), (&a * &b).times_power(2));
+            }
+        }
+        // 0.1 + 0.2 is not 0.3 in f64, and none of them is a tenth of an integer.
+        assert_ne!(&Dyadic::of(0.1) + &Dyadic::of(0.2), Dyadic::of(0.1 + 0.2));
+    }
+
+    #[test]
+    fn roots_and_rounding_go_up_and_not_far() {
+        for x in [2.0, 4.0, 1e-320, 3e300, 0.1, 1.0 + f64::EPSILON] {
+            for exact in [Dyadic::of(x), Dyadic::of(x).square(), &Dyadic::of(x).square() + &Dyadic::of(x)] {
+                let root = exact.root_up();
+                let larger = &root * &Dyadic::new((1 << 58) - 1, -58);
+                assert!(root.square() > exact && larger.square() < exact, "{x}");
+                let rounded = exact.round_up(20);
+                assert!(rounded >= exact && rounded <= &exact * &Dyadic::of(1.0 + 1e-5));
+            }
+        }
+        assert!(Dyadic::default().root_up().is_zero());
+        let third = Dyadic::of(1.0).divided_by(&Dyadic::of(3.0), 64);
+        let missing = &Dyadic::of(1.0) - &(&third * &Dyadic::of(3.0));
+        assert!(missing.is_positive() && missing < Dyadic::new(1, -60));
+    }
+}

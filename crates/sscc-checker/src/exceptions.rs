@@ -1,0 +1,87 @@
+//! Exceptions: pairs that count and collide at the centre. Queries test them always, so a pair too many costs time alone.
+
+use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
+use crate::model::Model;
+use crate::refusal::{Refusal, proof};
+use crate::scope::{CountedPairs, Scope};
+
+/// Checks that exceptions are what the rule says.
+pub(crate) fn check(model: &Model, scope: &Scope, counted: &CountedPairs<'_>) -> Result<(), Refusal> {
+    for &[a, b] in &scope.exceptions {
+        let simplices = counted.with_exceptions(a, b);
+        if simplices.is_empty() {
+            return proof(format!("exception: triangles {a} and {b} do not count"));
+        }
+        let corners =
+            |simplex: [u32; 3]| simplex.map(|i| vector(model.computed_position(i as usize, &scope.center)));
+        if simplices.iter().all(|[x, y]| are_disjoint(&corners(*x), &corners(*y))) {
+            return proof(format!("exception: triangles {a} and {b} do not collide at the centre"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two closed triangles (segments, points) have no common point, exactly. Two disjoint polytopes have a separating
+/// plane that is parallel to a face of one, or to an edge of each; directions within planes and along lines are for those that
+/// have no volume.
+fn are_disjoint(x: &[Vector; 3], y: &[Vector; 3]) -> bool {
+    let edges = |t: &[Vector; 3]| [minus(&t[1], &t[0]), minus(&t[2], &t[1]), minus(&t[0], &t[2])];
+    let (of_x, of_y) = (edges(x), edges(y));
+    let between: Vec<Vector> = x.iter().flat_map(|p| y.iter().map(move |q| minus(q, p))).collect();
+    let all: Vec<&Vector> = of_x.iter().chain(&of_y).chain(&between).collect();
+    let normals = [cross(&of_x[0], &of_x[1]), cross(&of_y[0], &of_y[1])];
+    let of_edges = of_x.iter().flat_map(|e| of_y.iter().map(move |f| cross(e, f)));
+    let in_planes = normals.iter().flat_map(|n| all.iter().map(move |e| cross(n, e)));
+    // In the plane of an edge and a point, across the edge: of parallel edges and of segments.
+    let across = of_x.iter().chain(&of_y).flat_map(|e| between.iter().map(move |d| cross(&cross(e, d), e)));
+    let mut directions = normals.iter().cloned().chain(of_edges).chain(in_planes).chain(across);
+    let is_separating = |dir: &Vector| {
+        let range = |t: &[Vector; 3]| {
+            let along: [Dyadic; 3] = t.each_ref().map(|p| dot(dir, p));
+            (along.iter().min().cloned(), along.iter().max().cloned())
+        };
+        let ((x0, x1), (y0, y1)) = (range(x), range(y));
+        x1 < y0 || y1 < x0
+    };
+    directions.any(|dir| is_separating(&dir)) || all.into_iter().any(is_separating)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_that_touch_are_not_disjoint() {
+        let of = |corners: [[f64; 3]; 3]| corners.map(vector);
+        let flat = of([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
+        let shifted = |dx: f64, dy: f64, dz: f64| of([[dx, dy, dz], [dx + 4.0, dy, dz], [dx, dy + 4.0, dz]]);
+        let tiny = 1e-300;
+        for (other, is_disjoint) in [
+            (shifted(0.0, 0.0, tiny), true),
+            (shifted(1.0, 1.0, 0.0), false),
+            (shifted(4.0, 0.0, 0.0), false),
+            (shifted(4.0_f64.next_up(), 0.0, 0.0), true),
+            (shifted(2.0, 2.0, 0.0), false),
+            (shifted(2.0, 2.0_f64.next_up(), 0.0), true),
+            // An edge that pierces, touches, and misses.
+            (of([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), false),
+            (of([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), false),
+            (of([[1.0, 1.0, tiny], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), true),
+            // Segments and points.
+            (of([[1.0, 1.0, 0.0], [9.0, 9.0, 0.0], [9.0, 9.0, 0.0]]), false),
+            (of([[5.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 0.0, 0.0]]), true),
+            (of([[1.0, 1.0, 0.0]; 3]), false),
+            (of([[3.0, 3.0, 0.0]; 3]), true),
+        ] {
+            assert_eq!(are_disjoint(&flat, &other), is_disjoint, "{other:?}");
+            assert_eq!(are_disjoint(&other, &flat), is_disjoint, "{other:?}");
+        }
+        // Two parallel segments, two on one line, two points.
+        let segment = |a: [f64; 3], b: [f64; 3]| of([a, b, b]);
+        let first = segment([0.0; 3], [1.0, 1.0, 1.0]);
+        assert!(are_disjoint(&first, &segment([0.0, 0.0, tiny], [1.0, 1.0, 1.0 + f64::EPSILON])));
+        assert!(are_disjoint(&first, &segment([2.0; 3], [3.0; 3])));
+        assert!(!are_disjoint(&first, &segment([0.5; 3], [3.0; 3])));
+        assert!(are_disjoint(&of([[0.0; 3]; 3]), &of([[tiny, 0.0, 0.0]; 3])));
+    }
+}

@@ -1,0 +1,122 @@
+//! Models as files give them: a mesh of triangles (.obj) with a matrix of modes (.npy), or one `*.model.safetensors`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::container::Number;
+use crate::model::Model;
+use crate::refusal::{Refusal, input};
+
+/// Reads a file whole.
+///
+/// # Errors
+/// When the system reports an error.
+pub fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
+    fs::read(path).or_else(|cause| input(format!("{}: {cause}", path.display())))
+}
+
+impl Model {
+    /// Reads a model: a mesh and its modes, or without modes a file that has both.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or is not what it should be.
+    pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self, Refusal> {
+        let bytes = read(mesh)?;
+        let named = |path: &Path| {
+            let name = path.display().to_string();
+            move |refusal: Refusal| refusal.of(&name)
+        };
+        let Some(path) = modes else { return Self::from_container(&bytes).map_err(named(mesh)) };
+        let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(named(mesh))?;
+        let (modes, rank) = parse_npy(&read(path)?, positions.len()).map_err(named(path))?;
+        Self::new(positions, faces, modes, rank).map_err(named(path))
+    }
+}
+
+/// Positions and faces of a mesh of triangles.
+type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+fn parse_obj(text: &str) -> Result<Mesh, Refusal> {
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for (number, line) in text.lines().enumerate() {
+        let wrong = || Refusal::Input(format!("line {}: only vertices and triangles are read", number + 1));
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let numbers: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
+                positions.push(*numbers.first_chunk().ok_or_else(wrong)?);
+            }
+            Some("f") => {
+                let count = positions.len() as i64;
+                let vertex = |word: &str| {
+                    let number: i64 = word.split('/').next()?.parse().ok()?;
+                    u32::try_from(if number < 0 { count + number } else { number - 1 }).ok()
+                };
+                let corners: Option<Vec<u32>> = words.map(vertex).collect();
+                faces.push(corners.and_then(|c| c.try_into().ok()).ok_or_else(wrong)?);
+            }
+            _ => {}
+        }
+    }
+    Ok((positions, faces))
+}
+
+/// The modes (3V x r by rows) of an array of f64 of the shape (3V, r) or (V, 3, r), and r.
+fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal> {
+    let parsed = || {
+        let length = match (bytes.strip_prefix(b"\x93NUMPY")?, bytes.get(6)?) {
+            (_, 1) => 10 + usize::from(u16::from_le_bytes(*bytes.get(8..10)?.first_chunk()?)),
+            _ => 12 + u32::from_le_bytes(*bytes.get(8..12)?.first_chunk()?) as usize,
+        };
+        let header = String::from_utf8_lossy(bytes.get(10..length)?);
+        let is_known = header.contains("'<f8'") && header.contains("'fortran_order': False");
+        let shape = header.split_once('(')?.1.split_once(')')?.0;
+        let axes = shape.split(',').map(|axis| axis.trim().parse::<usize>().ok());
+        let rank = match *axes.collect::<Option<Vec<_>>>()?.as_slice() {
+            [rows, rank] if rows == 3 * vertices => rank,
+            [first, 3, rank] if first == vertices => rank,
+            _ => return None,
+        };
+        let numbers = f64::list(&bytes[length..]);
+        let size = (3 * vertices).checked_mul(rank)?;
+        (is_known && numbers.len() == size && bytes.len() - length == 8 * size).then_some((numbers, rank))
+    };
+    parsed().ok_or_else(|| {
+        let rows = 3 * vertices;
+        Refusal::Input(format!("not an .npy file of float64 in C order, ({rows}, r) or ({vertices}, 3, r)"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_and_modes_are_read_and_others_refused() {
+        let mesh =
+            parse_obj("# two\nv 0 0 0\nv 1 0 0 # x\nv 0 1e0 0\nvn 0 0 1\nf 1/2/3 2 3\nf -3 -2 -1\n").unwrap();
+        assert_eq!(mesh, (vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]; 2]));
+        for wrong in ["v 1 2", "v 0 0 0\nf 1 1 1 1", "f 0 1 2", "f 1 2 x"] {
+            assert!(parse_obj(wrong).unwrap_err().to_string().contains("line"), "{wrong}");
+        }
+        let npy = |header: &str, count: usize| {
+            let mut bytes = b"\x93NUMPY\x01\0".to_vec();
+            bytes.extend((header.len() as u16).to_le_bytes());
+            bytes.extend(header.as_bytes());
+            bytes.extend((0..count).flat_map(|i| (i as f64).to_le_bytes()));
+            bytes
+        };
+        let header =
+            |shape: &str| format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}");
+        for shape in ["6, 3", "2, 3, 3"] {
+            let (modes, rank) = parse_npy(&npy(&header(shape), 18), 2).unwrap();
+            assert_eq!((modes[17], rank), (17.0, 3));
+            assert!(parse_npy(&npy(&header(shape), 17), 2).is_err());
+        }
+        for wrong in ["5, 3", "18", "3, 2, 3", "x, 3"] {
+            assert!(parse_npy(&npy(&header(wrong), 18), 2).is_err(), "{wrong}");
+        }
+        let fortran = header("6, 3").replace("False", "True");
+        assert!(parse_npy(&npy(&fortran, 18), 2).is_err() && parse_npy(b"\x93NUMPY", 2).is_err());
+    }
+}

@@ -1,0 +1,68 @@
+//! The model: faces, positions at rest, modes.
+
+use crate::container::Container;
+use crate::refusal::{Refusal, input, require};
+
+/// Coordinates are at most 2^200.
+const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
+
+/// A mesh and its modes, as a file gives them.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) faces: Vec<[u32; 3]>,
+    pub(crate) rank: usize,
+    /// `modes[(3 vertex + component) rank + k]`
+    pub(crate) modes: Vec<f64>,
+}
+
+impl Model {
+    /// A model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
+    ///
+    /// # Errors
+    /// When sizes do not fit each other, a face names no vertex, or a number is not finite or beyond 2^200.
+    pub fn new(
+        positions: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        modes: Vec<f64>,
+        rank: usize,
+    ) -> Result<Self, Refusal> {
+        let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
+        let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
+        require(fits, "model: the modes are not a matrix of three rows for each vertex")?;
+        let has_vertices = faces.as_flattened().iter().all(|i| (*i as usize) < positions.len());
+        require(has_vertices, "model: a face names a vertex that does not exist")?;
+        let is_in_range = positions.as_flattened().iter().chain(&modes).all(|x| x.abs() <= LARGEST);
+        require(is_in_range, "model: a number is not finite, or beyond 2^200")?;
+        Ok(Self { positions, faces, rank, modes })
+    }
+
+    /// Parses a `*.model.safetensors` file.
+    ///
+    /// # Errors
+    /// When it is damaged, of another kind or version, or no model.
+    pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
+        let file = Container::parse(bytes, "sscc.model", 3)?;
+        let positions = file.shaped::<f64>("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let faces = file.shaped::<u32>("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let (modes, shape) = file.tensor::<f64>("modes")?;
+        match *shape {
+            [vertices, 3, rank] if vertices == positions.len() => Self::new(positions, faces, modes, rank),
+            _ => input("tensor 'modes' has another shape"),
+        }
+    }
+
+    /// The three rows of a vertex.
+    pub(crate) fn modes_of(&self, vertex: usize) -> &[f64] {
+        &self.modes[vertex * 3 * self.rank..][..3 * self.rank]
+    }
+
+    /// The position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
+    pub(crate) fn computed_position(&self, vertex: usize, q: &[f64]) -> [f64; 3] {
+        let modes = self.modes_of(vertex);
+        std::array::from_fn(|c| {
+            let row = modes[c * self.rank..][..self.rank].iter();
+            row.zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
+        })
+    }
+}

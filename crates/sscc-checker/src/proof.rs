@@ -1,0 +1,253 @@
+//! The file of a proof, and the check of its entries. `docs/formats.md` has the format.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use crate::affine::{AffineMap, AffineWitness};
+use crate::certificates::Certificates;
+use crate::corners::{Corner, Direction, Triangle, quarters};
+use crate::dyadic::{Dyadic, Vector, vector};
+use crate::entries::Entry;
+use crate::model::Model;
+use crate::node_maps::{NodeMaps, numbers_of_map};
+use crate::refusal::{Refusal, proof, require};
+use crate::scaled::{Radius, ScaledModel};
+use crate::scope::{CountedPairs, Simplices};
+
+const MAGIC: &[u8; 8] = b"SSCCPRF1";
+/// Quarters within quarters, at most.
+const MAX_DEPTH: usize = 64;
+
+/// Witnesses of node pairs.
+const DIRECTION: u8 = b'd';
+const NOTHING_COUNTS: u8 = b'n';
+const SPLIT_FIRST: u8 = b'1';
+const SPLIT_SECOND: u8 = b'2';
+const TRIANGLES: u8 = b't';
+/// Witnesses of triangle pairs; smaller numbers are those of a direction that came before.
+const NEW_DIRECTION: u8 = 255;
+const NEW_MAP: u8 = 254;
+const LAST_MAP: u8 = 253;
+const QUARTER_FIRST: u8 = 252;
+const QUARTER_SECOND: u8 = 251;
+
+/// The parts of a proof.
+pub(crate) struct Proof<'a> {
+    pub(crate) digest: &'a [u8],
+    /// How many entries there are, proven or not.
+    pub(crate) entries: u64,
+    rank: u32,
+    nodes: u32,
+    maps: &'a [u8],
+    /// The number of each proven entry, ascending, and its witnesses.
+    pub(crate) proven: Vec<(usize, &'a [u8])>,
+}
+
+/// Bytes that are read from the front.
+struct Bytes<'a>(&'a [u8]);
+
+impl<'a> Bytes<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
+        let Some((front, rest)) = self.0.split_at_checked(count) else { return proof("it ends too early") };
+        self.0 = rest;
+        Ok(front)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
+        Ok(self.take(N)?.try_into().unwrap_or([0; N]))
+    }
+
+    fn real(&mut self) -> Result<f64, Refusal> {
+        match f64::from_le_bytes(self.array()?) {
+            x if x.is_finite() => Ok(x),
+            _ => proof("a number is not finite"),
+        }
+    }
+
+    fn vector(&mut self) -> Result<Vector, Refusal> {
+        Ok(vector([self.real()?, self.real()?, self.real()?]))
+    }
+}
+
+impl<'a> Proof<'a> {
+    pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+        let mut bytes = Bytes(bytes);
+        require(bytes.take(MAGIC.len()).ok() == Some(MAGIC), "not a proof of certificates")?;
+        let digest = bytes.take(32)?;
+        let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
+        let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
+        let numbers = numbers_of_map(rank as usize).checked_mul(nodes as usize);
+        let maps = bytes.take(numbers.and_then(|count| count.checked_mul(8)).unwrap_or(usize::MAX))?;
+        let mut proven: Vec<(usize, &[u8])> = Vec::new();
+        for _ in 0..count {
+            let index = u64::from_le_bytes(bytes.array()?);
+            let length = u32::from_le_bytes(bytes.array()?);
+            let is_next = proven.last().is_none_or(|(last, _)| (*last as u64) < index);
+            if !is_next || index >= entries {
+                return proof(format!("entry {index} is out of order, or does not exist"));
+            }
+            proven.push((index as usize, bytes.take(length as usize)?));
+        }
+        if !bytes.0.is_empty() {
+            return proof("there are bytes after its end");
+        }
+        Ok(Self { digest, entries, rank, nodes, maps, proven })
+    }
+}
+
+/// What the checks of all entries share.
+pub(crate) struct Check<'a> {
+    pub(crate) certificates: &'a Certificates,
+    pub(crate) counted: &'a CountedPairs<'a>,
+    pub(crate) scaled: &'a ScaledModel,
+    pub(crate) model: &'a Model,
+}
+
+impl Check<'_> {
+    /// Checks all entries that are proven, on several threads.
+    pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
+        let nodes = self.certificates.nodes.len();
+        if (file.rank as usize, file.nodes as usize) != (self.scaled.rank, nodes) {
+            return proof("it has another number of modes or nodes than the certificates");
+        }
+        let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
+        let next = AtomicUsize::new(0);
+        let work = || {
+            loop {
+                let (index, bytes) = file.proven.get(next.fetch_add(1, Ordering::Relaxed))?;
+                if let Err(refusal) = self.entry(&maps, entries[*index], bytes) {
+                    return Some((*index, refusal));
+                }
+            }
+        };
+        let refused = thread::scope(|scope| {
+            let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
+            let failed = |_| Some((0, Refusal::Proof("a thread failed".into())));
+            let refused = threads.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
+            refused.min_by_key(|(index, _)| *index)
+        });
+        let Some((index, refusal)) = refused else { return Ok(()) };
+        let Entry { nodes: [n, m], radius } = entries[index];
+        proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
+    }
+
+    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8]) -> Result<(), Refusal> {
+        let radius = self.scaled.radius(entry.radius);
+        let (bytes, directions) = (Bytes(bytes), Vec::new());
+        let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
+        // Nothing is closer to the centre than it is.
+        if entry.radius > 0.0 {
+            reader.nodes(entry.nodes)?;
+        }
+        if reader.bytes.0.is_empty() { Ok(()) } else { proof("there are witnesses after its end") }
+    }
+}
+
+/// Reads and checks the witnesses of an entry.
+struct EntryReader<'a> {
+    check: &'a Check<'a>,
+    maps: &'a NodeMaps<'a>,
+    radius: Radius,
+    bytes: Bytes<'a>,
+    /// Of the last list of triangles: its directions, and the last affine map.
+    directions: Vec<Direction>,
+    map: Option<AffineMap>,
+}
+
+impl EntryReader<'_> {
+    /// All pairs between two nodes, or within one.
+    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+        let Check { certificates, counted, .. } = self.check;
+        let children = |n: u32| certificates.nodes[n as usize].children();
+        let has = |n: u32| !children(n).is_empty();
+        let counts = |&[a, b]: &[u32; 2]| !counted.simplices(a, b).is_empty();
+        match self.bytes.array()? {
+            [DIRECTION] => {
+                let dir = self.bytes.vector()?;
+                if n != m && self.maps.are_apart([n, m], &dir, &self.radius) {
+                    return Ok(());
+                }
+                proof(format!("the direction does not separate nodes {n} and {m}"))
+            }
+            [NOTHING_COUNTS] => match certificates.pairs([n, m]).find(counts) {
+                Some([a, b]) => proof(format!("triangles {a} and {b} count")),
+                None => Ok(()),
+            },
+            [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
+            [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
+            [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
+            [other] => proof(format!("{other} is no witness of nodes {n} and {m}")),
+        }
+    }
+
+    fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
+        (self.directions, self.map) = (Vec::new(), None);
+        let Check { certificates, counted, .. } = self.check;
+        for [a, b] in certificates.pairs(nodes) {
+            for simplices in counted.simplices(a, b) {
+                if !self.simplices(simplices)? {
+                    return proof(format!("the witness of triangles {a} and {b} does not hold"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the next witness holds for two simplices.
+    fn simplices(&mut self, simplices: Simplices) -> Result<bool, Refusal> {
+        let scaled = self.check.scaled;
+        let [tag] = self.bytes.array()?;
+        match self.direction(tag)? {
+            Some(number) => Ok(self.directions[number].separates(scaled, simplices, &self.radius)),
+            None => {
+                let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
+                self.parts([&x, &y], tag, 0)
+            }
+        }
+    }
+
+    /// The number of the direction that a witness names, if it names one; a new one is read.
+    fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
+        if tag == NEW_DIRECTION {
+            // One beyond those with a number is forgotten.
+            self.directions.truncate(QUARTER_SECOND.into());
+            self.directions.push(Direction::new(self.check.scaled, self.bytes.vector()?));
+            return Ok(Some(self.directions.len() - 1));
+        }
+        let is_known = tag < QUARTER_SECOND && usize::from(tag) < self.directions.len();
+        Ok(is_known.then_some(tag.into()))
+    }
+
+    /// Whether a witness holds for triangles, or parts of them.
+    fn parts(&mut self, [x, y]: [&Triangle; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
+        let scaled = self.check.scaled;
+        if let Some(number) = self.direction(tag)? {
+            return Ok(self.directions[number].separates_corners(x, y, &self.radius));
+        }
+        match tag {
+            QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
+                for part in quarters(if tag == QUARTER_FIRST { x } else { y }) {
+                    let pair = if tag == QUARTER_FIRST { [&part, y] } else { [x, &part] };
+                    let [tag] = self.bytes.array()?;
+                    if !self.parts(pair, tag, depth + 1)? {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
+            }
+            NEW_MAP | LAST_MAP => {
+                if tag == NEW_MAP {
+                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real().map(Dyadic::of));
+                    self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
+                }
+                let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
+                let mut direction = || self.bytes.vector();
+                let pyramid = [direction()?, direction()?, direction()?, direction()?];
+                let witness = AffineWitness { dir, rate, pyramid };
+                let map = self.map.as_ref();
+                Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
+            }
+            _ => Ok(false),
+        }
+    }
+}

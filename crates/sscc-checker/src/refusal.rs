@@ -1,0 +1,50 @@
+//! Why a proof, or a file, is refused.
+
+use std::fmt;
+
+/// One line: the place and the cause.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// A file cannot be read, is damaged, or is of another model: nothing was checked.
+    Input(String),
+    /// The proof does not hold, or the certificates do not have the parts that they should have.
+    Proof(String),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Input(line) | Self::Proof(line)) = self;
+        f.write_str(line)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+impl Refusal {
+    /// The same with the name of the file before it.
+    pub(crate) fn of(mut self, name: &str) -> Self {
+        let (Self::Input(line) | Self::Proof(line)) = &mut self;
+        line.insert_str(0, &format!("{name}: "));
+        self
+    }
+}
+
+/// Refuses an input.
+pub(crate) fn input<T>(line: impl Into<String>) -> Result<T, Refusal> {
+    Err(Refusal::Input(line.into()))
+}
+
+/// Refuses an input unless something holds.
+pub(crate) fn require(holds: bool, line: &str) -> Result<(), Refusal> {
+    if holds { Ok(()) } else { input(line) }
+}
+
+/// Refuses certificates unless something holds.
+pub(crate) fn claim(holds: bool, line: &str) -> Result<(), Refusal> {
+    if holds { Ok(()) } else { proof(line) }
+}
+
+/// Refuses a proof.
+pub(crate) fn proof<T>(line: impl Into<String>) -> Result<T, Refusal> {
+    Err(Refusal::Proof(line.into()))
+}

@@ -1,0 +1,143 @@
+//! What certificates hold for beside the model: metric, centre, and which pairs of triangles count.
+
+use std::collections::HashMap;
+
+use crate::container::Container;
+use crate::model::Model;
+use crate::refusal::{Refusal, input, require};
+
+/// Metric, centre and contact filter of certificates.
+pub(crate) struct Scope {
+    /// The factor S: its diagonal, or all of it by rows, upper triangular.
+    pub(crate) factor: Vec<f64>,
+    pub(crate) is_dense: bool,
+    pub(crate) center: Vec<f64>,
+    /// Whether pairs with exactly one common vertex count.
+    pub(crate) one_vertex: bool,
+    pub(crate) weld: bool,
+    pub(crate) ignored: Vec<[u32; 2]>,
+    pub(crate) exceptions: Vec<[u32; 2]>,
+    pub(crate) groups: Option<Groups>,
+}
+
+/// The group of each triangle, and the pairs of groups that count, or do not.
+pub(crate) struct Groups {
+    pub(crate) of_triangles: Vec<u32>,
+    pub(crate) others_count: bool,
+    pub(crate) listed: Vec<[u32; 2]>,
+}
+
+impl Scope {
+    pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self, Refusal> {
+        require(!file.has("clearance"), "certificates with a clearance are not checked")?;
+        let rank = model.rank;
+        let is_dense = file.has("metric_factor");
+        let factor: Vec<f64> = match is_dense {
+            true => file.shaped("metric_factor", &[Some(rank), Some(rank)])?,
+            false => file.shaped("metric_scales", &[Some(rank)])?,
+        };
+        let is_row = |i: usize| {
+            let row = &factor[i * rank..][..rank];
+            row[..i].iter().all(|s| *s == 0.0) && row[i] > 0.0
+        };
+        let is_triangular = !is_dense || (0..rank).all(is_row);
+        let center = file.shaped::<f64>("center", &[Some(rank)])?;
+        let is_finite = factor.iter().chain(&center).all(|x| x.is_finite());
+        let is_positive = is_dense || factor.iter().all(|s| *s > 0.0);
+        require(is_finite && is_triangular && is_positive, "metric or centre: a number is out of range")?;
+        let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
+        let weld = is_second(file, "weld", ["none", "equal"])?;
+        let triangles = model.faces.len();
+        let pairs = |name: &str| -> Result<Vec<[u32; 2]>, Refusal> {
+            let pairs = if file.has(name) { file.pairs(name)? } else { Vec::new() };
+            let are_triangles = pairs.iter().all(|[a, b]| a != b && (*b as usize) < triangles);
+            require(are_triangles, "a pair names a triangle that does not exist, or one twice")?;
+            Ok(pairs)
+        };
+        let mut groups = None;
+        if file.has("groups") {
+            let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
+            let of_triangles = file.shaped("groups", &[Some(triangles)])?;
+            groups = Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? });
+        }
+        let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
+        Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
+    }
+}
+
+/// Whether a text of the file is the second one of two.
+fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
+    let which = values.iter().position(|value| Ok(*value) == file.text(key));
+    which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
+}
+
+/// Two simplices by vertices: triangles, or an edge whose last vertex is there twice.
+pub(crate) type Simplices = [[u32; 3]; 2];
+
+/// Which pairs of triangles count.
+pub(crate) struct CountedPairs<'a> {
+    model: &'a Model,
+    scope: &'a Scope,
+    /// For each vertex the lowest one with the same position and modes; without welds itself.
+    pub(crate) classes: Vec<u32>,
+}
+
+impl<'a> CountedPairs<'a> {
+    pub(crate) fn new(model: &'a Model, scope: &'a Scope) -> Self {
+        let mut lowest = HashMap::new();
+        let class = |i: u32| {
+            if !scope.weld {
+                return i;
+            }
+            let numbers = model.positions[i as usize].iter().chain(model.modes_of(i as usize));
+            // Adding 0 makes -0 equal to 0.
+            let key: Vec<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
+            *lowest.entry(key).or_insert(i)
+        };
+        let classes = (0..model.positions.len() as u32).map(class).collect();
+        Self { model, scope, classes }
+    }
+
+    /// The simplices of which two meet where two triangles collide, in a way that counts: none for a pair that never
+    /// counts, or is an exception.
+    pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
+        let pair = [a.min(b), a.max(b)];
+        let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
+        if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
+    }
+
+    /// The same for exceptions, too.
+    pub(crate) fn with_exceptions(&self, a: u32, b: u32) -> Vec<Simplices> {
+        let pair = [a.min(b), a.max(b)];
+        if a == b || self.scope.ignored.binary_search(&pair).is_ok() || !self.groups_count(a, b) {
+            return Vec::new();
+        }
+        let faces = [a, b].map(|t| self.model.faces[t as usize]);
+        let [x, y] = faces.map(|face| face.map(|i| self.classes[i as usize]));
+        let Some(&class) = x.iter().find(|class| y.contains(class)) else { return vec![faces] };
+        let shared = |x: [u32; 3], y: [u32; 3], first: u32| x.iter().any(|i| *i != first && y.contains(i));
+        let number = faces[0].iter().find(|i| faces[1].contains(i));
+        let is_one = !shared(x, y, class) && number.is_none_or(|i| !shared(faces[0], faces[1], *i));
+        if !self.scope.one_vertex || !is_one {
+            return Vec::new();
+        }
+        // Two triangles with one common vertex that have another common point: the edge opposite to the vertex of one
+        // meets the other triangle (follow the ray from the vertex through that point to the first of the two edges).
+        let opposite = |face: [u32; 3]| {
+            let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
+            Some([*others.first()?, *others.last()?, *others.last()?])
+        };
+        match (opposite(faces[0]), opposite(faces[1])) {
+            (Some(x), Some(y)) => vec![[x, faces[1]], [faces[0], y]],
+            // A face that is the vertex alone.
+            _ => Vec::new(),
+        }
+    }
+
+    fn groups_count(&self, a: u32, b: u32) -> bool {
+        let Some(groups) = &self.scope.groups else { return true };
+        let [g, h] = [a, b].map(|t| groups.of_triangles[t as usize]);
+        let is_listed = groups.listed.binary_search(&[g.min(h), g.max(h)]).is_ok();
+        is_listed != groups.others_count
+    }
+}
