@@ -154,7 +154,7 @@ fn vertices(random: &mut Random, kind: usize) -> Vec<DVec3> {
 fn folded_pairs_are_those_of_exact_fractions() {
     let random = &mut Random::new(45);
     let mut counts = [[0; 2]; 4];
-    let cases = cases(3_000);
+    let cases = cases(6_000);
     for case in 0..cases {
         let x = vertices(random, case);
         let shared = [[0, 3, 4], [0, 1, 3], [0, 1, 2], [0, 1, 3]][random.below(4)];

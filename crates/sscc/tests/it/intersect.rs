@@ -260,7 +260,7 @@ fn random_pairs() {
 #[test]
 fn mixed_magnitudes() {
     let mut random = Random(3);
-    for i in 0..cases(1_000) {
+    for i in 0..cases(2_000) {
         let exponents = [-1074..200, -400..-200, -30..30][i % 3].clone();
         let mut coordinate = |random: &mut Random| {
             let count = (exponents.end - exponents.start) as u64;
@@ -407,7 +407,7 @@ fn other_scales() {
 #[test]
 fn largest_coordinates() {
     let mut random = Random(11);
-    for _ in 0..cases(300) {
+    for _ in 0..cases(600) {
         let mut coordinate = |random: &mut Random| match random.below(4) {
             0 => limits::LARGEST,
             1 => -limits::LARGEST,
