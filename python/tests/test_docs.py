@@ -101,8 +101,8 @@ def test_the_rolled_sheet_collides_at_its_end(
     assert run_commands("docs/how-it-works.md", command) == 1
     assert (tmp_path / "sheet.html").stat().st_size > 100_000
 
-#: Lines of docs/command.md that tests in Rust run: those of a model in statics.rs, and an audit in clearance.rs.
-RUN_ELSEWHERE = ("bracket.model", "sscc audit face")
+#: Lines of docs/command.md that tests in Rust run: those of a model in statics.rs, an audit in clearance.rs, proofs in proof.rs.
+RUN_ELSEWHERE = ("bracket.model", "sscc audit face", "spring.proof")
 
 #: Lines of docs/command.md whose q are of a model of three modes.
 OF_THREE_MODES = ("face.model.safetensors --trajectory", "near.sscc")
