@@ -10,6 +10,7 @@ use crate::exact::Point;
 use crate::models::{Extremes, Model};
 use crate::oracle::{Bounds, Oracle};
 use crate::random::Random;
+use crate::tally::Tally;
 
 /// What a path asks of its models.
 #[derive(Clone, Copy, Debug)]
@@ -156,6 +157,14 @@ impl Setup {
         });
         let largest = reach.fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x) });
         largest > 0.5 * sscc::limits::LARGEST || q.iter().any(|x| !x.is_finite())
+    }
+
+    /// Counts a refusal, which is wrong where all these q are within range.
+    pub fn refused(&self, tally: &mut Tally, q: &[&[f64]], error: &Error) {
+        tally.reach("refused q");
+        if !q.iter().any(|q| self.is_beyond_range(q)) {
+            tally.wrong(|| format!("{}: q={q:?}: {error}", self.model.name));
+        }
     }
 }
 

@@ -7,8 +7,8 @@
 use super::interval::Interval;
 use super::number::Number;
 use super::point::Triangle;
-use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
+use super::triangles::edges_meet;
 use super::vectors::Vector;
 use super::whole::{Unit, Whole};
 use super::work;
@@ -72,30 +72,16 @@ fn interval_at(ends: [&Triangle; 2], t: f64) -> [Vector<Interval>; 3] {
     }
 }
 
-fn meet_of<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
-    let mut undecided = false;
-    for (x, y) in [(a, b), (b, a)] {
-        for i in 0..3 {
-            match segment_meets_triangle([&x[i], &x[(i + 1) % 3]], y) {
-                Some(true) => return Some(true),
-                Some(false) => {}
-                None => undecided = true,
-            }
-        }
-    }
-    (!undecided).then_some(false)
-}
-
 /// Whether they have a common point at a time, exactly.
 pub fn meet_at(a: [&Triangle; 2], b: [&Triangle; 2], t: f64) -> bool {
-    meet_of(&interval_at(a, t), &interval_at(b, t)).unwrap_or_else(|| {
+    edges_meet(&interval_at(a, t), &interval_at(b, t)).unwrap_or_else(|| {
         work::count();
         let corners = a.iter().chain(&b).flat_map(|t| t.iter());
         let (unit, time) = (Unit::of(corners), Time::of(t));
         let number = |x: f64| unit.whole(x);
         let plain = |x: f64| -> Whole { Unit::of(&[[1.0; 3]]).whole(x) };
         let [a, b] = [a, b].map(|ends| at(ends, &time, &number, &plain));
-        meet_of(&a, &b).expect("whole numbers decide")
+        edges_meet(&a, &b).expect("whole numbers decide")
     })
 }
 

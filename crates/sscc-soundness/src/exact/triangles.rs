@@ -42,7 +42,8 @@ fn is_surely_beside_plane(a: &Triangle, b: &Triangle) -> bool {
     sides[0] != 0.0 && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
-fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
+/// Whether an edge of one triangle meets the other one; none where it is not decided.
+pub(super) fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
     let mut undecided = false;
     for (x, y) in [(a, b), (b, a)] {
         for i in 0..3 {

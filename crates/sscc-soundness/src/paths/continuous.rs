@@ -26,7 +26,10 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         return;
     };
     let share = share * setup.share();
-    let Ok(mut query) = Query::new(&setup.reduced, &setup.certificates) else { return };
+    let Ok(mut query) = Query::new(&setup.reduced, &setup.certificates) else {
+        tally.wrong(|| format!("{}: its own certificates are refused", setup.model.name));
+        return;
+    };
     let mut last = setup.draw(random);
     for _ in 0..some(200, share) {
         if work::is_spent() {
@@ -35,12 +38,14 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         let step = random.power(-6.0, 0.0);
         let target = setup.draw(random);
         let q: Vec<f64> = last.iter().zip(&target).map(|(a, b)| a + step * (b - a)).collect();
-        let Ok(impacts) = query.continuous(&last, &q) else {
-            tally.reach("refused q");
-            last = target;
-            continue;
+        let impacts = match query.continuous(&last, &q) {
+            Ok(impacts) => impacts.to_vec(),
+            Err(error) => {
+                setup.refused(tally, &[&last, &q], &error);
+                last = target;
+                continue;
+            }
         };
-        let impacts = impacts.to_vec();
         let statistics = query.statistics();
         match statistics.proof {
             Proof::Radius => tally.reach("proof by radius"),

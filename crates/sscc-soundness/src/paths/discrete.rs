@@ -75,10 +75,7 @@ impl Asker<'_, '_> {
         let found = match query.discrete(q) {
             Ok(found) => found.to_vec(),
             Err(error) => {
-                tally.reach("refused q");
-                if !setup.is_beyond_range(q) {
-                    tally.wrong(|| format!("{}: q={q:?}: {error}", setup.model.name));
-                }
+                setup.refused(tally, &[q], &error);
                 return None;
             }
         };

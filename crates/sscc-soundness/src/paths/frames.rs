@@ -27,6 +27,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     // Vertices that are welded at rest may move apart; only with the rule that excludes neighbours is that of no account.
     let weld = !with_one_vertex && !random.one_in(6);
     let Ok(mut detector) = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(weld)) else {
+        tally.wrong(|| format!("{}: its own mesh is refused", model.name));
         return;
     };
     let mut oracle = Oracle::new(&model.faces, model.points.len(), with_one_vertex);
@@ -45,23 +46,34 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         let place = || format!("{}: frame {frame:?}", model.name);
         match detector.discrete(&vectors(&frame)) {
             Ok(found) => tally.compare(found, &oracle.pairs(&frame), place),
-            Err(_) => {
-                tally.reach("refused q");
+            Err(error) => {
+                tally.reach("refused frames");
+                if is_within_range(&frame) {
+                    tally.wrong(|| format!("{}: {error}", place()));
+                }
                 continue;
             }
         }
-        if random.one_in(3)
-            && let Ok(impacts) = detector.continuous(&vectors(&last), &vectors(&frame))
-        {
-            let impacts = impacts.to_vec();
-            tally.reach("swept");
-            let is_whole = !with_one_vertex;
-            if is_whole {
-                continuous::check(random, tally, &oracle, [&last, &frame], &impacts, &model.name);
+        if random.one_in(3) {
+            // Both ends were answered before, or are the rest pose.
+            match detector.continuous(&vectors(&last), &vectors(&frame)) {
+                Ok(impacts) => {
+                    let impacts = impacts.to_vec();
+                    tally.reach("swept");
+                    let is_whole = !with_one_vertex;
+                    if is_whole {
+                        continuous::check(random, tally, &oracle, [&last, &frame], &impacts, &model.name);
+                    }
+                }
+                Err(error) => tally.wrong(|| format!("{}: swept: {error}", place())),
             }
         }
         last = frame;
     }
+}
+
+fn is_within_range(frame: &[Point]) -> bool {
+    frame.iter().flatten().all(|x| x.abs() <= 0.5 * sscc::limits::LARGEST)
 }
 
 /// The next frame: of the modes, with noise, or a small step.

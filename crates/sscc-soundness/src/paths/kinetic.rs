@@ -20,7 +20,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     };
     let share = share * setup.share();
     let Ok(mut query) = KineticQuery::new(&setup.reduced, &setup.certificates) else {
-        tally.reach("refused models");
+        tally.wrong(|| format!("{}: its own certificates are refused", setup.model.name));
         return;
     };
     for _ in 0..some(6, share) {
@@ -76,15 +76,12 @@ fn ask(
     let exact = setup.oracle.pairs(&setup.model.positions(q));
     // Before the discrete query of this step, as a simulation asks.
     if random.one_in(4) && !exact.is_empty() {
-        swept(tally, query, [last, q], &exact, &place);
+        swept(tally, setup, query, [last, q], &exact, &place);
     }
     let found = match query.discrete(q) {
         Ok(found) => found.to_vec(),
         Err(error) => {
-            if !setup.is_beyond_range(q) {
-                tally.wrong(|| format!("{}: {error}", place()));
-            }
-            tally.reach("refused q");
+            setup.refused(tally, &[q], &error);
             return false;
         }
     };
@@ -105,12 +102,16 @@ fn ask(
 /// A motion that ends in these pairs must list them.
 fn swept(
     tally: &mut Tally,
+    setup: &Setup,
     query: &mut KineticQuery,
     ends: [&[f64]; 2],
     exact: &[(u32, u32)],
     place: &dyn Fn() -> String,
 ) {
-    let Ok(impacts) = query.continuous(ends[0], ends[1]) else { return };
+    let impacts = match query.continuous(ends[0], ends[1]) {
+        Ok(impacts) => impacts,
+        Err(error) => return setup.refused(tally, &ends, &error),
+    };
     tally.reach("swept");
     let missing = exact.iter().find(|pair| impacts.iter().all(|impact| impact.pair != **pair));
     if let Some(pair) = missing {

@@ -22,8 +22,13 @@ fn setup(random: &mut Random, tally: &mut Tally) -> Option<(Setup, Query)> {
     let setup = Setup::random(random, &wanted).ok();
     tally.reach_if(setup.is_none(), "refused models");
     let setup = setup?;
-    let query = Query::new(&setup.reduced, &setup.certificates).ok()?;
-    Some((setup, query))
+    match Query::new(&setup.reduced, &setup.certificates) {
+        Ok(query) => Some((setup, query)),
+        Err(error) => {
+            tally.wrong(|| format!("{}: its own certificates are refused: {error}", setup.model.name));
+            None
+        }
+    }
 }
 
 /// Safe scales.
@@ -36,9 +41,12 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
             break;
         }
         let q = setup.draw(random);
-        let Ok(scale) = query.safe_scale(&q) else {
-            tally.reach("refused q");
-            continue;
+        let scale = match query.safe_scale(&q) {
+            Ok(scale) => scale,
+            Err(error) => {
+                setup.refused(tally, &[&q], &error);
+                continue;
+            }
         };
         tally.answer();
         tally.reach_if(scale > 0.0, "positive");
@@ -73,9 +81,14 @@ pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
         let mut q = if random.one_in(2) { setup.certificates.center().to_vec() } else { setup.draw(random) };
         let mode = random.below(setup.model.rank);
         let to = setup.draw(random)[mode] * random.of(&[1.0, 3.0, -1.0]);
-        let Ok(sweep) = query.sweep(&q, mode, to) else {
-            tally.reach("refused q");
-            continue;
+        let sweep = match query.sweep(&q, mode, to) {
+            Ok(sweep) => sweep,
+            Err(error) => {
+                let mut end = q.clone();
+                end[mode] = to;
+                setup.refused(tally, &[&q, &end], &error);
+                continue;
+            }
         };
         tally.answer();
         let name = &setup.model.name;
@@ -122,9 +135,12 @@ pub fn run_resolves(random: &mut Random, tally: &mut Tally, share: f64) {
         }
         let q = setup.draw(random);
         let all = random.one_in(2);
-        let Ok(resolved) = query.resolve(&q, &ResolveOptions::default().all(all)) else {
-            tally.reach("refused q");
-            continue;
+        let resolved = match query.resolve(&q, &ResolveOptions::default().all(all)) {
+            Ok(resolved) => resolved,
+            Err(error) => {
+                setup.refused(tally, &[&q], &error);
+                continue;
+            }
         };
         tally.answer();
         let place = || format!("{}: all={all} q={q:?}: {resolved:?}", setup.model.name);

@@ -65,17 +65,26 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         return;
     };
     let shapes = [&x, &y].map(|setup| PosedShape::new(&setup.reduced, &setup.certificates).ok());
-    let [Some(mut a), Some(mut b)] = shapes else { return };
+    let [Some(mut a), Some(mut b)] = shapes else {
+        tally.wrong(|| format!("{} or {}: its own certificates are refused", x.model.name, y.model.name));
+        return;
+    };
     for _ in 0..some(100, share) {
         if work::is_spent() {
             break;
         }
         let q = [x.draw(random), y.draw(random)];
         let places = [Place::random(random, x.size), Place::random(random, x.size)];
-        let (Ok(box_a), Ok(box_b)) = (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose()))
-        else {
-            tally.reach("refused q");
-            continue;
+        let (box_a, box_b) = match (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose())) {
+            (Ok(box_a), Ok(box_b)) => (box_a, box_b),
+            (Err(error), _) => {
+                x.refused(tally, &[&q[0]], &error);
+                continue;
+            }
+            (_, Err(error)) => {
+                y.refused(tally, &[&q[1]], &error);
+                continue;
+            }
         };
         let around = if random.one_in(2) { box_a.union(&box_b) } else { box_a };
         let mut found = Vec::new();
@@ -148,9 +157,15 @@ fn two_meshes(random: &mut Random, tally: &mut Tally, [x, y]: [&Setup; 2], count
         let points = [x.model.positions(&q[0]), y.model.positions(&q[1])];
         let [p, r] =
             [&points[0], &points[1]].map(|p| p.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>());
-        let Ok(found) = a.against(&p, &mut b, &r) else {
-            tally.reach("refused q");
-            continue;
+        let found = match a.against(&p, &mut b, &r) {
+            Ok(found) => found,
+            Err(error) => {
+                tally.reach("refused frames");
+                if !x.is_beyond_range(&q[0]) && !y.is_beyond_range(&q[1]) {
+                    tally.wrong(|| format!("{} against {}: {error}", x.model.name, y.model.name));
+                }
+                continue;
+            }
         };
         let of = |setup: &Setup, points: &[Point]| -> Vec<Triangle> {
             setup.model.faces.iter().map(|face| face.map(|v| points[v as usize])).collect()

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use num_bigint::BigInt;
-use num_rational::BigRational;
-use num_traits::Num;
+use num_traits::{Float, Num};
 use sscc::{intersect_triangle_triangle, limits};
 use sscc_testing::{cases, threshold};
 
@@ -72,10 +71,12 @@ fn oracle<T: Num + PartialOrd + Clone>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> bool
     }
 }
 
-/// The oracle on the exact values of the coordinates, all times 2^1074.
+/// The oracle on the exact values of the coordinates, all times 2^1075.
 fn intersect_exactly(a: &Triangle, b: &Triangle) -> bool {
-    let whole =
-        |x: f64| (BigRational::from_float(x).expect("finite") * BigInt::from(2).pow(1074)).to_integer();
+    let whole = |x: f64| {
+        let (mantissa, exponent, sign) = x.integer_decode();
+        BigInt::from(i64::from(sign) * mantissa as i64) << (i32::from(exponent) + 1075)
+    };
     let mut triangles = [a, b].map(|t| t.map(|p| p.to_array().map(whole)));
     // Common factors 2 change nothing and take time.
     let coordinates = || triangles.iter().flatten().flatten();
