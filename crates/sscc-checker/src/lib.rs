@@ -37,8 +37,8 @@ pub struct Confirmed {
     pub entries: usize,
     /// Those that were proven: all of them, or a sample.
     pub proven: usize,
-    /// What is left out, as text: numbers of pairs, groups of triangles, local certificates.
-    pub scope: String,
+    /// What was not checked, as text: numbers of pairs, groups of triangles, local certificates.
+    pub left_out: String,
 }
 
 impl Confirmed {
@@ -75,8 +75,8 @@ pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -
     let check = Check { certificates: &certificates, counted: &counted, scaled: &scaled, model };
     check.run(&proof, &entries, threads).map_err(of_proof)?;
     let groups = if scope.groups.is_some() { "pairs of groups" } else { "no groups" };
-    let local = if file.has("local_nodes") { "; local certificates are not checked" } else { "" };
+    let local = if file.has("local_nodes") { "local certificates" } else { "no local certificates" };
     let [exceptions, ignored] = [&scope.exceptions, &scope.ignored].map(Vec::len);
-    let scope = format!("left out: {exceptions} exceptions, {ignored} ignored pairs, {groups}{local}");
-    Ok(Confirmed { entries: entries.len(), proven: proof.proven.len(), scope })
+    let left_out = format!("{exceptions} exceptions, {ignored} ignored pairs, {groups}, {local}");
+    Ok(Confirmed { entries: entries.len(), proven: proof.proven.len(), left_out })
 }

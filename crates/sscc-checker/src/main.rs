@@ -34,7 +34,8 @@ fn main() -> ExitCode {
     let takes_sample = words.first().is_some_and(|word| word == Path::new("--sample"));
     let refusal = match run(&words[usize::from(takes_sample)..], takes_sample) {
         Ok(confirmed) => {
-            println!("confirmed: {} of {} entries; {}", confirmed.proven, confirmed.entries, confirmed.scope);
+            let Confirmed { entries, proven, left_out } = confirmed;
+            println!("confirmed: {proven} of {entries} entries; left out: {left_out}");
             return ExitCode::SUCCESS;
         }
         Err(refusal) => refusal,

@@ -202,7 +202,7 @@ fn dropped_pairs_are_refused() {
     let sample = [prover.header(all.len()), prover.prove(&all, None, &()).unwrap()].concat();
     let confirmed = check(&model, &file, &sample).unwrap();
     assert_eq!((confirmed.proven, confirmed.entries), (all.len(), all.len() + 1));
-    assert_eq!(confirmed.scope, "left out: 0 exceptions, 0 ignored pairs, no groups");
+    assert_eq!(confirmed.left_out, "0 exceptions, 0 ignored pairs, no groups, no local certificates");
     assert!(refusal(confirmed.of_all_entries(), true).contains("samples are accepted on request"));
     // Bytes that are missing, and bytes that follow.
     assert!(refusal(check(&model, &file, &proof[..proof.len() - 1]), true).contains("too early"));

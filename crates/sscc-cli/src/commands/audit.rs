@@ -92,6 +92,8 @@ struct ExactReport {
     seconds: f64,
     /// Why the proof does not hold; null if it does.
     refused: Option<String>,
+    /// What the checker left out; null if the proof does not hold.
+    left_out: Option<String>,
 }
 
 /// Proves a sample of the entries of certificates, and has the proof checked in exact arithmetic.
@@ -104,33 +106,39 @@ fn audit_exactly(args: &Audit, model: &ReducedModel, certificates: &Certificates
     let bar = Bar::new("proving");
     let witnesses = prover.prove(&numbers, Some(threads), &bar);
     interrupt::check()?;
-    let refused = match witnesses {
+    let outcome = match witnesses {
         Ok(witnesses) => {
             proof.extend(witnesses);
             let file = read_whole(&args.certificates)?;
             match sscc_checker::check(&checked_model(model)?, &file, &proof, threads) {
-                Ok(_) => None,
-                Err(Refusal::Proof(line)) => Some(line),
+                Ok(confirmed) => Ok(confirmed.left_out),
+                Err(Refusal::Proof(line)) => Err(line),
                 Err(refusal @ Refusal::Input(_)) => return Err(refusal).with_context(named),
             }
         }
-        Err(error) => Some(error.to_string()),
+        Err(error) => Err(error.to_string()),
     };
     interrupt::check()?;
     let report = ExactReport {
         entries: prover.entries(),
         proven: numbers.len(),
         seconds: start.elapsed().as_secs_f64(),
-        refused,
+        refused: outcome.clone().err(),
+        left_out: outcome.ok(),
     };
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;
     } else {
         let [proven, all] = [report.proven, report.entries].map(|count| grouped(count as u64));
-        match &report.refused {
-            None => out.line(format_args!("{proven} of {all} entries confirmed in exact arithmetic"))?,
-            Some(line) => out.line(format_args!("NOT CONFIRMED: {line}"))?,
+        match (&report.left_out, &report.refused) {
+            (_, Some(line)) => out.line(format_args!("NOT CONFIRMED: {line}"))?,
+            (left_out, None) => {
+                let left_out = left_out.as_deref().unwrap_or_default();
+                out.line(format_args!(
+                    "{proven} of {all} entries confirmed in exact arithmetic; left out: {left_out}"
+                ))?;
+            }
         }
     }
     out.finish()?;

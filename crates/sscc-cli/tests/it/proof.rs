@@ -75,7 +75,7 @@ fn audits_are_exact_on_request() {
     let run = exact(CERTIFICATES, &["--json"]);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{run:?}");
     let [report] = &run.json()[..] else { panic!("{run:?}") };
-    assert_eq!(keys(report), sorted("entries, proven, seconds, refused"));
+    assert_eq!(keys(report), sorted("entries, proven, seconds, refused, left_out"));
     assert!(report["refused"].is_null() && report["proven"].as_u64().unwrap() > 0, "{report}");
     assert!(exact(CERTIFICATES, &[]).stdout.contains("entries confirmed in exact arithmetic"));
     // Radii that are too large have no proof.

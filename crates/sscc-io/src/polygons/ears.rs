@@ -285,5 +285,14 @@ mod tests {
         }
         let points: Vec<DVec2> = (0..count).map(comb).collect();
         assert_eq!(cut_ears(&points, 1, &mut Work::of(1000)), Err(TooIntricate));
+        // Every exact test of a corner in an ear counts: the comb has hundreds for each corner.
+        let mut work = Work::new();
+        let before = work.left();
+        cut_ears(&points, 1, &mut work).unwrap();
+        assert!(
+            before - work.left() > 200 * (STEPS_OF_EXACT_SIGNS * count) as u64,
+            "{}",
+            before - work.left()
+        );
     }
 }
