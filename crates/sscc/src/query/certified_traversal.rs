@@ -1,8 +1,8 @@
 //! Algorithm 1 of the paper: the traversal of the BVTT that opens no node, and no pair of the root's children, whose
 //! certificate holds.
 //!
-//! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, all AABBs are refitted, as the
-//! traditional method does, and the traversal goes on with those.
+//! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, or local certificates leave most
+//! buckets open, all AABBs are refitted, as the traditional method does, and the traversal goes on with those.
 
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
@@ -42,6 +42,10 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
         {
             proofs.prove(tables, hierarchy, &certificates.node_radii, norm);
             (work_before, has_proofs) = (u64::MAX, true);
+            if can_refit && proofs.leaves_most_open() {
+                search.sides[0].refit();
+                can_refit = false;
+            }
         }
         if n != m {
             if has_proofs

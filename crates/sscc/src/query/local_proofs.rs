@@ -18,7 +18,10 @@ const BUCKETS_OF_EVALUATION: usize = 16;
 const MOST_LOST: usize = 32;
 
 /// Certificates are tried for pairs of nodes if they prove at least one of so many buckets for which they were evaluated.
-const LEAST_SHARE: usize = 5;
+const LEAST_SHARE: usize = 3;
+
+/// [`LocalProofs::leaves_most_open`] holds beyond one of so many buckets.
+const MOST_OPEN: usize = 2;
 
 /// Work of a search, in visits and packets of AABBs, after which it finds proven nodes: at least this, and one for so many buckets.
 /// Finding them takes about twice as long, and longer in large shapes, so short searches end before it would pay. It does not depend on
@@ -50,9 +53,10 @@ pub(super) struct LocalProofs<const E: usize> {
     work_before: u64,
     /// Whether this search finds no more proven nodes.
     is_complete: bool,
-    /// How many certificates the search evaluated from the root down, and how many buckets they proved.
+    /// How many certificates the search evaluated from the root down, how many buckets they proved, and how many they left open.
     evaluated: usize,
     proven_buckets: usize,
+    open_buckets: usize,
 }
 
 impl<const E: usize> LocalProofs<E> {
@@ -69,6 +73,7 @@ impl<const E: usize> LocalProofs<E> {
             is_complete: false,
             evaluated: 0,
             proven_buckets: 0,
+            open_buckets: 0,
         }
     }
 
@@ -88,6 +93,12 @@ impl<const E: usize> LocalProofs<E> {
         self.is_complete
     }
 
+    /// Whether most buckets are beyond their radius and their certificate, as far as [`Self::prove`] has tried: far from rest, where
+    /// AABBs of the BD-tree are loose.
+    pub(super) fn leaves_most_open(&self) -> bool {
+        self.open_buckets * MOST_OPEN > self.proven.len()
+    }
+
     /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few of their buckets
     /// are proven, the search tries no pairs: those of the others are seldom proven, and trying each takes longer.
     pub(super) fn prove(
@@ -101,11 +112,10 @@ impl<const E: usize> LocalProofs<E> {
         if !self.is_usable || self.is_complete {
             return;
         }
-        let mut open_buckets = 0;
-        while let Some(n) = self.stack.pop() {
-            if self.evaluated > MOST_LOST + self.proven.len() / BUCKETS_OF_EVALUATION + self.proven_buckets {
-                break;
-            }
+        let most_lost = MOST_LOST + self.proven.len() / BUCKETS_OF_EVALUATION;
+        while self.evaluated <= most_lost + self.proven_buckets
+            && let Some(n) = self.stack.pop()
+        {
             if let Some(index) = tables.certificate_of(n) {
                 self.evaluated += 1;
                 let allowed = self.allowed(tables, index);
@@ -118,13 +128,14 @@ impl<const E: usize> LocalProofs<E> {
             }
             let node = &hierarchy.nodes()[n as usize];
             if node.fits_in_bucket() {
-                open_buckets += 1;
+                self.open_buckets += 1;
             } else {
                 self.stack.extend(node.children().filter(|child| is_open(*child)));
             }
         }
         self.is_complete = true;
-        self.is_usable = self.proven_buckets * LEAST_SHARE >= self.proven_buckets + open_buckets;
+        self.is_usable = self.proven_buckets * LEAST_SHARE >= self.proven_buckets + self.open_buckets;
+        self.open_buckets += self.stack.iter().map(|n| tables.buckets[*n as usize].len()).sum::<usize>();
     }
 
     /// The pairs of nodes that one certificate proves free during a motion, in a search of its own: its node with itself, and with
@@ -156,7 +167,7 @@ impl<const E: usize> LocalProofs<E> {
             self.allowed.fill((0, 0.0));
             self.search = 1;
         }
-        (self.evaluated, self.proven_buckets) = (0, 0);
+        (self.evaluated, self.proven_buckets, self.open_buckets) = (0, 0, 0);
         self.is_complete = false;
         self.stack.clear();
         self.stack.push(0);
