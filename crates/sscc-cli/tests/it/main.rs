@@ -1,5 +1,5 @@
 //! Tests of the command as a child process. They are one program, because linking takes long.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod bad_input;
 mod bench;
@@ -12,6 +12,7 @@ mod detector_bad_input;
 mod detector_models;
 mod detector_report;
 mod exact_poses;
+mod faults;
 mod folded;
 mod formats;
 mod guide;

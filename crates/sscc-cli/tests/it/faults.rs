@@ -1,0 +1,190 @@
+//! What the system does to a command: it is killed, files may not grow, memory ends, its reader goes away. Files are old or new
+//! afterwards, never in between.
+
+#![cfg(target_os = "linux")]
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use sscc::{Modes, ReducedModel, TriMesh};
+use sscc_io::ModelInfo;
+use tempfile::TempDir;
+
+use crate::common::{Run, command, files, sscc, strips};
+
+/// What stands in each output before.
+const OLD: &[u8] = b"an old file";
+
+/// Commands that write a file, by the name of the file.
+const WRITERS: [(&str, &[&str]); 6] = [
+    ("new.sscc.safetensors", &["certify", "sheet.model.safetensors", "-o", "new.sscc.safetensors"]),
+    (
+        "new.model.safetensors",
+        &["modes", "mesh.obj", "--kind=linear", "--rank=6", "-o", "new.model.safetensors"],
+    ),
+    (
+        "pose.ply",
+        &["check", "sheet.model.safetensors", "--q=0.1,0,0", "--pose", "pose.ply", "--method=traditional"],
+    ),
+    (
+        "pose.obj",
+        &["check", "sheet.model.safetensors", "--q=0.1,0,0", "--pose", "pose.obj", "--method=traditional"],
+    ),
+    (
+        "page.html",
+        &["check", "sheet.model.safetensors", "--q=0.1,0,0", "--report", "page.html", "--method=traditional"],
+    ),
+    (
+        "picture.png",
+        &["certify", "strips.model.safetensors", "-o", "strips.sscc.safetensors", "--picture", "picture.png"],
+    ),
+];
+
+/// A folder with strips, and with a sheet of 3,200 triangles and three modes.
+fn folder() -> TempDir {
+    const SIDE: u32 = 41;
+    let directory = strips();
+    let folder = directory.path();
+    let at = |i: u32| DVec3::new(f64::from(i % SIDE), f64::from(i / SIDE), 0.0);
+    let corners = (0..SIDE * (SIDE - 1)).filter(|i| i % SIDE != SIDE - 1);
+    let faces = corners.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]).collect();
+    let mesh = TriMesh::new((0..SIDE * SIDE).map(at).collect(), faces).unwrap();
+    let modes = Modes::from_matrix((SIDE * SIDE) as usize, 3, |row, k| ((row * (k + 3)) % 7) as f64 * 0.01);
+    let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
+    sscc_io::write_model(&folder.join("sheet.model.safetensors"), &model, &ModelInfo::default()).unwrap();
+    directory
+}
+
+/// Kills a command: after a delay, or as soon as it has begun to write its file, and then some more.
+fn killed(folder: &Path, args: &[&str], delay: Duration, is_writing: bool) {
+    let before = files(folder).len();
+    let mut child = command(folder, args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while is_writing
+        && files(folder).len() == before
+        && child.try_wait().unwrap().is_none()
+        && start.elapsed() < Duration::from_secs(60)
+    {}
+    sleep(delay);
+    let _ = child.kill();
+    child.wait().unwrap();
+}
+
+#[test]
+fn killed_commands_leave_files_old_or_new() {
+    let directory = folder();
+    let folder = directory.path();
+    let kills = if std::env::var_os("SSCC_LONG").is_some() { 40 } else { 6 };
+    let (mut old, mut new) = (0, 0);
+    for (name, args) in WRITERS {
+        let path = folder.join(name);
+        let start = Instant::now();
+        let run = sscc(folder, args);
+        assert!(matches!(run.code, Some(0 | 1)), "{run:?}");
+        let (whole, expected) = (start.elapsed(), fs::read(&path).unwrap());
+        for kill in 0..kills {
+            fs::write(&path, OLD).unwrap();
+            // Half of them while the file is written.
+            let is_writing = kill % 2 == 0;
+            let delay = if is_writing {
+                Duration::from_micros(50 * kill)
+            } else {
+                whole * kill as u32 / kills as u32
+            };
+            killed(folder, args, delay, is_writing);
+            let found = fs::read(&path).unwrap();
+            assert!(found == OLD || found == expected, "{name}, kill {kill}: {} bytes", found.len());
+            (old, new) = if found == OLD { (old + 1, new) } else { (old, new + 1) };
+            // Nobody can remove the temporary file of a killed command but its user.
+            for left in files(folder) {
+                let name = left.file_name().unwrap().to_str().unwrap();
+                if name.starts_with(".sscc-") && name.ends_with(".part") {
+                    fs::remove_file(left).unwrap();
+                }
+            }
+        }
+        // The next run is as the first.
+        sscc(folder, args);
+        assert!(fs::read(&path).unwrap() == expected, "{name}");
+    }
+    assert!(old > 0, "{old} {new}");
+    assert_eq!(old + new, kills * WRITERS.len() as u64);
+}
+
+/// A command in a shell with a limit of `ulimit`. Signals of files that are too large are ignored, as is usual for services.
+fn limited(folder: &Path, limit: &str, args: &[&str]) -> Run {
+    let script = format!("trap '' XFSZ; ulimit {limit}; exec \"$0\" \"$@\"");
+    let mut shell = Command::new("bash");
+    shell
+        .args(["-c", &script, env!("CARGO_BIN_EXE_sscc")])
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::null());
+    Run::of(&mut shell)
+}
+
+#[test]
+fn files_that_cannot_grow_stay_old() {
+    let directory = folder();
+    let folder = directory.path();
+    let before = files(folder);
+    for (name, args) in WRITERS {
+        let path = folder.join(name);
+        fs::write(&path, OLD).unwrap();
+        // A block of `ulimit -f` has 1,024 bytes.
+        let run = limited(folder, "-f 1", args);
+        let error = run.stderr.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(error.contains("cannot be written") && error.contains("large"), "{error}");
+        // The picture is written after the certificates, which then are the first to fail.
+        assert!(error.contains(name) || name == "picture.png", "{error}");
+        assert!(fs::read(&path).unwrap() == OLD, "{name}");
+        fs::remove_file(&path).unwrap();
+    }
+    assert_eq!(files(folder), before);
+}
+
+#[test]
+fn without_memory_files_stay_old() {
+    let directory = folder();
+    let folder = directory.path();
+    let (name, args) = WRITERS[0];
+    fs::write(folder.join(name), OLD).unwrap();
+    let before = files(folder);
+    let mut failed = 0;
+    // Kilobytes of address space: too few to begin with, to enough.
+    for kilobytes in [8_000, 20_000, 30_000, 40_000, 60_000, 100_000, 8_000_000] {
+        let run = limited(folder, &format!("-v {kilobytes}"), args);
+        if run.code == Some(0) {
+            fs::write(folder.join(name), OLD).unwrap();
+            continue;
+        }
+        failed += 1;
+        assert!(!run.stderr.is_empty() && !run.stderr.contains("panicked at"), "{kilobytes}: {run:?}");
+        assert!(fs::read(folder.join(name)).unwrap() == OLD, "{kilobytes}");
+        assert_eq!(files(folder), before, "{kilobytes}");
+    }
+    assert!((1..7).contains(&failed), "{failed}");
+}
+
+#[test]
+fn a_reader_that_goes_away_ends_nothing_with_a_panic() {
+    let directory = folder();
+    let folder = directory.path();
+    sscc_io::write_npy(&folder.join("q.npy"), &[3000, 2], &vec![0.25; 6000]).unwrap();
+    let args = ["check", "strips.model.safetensors", "--trajectory", "q.npy", "--json"];
+    let mut child = command(folder, &args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap());
+    let mut first = String::new();
+    lines.read_line(&mut first).unwrap();
+    drop(lines);
+    let mut stderr = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(0), "{stderr}");
+    assert!(first.starts_with('{') && !stderr.contains("panicked"), "{first}{stderr}");
+}
