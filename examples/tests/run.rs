@@ -1,6 +1,6 @@
 //! Runs every example on the generated model and on real ones, and checks its output.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::env;
 use std::env::consts::EXE_SUFFIX;

@@ -1,7 +1,7 @@
 //! Time of queries through the functions of C against those of Rust, interleaved, on the spring of the demo:
 //! `sscc demo --out DIR`, then `cargo bench -p sscc-c -- DIR`. A query of C also copies its pairs, one of Rust reads them.
 #![allow(unsafe_code, reason = "functions of C")]
-#![allow(clippy::print_stdout, clippy::unwrap_used)]
+#![allow(clippy::print_stdout, clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::ffi::CString;
 use std::hint::black_box;

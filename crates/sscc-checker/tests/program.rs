@@ -1,5 +1,5 @@
 //! The program: exit codes and messages of one line.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::fs;
 use std::process::Command;

@@ -31,6 +31,7 @@ pub fn read_reduced_forces(path: &Path) -> Result<ReducedForces, IoError> {
 ///
 /// # Errors
 /// As [`read_reduced_forces`].
+#[expect(clippy::unreachable, reason = "16 bytes are four of 4")]
 pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         return Err(FormatError::new(Place::Byte(bytes.len()), "the file ends within the header"));

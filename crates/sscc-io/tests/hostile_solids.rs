@@ -1,7 +1,7 @@
 //! Random and damaged volumetric meshes and reduced forces: each parser returns a valid mesh or an error, with little
 //! memory.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use allocation_counter::measure;
 use proptest::prelude::*;

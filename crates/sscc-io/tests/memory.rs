@@ -1,6 +1,6 @@
 //! Memory for hostile files: a multiple of their size, independent of declared counts.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use allocation_counter::measure;
 use sscc_io::mesh::stl;

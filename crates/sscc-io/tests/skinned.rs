@@ -1,6 +1,6 @@
 //! Real skinned and animated models: positions and colliding pairs match answers of independent programs (see the README
 //! of the models).
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -4,7 +4,7 @@
 //! ```sh
 //! cargo run --release -p sscc-sim --example rest -- bunny16 60
 //! ```
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
 use std::time::Instant;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The arguments are the number of scenes and the seed. The exit code is 1 if a scene did not run to its end.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "../../sscc-dynamics/tests/it/common/random_scene.rs"]
 mod random_scene;

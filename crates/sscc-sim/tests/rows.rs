@@ -1,6 +1,6 @@
 //! Queries of the rows of a trajectory, answered in blocks, against single queries.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

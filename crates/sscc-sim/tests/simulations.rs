@@ -1,6 +1,6 @@
 //! Tests of simulations in one process: concurrent runs, continuation after cancellation, and errors.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! A query that the root's certificate answers allocates nothing, and neither does a repeated query.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use glam::DVec3;
 use sscc::{Certificates, CertifyOptions, Detector, Method, Modes, Query, ReducedModel, TriMesh};

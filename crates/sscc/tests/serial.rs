@@ -1,6 +1,6 @@
 //! A small model through all that may use threads. `cargo xtask serial` runs this program without the feature `parallel`, and
 //! `cargo test` with it: the expected bits are the same.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use glam::DVec3;
 use sscc::{

@@ -1,6 +1,6 @@
 //! Tests of the C interface through its functions.
 #![allow(unsafe_code, reason = "functions of C")]
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod answers;
 #[cfg(target_arch = "x86_64")]

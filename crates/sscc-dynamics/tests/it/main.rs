@@ -1,6 +1,6 @@
 //! Dynamics through its public interface, against closed forms, conservation laws and brute force. One program, so that the
 //! crate is linked once.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod bodies;
 mod common;

@@ -35,6 +35,7 @@ const HEADER: usize = 8;
 /// # Errors
 /// When the size of the file does not agree with its header and the precision, the modes belong to a mesh with
 /// another number of vertices, there are none, or [`Modes::new`] rejects an entry.
+#[expect(clippy::unreachable, reason = "8 bytes are two of 4")]
 pub fn parse(bytes: &[u8], precision: Precision, vertices: usize) -> Result<Modes, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         return Err(FormatError::new(Place::Byte(bytes.len()), "the file ends within the header"));

@@ -1,6 +1,6 @@
 //! Readers of real and hostile files. One program, so that the crate is linked once; tests that measure memory are programs
 //! of their own.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod default_filter;
 mod hostile;

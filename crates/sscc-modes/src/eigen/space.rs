@@ -73,6 +73,7 @@ impl<'a> Space<'a> {
 }
 
 /// Modified Gram-Schmidt, twice for each column. Updates `m_x` = M x, too. Returns R and the indices of dependent columns.
+#[expect(clippy::unreachable, reason = "columns of a Mat are contiguous")]
 fn gram_schmidt(x: &mut Mat<f64>, m_x: &mut Mat<f64>) -> (Mat<f64>, Vec<usize>) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let take = |to: &mut [f64], from: &[f64], factor: f64| {

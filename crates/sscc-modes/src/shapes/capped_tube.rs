@@ -40,6 +40,7 @@ impl CappedTube {
             }
         }
         vertices.extend([curve(0.0), curve(1.0)]);
+        #[expect(clippy::expect_used, reason = "shapes are constants of this crate")]
         TriMesh::new(vertices, self.faces()).expect("a tube along a finite curve is a valid mesh")
     }
 

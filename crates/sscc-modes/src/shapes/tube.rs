@@ -43,6 +43,7 @@ impl Tube {
                 vertices.push(centre + side * *c + up * *s);
             }
         }
+        #[expect(clippy::expect_used, reason = "shapes are constants of this crate")]
         TriMesh::new(vertices, self.faces()).expect("a tube along a finite curve is a valid mesh")
     }
 

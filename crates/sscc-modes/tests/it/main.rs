@@ -1,5 +1,5 @@
 //! Modes of real and made solids through the public interface. One program, so that the crate is linked once.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod common;
 mod diagonalize;

@@ -1,6 +1,6 @@
 //! The core through its public interface, against brute force and exact arithmetic. One program, so that the core is
 //! linked once; what counts allocations is a program of its own.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod audit;
 mod batch;

@@ -1,5 +1,12 @@
 //! Random numbers and scenes of the test `step::energy`, and of its long form, the example `robustness` of `sscc-sim`.
-#![allow(dead_code, missing_docs, clippy::unwrap_used)]
+#![allow(
+    dead_code,
+    missing_docs,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unreachable,
+    clippy::unwrap_used
+)]
 
 use glam::DVec3;
 use sscc_dynamics::{ContactOptions, Damping, Ground, WorldOptions};

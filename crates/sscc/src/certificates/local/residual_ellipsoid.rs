@@ -150,6 +150,7 @@ impl ResidualEllipsoid {
             for first in (0..row_len).step_by(BLOCK).rev() {
                 let mut sums = [[0.0; BLOCK]; 3];
                 for i in 0..self.rank.min(first + BLOCK) {
+                    #[expect(clippy::expect_used, reason = "rows are whole blocks")]
                     let z: &[f64; BLOCK] =
                         self.inverse[i * row_len + first..].first_chunk().expect("whole rows");
                     for (c, sums) in sums.iter_mut().enumerate() {
