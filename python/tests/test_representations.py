@@ -22,6 +22,8 @@ def instances(
     """Small, large and unusual objects of each class."""
     vertices, faces, modes = torus(24, 12, 6)
     draws = samples(500, 6, 0.4)
+    # Draws that are far from free ones take long to be led back.
+    near = 0.4 * draws
     far = draws[certs.check_many(draws).colliding][0]
     detector = sscc.Detector(faces, vertices)
     crossing = model.positions(far)
@@ -39,7 +41,7 @@ def instances(
         "DetectorAnswer": [detector.check(vertices), detector.check(crossing), detector.check(crossing, 1)],
         "DetectorBatch": [detector.check_many([vertices, crossing] * 50)],
         "DetectorImpacts": [detector.continuous(vertices, vertices), detector.continuous(vertices, crossing)],
-        "FreeSamples": [certs.free_samples(draws), certs.free_samples(draws[:0])],
+        "FreeSamples": [certs.free_samples(near), certs.free_samples(near[:0])],
         "Hierarchy": [certs.hierarchy],
         "Impacts": [certs.continuous(np.zeros(6), np.zeros(6)), certs.continuous(np.zeros(6), far)],
         "Interval": [sscc.Interval(-1e-300, 1e300, None, 0.1, False, 10**9, 0.2, 0.3)],

@@ -17,6 +17,9 @@ use crate::tally::{SkipLog, Tally};
 /// The requirements to test a package, beside its tests.
 const REQUIREMENTS: &str = "requirements-test.txt";
 
+/// The feature with which dependencies are compiled as for the other tests, once.
+const SHARED: &str = "shared-dependencies";
+
 /// Runs the tests with these arguments for pytest.
 pub fn run(arguments: &[String]) -> ExitCode {
     let log = SkipLog::new();
@@ -43,10 +46,10 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     let python = environment(&package.join(".venv"), &package.join(REQUIREMENTS))?;
     let wheels = package.join(".venv/wheels");
     let _ = fs::remove_dir_all(&wheels);
-    // The profile and the features of the other tests, so that dependencies are compiled once.
+    // The profile of the other tests, as well.
     let mut maturin = Command::new(&python);
     build_from_nothing(&mut maturin);
-    maturin.args(["-m", "maturin", "build", "--profile", "dev", "--features", "shared-dependencies"]);
+    maturin.args(["-m", "maturin", "build", "--profile", "dev", "--features", SHARED]);
     maturin.arg("--interpreter").arg(&python);
     maturin.arg("--out").arg(&wheels).current_dir(&package);
     succeed(&mut maturin, "the wheel cannot be built")?;
@@ -98,4 +101,32 @@ fn install(python: &Path, wheels: &Path) -> Result<(), Failure> {
     let mut install = pip(python);
     install.args(["install", "--quiet", "--no-deps", "--no-index", "--force-reinstall"]).args(files(wheels));
     succeed(&mut install, "the wheel cannot be installed")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::program::root;
+
+    /// All packages of a build, macros included, with their features.
+    fn packages(arguments: &[&str]) -> BTreeSet<String> {
+        let mut tree = cargo();
+        tree.args(["tree", "--locked", "--offline", "--prefix", "none", "--format", "{p} {f}"]);
+        let output = tree.args(arguments).current_dir(root()).output().expect("cargo runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let lines = String::from_utf8_lossy(&output.stdout);
+        lines.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
+    }
+
+    /// Would fail if a package that a macro is compiled with had other features: all that uses the macro would be compiled twice.
+    #[test]
+    fn the_wheel_has_the_features_of_the_other_tests() {
+        let of_wheel = packages(&["--package", "sscc-python", "--features", SHARED]);
+        let of_tests = packages(&["--workspace"]);
+        let others: Vec<&String> =
+            of_wheel.difference(&of_tests).filter(|line| !line.starts_with("sscc-python ")).collect();
+        assert!(others.is_empty(), "enable their features in `{SHARED}` of python/Cargo.toml: {others:?}");
+    }
 }

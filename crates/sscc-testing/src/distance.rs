@@ -6,7 +6,7 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use sscc::MovingTriangle;
 
-use crate::dyadic::Grid;
+use crate::grid::Grid;
 use crate::partition::Minors;
 use crate::polynomial::Root;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use num_bigint::BigInt;
 use sscc::MovingTriangle;
 
-use crate::dyadic::Grid;
+use crate::grid::Grid;
 use crate::polynomial::{Polynomial, Root};
 
 /// Homogeneous coordinates of a corner.

@@ -1,9 +1,7 @@
-//! Triangles that share one, two or three vertices, under `include-folded`: against an oracle in exact fractions, which knows
+//! Triangles that share one, two or three vertices, under `include-folded`: against an oracle in exact arithmetic, which knows
 //! neither signs nor cases.
 
 use glam::DVec3;
-use num_rational::BigRational;
-use num_traits::{Signed, Zero};
 use sscc::parts::{Scope, intersect_shared_edge_pair};
 use sscc::{
     Certificates, CertifyOptions, ContactFilter, Detector, Error, Method, Neighbours, Pair, Query, TriMesh,
@@ -11,82 +9,8 @@ use sscc::{
 };
 use sscc_testing::{cases, threshold};
 
+use crate::common::exact::{Vector, candidates, exact, is_in_hull};
 use crate::common::{Random, random_mesh, random_model};
-
-type Exact = [BigRational; 3];
-
-fn exact(x: DVec3) -> Exact {
-    x.to_array().map(|x| BigRational::from_float(x).unwrap())
-}
-
-fn minus(p: &Exact, q: &Exact) -> Exact {
-    std::array::from_fn(|k| &p[k] - &q[k])
-}
-
-fn dot(p: &Exact, q: &Exact) -> BigRational {
-    p.iter().zip(q).map(|(p, q)| p * q).sum()
-}
-
-fn cross(p: &Exact, q: &Exact) -> Exact {
-    std::array::from_fn(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        &p[i] * &q[j] - &p[j] * &q[i]
-    })
-}
-
-fn is_zero(p: &Exact) -> bool {
-    p.iter().all(Zero::is_zero)
-}
-
-/// The point `p + t (q - p)`.
-fn along(p: &Exact, q: &Exact, t: &BigRational) -> Exact {
-    std::array::from_fn(|k| &p[k] + t * (&q[k] - &p[k]))
-}
-
-/// Whether x is in the convex hull of these points, of which there may be one, two or three.
-fn is_in_hull(x: &Exact, hull: &[Exact]) -> bool {
-    let is_between = |p: &Exact, q: &Exact| {
-        let (from_p, from_q) = (minus(x, p), minus(x, q));
-        is_zero(&cross(&from_p, &from_q)) && !dot(&from_p, &from_q).is_positive()
-    };
-    let pairs = || hull.iter().flat_map(|p| hull.iter().map(move |q| (p, q)));
-    if pairs().any(|(p, q)| is_between(p, q)) {
-        return true;
-    }
-    let [p, q, r] = hull else { return false };
-    let normal = cross(&minus(q, p), &minus(r, p));
-    let is_inside = |(s, t): (&Exact, &Exact)| {
-        let turn = dot(&normal, &cross(&minus(t, s), &minus(x, s)));
-        !turn.is_negative()
-    };
-    !is_zero(&normal)
-        && dot(&normal, &minus(x, p)).is_zero()
-        && [(p, q), (q, r), (r, p)].into_iter().all(is_inside)
-}
-
-/// All points at which an edge of one triangle can leave or enter the other one: corners, and single common points of two
-/// edges, or of an edge and a plane. Among them are all corners of the common points of the two triangles.
-fn candidates(a: &[Exact; 3], b: &[Exact; 3]) -> Vec<Exact> {
-    let mut found: Vec<Exact> = a.iter().chain(b).cloned().collect();
-    let edges = |t: &[Exact; 3]| [0, 1, 2].map(|i| [t[i].clone(), t[(i + 1) % 3].clone()]);
-    for (s, t) in [(a, b), (b, a)] {
-        let normal = cross(&minus(&t[1], &t[0]), &minus(&t[2], &t[0]));
-        for [p, q] in edges(s) {
-            let along_edge = dot(&normal, &minus(&q, &p));
-            if !along_edge.is_zero() {
-                found.push(along(&p, &q, &(dot(&normal, &minus(&t[0], &p)) / along_edge)));
-            }
-            for [r, w] in edges(t) {
-                let both = cross(&minus(&q, &p), &minus(&w, &r));
-                if !is_zero(&both) {
-                    let t = dot(&cross(&minus(&r, &p), &minus(&w, &r)), &both) / dot(&both, &both);
-                    found.push(along(&p, &q, &t));
-                }
-            }
-        }
-    }
-    found
-}
 
 /// Whether two triangles with common vertices have a common point beyond these and the edges between them: some corner of the
 /// convex set of common points is beyond the convex hull of the common vertices. `faces`: vertex numbers, or classes.
@@ -96,7 +20,7 @@ fn oracle(faces: [[u32; 3]; 2], corners: [[DVec3; 3]; 2]) -> bool {
     if faces[0].iter().all(|v| is_common(faces[1], v)) && faces[1].iter().all(|v| is_common(faces[0], v)) {
         return true;
     }
-    let common: Vec<Exact> =
+    let common: Vec<Vector> =
         (0..3).filter(|&i| is_common(faces[1], &faces[0][i])).map(|i| a[i].clone()).collect();
     candidates(&a, &b).iter().any(|x| is_in_hull(x, &a) && is_in_hull(x, &b) && !is_in_hull(x, &common))
 }
@@ -257,7 +181,7 @@ fn detectors_list_all_folded_pairs() {
     let (mut shared, mut apart) = (0, 0);
     for case in 0..cases(24) {
         let (rest, mut faces) = random_mesh(random);
-        // Exact fractions take long.
+        // The oracle takes long.
         faces.truncate(24);
         let mesh = TriMesh::new(rest.clone(), faces.clone()).unwrap();
         let mut detector = Detector::with_filter(&mesh, &folded()).unwrap();

@@ -1,14 +1,13 @@
-//! The common points of two triangles against rational arithmetic. The cases are those of `intersect.rs`, which calls
+//! The common points of two triangles against exact arithmetic. The cases are those of `intersect.rs`, which calls
 //! [`check`] for each.
 
 use glam::DVec3;
-use num_rational::BigRational;
-use num_traits::{One, Signed, Zero};
 use sscc::intersect_triangle_triangle;
 use sscc::parts::{Aabb, Feature, Intersection, IntersectionPoint, intersection_triangle_triangle};
+use sscc_testing::Dyadic;
 
 use crate::common::Random;
-use crate::common::exact::{Vector, between, clip, cross, dot, exact, is_zero, minus, number};
+use crate::common::exact::{Point, Vector, are_opposite, common_corners, cross, dot, exact, is_zero, minus};
 
 type Triangle = [DVec3; 3];
 
@@ -18,13 +17,13 @@ pub fn check(a: &Triangle, b: &Triangle) {
     assert_eq!(found.is_some(), intersect_triangle_triangle(a, b), "{a:?} {b:?}");
     assert_symmetric(a, b, found.as_ref());
     let Some(found) = found else { return };
-    let mut corners: Vec<Vector> = found.points().iter().map(|point| check_point(a, b, point)).collect();
+    let mut corners: Vec<Point> = found.points().iter().map(|point| check_point(a, b, point)).collect();
     match &found {
         Intersection::Polygon(_) => assert_convex(&corners),
         _ => assert!(corners.len() <= 2),
     }
     corners.sort();
-    assert_eq!(corners, clip(&a.map(exact), &b.map(exact)), "{a:?} {b:?}");
+    assert_eq!(corners, common_corners(&a.map(exact), &b.map(exact)), "{a:?} {b:?}");
 }
 
 /// Asserts that other orders of the triangles and of their corners give the same points, bit for bit.
@@ -42,7 +41,7 @@ fn assert_symmetric(a: &Triangle, b: &Triangle, found: Option<&Intersection>) {
 }
 
 /// Asserts that a point is the only common point of its features, and rounded within the stated bound. Returns it exactly.
-fn check_point(a: &Triangle, b: &Triangle, point: &IntersectionPoint) -> Vector {
+fn check_point(a: &Triangle, b: &Triangle, point: &IntersectionPoint) -> Point {
     let triangles = [a, b];
     let hulls = [0, 1].map(|side| feature_corners(triangles[side], point.features[side]));
     let x = common_point(&hulls[0], &hulls[1]);
@@ -54,22 +53,25 @@ fn check_point(a: &Triangle, b: &Triangle, point: &IntersectionPoint) -> Vector 
     let is_vertex = hulls.iter().any(|hull| hull.len() == 1);
     let shortest = edges.min_by(|e, f| e.length_squared().total_cmp(&f.length_squared()));
     let Some(edge) = shortest.filter(|_| !is_vertex) else {
-        assert_eq!(exact(position), x);
+        assert_eq!(Point::from(&exact(position)), x);
         return x;
     };
-    let u = number(f64::EPSILON / 2.0);
-    for k in 0..3 {
-        let error = (number(position[k]) - &x[k]).abs();
-        let bound = &u * number(position[k].abs())
-            + &u * number(edge[k]) * BigRational::from_integer(3.into())
-            + number(f64::from_bits(1));
-        assert!(error <= bound, "{point:?} {a:?} {b:?}");
+    let u = Dyadic::new(f64::EPSILON / 2.0);
+    for (k, error) in weighted_errors(position, &x).into_iter().enumerate() {
+        let [size, edge] = [position[k].abs(), edge[k]].map(Dyadic::new);
+        let bound = &u * size + &u * edge * Dyadic::new(3.0) + Dyadic::new(f64::from_bits(1));
+        assert!(error <= bound * &x.weight, "{point:?} {a:?} {b:?}");
     }
     for hull in hulls {
         let aabb = Aabb::of_points(hull);
         assert!(!aabb.is_disjoint(&Aabb { lower: position, upper: position }), "{point:?}");
     }
     x
+}
+
+/// The errors of rounded coordinates, times the weight of the exact point.
+fn weighted_errors(position: DVec3, x: &Point) -> [Dyadic; 3] {
+    std::array::from_fn(|k| (Dyadic::new(position[k]) * &x.weight - &x.vector[k]).abs())
 }
 
 fn feature_corners(triangle: &Triangle, feature: Feature) -> Vec<DVec3> {
@@ -81,39 +83,37 @@ fn feature_corners(triangle: &Triangle, feature: Feature) -> Vec<DVec3> {
 }
 
 /// The common point of the affine hulls of two features.
-fn common_point(a: &[DVec3], b: &[DVec3]) -> Vector {
+fn common_point(a: &[DVec3], b: &[DVec3]) -> Point {
     let [a, b] = [a, b].map(|hull| hull.iter().map(|p| exact(*p)).collect::<Vec<_>>());
     match (a.as_slice(), b.as_slice()) {
-        ([x], _) | (_, [x]) => x.clone(),
+        ([x], _) | (_, [x]) => x.into(),
         ([p, q], [o, r, s]) | ([o, r, s], [p, q]) => {
             let normal = cross(&minus(r, o), &minus(s, o));
             let [d_p, d_q] = [p, q].map(|x| dot(&normal, &minus(x, o)));
-            between(p, q, &(&d_p / (&d_p - &d_q)))
+            Point::mean(p, q, [-d_q, d_p])
         }
         ([p, q], [r, s]) => {
             // `(r - p) x (s - r) = t (q - p) x (s - r)`.
             let (left, right) = (cross(&minus(r, p), &minus(s, r)), cross(&minus(q, p), &minus(s, r)));
             let k = (0..3).find(|&k| !right[k].is_zero()).expect("edges that cross are not parallel");
-            between(p, q, &(&left[k] / &right[k]))
+            Point::mean(p, q, [&right[k] - &left[k], left[k].clone()])
         }
         _ => panic!("two faces have no corner in common"),
     }
 }
 
 /// Asserts that x is in the relative interior of the hull.
-fn assert_is_inside(hull: &[DVec3], x: &Vector) {
+fn assert_is_inside(hull: &[DVec3], x: &Point) {
     let hull: Vec<Vector> = hull.iter().map(|p| exact(*p)).collect();
-    match hull.as_slice() {
-        [p] => assert_eq!(p, x),
-        [p, q] => {
-            let (u, v) = (minus(p, x), minus(q, x));
-            assert!(is_zero(&cross(&u, &v)) && dot(&u, &v).is_negative());
-        }
-        [p, q, r] => {
+    let offsets: Vec<Vector> = hull.iter().map(|p| x.to(&p.into())).collect();
+    match (hull.as_slice(), offsets.as_slice()) {
+        (_, [p]) => assert!(is_zero(p)),
+        (_, [p, q]) => assert!(are_opposite(p, q)),
+        ([p, q, r], [from_p, from_q, from_r]) => {
             let normal = cross(&minus(q, p), &minus(r, p));
-            assert!(dot(&normal, &minus(x, p)).is_zero());
-            for (p, q) in [(p, q), (q, r), (r, p)] {
-                assert!(dot(&normal, &cross(&minus(q, p), &minus(x, p))).is_positive());
+            assert!(dot(&normal, from_p).is_zero());
+            for (p, q) in [(from_p, from_q), (from_q, from_r), (from_r, from_p)] {
+                assert!(dot(&normal, &cross(p, q)).is_positive());
             }
         }
         _ => unreachable!(),
@@ -121,10 +121,10 @@ fn assert_is_inside(hull: &[DVec3], x: &Vector) {
 }
 
 /// Asserts that the corners, in this order, turn the same way.
-fn assert_convex(corners: &[Vector]) {
+fn assert_convex(corners: &[Point]) {
     let turn = |i: usize| {
         let [p, q, r] = [0, 1, 2].map(|k| &corners[(i + k) % corners.len()]);
-        cross(&minus(q, p), &minus(r, q))
+        cross(&p.to(q), &q.to(r))
     };
     assert!((3..=6).contains(&corners.len()));
     for i in 0..corners.len() {
@@ -136,7 +136,7 @@ fn assert_convex(corners: &[Vector]) {
 #[test]
 fn nearly_parallel() {
     let mut random = Random::new(51);
-    let (mut crossings, mut worst) = (0, BigRational::zero());
+    let mut crossings = 0;
     for i in 0..sscc_testing::cases(1_000) {
         let tilt = 2.0_f64.powi(-(i % 60));
         let offset = random.vector() * 10.0;
@@ -153,14 +153,12 @@ fn nearly_parallel() {
         for point in found.iter().flat_map(Intersection::points) {
             let hulls = [feature_corners(&a, point.features[0]), feature_corners(&b, point.features[1])];
             let x = common_point(&hulls[0], &hulls[1]);
-            let scale = number(offset.abs().max_element() + 10.0) * number(f64::EPSILON / 2.0);
-            let error = (0..3).map(|k| (number(point.position[k]) - &x[k]).abs()).max().unwrap() / scale;
-            worst = worst.max(error);
+            let bound = Dyadic::new((offset.abs().max_element() + 10.0) * f64::EPSILON) * &x.weight;
+            assert!(weighted_errors(point.position, &x).iter().all(|error| *error < bound), "{point:?}");
             crossings += 1;
         }
     }
     assert!(crossings > sscc_testing::threshold(800), "{crossings}");
-    assert!(worst < BigRational::one() + BigRational::one(), "{worst}");
 }
 
 /// Determinants of 1 and 2 whose products have about 140 bits: 106 bits lose all digits.

@@ -124,9 +124,10 @@ fn compare(
             assert_eq!(alone.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
             assert_eq!(full.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
             seen.states += 1;
-            none.discrete(&q).unwrap();
-            let of_node = alone.statistics().proof == Proof::Search
-                && alone.statistics().box_tests < none.statistics().box_tests;
+            let of_node = alone.statistics().proof == Proof::Search && {
+                none.discrete(&q).unwrap();
+                alone.statistics().box_tests < none.statistics().box_tests
+            };
             seen.roots += usize::from(alone.statistics().proof == Proof::Local);
             seen.nodes += usize::from(of_node);
             seen.hits_beside += usize::from(of_node && !expected.is_empty());
@@ -134,9 +135,10 @@ fn compare(
                 let expected = oracle.continuous(&start, &q).unwrap().to_vec();
                 assert_eq!(alone.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
                 assert_eq!(full.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
-                none.continuous(&start, &q).unwrap();
-                let of_node = alone.statistics().proof == Proof::Search
-                    && alone.statistics().box_tests < none.statistics().box_tests;
+                let of_node = alone.statistics().proof == Proof::Search && {
+                    none.continuous(&start, &q).unwrap();
+                    alone.statistics().box_tests < none.statistics().box_tests
+                };
                 seen.swept_roots += usize::from(alone.statistics().proof == Proof::Local);
                 seen.swept_nodes += usize::from(of_node);
                 seen.swept_hits_beside += usize::from(of_node && !expected.is_empty());

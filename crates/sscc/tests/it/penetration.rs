@@ -1,11 +1,9 @@
-//! Penetration depths against rational arithmetic, and against the exact test of translated triangles.
+//! Penetration depths against exact arithmetic, and against the exact test of translated triangles.
 
 use glam::DVec3;
-use num_rational::BigRational;
-use num_traits::{ToPrimitive, Zero};
 use sscc::parts::penetration_triangle_triangle;
 use sscc::{intersect_triangle_triangle, limits};
-use sscc_testing::{cases, threshold};
+use sscc_testing::{Dyadic, cases, threshold};
 
 use crate::common::Random;
 use crate::common::exact::{Vector, cross, dot, exact, is_zero, minus};
@@ -15,8 +13,9 @@ type Triangle = [DVec3; 3];
 /// The stated error, over the largest difference of coordinates.
 const MAX_ERROR: f64 = 1.0 / (1_u64 << 48) as f64;
 
-/// The exact square of the depth: of the distance of 0 to the boundary of all differences `x - y`.
-fn squared_depth(a: &Triangle, b: &Triangle) -> BigRational {
+/// The exact square of the depth, of the distance of 0 to the boundary of all differences `x - y`: as numerator and
+/// denominator.
+fn squared_depth(a: &Triangle, b: &Triangle) -> [Dyadic; 2] {
     let (a, b) = (a.map(exact), b.map(exact));
     let edges = |t: &[Vector; 3]| [0, 1, 2].map(|i| minus(&t[(i + 1) % 3], &t[i]));
     let (e, f) = (edges(&a), edges(&b));
@@ -24,25 +23,26 @@ fn squared_depth(a: &Triangle, b: &Triangle) -> BigRational {
     normals.extend(e.iter().flat_map(|e| f.iter().map(|f| cross(e, f))));
     let differences: Vec<Vector> = a.iter().flat_map(|p| b.iter().map(|q| minus(p, q))).collect();
     let squares = normals.iter().filter(|normal| !is_zero(normal)).map(|normal| {
-        let along: Vec<BigRational> = differences.iter().map(|d| dot(normal, d)).collect();
+        let along: Vec<Dyadic> = differences.iter().map(|d| dot(normal, d)).collect();
         let (lower, upper) = (along.iter().min().unwrap(), along.iter().max().unwrap());
-        let h = upper.clone().min(-lower.clone());
-        &h * &h / dot(normal, normal)
+        let h = upper.clone().min(-lower);
+        [&h * &h, dot(normal, normal)]
     });
-    squares.min().unwrap_or_else(BigRational::zero)
+    let smallest = squares.min_by(|[n, d], [m, e]| (n * e).cmp(&(m * d)));
+    smallest.unwrap_or_else(|| [0.0, 1.0].map(Dyadic::new))
 }
 
-/// The square root, rounded; the square may be outside the range of f64.
-fn root(square: &BigRational) -> f64 {
-    if square.is_zero() {
+/// The square root of a quotient, rounded; the square may be outside the range of f64.
+fn root(square: &[Dyadic; 2]) -> f64 {
+    if square[0].is_zero() {
         return 0.0;
     }
-    let bits = |x: &BigRational| x.numer().bits() as i32 - x.denom().bits() as i32;
-    let exponent = bits(square) / 2;
-    let four = BigRational::from_integer(4.into());
-    let scaled = square * four.pow(-exponent);
-    let root = scaled.to_f64().unwrap().sqrt();
-    root * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
+    let [(n, of_n), (d, of_d)] = square.each_ref().map(Dyadic::mantissa_and_exponent);
+    let exponent = of_n - of_d;
+    // An even power of two is left out of the root.
+    let root = (n / d * 2.0_f64.powi(exponent.rem_euclid(2))).sqrt();
+    let half = exponent.div_euclid(2);
+    root * 2.0_f64.powi(half / 2) * 2.0_f64.powi(half - half / 2)
 }
 
 /// The largest difference of coordinates of a corner of each.
@@ -58,7 +58,7 @@ pub fn check(a: &Triangle, b: &Triangle) -> Option<(f64, f64)> {
     assert!((found.direction.length() - 1.0).abs() < 4.0 * f64::EPSILON, "{found:?} {a:?} {b:?}");
     let square = squared_depth(a, b);
     let (expected, size) = (root(&square), size(a, b));
-    assert_eq!(found.depth == 0.0, square.is_zero(), "{found:?} {expected:e} {a:?} {b:?}");
+    assert_eq!(found.depth == 0.0, square[0].is_zero(), "{found:?} {expected:e} {a:?} {b:?}");
     let error = (found.depth - expected).abs();
     let allowed = expected * 8.0 * f64::EPSILON + size * MAX_ERROR + f64::from_bits(1);
     assert!(error <= allowed, "{found:?} {expected:e}, error {error:e}, allowed {allowed:e}: {a:?} {b:?}");

@@ -1,7 +1,6 @@
 //! Residuals of an affine map of the modes, against exact arithmetic.
 
-use num_rational::BigRational;
-use sscc_testing::{cases, threshold};
+use sscc_testing::{Dyadic, cases, threshold};
 
 use super::*;
 use crate::bounds::pair_corners::PairCorners;
@@ -49,19 +48,19 @@ fn residuals_hold_what_rounding_moves_corners_by() {
         assert!(affine.fit(&offsets, |i| modes[i]));
         assert_eq!(in_baseline, bits(&affine));
         // Both sides exactly: sums over the corners of the triangles, whose weights are exact.
-        let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> BigRational {
+        let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> Dyadic {
             (0..3).map(|corner| exact(weights[corner]) * exact(of(corner))).sum()
         };
         for i in 0..3 {
             for j in 0..3 {
-                let d: [BigRational; 3] = std::array::from_fn(|axis| {
+                let d: [Dyadic; 3] = std::array::from_fn(|axis| {
                     sum(b[j], &|v| pair.corners.b[v][axis]) - sum(a[i], &|v| pair.corners.a[v][axis])
                 });
                 let mut square = exact(0.0);
                 for (axis, k) in (0..3).flat_map(|axis| (0..rank).map(move |k| (axis, k))) {
                     let at = axis * row_len + k;
                     let relative = sum(b[j], &|v| pair.modes_b[v][at]) - sum(a[i], &|v| pair.modes_a[v][at]);
-                    let fitted: BigRational =
+                    let fitted: Dyadic =
                         (0..3).map(|c| exact(affine.gradient[(3 * axis + c) * row_len + k]) * &d[c]).sum();
                     let left = relative - fitted;
                     square += &left * &left;

@@ -37,7 +37,7 @@ fn corners_that_cancel_keep_their_rate() {
         let bound = bound_corners_along(&n, &m, DVec3::Z, &scaled, &mut scratch);
         // The corners that face each other, exactly.
         let distance = exact(m.center.z) - exact(1.0) - (exact(n.center.z) + exact(1.0));
-        let square: num_rational::BigRational = (0..rank)
+        let square: sscc_testing::Dyadic = (0..rank)
             .map(|k| {
                 let at = |node: &NodeModes, side: f64| {
                     exact(node.modes[2 * row_len + k]) - exact(side) * exact(node.gradient[8 * row_len + k])

@@ -2,7 +2,7 @@
 //! exact arithmetic do not.
 
 use glam::DVec3;
-use num_rational::BigRational;
+use sscc_testing::Dyadic;
 
 use super::models::{all_bounds, node_pair_bound};
 use super::random::Random;
@@ -11,8 +11,8 @@ use crate::model::rounding::{norm_up, quotient_down};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
 /// A number in exact arithmetic.
-pub(crate) fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+pub(crate) fn exact(x: f64) -> Dyadic {
+    Dyadic::new(x)
 }
 
 /// Two equal horizontal faces of these corners, at two heights; modes move each up or down as a whole.
@@ -74,7 +74,7 @@ fn roots_are_rounded_up_and_quotients_down() {
     for case in 0..2000 {
         let mut row = vec![0.0; padded_rank(1 + case % 30)];
         row.iter_mut().for_each(|x| *x = random.power(-3.0, 3.0));
-        let square: BigRational = row.iter().map(|x| exact(*x) * exact(*x)).sum();
+        let square: Dyadic = row.iter().map(|x| exact(*x) * exact(*x)).sum();
         let norm = exact(norm_up(dot(&row, &row), row.len()));
         assert!(&norm * &norm >= square && &norm * &norm <= square * &larger * &larger, "{row:?}");
         let (x, y) = (random.power(-9.0, 9.0), random.power(-9.0, 9.0));

@@ -1,27 +1,26 @@
 //! Signs of orientation determinants against exact arithmetic.
 
 use super::*;
-use num_rational::BigRational;
-use num_traits::{Signed, ToPrimitive};
+use sscc_testing::Dyadic;
 
-/// `x` in exact arithmetic.
-fn rational(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+/// The sign of an exact number.
+fn sign(x: &Dyadic) -> i8 {
+    i8::from(x.is_positive()) - i8::from(x.is_negative())
 }
 
 /// The sign of the 3 x 3 determinant of differences, in exact arithmetic, by its six products.
 fn naive_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
-    let m = [b, c, d].map(|p| [0, 1, 2].map(|k| rational(p[k]) - rational(a[k])));
+    let m = [b, c, d].map(|p| [0, 1, 2].map(|k| Dyadic::new(p[k]) - Dyadic::new(a[k])));
     let product = |i: usize, j: usize, k: usize| &m[0][i] * &m[1][j] * &m[2][k];
     let plus = product(0, 1, 2) + product(1, 2, 0) + product(2, 0, 1);
     let minus = product(2, 1, 0) + product(1, 0, 2) + product(0, 2, 1);
-    (plus - minus).signum().to_i8().unwrap()
+    sign(&(plus - minus))
 }
 
 /// The sign of the 2 x 2 determinant of differences, in exact arithmetic.
 fn naive_2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
-    let m = [b, c].map(|p| [0, 1].map(|k| rational(p[k]) - rational(a[k])));
-    (&m[0][0] * &m[1][1] - &m[0][1] * &m[1][0]).signum().to_i8().unwrap()
+    let m = [b, c].map(|p| [0, 1].map(|k| Dyadic::new(p[k]) - Dyadic::new(a[k])));
+    sign(&(&m[0][0] * &m[1][1] - &m[0][1] * &m[1][0]))
 }
 
 /// Numbers in `-1..1`, the same in every run.

@@ -1,7 +1,6 @@
 //! Combinations of modes of shapes with handles, and their bounds.
 
-use num_rational::BigRational;
-use sscc_testing::Numbers;
+use sscc_testing::{Dyadic, Numbers, common_denominator};
 
 use super::super::exact_matrix::exact;
 use super::*;
@@ -152,24 +151,28 @@ fn residuals_include_their_rounding() {
         let fits = Fits::new(&patch, 45).unwrap();
         let modes = AffineModes::with_directions(&patch, &fits, fits.null_vectors());
         assert!(modes.combinations.len() >= 12);
+        // All lengths are multiplied by the sizes of the modes, so that they have no quotients.
+        let moving: Vec<usize> = (0..RANK).filter(|k| model.mode_displacement_bound(*k, 1.0) > 0.0).collect();
+        let sizes: Vec<Dyadic> =
+            moving.iter().map(|k| exact(model.mode_displacement_bound(*k, 1.0))).collect();
+        let (denominator, others) = common_denominator(&sizes);
         for Combination { factors, map, residual } in &modes.combinations {
             let shift = fits.of(factors).1;
-            let bound = exact(*residual) * exact(*residual);
+            let bound = exact(*residual) * &denominator;
+            let bound = &bound * &bound;
             let mut most = exact(0.0);
             for v in 0..90 {
                 let (u, p) = (model.modes().of_vertex(v), patch.position(v));
                 let of_axis = |axis: usize| {
-                    let moved: BigRational = (0..RANK)
-                        .filter(|k| model.mode_displacement_bound(*k, 1.0) > 0.0)
-                        .map(|k| {
-                            let share = exact(u[k][axis]) / exact(model.mode_displacement_bound(k, 1.0));
-                            share * exact(factors[k])
-                        })
+                    let moved: Dyadic = moving
+                        .iter()
+                        .zip(&others)
+                        .map(|(k, others)| exact(u[*k][axis]) * exact(factors[*k]) * others)
                         .sum();
-                    let mapped: BigRational = (0..3).map(|c| exact(map.col(c)[axis]) * exact(p[c])).sum();
-                    moved - mapped - exact(shift[axis])
+                    let mapped: Dyadic = (0..3).map(|c| exact(map.col(c)[axis]) * exact(p[c])).sum();
+                    moved - (mapped + exact(shift[axis])) * &denominator
                 };
-                let square: BigRational = (0..3).map(of_axis).map(|x| &x * &x).sum();
+                let square: Dyadic = (0..3).map(of_axis).map(|x| &x * &x).sum();
                 most = most.max(square);
             }
             assert!(most <= bound, "case {case}");
@@ -201,17 +204,16 @@ fn the_rest_of_factors_is_within_its_error() {
         });
         let amounts: Vec<f64> = amounts.collect();
         assert_eq!(rest, free.factors);
-        let magnitude = |x: BigRational| if x < exact(0.0) { -x } else { x };
         let mut error = exact(0.0);
         for (k, (f, computed)) in factors.iter().zip(&free.factors).enumerate() {
             let taken = modes.combinations.iter().zip(&amounts);
-            let taken: BigRational = taken.map(|(one, a)| exact(one.factors[k]) * exact(*a)).sum();
-            error += magnitude(exact(*f) - taken - exact(*computed));
+            let taken: Dyadic = taken.map(|(one, a)| exact(one.factors[k]) * exact(*a)).sum();
+            error += (exact(*f) - taken - exact(*computed)).abs();
         }
         let mut map_error = exact(0.0);
         for e in 0..9 {
             let entry = |map: &DMat3| exact(map.to_cols_array()[e]);
-            let sum: BigRational =
+            let sum: Dyadic =
                 modes.combinations.iter().zip(&amounts).map(|(one, a)| entry(&one.map) * exact(*a)).sum();
             let difference = sum - entry(&free.map);
             map_error += &difference * &difference;
@@ -219,9 +221,8 @@ fn the_rest_of_factors_is_within_its_error() {
         let bounds = [exact(free.error), exact(free.map_error) * exact(free.map_error)];
         for ((error, bound), worst) in [error, map_error].into_iter().zip(bounds).zip(&mut worst) {
             assert!(error <= bound, "case {case}");
-            let quotient = error / bound;
-            let share = quotient.numer().bits() as f64 - quotient.denom().bits() as f64;
-            *worst = worst.max(share.exp2());
+            let [(n, of_n), (d, of_d)] = [error, bound].map(|x| x.mantissa_and_exponent());
+            *worst = worst.max(n / d * 2.0_f64.powi(of_n - of_d));
         }
     }
     assert!(worst[0] > 1e-3 && worst[1] > 1e-6, "{worst:?}");

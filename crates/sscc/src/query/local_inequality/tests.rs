@@ -1,8 +1,6 @@
 //! The inequality of local certificates against exact arithmetic.
 
-use num_rational::BigRational;
-use num_traits::ToPrimitive;
-use sscc_testing::Numbers;
+use sscc_testing::{Dyadic, Numbers};
 
 use super::super::exact_matrix::{Matrix, exact, gram, is_above, matrix, of_map};
 use super::super::local_tables::tables_of;
@@ -89,7 +87,7 @@ fn allowed_in<const E: usize, M: VertexMotion<E>>(
 fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
     matrix(|i, j| {
         let unit = exact(f64::from(u8::from(i == j)));
-        certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<BigRational>()
+        certificate.gradients.iter().zip(f).map(|(g, f)| exact(g.col(j)[i]) * exact(*f)).sum::<Dyadic>()
             + unit
     })
 }
@@ -97,10 +95,10 @@ fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
 /// Whether `ratio |W f| < sigma_min(I + G f)`.
 fn holds(certificate: &Certificate, ratio: f64, f: &[f64]) -> bool {
     let map = exact_map(certificate, f);
-    let strain: BigRational = certificate
+    let strain: Dyadic = certificate
         .ellipsoid
         .iter()
-        .map(|row| row.iter().zip(f).map(|(w, f)| exact(*w) * exact(*f)).sum::<BigRational>())
+        .map(|row| row.iter().zip(f).map(|(w, f)| exact(*w) * exact(*f)).sum::<Dyadic>())
         .map(|x| &x * &x)
         .sum();
     is_above(&gram(&map), &(strain * exact(ratio) * exact(ratio)))
@@ -251,26 +249,25 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
         // Whether the comparison holds at a time of the motion, up to rounding on its smaller side.
         let holds = |ratio: f64, amounts: &[Vec<f64>; 2], t: f64| {
             let mix = |x: f64, y: f64| exact(x) * exact(1.0 - t) + exact(y) * exact(t);
-            let a: Vec<BigRational> = amounts[0].iter().zip(&amounts[1]).map(|(x, y)| mix(*x, *y)).collect();
-            let left: Vec<BigRational> = (own..rank)
+            let a: Vec<Dyadic> = amounts[0].iter().zip(&amounts[1]).map(|(x, y)| mix(*x, *y)).collect();
+            let left: Vec<Dyadic> = (own..rank)
                 .map(|k| {
                     let taken = parts.iter().zip(&a).map(|((n, _, _), a)| exact(n[k]) * a);
-                    mix(ends[0][k], ends[1][k]) - taken.sum::<BigRational>()
+                    mix(ends[0][k], ends[1][k]) - taken.sum::<Dyadic>()
                 })
                 .collect();
             let map = matrix(|i, j| {
                 let own = certificate.gradients.iter().zip(&left).map(|(g, f)| exact(g.col(j)[i]) * f);
                 let affine = parts.iter().zip(&a).map(|((_, map, _), a)| exact(map.col(j)[i]) * a);
-                own.chain(affine).sum::<BigRational>() + exact(f64::from(u8::from(i == j)))
+                own.chain(affine).sum::<Dyadic>() + exact(f64::from(u8::from(i == j)))
             });
             let image = certificate
                 .ellipsoid
                 .iter()
-                .map(|row| row.iter().zip(&left).map(|(w, f)| exact(*w) * f).sum::<BigRational>());
-            let square: BigRational = image.map(|x| &x * &x).sum();
-            let strain = square.to_f64().unwrap().sqrt();
-            let length: f64 =
-                parts.iter().zip(&a).map(|((_, _, e), a)| 2.0 * e * a.to_f64().unwrap().abs()).sum();
+                .map(|row| row.iter().zip(&left).map(|(w, f)| exact(*w) * f).sum::<Dyadic>());
+            let square: Dyadic = image.map(|x| &x * &x).sum();
+            let strain = square.to_f64().sqrt();
+            let length: f64 = parts.iter().zip(&a).map(|((_, _, e), a)| 2.0 * e * a.to_f64().abs()).sum();
             is_below((ratio * strain + per_error * length) * (1.0 - 1e-9), &map)
         };
         let amounts = [0, 1].map(|end| amounts_of(&parts, &ends[end], &two.ends[end].exact));
@@ -363,7 +360,7 @@ fn flat_patches_allow_at_most_what_is_exact() {
             let ([flat], _) = flat_maps(&[mean], across);
             let image = flat * across;
             let map = exact_map(&certificate, at);
-            let own: [BigRational; 3] =
+            let own: [Dyadic; 3] =
                 std::array::from_fn(|i| (0..3).map(|k| &map[i][k] * exact(across[k])).sum());
             let map = matrix(|i, j| &map[i][j] + (exact(image[i]) - &own[i]) * exact(across[j]));
             let turned = (map_of(at) * across - image).length();

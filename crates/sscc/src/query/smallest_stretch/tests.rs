@@ -1,7 +1,7 @@
 //! Lower bounds of stretches against exact arithmetic.
 
 use glam::DVec3;
-use sscc_testing::Numbers;
+use sscc_testing::{Dyadic, Numbers};
 
 use super::super::exact_matrix::{exact, gram, is_above, matrix, of_map};
 use super::*;
@@ -130,9 +130,7 @@ fn stretches_between_two_maps_are_lower_bounds() {
         (short, long) = (short + usize::from(is_short), long + usize::from(!is_short));
         let exact_ends = ends.map(|map| of_map(&map));
         for t in [0.0, 0.25, 0.5, 0.625, 1.0] {
-            let mix = |x: num_rational::BigRational, y: num_rational::BigRational| {
-                x * exact(1.0 - t) + y * exact(t)
-            };
+            let mix = |x: Dyadic, y: Dyadic| x * exact(1.0 - t) + y * exact(t);
             let [x, y] = &exact_ends;
             let map = matrix(|i, j| mix(x[i][j].clone(), y[i][j].clone()));
             let least = mix(exact(bounds[0]), exact(bounds[1]));

@@ -1,109 +1,151 @@
-//! Vectors of rational numbers, and the common points of two triangles by clipping.
+//! Points and vectors of exact numbers, and the corners of the common points of two triangles.
+
+use std::cmp::Ordering;
 
 use glam::DVec3;
-use num_rational::BigRational;
-use num_traits::{Signed, Zero};
+use sscc_testing::Dyadic;
 
-/// A point or a vector.
-pub type Vector = [BigRational; 3];
+/// A vector, or a point that is one of doubles.
+pub type Vector = [Dyadic; 3];
 
-pub fn exact(p: DVec3) -> Vector {
-    p.to_array().map(number)
+/// A point as a vector over a positive weight. It is never reduced: comparisons need products alone.
+#[derive(Clone, Debug)]
+pub struct Point {
+    pub vector: Vector,
+    pub weight: Dyadic,
 }
 
-/// A finite double.
-pub fn number(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+impl From<&Vector> for Point {
+    fn from(vector: &Vector) -> Self {
+        Self { vector: vector.clone(), weight: Dyadic::new(1.0) }
+    }
+}
+
+impl Point {
+    /// The mean of two points with these weights, whose sum is not 0.
+    pub fn mean(p: &Vector, q: &Vector, weights: [Dyadic; 2]) -> Self {
+        let sum = &weights[0] + &weights[1];
+        assert!(!sum.is_zero());
+        let [at_p, at_q] = if sum.is_negative() { weights.map(|weight| -weight) } else { weights };
+        Self { vector: std::array::from_fn(|k| &at_p * &p[k] + &at_q * &q[k]), weight: sum.abs() }
+    }
+
+    /// The difference to another point, times both weights.
+    pub fn to(&self, other: &Self) -> Vector {
+        std::array::from_fn(|k| &other.vector[k] * &self.weight - &self.vector[k] * &other.weight)
+    }
+
+    /// The difference from a point of doubles, times the weight.
+    fn offset_from(&self, p: &Vector) -> Vector {
+        std::array::from_fn(|k| &self.vector[k] - &p[k] * &self.weight)
+    }
+}
+
+impl Ord for Point {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let zero = Dyadic::new(0.0);
+        let order = |d: Dyadic| zero.cmp(&d);
+        self.to(other).map(order).into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    }
+}
+
+impl PartialOrd for Point {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Point {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Point {}
+
+pub fn exact(p: DVec3) -> Vector {
+    p.to_array().map(Dyadic::new)
 }
 
 pub fn minus(u: &Vector, v: &Vector) -> Vector {
     std::array::from_fn(|k| &u[k] - &v[k])
 }
 
-pub fn dot(u: &Vector, v: &Vector) -> BigRational {
+pub fn dot(u: &Vector, v: &Vector) -> Dyadic {
     &u[0] * &v[0] + &u[1] * &v[1] + &u[2] * &v[2]
 }
 
 pub fn cross(u: &Vector, v: &Vector) -> Vector {
-    let minor = |i: usize, j: usize| &u[i] * &v[j] - &u[j] * &v[i];
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
+    [1, 2, 0].map(|i| {
+        let j = (i + 1) % 3;
+        &u[i] * &v[j] - &u[j] * &v[i]
+    })
 }
 
 pub fn is_zero(v: &Vector) -> bool {
-    v.iter().all(Zero::is_zero)
+    v.iter().all(Dyadic::is_zero)
 }
 
-/// `p + t (q - p)`.
-pub fn between(p: &Vector, q: &Vector, t: &BigRational) -> Vector {
-    std::array::from_fn(|k| &p[k] + t * (&q[k] - &p[k]))
+/// Whether two vectors are multiples of each other and point in opposite directions.
+pub fn are_opposite(u: &Vector, v: &Vector) -> bool {
+    dot(u, v).is_negative() && [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| &u[i] * &v[j] == &u[j] * &v[i])
 }
 
-/// The points x with `normal . (x - origin) >= 0`.
-struct HalfSpace {
-    normal: Vector,
-    origin: Vector,
-}
-
-impl HalfSpace {
-    fn height(&self, x: &Vector) -> BigRational {
-        dot(&self.normal, &minus(x, &self.origin))
+/// Whether x is in the convex hull of these points, of which there may be one, two or three.
+pub fn is_in_hull(x: &Point, hull: &[Vector]) -> bool {
+    if let [p, q, r] = hull {
+        let normal = cross(&minus(q, p), &minus(r, p));
+        if !is_zero(&normal) {
+            let is_inside = |(s, t): (&Vector, &Vector)| {
+                !dot(&normal, &cross(&minus(t, s), &x.offset_from(s))).is_negative()
+            };
+            return dot(&normal, &x.offset_from(p)).is_zero()
+                && [(p, q), (q, r), (r, p)].into_iter().all(is_inside);
+        }
     }
+    // Without area the hull is that of its points, two by two.
+    let offsets: Vec<Vector> = hull.iter().map(|p| x.offset_from(p)).collect();
+    offsets.iter().any(is_zero) || offsets.iter().any(|u| offsets.iter().any(|v| are_opposite(u, v)))
 }
 
-/// The corners of all common points of two triangles, which may be degenerate, by clipping a by half-spaces whose
-/// intersection is b (Sutherland and Hodgman 1974).
-pub fn clip(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Vector> {
-    let mut corners = a.to_vec();
-    for half_space in half_spaces(b) {
-        let mut next = Vec::new();
-        for (i, p) in corners.iter().enumerate() {
-            let q = &corners[(i + 1) % corners.len()];
-            let (at_p, at_q) = (half_space.height(p), half_space.height(q));
-            if !at_p.is_negative() {
-                next.push(p.clone());
-            }
-            if at_p.is_positive() && at_q.is_negative() || at_p.is_negative() && at_q.is_positive() {
-                next.push(between(p, q, &(&at_p / (&at_p - &at_q))));
+/// All points at which an edge of one triangle can leave or enter the other one: corners, and single common points of two
+/// edges, or of an edge and a plane. Among them are all corners of the common points of the two triangles.
+pub fn candidates(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Point> {
+    let mut found: Vec<Point> = a.iter().chain(b).map(Point::from).collect();
+    let edges = |t: &[Vector; 3]| [0, 1, 2].map(|i| [t[i].clone(), t[(i + 1) % 3].clone()]);
+    for (s, t) in [(a, b), (b, a)] {
+        let normal = cross(&minus(&t[1], &t[0]), &minus(&t[2], &t[0]));
+        for [p, q] in edges(s) {
+            let [at_p, at_q] = [&p, &q].map(|x| dot(&normal, &minus(x, &t[0])));
+            if at_p != at_q {
+                found.push(Point::mean(&p, &q, [-at_q, at_p]));
             }
         }
-        corners = next;
     }
-    corners.sort();
-    corners.dedup();
-    let is_between = |x: &Vector, p: &Vector, q: &Vector| {
-        let (u, v) = (minus(p, x), minus(q, x));
-        is_zero(&cross(&u, &v)) && dot(&u, &v).is_negative()
-    };
-    let is_corner = |x: &&Vector| !corners.iter().any(|p| corners.iter().any(|q| is_between(x, p, q)));
-    corners.iter().filter(is_corner).cloned().collect()
+    for [p, q] in edges(a) {
+        for [r, s] in edges(b) {
+            let (along, other, offset) = (minus(&q, &p), minus(&s, &r), minus(&r, &p));
+            let normal = cross(&along, &other);
+            if !is_zero(&normal) && dot(&normal, &offset).is_zero() {
+                // `p + t (q - p)` with `t normal = offset x other`.
+                let part = dot(&cross(&offset, &other), &normal);
+                found.push(Point::mean(&p, &q, [dot(&normal, &normal) - &part, part]));
+            }
+        }
+    }
+    found
 }
 
-/// Half-spaces whose intersection is the hull of the corners.
-fn half_spaces(corners: &[Vector; 3]) -> Vec<HalfSpace> {
-    let [a, b, c] = corners;
-    let normal = cross(&minus(b, a), &minus(c, a));
-    let zero = || -> Vector { std::array::from_fn(|_| BigRational::zero()) };
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(exact);
-    let mut all = Vec::new();
-    let mut flat = |normal: Vector| {
-        all.push(HalfSpace { normal: minus(&zero(), &normal), origin: a.clone() });
-        all.push(HalfSpace { normal, origin: a.clone() });
+/// The corners of all common points of two triangles, which may be degenerate, in order: those common points that are not
+/// between two others.
+pub fn common_corners(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Point> {
+    let mut common = candidates(a, b);
+    common.retain(|x| is_in_hull(x, a) && is_in_hull(x, b));
+    common.sort();
+    common.dedup();
+    let is_corner = |x: &&Point| {
+        let offsets: Vec<Vector> = common.iter().map(|p| x.to(p)).collect();
+        !offsets.iter().enumerate().any(|(i, u)| offsets[..i].iter().any(|v| are_opposite(u, v)))
     };
-    if !is_zero(&normal) {
-        flat(normal.clone());
-        for (p, q) in [(a, b), (b, c), (c, a)] {
-            all.push(HalfSpace { normal: cross(&normal, &minus(q, p)), origin: p.clone() });
-        }
-        return all;
-    }
-    let (first, last) = (corners.iter().min().unwrap(), corners.iter().max().unwrap());
-    let along = minus(last, first);
-    if is_zero(&along) {
-        axes.into_iter().for_each(flat);
-        return all;
-    }
-    axes.iter().for_each(|axis| flat(cross(&along, axis)));
-    all.push(HalfSpace { normal: minus(&zero(), &along), origin: last.clone() });
-    all.push(HalfSpace { normal: along, origin: first.clone() });
-    all
+    common.iter().filter(is_corner).cloned().collect()
 }

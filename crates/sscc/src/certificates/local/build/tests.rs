@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DMat3, DVec3};
-use num_rational::BigRational;
-use sscc_testing::Numbers;
+use sscc_testing::{Dyadic, Numbers, common_denominator};
 
 use super::*;
 use crate::certificates::local::widest_gap::{parents, widest_gap};
@@ -13,8 +12,8 @@ use crate::filter::Relation;
 use crate::test_models::square;
 use crate::{ContactFilter, Modes, TriMesh};
 
-fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+fn exact(x: f64) -> Dyadic {
+    Dyadic::new(x)
 }
 
 /// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` for the modes as they are, not as residuals are computed. Modes are affine maps up to
@@ -67,19 +66,18 @@ fn strains_are_at_least_those_of_exact_residuals() {
             (0..rank).map(|i| (0..rank).map(|k| column(k, i) * f[k]).sum::<f64>().powi(2)).sum::<f64>();
         let total: f64 = f.iter().map(|f| f.abs()).sum();
         let strain = (bounds.ratio * image.sqrt() + bounds.per_factor * total) * (1.0 + 1e-12);
-        let displaced: Vec<[BigRational; 3]> = (0..3 * count)
+        // Lengths are multiplied by the sizes of the modes, so that they have no quotients.
+        let sizes: Vec<Dyadic> = (0..rank).map(|k| exact(model.mode_displacement_bound(k, 1.0))).collect();
+        let (denominator, others) = common_denominator(&sizes);
+        let displaced: Vec<[Dyadic; 3]> = (0..3 * count)
             .map(|v| {
                 let of_vertex = model.modes().of_vertex(v);
                 std::array::from_fn(|c| {
-                    let of_mode = |k: usize| {
-                        let size = exact(model.mode_displacement_bound(k, 1.0));
-                        exact(of_vertex[k][c]) / size * exact(f[k])
-                    };
-                    (0..rank).map(of_mode).sum()
+                    (0..rank).map(|k| exact(of_vertex[k][c]) * exact(f[k]) * &others[k]).sum()
                 })
             })
             .collect();
-        let turned: Vec<Vec<BigRational>> = (0..3)
+        let turned: Vec<Vec<Dyadic>> = (0..3)
             .map(|c| (0..3).map(|j| (0..rank).map(|k| gradient(c, j, k) * exact(f[k])).sum()).collect())
             .collect();
         let table = gaps.near((0, 0)).unwrap().as_ref().unwrap();
@@ -92,15 +90,15 @@ fn strains_are_at_least_those_of_exact_residuals() {
                     let at = |i: u32, j: u32| table.gaps[number(i) * vertices.len() + number(j)];
                     let gap = f64::from(at(i, j).min(at(j, i)));
                     let [x, y] = [i, j].map(|v| patch_model.positions[v as usize]);
-                    let d: Vec<BigRational> = (0..3).map(|c| exact(y[c]) - exact(x[c])).collect();
-                    let square: BigRational = (0..3)
+                    let d: Vec<Dyadic> = (0..3).map(|c| exact(y[c]) - exact(x[c])).collect();
+                    let square: Dyadic = (0..3)
                         .map(|c| {
-                            let affine: BigRational = (0..3).map(|k| &turned[c][k] * &d[k]).sum();
-                            &displaced[j as usize][c] - &displaced[i as usize][c] - affine
+                            let affine: Dyadic = (0..3).map(|k| &turned[c][k] * &d[k]).sum();
+                            &displaced[j as usize][c] - &displaced[i as usize][c] - affine * &denominator
                         })
                         .map(|x| &x * &x)
                         .sum();
-                    let bound = exact(gap) * exact(strain);
+                    let bound = exact(gap) * exact(strain) * &denominator;
                     assert!(square <= &bound * &bound, "case {case}: {i} {j}");
                     checked += 1;
                     close += usize::from(square * exact(4.0) > &bound * &bound);
@@ -225,8 +223,7 @@ fn heights_are_at_most_their_share_of_gaps() {
                         continue;
                     }
                     // Exact arithmetic takes long.
-                    let height: BigRational =
-                        (0..3).map(|c| exact(across[c]) * (exact(q[c]) - exact(p[c]))).sum();
+                    let height: Dyadic = (0..3).map(|c| exact(across[c]) * (exact(q[c]) - exact(p[c]))).sum();
                     let limit = exact(bounds.flatness) * exact(gap);
                     assert!(height <= limit && -height <= limit, "case {case}: {i} {j} of node {n}");
                     close += 1;

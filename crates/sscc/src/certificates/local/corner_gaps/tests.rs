@@ -1,12 +1,11 @@
 //! Gaps of corners against exact arithmetic.
 
-use num_rational::BigRational;
-use sscc_testing::Numbers;
+use sscc_testing::{Dyadic, Numbers};
 
 use super::*;
 
-fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap()
+fn exact(x: f64) -> Dyadic {
+    Dyadic::new(x)
 }
 
 /// No gap along a unit direction is longer than the difference itself, and triangles are at least as far apart as the smallest gap.
@@ -24,7 +23,7 @@ fn gaps_are_at_most_exact() {
         let Some(gaps) = widest_gaps(&differences) else { continue };
         found += 1;
         for (d, gap) in differences.iter().zip(gaps) {
-            let square: BigRational = d.to_array().iter().map(|x| exact(*x) * exact(*x)).sum();
+            let square: Dyadic = d.to_array().iter().map(|x| exact(*x) * exact(*x)).sum();
             assert!(gap > 0.0 && exact(gap) * exact(gap) <= square, "case {case}: {gap} {d}");
             equal += usize::from(gap > d.length() * (1.0 - 1e-5));
         }
