@@ -1,4 +1,5 @@
 //! Bench of the parts of queries and certificates, on the elastic spring: `cargo bench -p sscc-modes --bench parts`.
+#![allow(clippy::expect_used)]
 
 use divan::{Bencher, black_box};
 use glam::DVec3;

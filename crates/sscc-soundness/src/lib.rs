@@ -6,6 +6,8 @@
 //! - `models/`: what is attacked; `setup.rs`: the same for the core, with certificates.
 //! - `paths/`: a module for each kind of answer.
 //! - `campaign.rs`, `record.rs`: what runs next, and the counters on disk.
+// A campaign ends with a panic where its own oracle is wrong.
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable)]
 
 mod campaign;
 mod exact;

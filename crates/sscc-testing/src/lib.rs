@@ -1,4 +1,6 @@
 //! Support for tests and benches: exact oracles, real models, and the number of random cases.
+// Tests end with a panic.
+#![allow(clippy::expect_used, clippy::panic, clippy::unreachable)]
 
 mod cases;
 mod distance;

@@ -1,4 +1,5 @@
 //! A query that the root's certificate answers: the norm of q, one comparison. `cargo bench -p sscc`.
+#![allow(clippy::expect_used)]
 
 use divan::{Bencher, black_box};
 use glam::DVec3;

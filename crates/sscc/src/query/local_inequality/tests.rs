@@ -398,7 +398,7 @@ impl VertexMotion<2> for InRegion<'_> {
     }
 
     fn overall_aabb(&self, _: &Layout) -> Aabb {
-        unreachable!("no positions are needed")
+        panic!("no positions are needed")
     }
 
     fn coarse_coordinates(&self) -> Option<[&[f64]; 2]> {
@@ -410,15 +410,15 @@ impl VertexMotion<2> for InRegion<'_> {
     }
 
     fn coarse_slack(&self, _: u32) -> Option<DVec3> {
-        unreachable!("no positions are needed")
+        panic!("no positions are needed")
     }
 
     fn positions(&self, _: &Layout, _: u32) -> [DVec3; 2] {
-        unreachable!("no positions are needed")
+        panic!("no positions are needed")
     }
 
     fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
-        unreachable!("no positions are needed")
+        panic!("no positions are needed")
     }
 }
 
