@@ -4,6 +4,7 @@
 
 mod answers;
 mod common;
+mod load;
 mod mesh_report;
 mod report;
 mod server;

@@ -1,0 +1,66 @@
+//! Kinetic queries in one process for long: memory stays as it is, answers stay those of the traditional method.
+//! `cargo bench -p sscc-bench --bench endurance [-- STEPS]` (100,000,000 by default).
+//!
+//! The embedded spring of 20 modes swings with up to 1.5 times its root's radius, in small steps. Every 1,000,000 steps the pairs are
+//! compared, and the resident memory is read (Linux).
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::time::Instant;
+
+use sscc::{Certificates, CertifyOptions, KineticQuery, Method, Query};
+use sscc_modes::shapes::elastic_spring;
+
+/// Configurations of one period.
+const PERIOD: usize = 100_000;
+
+/// Steps between two comparisons; no multiple of the period.
+const BETWEEN: usize = 1_000_003;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let steps = std::env::args().skip(1).find_map(|text| text.parse().ok()).unwrap_or(100_000_000_usize);
+    let model = elastic_spring(&())?.model;
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
+    let mut kinetic = KineticQuery::new(&model, &certificates)?;
+    let mut traditional = Query::with_method(&model, &certificates, Method::Traditional)?;
+
+    let at = |i: usize| {
+        let t = std::f64::consts::TAU * i as f64 / PERIOD as f64;
+        let wave = |k: usize| libm::sin((k + 1) as f64 * t + k as f64) / (k + 1) as f64;
+        model.metric().unscaled(&(0..model.rank()).map(wave).collect::<Vec<_>>())
+    };
+    let states = (0..PERIOD).map(at).collect::<Result<Vec<_>, _>>()?;
+    let largest =
+        states.iter().map(|q| certificates.norm(q)).try_fold(0.0, |m, n| n.map(|n| f64::max(m, n)))?;
+    let scale = 1.5 * certificates.root_radius() / largest;
+    let states: Vec<Vec<f64>> = states.iter().map(|q| q.iter().map(|x| x * scale).collect()).collect();
+
+    let begin = Instant::now();
+    let (mut colliding, mut compared, mut first) = (0_u64, 0_u64, None);
+    for step in 0..steps {
+        let q = &states[step % PERIOD];
+        colliding += u64::from(!kinetic.discrete(q)?.is_empty());
+        if step % BETWEEN == BETWEEN / 2 {
+            assert_eq!(kinetic.pairs(), traditional.discrete(q)?, "step {step}");
+            compared += 1;
+            let memory = memory();
+            first = first.or(memory);
+            println!(
+                "{step} steps, {colliding} colliding, {:.0} s, {memory:?} kB",
+                begin.elapsed().as_secs_f64()
+            );
+        }
+    }
+    println!(
+        "{steps} steps, {:.3} us each, {colliding} colliding; {compared} compared, all equal; memory {first:?} kB at first, {:?} kB at the end",
+        1e6 * begin.elapsed().as_secs_f64() / steps as f64,
+        memory()
+    );
+    Ok(())
+}
+
+/// Resident memory of this process in kB, on Linux.
+fn memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    status.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok())
+}
