@@ -27,9 +27,15 @@ impl Answer {
     #[inline(always)]
     pub fn set_pairs(&mut self, pairs: &[Pair]) -> usize {
         if !pairs.is_empty() {
-            self.pairs.extend(pairs.iter().copied().map(sscc_pair::from));
+            self.add(pairs);
         }
         pairs.len()
+    }
+
+    /// Apart from the way of free answers, which takes nanoseconds.
+    #[inline(never)]
+    fn add(&mut self, pairs: &[Pair]) {
+        self.pairs.extend(pairs.iter().copied().map(sscc_pair::from));
     }
 
     /// Stores impacts and their pairs, after [`Self::forget`], and returns their number.

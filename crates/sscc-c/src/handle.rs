@@ -33,11 +33,16 @@ pub fn give<T: Handle>(object: T, out: Output<*mut T>) {
 #[inline(always)]
 pub unsafe fn borrow<'a, T: Handle>(handle: *const T) -> Result<&'a T> {
     if handle.is_null() {
-        return Err(Failure::new(sscc_status::Null, format!("{} is NULL", T::NAME)));
+        return Err(missing(T::NAME));
     }
     live::check(handle.addr(), T::NAME)?;
     // SAFETY: by the caller's promise the object exists.
     Ok(unsafe { &*handle })
+}
+
+#[cold]
+fn missing(name: &str) -> Failure {
+    Failure::new(sscc_status::Null, format!("{name} is NULL"))
 }
 
 /// Frees the object of a handle; NULL is ignored.

@@ -69,10 +69,9 @@ pub unsafe fn optional<T: Copy>(pointer: *const T, name: &str) -> Result<Option<
 /// The array has that many initialized numbers, which nobody changes during the call.
 #[inline(always)]
 pub unsafe fn slice<'a, T>(data: *const T, length: usize, name: &str) -> Result<&'a [T]> {
-    if data.is_null() && length == 0 {
-        return Ok(&[]);
+    if !is_valid(data, length) {
+        return empty_or_refused(data, length, name);
     }
-    check(data, length, name)?;
     // SAFETY: checked, and by the caller's promise.
     Ok(unsafe { std::slice::from_raw_parts(data, length) })
 }
@@ -129,10 +128,24 @@ fn bytes(start: usize, size: usize) -> Range<usize> {
     start..start.saturating_add(size)
 }
 
+/// Whether a pointer to so many numbers is neither NULL nor misaligned, and they fit into memory.
+#[inline(always)]
+fn is_valid<T>(data: *const T, length: usize) -> bool {
+    !data.is_null() && data.is_aligned() && length <= isize::MAX as usize / size_of::<T>().max(1)
+}
+
+#[cold]
+fn empty_or_refused<'a, T>(data: *const T, length: usize, name: &str) -> Result<&'a [T]> {
+    if data.is_null() && length == 0 {
+        return Ok(&[]);
+    }
+    Err(refused(data.is_null(), data.is_aligned(), align_of::<T>(), length, name))
+}
+
 /// Refuses a pointer to so many numbers that is NULL or misaligned.
 #[inline(always)]
 pub fn check<T>(data: *const T, length: usize, name: &str) -> Result<()> {
-    if !data.is_null() && data.is_aligned() && length <= isize::MAX as usize / size_of::<T>().max(1) {
+    if is_valid(data, length) {
         return Ok(());
     }
     Err(refused(data.is_null(), data.is_aligned(), align_of::<T>(), length, name))

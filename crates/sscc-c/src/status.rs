@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};
+use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use sscc::Error;
@@ -40,18 +41,30 @@ pub enum sscc_status {
     Internal = 12,
 }
 
-/// Why a call failed.
+/// Why a call failed. It is a pointer, so that a result has one word, which a call that succeeds passes on in a register.
 #[derive(Debug)]
-pub struct Failure {
+pub struct Failure(Box<Cause>);
+
+/// The content of a failure.
+#[derive(Debug)]
+pub struct Cause {
     pub status: sscc_status,
     pub message: String,
+}
+
+impl Deref for Failure {
+    type Target = Cause;
+
+    fn deref(&self) -> &Cause {
+        &self.0
+    }
 }
 
 pub type Result<T> = std::result::Result<T, Failure>;
 
 impl Failure {
     pub fn new(status: sscc_status, message: impl Into<String>) -> Self {
-        Self { status, message: message.into() }
+        Self(Box::new(Cause { status, message: message.into() }))
     }
 
     pub fn argument(message: impl Into<String>) -> Self {
@@ -71,6 +84,8 @@ impl Failure {
 }
 
 impl From<Error> for Failure {
+    #[cold]
+    #[inline(never)]
     fn from(error: Error) -> Self {
         let status = match error {
             Error::Cancelled => sscc_status::Cancelled,
@@ -98,15 +113,25 @@ thread_local! {
 /// Runs a call, and stores the message of its failure. A panic is a failure, too.
 #[inline(always)]
 pub fn guard(call: impl FnOnce() -> Result<()>) -> sscc_status {
+    // The failure is stored within the barrier, so that one number leaves it.
+    let call = || match call() {
+        Ok(()) => sscc_status::Ok,
+        Err(failure) => store(failure),
+    };
     match catch_unwind(AssertUnwindSafe(call)) {
-        Ok(Ok(())) => sscc_status::Ok,
-        Ok(Err(failure)) => store(&failure),
-        Err(payload) => store(&Failure::panicked(&*payload)),
+        Ok(status) => status,
+        Err(payload) => store_panic(payload),
     }
 }
 
 #[cold]
-fn store(failure: &Failure) -> sscc_status {
+fn store_panic(payload: Box<dyn Any + Send>) -> sscc_status {
+    store(Failure::panicked(&*payload))
+}
+
+#[cold]
+#[inline(never)]
+fn store(failure: Failure) -> sscc_status {
     let text = failure.message.replace('\0', " ");
     // A thread that ends has no message any more.
     let _ = MESSAGE.try_with(|message| message.replace(CString::new(text).ok()));

@@ -8,9 +8,9 @@ use sscc::Pair;
 /// An array whose length is no multiple of its rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthError {
-    name: &'static str,
-    length: usize,
-    row: usize,
+    pub name: &'static str,
+    pub length: usize,
+    pub row: usize,
 }
 
 impl fmt::Display for LengthError {

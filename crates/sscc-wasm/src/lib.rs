@@ -5,6 +5,7 @@
 //! An error is an `Error` with one line. `cargo xtask wasm` builds the package; docs/wasm.md describes it.
 
 mod arrays;
+mod batch;
 mod certificates;
 mod detector;
 mod impacts;
@@ -13,6 +14,7 @@ mod options;
 mod query;
 mod statistics;
 
+pub use batch::Batch;
 pub use certificates::Certificates;
 pub use detector::Detector;
 pub use impacts::Impacts;

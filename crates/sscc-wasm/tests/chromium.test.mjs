@@ -44,7 +44,7 @@ test("certificates and answers of five models have the native bytes", async () =
     const page = await browser.newPage();
     await page.goto(`${origin}/`);
     const found = await page.evaluate(async () => {
-        const sscc = await import("/package/sscc.js");
+        const sscc = await import("/package/queries.js");
         await sscc.default();
         const { compare } = await import("/tests/models.mjs");
         return compare(sscc, async (name) => new Uint8Array(await (await fetch(`/digests/${name}`)).arrayBuffer()));

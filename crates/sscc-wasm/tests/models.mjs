@@ -21,6 +21,20 @@ function difference(a, b) {
     return at < 0 ? null : `byte ${at} of ${a.length}`;
 }
 
+/** Whether a batch of all q of a motion has the pairs of each. */
+function batchDiffers({ Query }, model, certificates, motion) {
+    const query = new Query(model, certificates);
+    const batch = query.batch(Float64Array.from(motion.flat()));
+    const [pairs, offsets] = [batch.pairs, batch.offsets];
+    const differs = motion.some((row, i) => {
+        const own = pairs.subarray(2 * offsets[i], 2 * offsets[i + 1]);
+        return difference(own, query.discrete(Float64Array.from(row))) !== null;
+    });
+    const count = batch.count;
+    for (const object of [query, batch]) object.free();
+    return differs || count !== motion.length;
+}
+
 /** All answers of a motion. */
 function answers({ Query }, model, certificates, motion) {
     const query = new Query(model, certificates);
@@ -63,6 +77,7 @@ export async function compare(sscc, read) {
             const at = difference(found, wanted);
             if (at) differences.push(`${name}: ${what}: ${at}`);
         }
+        if (batchDiffers(sscc, model, computed, motion)) differences.push(`${name}: batch`);
         for (const object of [model, computed, loaded]) object.free();
     }
     return { models: models.length, differences };

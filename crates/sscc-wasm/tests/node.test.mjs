@@ -46,6 +46,43 @@ test("a model is made, certified, stored and queried", () => {
     assert.ok(query.safeScale([-2]) <= 0.5);
 });
 
+test("a batch has the answers of its q", () => {
+    const model = two();
+    const query = new Query(model, model.certify());
+    const batch = query.batch([-0.5, -1, -3, -1]);
+    assert.equal(batch.count, 4);
+    assert.deepEqual([...batch.offsets], [0, 0, 1, 1, 2]);
+    assert.deepEqual([...batch.pairs], [0, 1, 0, 1]);
+    assert.equal(query.batch([]).count, 0);
+});
+
+test("typed arrays, other arrays and freed queries have the answers and errors that one expects", () => {
+    const model = two();
+    const query = new Query(model, model.certify());
+    for (const [number, pairs] of [[-0.5, []], [-1, [0, 1]], [-3, []]]) {
+        for (const q of [[number], Float64Array.of(number), Float32Array.of(number), new Float64Array([9, number]).subarray(1)]) {
+            assert.deepEqual(query.discrete(q), Uint32Array.from(pairs));
+            assert.equal(query.count(q), pairs.length / 2);
+            assert.equal(query.isColliding(q), pairs.length > 0);
+        }
+    }
+    // An answer without pairs may be given to another thread, as may any other.
+    for (let i = 0; i < 3; i++) {
+        const found = query.discrete(Float64Array.of(-0.5));
+        structuredClone(found, { transfer: [found.buffer] });
+    }
+    // Views of the memory are made anew once it has grown.
+    const { memory } = sscc.initSync();
+    const before = memory.buffer.byteLength;
+    const large = Array.from({ length: 8 }, () => new Detector(new Float64Array(900_000), Uint32Array.of(0, 1, 2)));
+    assert.ok(memory.buffer.byteLength > before);
+    assert.deepEqual(query.discrete(Float64Array.of(-1)), Uint32Array.of(0, 1));
+    for (const detector of large) detector.free();
+    query.free();
+    for (const act of [(q) => query.discrete(q), (q) => query.count(q), (q) => query.isColliding(q)])
+        for (const q of [[-1], Float64Array.of(-1)]) assert.throws(() => act(q), /null pointer/);
+});
+
 test("a centre may be a typed array", () => {
     const bytes = (center) => two().certify({ center }).toBytes();
     assert.deepEqual(bytes(Float64Array.of(0.25)), bytes([0.25]));
@@ -106,6 +143,11 @@ test("bad input is an error of one line, and the module goes on", () => {
         [() => new Query(other, model.certify()), /another model|other model/],
         [() => query.discrete([]), /0/],
         [() => query.discrete([Number.NaN]), /NaN/],
+        [() => query.discrete(new Float64Array(2)), /2/],
+        [() => query.discrete(Float64Array.of(Number.NaN)), /NaN/],
+        [() => query.count(Float64Array.of(Infinity)), /inf/],
+        [() => query.isColliding(new Float64Array(0)), /0/],
+        [() => query.batch([-1, Number.NaN, 0]), /q number 1 of the batch: .*NaN/],
         [() => new Detector(positions, faces, { epsilon: 0.1 }), /options: a detector/],
         [() => new Detector(positions, faces).discrete(positions.subarray(3)), /5|15/],
     ]) {

@@ -1,79 +1,51 @@
-// Times of the package in Node beside those of the native command on one thread: node time.mjs PACKAGE [PASSES]. SSCC_COMMAND names the
-// command of a release build. Prints CSV: for each kind of frame of `sscc demo` the mean time of a query (microseconds), of each side the
-// smallest of all passes, and their ratio; the same of the certificates of its spring, which are computed once.
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+// The side in Node of `benches/wasm_against_native.rs`: node time.mjs PACKAGE DIR REPETITIONS, where DIR has the files of `sscc demo --out`.
+// Each line of its input asks for `frames` or `certificates`; a line of JSON answers with nanoseconds.
+import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
+import { createInterface } from "node:readline";
 import { pathToFileURL } from "node:url";
-import { readRows, run } from "../../../viewer/tests/command.mjs";
+import { readRows } from "../../../viewer/tests/command.mjs";
 
-const [, , folder, passes = "7"] = process.argv;
+const [, , folder, demo, count] = process.argv;
+const repetitions = Number(count);
 const { Certificates, Model, Query } = await import(pathToFileURL(resolve(folder, "node.js")));
-const demo = mkdtempSync(join(tmpdir(), "sscc-wasm-time-"));
-const file = (name) => join(demo, name);
-/** As often does the demo ask a query that the root's radius answers. */
-const REPETITIONS = 1000;
+const file = (name) => readFileSync(join(demo, name));
+const model = Model.load(file("spring.model.safetensors"));
+const query = new Query(model, Certificates.load(file("spring.sscc.safetensors")));
+const frames = readRows(join(demo, "spring.npy")).map((row) => Float64Array.from(row));
+/** Each frame as often as it is asked for, as one batch. */
+const batches = new Map(frames.map((q) => [q, Float64Array.from({ length: repetitions * q.length }, (_, i) => q[i % q.length])]));
 
-/** The kind of an answer, as the demo names it. */
-function kind(pairs, statistics) {
-    if (pairs.length > 0) return "colliding";
-    return statistics.proof === "radius" ? "free by the root's certificate" : "free, root's certificate fails";
+function time(ask, times) {
+    const start = process.hrtime.bigint();
+    for (let i = 0; i < times; i++) ask();
+    return Number(process.hrtime.bigint() - start) / times;
 }
 
-/** Asks for each frame once, as the demo does. Returns the times of each kind. */
-function pass(model, certificates, rows) {
-    const query = new Query(model, certificates);
-    const times = new Map();
-    for (const q of rows) {
-        let start = process.hrtime.bigint();
-        const pairs = query.discrete(q);
-        let time = Number(process.hrtime.bigint() - start) / 1000;
-        const name = kind(pairs, query.statistics);
-        if (name.startsWith("free by")) {
-            start = process.hrtime.bigint();
-            for (let i = 0; i < REPETITIONS; i++) query.discrete(q);
-            time = Number(process.hrtime.bigint() - start) / 1000 / REPETITIONS;
+/** Asks for each frame, one after the other as in an animation. */
+function timesOfFrames() {
+    const times = { radius: [], "radius, isColliding": [], "radius, batch": [], free: [], colliding: [] };
+    for (const q of frames) {
+        let pairs;
+        const once = time(() => (pairs = query.discrete(q)), 1);
+        if (pairs.length > 0) times.colliding.push(once);
+        else if (query.statistics.proof !== "radius") times.free.push(once);
+        else {
+            times.radius.push(time(() => query.discrete(q), repetitions));
+            times["radius, isColliding"].push(time(() => query.isColliding(q), repetitions));
+            times["radius, batch"].push(time(() => query.batch(batches.get(q)).free(), 4) / repetitions);
         }
-        times.set(name, [...(times.get(name) ?? []), time]);
     }
-    query.free();
     return times;
 }
 
-const native = new Map();
-const module = new Map();
-const keep = (least, name, time) => least.set(name, Math.min(time, least.get(name) ?? Infinity));
-let frames;
-// They take turns, so that both meet the same load of the machine.
-for (let i = 0; i < Number(passes); i++) {
-    ({ frames } = JSON.parse(await run("demo", "--out", demo, "--json")));
-    for (const { group, certified_microseconds } of frames) keep(native, group, certified_microseconds);
-    const model = Model.load(readFileSync(file("spring.model.safetensors")));
-    const certificates = Certificates.load(readFileSync(file("spring.sscc.safetensors")));
-    const rows = readRows(file("spring.npy")).map((row) => Float64Array.from(row));
-    for (let again = 0; again < 3; again++) {
-        for (const [name, times] of pass(model, certificates, rows)) {
-            const wanted = frames.find(({ group }) => group === name)?.frames;
-            if (times.length !== wanted) throw new Error(`${times.length} frames are ${name}, of the command ${wanted}`);
-            keep(module, name, times.reduce((sum, time) => sum + time, 0) / times.length);
-        }
-    }
-    model.free();
-    certificates.free();
+/** Computes certificates once, in processor time of the process. */
+function timeOfCertificates() {
+    const start = process.cpuUsage();
+    model.certify().free();
+    const { user, system } = process.cpuUsage(start);
+    return { certificates: [1000 * (user + system)] };
 }
 
-const model = Model.load(readFileSync(file("spring.model.safetensors")));
-const start = process.hrtime.bigint();
-const certificates = model.certify();
-keep(module, "certificates", Number(process.hrtime.bigint() - start) / 1000);
-const written = file("timed.sscc.safetensors");
-const line = await run("certify", file("spring.model.safetensors"), "--threads", "1", "-o", written, "--json");
-keep(native, "certificates", 1e6 * JSON.parse(line).seconds);
-if (!readFileSync(written).equals(certificates.toBytes())) throw new Error("other certificates than the command");
-rmSync(demo, { recursive: true, force: true });
-
-console.log("what,native_microseconds,wasm_microseconds,ratio");
-for (const [name, time] of module) {
-    const other = native.get(name);
-    console.log(`"${name}",${other.toPrecision(4)},${time.toPrecision(4)},${(time / other).toFixed(2)}`);
-}
+for await (const line of createInterface({ input: process.stdin }))
+    console.log(JSON.stringify(line === "frames" ? timesOfFrames() : timeOfCertificates()));

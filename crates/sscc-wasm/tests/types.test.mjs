@@ -14,7 +14,7 @@ symlinkSync(process.env.SSCC_PACKAGE, join(folder, "node_modules/sscc"), "juncti
 after(() => rmSync(folder, { recursive: true, force: true }));
 
 const PROGRAM = `
-import init, { type CertifyOptions, Certificates, Detector, Model, Query } from "sscc";
+import init, { type Batch, type CertifyOptions, Certificates, Detector, Model, Query } from "sscc";
 
 await init();
 const x = new Float64Array(18);
@@ -26,6 +26,10 @@ const q: Float64Array = model.defaultQ ?? new Float64Array(model.rank);
 const query = new Query(model, certificates);
 const pairs: Uint32Array = query.discrete(q);
 const some: Uint32Array[] = [query.discreteAtMost(q, Infinity), query.discreteAtMost(q)];
+const batch: Batch = query.batch(q);
+const offsets: Uint32Array = batch.offsets;
+// @ts-expect-error A part of the package that is for its own script.
+query.addressOfQ(1);
 const proof: "radius" | "local" | "search" = query.statistics.proof;
 const times: Float64Array = query.continuous(q, q).times;
 const plain = new Detector(x, [0, 1, 2]);
@@ -38,7 +42,7 @@ new Detector(x, new Uint32Array(6), { neighbours: "all" });
 new Detector(x, new Uint32Array(6), { epsilon: 0.1 });
 // @ts-expect-error Certificates are computed or loaded.
 new Certificates();
-export { detector, names, pairs, plain, proof, some, times };
+export { detector, names, offsets, pairs, plain, proof, some, times };
 `;
 
 test("a program with the types of the package is checked", () => {

@@ -12,7 +12,7 @@ use crate::program::{cargo, root, succeed};
 const MODULE: &str = "sscc_bg.wasm";
 
 /// The files of `crates/sscc-wasm/npm`, and the licences.
-const FILES: [&str; 3] = ["package.json", "node.js", "README.md"];
+const FILES: [&str; 4] = ["package.json", "node.js", "queries.js", "README.md"];
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
 /// Builds the package that is published in `folder`: small and fast, and without paths of this machine.
