@@ -13,6 +13,7 @@ mod outcome;
 mod output;
 mod progress;
 mod stages;
+mod threads;
 mod usage;
 
 use std::process::ExitCode;
@@ -28,7 +29,7 @@ pub fn main() -> ExitCode {
         Err(error) => return usage::report(&error),
     };
     interrupt::install_handlers();
-    match commands::run(cli) {
+    match threads::begin().and_then(|()| commands::run(cli)) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Finding) => ExitCode::from(EXIT_FINDING),
         Err(error) => {
