@@ -7,6 +7,7 @@ mod deny;
 mod digests;
 mod environment;
 mod extension;
+mod fuzz;
 mod kept_list;
 mod layers;
 mod lemmas;
@@ -57,6 +58,7 @@ const TASKS: &[Task] = &[
         "[--hours H] [--seed S] [--quick] [--write]: attacks answers with exact arithmetic",
         soundness::run,
     ),
+    ("fuzz", "[--seconds N] [targets]: attacks readers with inputs of a fuzzer", fuzz::run),
     ("digests", "[--write]: the same bytes on every machine", digests::run),
     ("package", "[--verify]: packs the crates that are published", package::run),
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),

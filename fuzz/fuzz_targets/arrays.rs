@@ -1,0 +1,11 @@
+//! What bindings pass on: positions, faces, modes, metrics and q of any numbers. Queries by certificates are those of brute force.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use sscc_fuzz::bounded;
+
+fuzz_target!(|bytes: &[u8]| bounded(bytes, attack));
+
+fn attack(bytes: &[u8]) {
+    sscc_fuzz::arrays::attack(bytes);
+}

@@ -1,0 +1,11 @@
+//! Reduced forces of VegaFEM.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use sscc_fuzz::{bounded, one_line};
+
+fuzz_target!(|bytes: &[u8]| bounded(bytes, attack));
+
+fn attack(bytes: &[u8]) {
+    one_line(sscc_io::parse_reduced_forces(bytes));
+}
