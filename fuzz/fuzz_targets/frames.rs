@@ -18,7 +18,9 @@ fn attack(bytes: &[u8]) {
         return;
     }
     let mesh = two_triangles();
-    let Some(mut frames) = one_line(FrameReader::open(file.path(), &mesh, Path::new("mesh.obj"))) else { return };
+    let Some(mut frames) = one_line(FrameReader::open(file.path(), &mesh, Path::new("mesh.obj"))) else {
+        return;
+    };
     let mut positions = Vec::new();
     for frame in 0..frames.len().min(3) {
         one_line(frames.check(frame, &mut positions));

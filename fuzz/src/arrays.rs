@@ -2,8 +2,8 @@
 
 use sscc::glam::DVec3;
 use sscc::{
-    Certificates, CertifyOptions, ContactFilter, Detector, KineticQuery, Method, Metric, MetricKind, Modes, Neighbours,
-    Query, ReducedModel, TriMesh,
+    Certificates, CertifyOptions, ContactFilter, Detector, KineticQuery, Method, Metric, MetricKind, Modes,
+    Neighbours, Query, ReducedModel, TriMesh,
 };
 
 use crate::one_line;

@@ -1,7 +1,7 @@
 //! Kinetic queries in one process for long: memory stays as it is, answers stay those of the traditional method.
 //! `cargo bench -p sscc-bench --bench endurance [-- STEPS]` (100,000,000 by default).
 //!
-//! The embedded spring of 20 modes swings with up to 4 times its root's radius, in small steps. Every 1,000,000 steps the pairs are
+//! The embedded spring of 20 modes swings with up to 2.5 times its root's radius, in small steps. Every 1,000,000 steps the pairs are
 //! compared, and the resident memory is read (Linux).
 #![allow(clippy::print_stdout)]
 
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let states = (0..PERIOD).map(at).collect::<Result<Vec<_>, _>>()?;
     let largest =
         states.iter().map(|q| certificates.norm(q)).try_fold(0.0, |m, n| n.map(|n| f64::max(m, n)))?;
-    let scale = 4.0 * certificates.root_radius() / largest;
+    let scale = 2.5 * certificates.root_radius() / largest;
     let states: Vec<Vec<f64>> = states.iter().map(|q| q.iter().map(|x| x * scale).collect()).collect();
 
     let begin = Instant::now();
