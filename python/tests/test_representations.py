@@ -24,6 +24,7 @@ def instances(
     draws = samples(500, 6, 0.4)
     # Draws that are far from free ones take long to be led back.
     near = 0.4 * draws
+    assert certs.check_many(near).colliding.any()
     far = draws[certs.check_many(draws).colliding][0]
     detector = sscc.Detector(faces, vertices)
     crossing = model.positions(far)

@@ -32,8 +32,8 @@ pub fn run(arguments: &[String]) -> ExitCode {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--seconds" => match arguments.next().and_then(|text| text.parse().ok()) {
-                Some(count) => seconds = count,
-                None => return usage("fuzz --seconds N [targets]"),
+                Some(count) if count > 0 => seconds = count,
+                _ => return usage("fuzz [--seconds N] [targets]    (N at least 1)"),
             },
             name if name.starts_with('-') => return usage("fuzz [--seconds N] [targets]"),
             name => names.push(name.to_owned()),
@@ -77,10 +77,15 @@ fn targets() -> Result<Vec<String>, String> {
 fn build(with_scene: bool) -> Result<PathBuf, String> {
     let folder = root().join("target/fuzz-build");
     let mut build = cargo();
-    build.args(["build", "--release", "--quiet", "--target", TARGET, "--target-dir"]).arg(&folder);
+    build
+        .args(["build", "--release", "--locked", "--quiet", "--target", TARGET, "--target-dir"])
+        .arg(&folder);
     build.args(with_scene.then_some("--features=scenes"));
     build.env("RUSTFLAGS", FLAGS).env("RUSTC_BOOTSTRAP", "1");
-    succeed(build.current_dir(root().join("fuzz")), "the targets cannot be built")?;
+    succeed(
+        build.current_dir(root().join("fuzz")),
+        "the targets cannot be built (x86-64 Linux with a C++ compiler is needed)",
+    )?;
     Ok(folder.join(Path::new(TARGET).join("release")))
 }
 

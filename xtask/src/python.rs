@@ -113,7 +113,7 @@ mod tests {
     /// All packages of a build, macros included, with their features.
     fn packages(arguments: &[&str]) -> BTreeSet<String> {
         let mut tree = cargo();
-        tree.args(["tree", "--locked", "--offline", "--prefix", "none", "--format", "{p} {f}"]);
+        tree.args(["tree", "--locked", "--prefix", "none", "--format", "{p} {f}"]);
         let output = tree.args(arguments).current_dir(root()).output().expect("cargo runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let lines = String::from_utf8_lossy(&output.stdout);

@@ -1,11 +1,13 @@
 //! The threads of the program.
 
 use anyhow::Context;
+use rayon::ThreadPoolBuilder;
 
-/// Begins the threads that all commands share. Without this, a system that refuses them would end a command in the middle of its
-/// work by a panic.
+/// Begins the threads that all commands share: one for each core, or none beside this one where the system refuses them. Without this, a
+/// command would end by a panic in the middle of its work.
 pub fn begin() -> anyhow::Result<()> {
-    rayon::ThreadPoolBuilder::new().build_global().context(
+    let all = ThreadPoolBuilder::new().build_global();
+    all.or_else(|_| ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()).context(
         "the system refuses threads: free memory, or allow more memory or processes (ulimit -v, ulimit -u)",
     )
 }

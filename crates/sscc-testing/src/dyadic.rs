@@ -75,6 +75,7 @@ impl Dyadic {
 /// Returns the product of all denominators, and for each the product of the others: what its numerator is to be multiplied
 /// with for a sum of quotients over the product.
 pub fn common_denominator(denominators: &[Dyadic]) -> (Dyadic, Vec<Dyadic>) {
+    assert!(denominators.iter().all(|x| !x.is_zero()), "a denominator is 0");
     let others = |i: usize| [&denominators[..i], &denominators[i + 1..]].concat();
     let product = |numbers: &[Dyadic]| numbers.iter().fold(Dyadic::new(1.0), |product, x| product * x);
     (product(denominators), (0..denominators.len()).map(|i| product(&others(i))).collect())

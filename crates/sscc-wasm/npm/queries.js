@@ -1,5 +1,5 @@
-// The package, with answers of queries without what would take longer than the answer: memory allocated and freed for each q, results that
-// the engine packs into arrays, and new arrays without numbers. The methods of the module do all else, among it every error.
+// The package. Queries take a Float64Array and answer without pairs by a way of their own, since the module's own methods allocate memory for each q, pack
+// results into arrays and make a new array for no pairs, all of which takes longer than the query. These methods do all else, errors too.
 import { Query, initSync } from "./sscc.js";
 
 export * from "./sscc.js";

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 
 use crate::common::{Run, command, files, sscc, strips};
 
-/// What stands in each output before.
+/// Content of each output file before its command runs.
 const OLD: &[u8] = b"an old file";
 
 /// Commands that write a file, by the name of the file.
@@ -63,20 +63,25 @@ fn killed(folder: &Path, args: &[&str], delay: Duration, is_writing: bool) {
         && files(folder).len() == before
         && child.try_wait().unwrap().is_none()
         && start.elapsed() < Duration::from_secs(60)
-    {}
+    {
+        sleep(Duration::from_micros(20));
+    }
     sleep(delay);
     let _ = child.kill();
     child.wait().unwrap();
 }
 
-/// Removes temporary files: those of a killed command remain, and nobody but its user can know that it has ended.
-fn remove_parts(folder: &Path) {
+/// Removes temporary files, and returns how many there were: those of a killed command remain, and nobody but its user can know that it has ended.
+fn remove_parts(folder: &Path) -> usize {
+    let mut count = 0;
     for path in files(folder) {
         let name = path.file_name().unwrap().to_str().unwrap();
         if name.starts_with(".sscc-") && name.ends_with(".part") {
             fs::remove_file(path).unwrap();
+            count += 1;
         }
     }
+    count
 }
 
 #[test]
@@ -84,7 +89,7 @@ fn killed_commands_leave_files_old_or_new() {
     let directory = folder();
     let folder = directory.path();
     let kills = if std::env::var_os("SSCC_LONG").is_some() { 40 } else { 6 };
-    let (mut old, mut new) = (0, 0);
+    let (mut old, mut parts) = (0, 0);
     for (name, args) in WRITERS {
         let path = folder.join(name);
         let start = Instant::now();
@@ -103,21 +108,23 @@ fn killed_commands_leave_files_old_or_new() {
             killed(folder, args, delay, is_writing);
             let found = fs::read(&path).unwrap();
             assert!(found == OLD || found == expected, "{name}, kill {kill}: {} bytes", found.len());
-            (old, new) = if found == OLD { (old + 1, new) } else { (old, new + 1) };
-            remove_parts(folder);
+            old += usize::from(found == OLD);
+            parts += remove_parts(folder);
         }
         // The next run is as the first.
         sscc(folder, args);
         assert!(fs::read(&path).unwrap() == expected, "{name}");
     }
-    assert!(old > 0, "{old} {new}");
-    assert_eq!(old + new, kills * WRITERS.len() as u64);
+    // Some were killed before they had written their file, and some while they wrote it.
+    assert!(old > 0 && parts > 0, "{old} {parts}");
 }
 
 /// A command in a shell with a limit of `ulimit`. Signals of files that are too large are ignored, as is usual for services.
 fn limited(folder: &Path, limit: &str, args: &[&str]) -> Run {
     let script = format!("trap '' XFSZ; ulimit {limit}; exec \"$0\" \"$@\"");
     let mut shell = Command::new("bash");
+    // Address space of threads is reserved, so their number is that of this test.
+    shell.env("RAYON_NUM_THREADS", "2");
     shell
         .args(["-c", &script, env!("CARGO_BIN_EXE_sscc")])
         .args(args)
@@ -154,34 +161,26 @@ fn without_memory_files_stay_old() {
     let (name, args) = WRITERS[0];
     fs::write(folder.join(name), OLD).unwrap();
     let before = files(folder);
-    let (mut refused, mut aborted) = (0, 0);
+    let mut failed = 0;
     // Kilobytes of address space: from too few for its threads to enough. With fewer, the system does not even begin it.
     for kilobytes in [30_000, 36_000, 45_000, 60_000, 80_000, 120_000, 8_000_000] {
         let run = limited(folder, &format!("-v {kilobytes}"), args);
-        assert!(!run.stderr.contains("panicked at"), "{kilobytes}: {run:?}");
+        assert!(!run.stderr.contains("thread pool has not been initialized"), "{kilobytes}: {run:?}");
         match run.code {
             Some(0) => {
                 fs::write(folder.join(name), OLD).unwrap();
                 continue;
             }
-            Some(2) => {
-                assert!(
-                    run.stderr.starts_with("error: the system refuses threads: "),
-                    "{kilobytes}: {run:?}"
-                );
-                refused += 1;
-            }
-            // The allocator of the system ends a program by a signal.
-            _ => {
-                assert!(run.stderr.starts_with("memory allocation of "), "{kilobytes}: {run:?}");
-                aborted += 1;
-            }
+            Some(2) => assert!(run.stderr.starts_with("error: "), "{kilobytes}: {run:?}"),
+            // The loader or the allocator of the system ends a program by its own code or by a signal.
+            _ => {}
         }
+        failed += 1;
         assert!(fs::read(folder.join(name)).unwrap() == OLD, "{kilobytes}");
-        remove_parts(folder);
+        _ = remove_parts(folder);
         assert_eq!(files(folder), before, "{kilobytes}");
     }
-    assert!(refused + aborted > 0 && refused + aborted < 7, "{refused} {aborted}");
+    assert!((1..7).contains(&failed), "{failed}");
 }
 
 #[test]
@@ -197,6 +196,6 @@ fn a_reader_that_goes_away_ends_nothing_with_a_panic() {
     drop(lines);
     let mut stderr = String::new();
     child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(0), "{stderr}");
-    assert!(first.starts_with('{') && !stderr.contains("panicked"), "{first}{stderr}");
+    assert_eq!((child.wait().unwrap().code(), stderr.as_str()), (Some(0), ""));
+    assert!(first.starts_with('{'), "{first}");
 }

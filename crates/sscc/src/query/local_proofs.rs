@@ -93,8 +93,8 @@ impl<const E: usize> LocalProofs<E> {
         self.is_complete
     }
 
-    /// Whether most buckets are beyond their radius and their certificate, as far as [`Self::prove`] has tried: far from rest, where
-    /// AABBs of the BD-tree are loose.
+    /// Whether [`Self::prove`] has left most buckets open, those counted that it did not try: far from rest, where AABBs of the BD-tree are
+    /// loose.
     pub(super) fn leaves_most_open(&self) -> bool {
         self.open_buckets * MOST_OPEN > self.proven.len()
     }
