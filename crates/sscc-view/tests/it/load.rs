@@ -18,7 +18,7 @@ fn ask(client: &Client, end: Instant, seed: u64) -> u64 {
         while Instant::now() < end {
             // Mode 0 lowers the upper strip onto the lower one.
             let serial = seed * 1_000_000 + answers;
-            let is_colliding = serial % 3 == 0;
+            let is_colliding = serial.is_multiple_of(3);
             let body = format!(r#"{{"q":[{},0,0],"serial":{serial}}}"#, if is_colliding { 1 } else { 0 });
             if stream.write_all(&client.request("POST", "/api/check", "", &body)).is_err() {
                 break;
