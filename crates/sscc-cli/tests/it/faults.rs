@@ -188,7 +188,9 @@ fn a_reader_that_goes_away_ends_nothing_with_a_panic() {
     let directory = folder();
     let folder = directory.path();
     sscc_io::write_npy(&folder.join("q.npy"), &[3000, 2], &vec![0.25; 6000]).unwrap();
-    let args = ["check", "strips.model.safetensors", "--trajectory", "q.npy", "--json"];
+    let certificates = ["--certificates", "strips.sscc.safetensors"];
+    let args = [&["check", "strips.model.safetensors", "--trajectory", "q.npy", "--json"][..], &certificates]
+        .concat();
     let mut child = command(folder, &args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap());
     let mut first = String::new();
