@@ -2,7 +2,7 @@
 //! `cargo bench -p sscc-bench --bench endurance [-- STEPS]` (1,000,000 by default).
 //!
 //! The embedded spring of 20 modes swings with up to 2.5 times its root's radius, in small steps. Every 1,000,000 steps the pairs are
-//! compared, and the resident memory (Linux) must be at most [`GROWTH`] above that of the first time.
+//! compared, and the peak memory since the last comparison (Linux) must be at most [`GROWTH`] above that of the first time.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use sscc::{Certificates, CertifyOptions, KineticQuery, Method, Query};
 use sscc_modes::shapes::elastic_spring;
+use sscc_sim::PeakMemory;
 
 /// Configurations of one period.
 const PERIOD: usize = 100_000;
@@ -17,8 +18,8 @@ const PERIOD: usize = 100_000;
 /// Steps between two comparisons; no multiple of the period.
 const BETWEEN: usize = 1_000_003;
 
-/// Memory that may come after the first comparison, in kB.
-const GROWTH: u64 = 16 << 10;
+/// Memory that may be added to that of the first steps, in bytes.
+const GROWTH: u64 = 16 << 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let steps = std::env::args().skip(1).find(|text| !text.starts_with('-'));
@@ -41,31 +42,26 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let begin = Instant::now();
     let (mut colliding, mut compared, mut first) = (0_u64, 0_u64, None);
+    let mut peak = PeakMemory::start();
     for step in 0..steps {
         let q = &states[step % PERIOD];
         colliding += u64::from(!kinetic.discrete(q)?.is_empty());
         if step % BETWEEN == BETWEEN / 2 {
             assert_eq!(kinetic.pairs(), traditional.discrete(q)?, "step {step}");
             compared += 1;
-            let memory = memory();
+            let memory = peak.and_then(PeakMemory::bytes);
+            peak = PeakMemory::start();
             first = first.or(memory);
-            assert!(memory <= first.map(|kilobytes| kilobytes + GROWTH), "{first:?} kB, then {memory:?} kB");
+            assert!(memory <= first.map(|bytes| bytes + GROWTH), "{first:?} bytes, then {memory:?} bytes");
             println!(
-                "{step} steps, {colliding} colliding, {:.0} s, {memory:?} kB",
+                "{step} steps, {colliding} colliding, {:.0} s, {memory:?} bytes",
                 begin.elapsed().as_secs_f64()
             );
         }
     }
+    let microseconds = 1e6 * begin.elapsed().as_secs_f64() / steps as f64;
     println!(
-        "{steps} steps, {:.3} us each, {colliding} colliding; {compared} compared, all equal; memory {first:?} kB at first, {:?} kB at the end",
-        1e6 * begin.elapsed().as_secs_f64() / steps as f64,
-        memory()
+        "{steps} steps, {microseconds:.3} us each, {colliding} colliding; {compared} compared, all equal; {first:?} bytes"
     );
     Ok(())
-}
-
-/// Resident memory of this process in kB, on Linux.
-fn memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    status.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok())
 }

@@ -32,7 +32,7 @@ impl Answer {
         pairs.len()
     }
 
-    /// Apart from the way of free answers, which takes nanoseconds.
+    /// Copies pairs, out of line: an answer without pairs takes nanoseconds and does not come here.
     #[inline(never)]
     fn add(&mut self, pairs: &[Pair]) {
         self.pairs.extend(pairs.iter().copied().map(sscc_pair::from));

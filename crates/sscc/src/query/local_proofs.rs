@@ -20,7 +20,7 @@ const MOST_LOST: usize = 32;
 /// Certificates are tried for pairs of nodes if they prove at least one of so many buckets for which they were evaluated.
 const LEAST_SHARE: usize = 3;
 
-/// [`LocalProofs::leaves_most_open`] holds beyond one of so many buckets.
+/// Most buckets are open if more than one of so many is. Only the time of queries depends on that.
 const MOST_OPEN: usize = 2;
 
 /// Work of a search, in visits and packets of AABBs, after which it finds proven nodes: at least this, and one for so many buckets.
@@ -93,8 +93,8 @@ impl<const E: usize> LocalProofs<E> {
         self.is_complete
     }
 
-    /// Whether [`Self::prove`] has left most buckets open, those counted that it did not try: far from rest, where AABBs of the BD-tree are
-    /// loose.
+    /// Whether most buckets are open after [`Self::prove`]. Those that it did not try count as open. This is so far from rest, where AABBs
+    /// of the BD-tree are loose.
     pub(super) fn leaves_most_open(&self) -> bool {
         self.open_buckets * MOST_OPEN > self.proven.len()
     }
