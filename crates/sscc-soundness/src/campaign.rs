@@ -17,8 +17,11 @@ use crate::tally::Tally;
 /// Time between two writes of the record.
 const WRITE_EVERY: Duration = Duration::from_secs(10);
 
+/// Processor time after which a configuration of a campaign asks nothing more.
+const LONGEST: Duration = Duration::from_secs(2);
+
 /// The share of a configuration in a quick run.
-const QUICK: f64 = 0.1;
+const QUICK: f64 = 0.03;
 
 /// What to run.
 #[derive(Clone, Debug)]
@@ -34,10 +37,10 @@ pub struct Campaign {
 }
 
 /// One configuration; a panic is a wrong answer.
-fn configuration(path: &Path, seed: u64, number: u64, share: f64) -> Tally {
+fn configuration(path: &Path, seed: u64, number: u64, share: f64, limit: Option<Duration>) -> Tally {
     let mut random = Random::new(path.name, seed.wrapping_mul(1 << 32).wrapping_add(number));
     let mut tally = Tally::default();
-    work::begin();
+    work::begin(limit);
     if catch_unwind(AssertUnwindSafe(|| (path.run)(&mut random, &mut tally, share))).is_err() {
         tally.wrong(|| "the core or an oracle panicked (see standard error)".to_owned());
     }
@@ -62,7 +65,7 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
         let Some(i) = next.filter(|_| campaign.time.is_none_or(|time| start.elapsed() < time)) else { break };
         let (path, counters) = (&PATHS[i], &mut record.paths[i]);
         let (number, begin) = (counters.configurations, ThreadTime::now());
-        let tally = configuration(path, record.seed, number, 1.0);
+        let tally = configuration(path, record.seed, number, 1.0, Some(LONGEST));
         counters.configurations += 1;
         counters.seconds += begin.elapsed().as_secs_f64();
         if !tally.is_clean() {
@@ -119,7 +122,7 @@ fn append(file: &File, lines: &str) -> Result<(), String> {
 pub fn replay(name: &str, seed: u64, number: u64) -> Result<Tally, String> {
     index_of(name)?;
     let path = paths::find(name).ok_or("no such path")?;
-    Ok(configuration(path, seed, number, 1.0))
+    Ok(configuration(path, seed, number, 1.0, None))
 }
 
 /// Runs the first configurations of each path, or of a single one, in short form.
@@ -138,7 +141,7 @@ pub fn run_quick(
         let count = if chosen.is_none_or(|chosen| chosen == i) { configurations } else { 0 };
         for number in 0..count {
             let begin = ThreadTime::now();
-            let tally = configuration(path, seed, number, QUICK);
+            let tally = configuration(path, seed, number, QUICK, None);
             if !tally.is_clean() {
                 report(&failure(path, seed, number, &tally));
             }

@@ -7,6 +7,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -165,6 +166,79 @@ fn files_that_cannot_grow_stay_old() {
         fs::remove_file(&path).unwrap();
     }
     assert_eq!(files(folder), before);
+}
+
+/// A command that writes to a folder of 16 kB, which is mounted for it alone, as on a full disk.
+fn on_small_disk(folder: &Path, name: &str, args: &[&str]) -> (Run, Vec<String>) {
+    let script = "mount -t tmpfs -o size=16k none small && printf 'an old file' > small/\"$1\" && shift && \"$@\" 1>&2
+        code=$?; for file in small/* small/.[!.]*; do [ -f \"$file\" ] && echo \"$file: $(cat \"$file\")\"; done; exit $code";
+    let mut shell = Command::new("unshare");
+    shell.args(["-Urm", "bash", "-c", script, "bash", name, env!("CARGO_BIN_EXE_sscc")]);
+    let run = Run::of(shell.args(args).current_dir(folder).stdin(Stdio::null()));
+    let files = run.stdout.lines().map(str::to_owned).collect();
+    (run, files)
+}
+
+#[test]
+fn a_full_disk_leaves_files_old() {
+    // Mounting needs a system that lets its users have namespaces.
+    if std::env::var_os("SSCC_LONG").is_none() {
+        return;
+    }
+    let directory = folder();
+    let folder = directory.path();
+    fs::create_dir(folder.join("small")).unwrap();
+    for (name, args) in &WRITERS[..5] {
+        let output = format!("small/{name}");
+        let args: Vec<&str> = args.iter().map(|arg| if arg == name { output.as_str() } else { arg }).collect();
+        let (run, files) = on_small_disk(folder, name, &args);
+        let error = run.stderr.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(error.contains(name) && error.contains("cannot be written"), "{error}");
+        assert_eq!(files, [format!("{output}: an old file")], "{run:?}");
+    }
+}
+
+#[test]
+fn files_replaced_while_they_are_read_give_an_answer_of_one_of_them() {
+    let directory = folder();
+    let folder = directory.path();
+    // Two meshes of one size: the second one collides.
+    let sheet = |is_colliding: bool| {
+        let mut text = String::new();
+        for i in 0..2000 {
+            let z = if is_colliding && i % 2 == 1 { 0.0 } else { f64::from(i) };
+            text += &format!("v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\n");
+        }
+        (0..2000).for_each(|i| text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
+        text
+    };
+    let contents = [sheet(false), sheet(true)];
+    let args = ["check", "changing.obj", "--json"];
+    let answers = contents.each_ref().map(|content| {
+        fs::write(folder.join("changing.obj"), content).unwrap();
+        let run = sscc(folder, &args);
+        (run.code, run.stdout)
+    });
+    assert_eq!(answers.each_ref().map(|answer| answer.0), [Some(0), Some(1)]);
+    let runs = if std::env::var_os("SSCC_LONG").is_some() { 200 } else { 20 };
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            for content in contents.iter().cycle() {
+                if is_over.load(Ordering::Relaxed) {
+                    return;
+                }
+                fs::write(folder.join("next.obj"), content).unwrap();
+                fs::rename(folder.join("next.obj"), folder.join("changing.obj")).unwrap();
+            }
+        });
+        let seen: Vec<Run> = (0..runs).map(|_| sscc(folder, &args)).collect();
+        is_over.store(true, Ordering::Relaxed);
+        for run in seen {
+            assert!(answers.contains(&(run.code, run.stdout.clone())), "{run:?}");
+        }
+    });
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::cones::cones_meet;
 use super::interval::Interval;
 use super::number::Number;
 use super::point::{Point, Triangle};
+use super::rounded;
 use super::segments::segment_meets_triangle;
 use super::separation::{best_direction, is_separated};
 use super::vectors::{Vector, cross, dot, minus};
@@ -20,26 +21,6 @@ fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {
     let side = |x: &Vector<N>| dot(&normal, &minus(x, &a[0])).sign();
     let first = side(&b[0]);
     first.is_some_and(|s| s != 0) && side(&b[1]) == first && side(&b[2]) == first
-}
-
-/// The same in doubles, where these decide. With differences of at most E, F and D, a determinant is a sum of six products
-/// of three differences, each at most E F D, and eleven roundings; so its error is below `128 u E F D`.
-fn is_surely_beside_plane(a: &Triangle, b: &Triangle) -> bool {
-    let minus = |p: &Point, q: &Point| -> Point { std::array::from_fn(|c| p[c] - q[c]) };
-    let size = |p: &Point| p[0].abs().max(p[1].abs()).max(p[2].abs());
-    let (e, f) = (minus(&a[1], &a[0]), minus(&a[2], &a[0]));
-    let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-    let area = size(&e) * size(&f);
-    let sides = b.map(|p| {
-        let d = minus(&p, &a[0]);
-        let product = area * size(&d);
-        // Products of extreme numbers are left to intervals.
-        let is_ordinary = (1e-200..1e200).contains(&product) && area > 1e-200;
-        let height = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-        let is_decided = is_ordinary && height.abs() > 64.0 * f64::EPSILON * product;
-        if is_decided { height.signum() } else { 0.0 }
-    });
-    sides[0] != 0.0 && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
 /// Whether an edge of one triangle meets the other one; none where it is not decided.
@@ -78,9 +59,14 @@ fn intervals(t: &Triangle) -> [Vector<Interval>; 3] {
 
 /// Whether two triangles have a common point, exactly.
 pub fn meet(a: &Triangle, b: &Triangle) -> bool {
-    if boxes_are_apart(a, b) || is_surely_beside_plane(a, b) || is_surely_beside_plane(b, a) {
+    if boxes_are_apart(a, b) {
         return false;
     }
+    rounded::meet(a, b).unwrap_or_else(|| meet_without_rounding(a, b))
+}
+
+/// The same with intervals, then whole numbers.
+pub(super) fn meet_without_rounding(a: &Triangle, b: &Triangle) -> bool {
     let [x, y] = [a, b].map(intervals);
     if is_beside_plane(&x, &y) || is_beside_plane(&y, &x) {
         return false;

@@ -1,18 +1,24 @@
-//! How many decisions of a configuration needed whole numbers. They take a hundred times longer than intervals, so a
-//! configuration ends before its time where it needs too many: a limit that, unlike a clock, is the same in every run.
+//! When a configuration ends before it has asked all that it would: some models take a thousand times longer than others, by
+//! decisions of the oracle that need whole numbers, which take a hundred times longer than intervals, or by the core's own exact
+//! tests. A configuration that is run again has no limit of time, so that it repeats all that the campaign asked.
 
 use std::cell::Cell;
+use std::time::Duration;
 
-/// Decisions of a configuration.
+use cpu_time::ThreadTime;
+
+/// Decisions of a configuration by whole numbers.
 const MOST: u64 = 60_000;
 
 thread_local! {
     static SPENT: Cell<u64> = const { Cell::new(0) };
+    static TIME: Cell<Option<(ThreadTime, Duration)>> = const { Cell::new(None) };
 }
 
-/// Begins a configuration.
-pub fn begin() {
+/// Begins a configuration, with a limit of its processor time.
+pub fn begin(limit: Option<Duration>) {
     SPENT.set(0);
+    TIME.set(limit.map(|limit| (ThreadTime::now(), limit)));
 }
 
 /// Counts a decision.
@@ -20,7 +26,7 @@ pub fn count() {
     SPENT.set(SPENT.get() + 1);
 }
 
-/// Whether the configuration has used up its decisions.
+/// Whether the configuration has used up its decisions or its time.
 pub fn is_spent() -> bool {
-    SPENT.get() >= MOST
+    SPENT.get() >= MOST || TIME.get().is_some_and(|(start, limit)| start.elapsed() >= limit)
 }

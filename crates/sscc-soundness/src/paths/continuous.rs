@@ -31,7 +31,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         return;
     };
     let mut last = setup.draw(random);
-    for _ in 0..some(200, share) {
+    for _ in 0..some(800, share) {
         if work::is_spent() {
             break;
         }

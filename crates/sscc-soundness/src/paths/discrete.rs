@@ -41,7 +41,7 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
     };
     let mut asker = Asker { setup: &setup, query, tally };
     let (mut free, mut colliding) = (vec![setup.certificates.center().to_vec()], Vec::new());
-    for _ in 0..some(500, share) {
+    for _ in 0..some(1500, share) {
         if work::is_spent() {
             break;
         }
@@ -52,7 +52,7 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
             None => {}
         }
     }
-    for _ in 0..some(10, share) {
+    for _ in 0..some(30, share) {
         if colliding.is_empty() || work::is_spent() {
             break;
         }

@@ -37,7 +37,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let size = Bounds::of(&model.points).size();
     let share = share * if oracle.pairs(&model.points).len() < 400 { 1.0 } else { 0.05 };
     let mut last = model.points.clone();
-    for _ in 0..some(60, share) {
+    for _ in 0..some(240, share) {
         if work::is_spent() {
             break;
         }

@@ -23,7 +23,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         tally.wrong(|| format!("{}: its own certificates are refused", setup.model.name));
         return;
     };
-    for _ in 0..some(6, share) {
+    for _ in 0..some(24, share) {
         // The same query: a jump from one motion to the next.
         motion(random, tally, &setup, &mut query, 120);
     }

@@ -36,7 +36,7 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
     let center = setup.certificates.center().to_vec();
-    for _ in 0..some(24, share) {
+    for _ in 0..some(400, share) {
         if work::is_spent() {
             break;
         }
@@ -74,7 +74,7 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
 pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
-    for _ in 0..some(80, share) {
+    for _ in 0..some(400, share) {
         if work::is_spent() {
             break;
         }
@@ -129,7 +129,7 @@ pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
 pub fn run_resolves(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
-    for _ in 0..some(40, share) {
+    for _ in 0..some(200, share) {
         if work::is_spent() {
             break;
         }
