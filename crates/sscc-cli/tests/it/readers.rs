@@ -265,7 +265,7 @@ fn causes_and_ways_out() {
         (
             "a.veg",
             b"# a body\n*INCLUDE parts.veg\n",
-            "a.veg: line 2: includes 'parts.veg', which does not exist",
+            "a.veg: line 2: the file includes 'parts.veg', which does not exist",
         ),
         (
             "a.fbx",

@@ -45,7 +45,7 @@ impl MeshNode {
         self.mesh_name.as_deref()
     }
 
-    /// Index of the skin in the file; none if the node moves the mesh by its own transform.
+    /// Index of the skin in the file; None if the node moves the mesh by its own transform.
     pub fn skin(&self) -> Option<usize> {
         self.skin
     }
@@ -76,7 +76,7 @@ impl MeshNode {
         &self.shape.weld_classes
     }
 
-    /// The group of each triangle.
+    /// Returns the group of each triangle.
     ///
     /// # Errors
     /// When there are more than 65,536 groups.

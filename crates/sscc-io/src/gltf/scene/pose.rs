@@ -56,7 +56,7 @@ impl AnimatedScene {
     /// As [`AnimatedScene::pose`] and [`ScenePose::positions`], for one node.
     ///
     /// # Errors
-    /// As those.
+    /// As these two functions.
     pub fn positions(
         &self,
         node: usize,

@@ -13,7 +13,7 @@ pub(super) struct Numbers<'a> {
 /// Type of the items of an array.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
-    /// Bytes of an item; 0: they are not whole bytes.
+    /// Bytes of an item; 0 if items are not whole bytes.
     size: u64,
     form: Form,
 }
@@ -23,9 +23,9 @@ enum Form {
     Float,
     Signed,
     Unsigned,
-    /// Eight of them are a byte. They are only skipped.
+    /// Bits, eight in a byte. They are only skipped.
     Bit,
-    /// Lines, or bytes after their length. They are only skipped.
+    /// Texts: lines, or bytes after their length. They are only skipped.
     Text,
 }
 
