@@ -220,7 +220,7 @@ fn schemes() {
         let refused = check(file, &["--reach=2"]);
         assert!(refused.refusal().contains(cause), "{refused:?}");
     }
-    // As --budget does, --reach asks for a pair tree of certificates that are computed at once.
+    // Like --budget, --reach requests a pair tree of certificates that are computed at once.
     let at_once = sscc(folder.path(), &["sweep", MODEL, "--reach", "2", "--json"]);
     assert!(at_once.code.is_some_and(|code| code < 2), "{at_once:?}");
 }

@@ -168,9 +168,9 @@ fn frames_from_arrays_and_folders() {
     assert_eq!(ignored[0]["left_out"], json!("1 ignored pair and pairs with common vertices"));
 }
 
-/// Two triangles of an STL file with a common corner at rest, which parts: they are adjacent only while all frames have it.
+/// Two triangles of an STL file have a common corner at rest: they are adjacent only if it is common in all frames.
 #[test]
-fn vertices_are_welded_that_stay_together() {
+fn vertices_that_stay_together_are_welded() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let facet = |corners: [&str; 3]| {
@@ -356,7 +356,7 @@ fn curves_of_the_last_answer() {
 
 /// The file of curves is written even if no one reads the answers.
 #[test]
-fn curves_without_a_reader() {
+fn curves_are_written_without_a_reader_of_the_output() {
     let directory = folder();
     let folder = directory.path();
     fs::write(folder.join("crossing.obj"), CROSSING).unwrap();

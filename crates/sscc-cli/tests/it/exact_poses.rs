@@ -29,7 +29,7 @@ fn is_apart(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 }
 
 /// Two courses of bricks in a running bond: they touch along faces, and most touching pairs have no common vertex. Each is
-/// a primitive of one mesh, which nested nodes turn, scale and move.
+/// a primitive of one mesh, which nested nodes rotate, scale and move.
 fn wall() -> serde_json::Value {
     let bricks: Vec<Corners> = [(0.0, 0.0), (0.9, 0.0), (0.45, 0.3), (1.35, 0.3)]
         .into_iter()

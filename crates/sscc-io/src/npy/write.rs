@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_are_the_whole() {
+    fn arrays_written_in_parts_equal_those_written_at_once() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.npy");
         let values: Vec<f64> = (0..24).map(|i| f64::from(i) / 7.0).collect();

@@ -87,7 +87,7 @@ pub(super) fn largest(
         if size >= wanted {
             let (values, rotation) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
             let residuals = &rest * rotation.as_ref().subrows(done, BLOCK);
-            // A Ritz value is a lower bound, so this one is a proof.
+            // A Ritz value is a lower bound of an eigenvalue, so this one proves that the body is a mechanism.
             if values[0] >= operator.ceiling {
                 return Ok(RitzPairs { values, vectors: Mat::zeros(space.size(), 0) });
             }

@@ -71,7 +71,7 @@ impl MeshNode {
     }
 
     /// Weld class of each vertex (V): the smallest index of a vertex with equal rest position, displacements in all
-    /// morph targets and influences (weights of 0 left out; none without a skin). 0 equals -0.
+    /// morph targets and influences (without weights of 0; no influences without a skin). 0 equals -0.
     pub fn weld_classes(&self) -> &[u32] {
         &self.shape.weld_classes
     }

@@ -308,7 +308,7 @@ fn bad_legacy_files_are_refused() {
         let message = refused(&text);
         assert!(message.contains(named), "{named}: {message}");
     }
-    // Attributes of other kinds are skipped, and a text that is no number is none of theirs.
+    // Attributes of other kinds are skipped, also values that are no numbers.
     let data = "CELL_DATA 1\nSCALARS a float\nLOOKUP_TABLE default\nnan\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 4\n\
                 FIELD f 2\nx 1 4 int\n1 2 3 4\nu 3 4 float\n0 0 0 0 0 0 0 0 0 0 0 2\nTENSORS t float\n";
     let text = format!("{whole}{data}{}", "1 ".repeat(36));
