@@ -138,7 +138,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report has no bytes yet.
+/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report does not have
+/// the number of bytes yet.
 fn write_proof(
     args: &Certify,
     path: &Path,

@@ -56,7 +56,7 @@ fn check(report: &Value, more: &str) {
         assert_eq!(keys(times), sorted(&format!("{COLUMNS}{kinetic}")), "{key}");
         assert!(times.as_object().unwrap().values().all(positive), "{report}");
     }
-    // Certified methods ran on all steps, so their times are there for each kind of state that there is.
+    // Certified methods ran on all steps, so they have times for each kind of state that occurs.
     let colliding = whole("colliding_steps");
     let counts = [whole("steps") - colliding, whole("steps") - colliding, colliding, colliding];
     for (key, count) in parts.iter().zip(counts) {

@@ -234,7 +234,7 @@ fn check_at_one_q() {
     assert!(
         free.stdout.starts_with("free: proven by the root's certificate alone (|z| = 0.5590, root radius ")
     );
-    // Beyond the radius, by the root's local certificate; without local certificates, by a search.
+    // Beyond the radius, the root's local certificate proves the answer; without local certificates, a search does.
     let free = run("--q=0,4");
     assert_eq!(free.code, Some(0));
     let start = "free: proven by the root's certificate alone (|z| = 4.000, root radius ";

@@ -159,7 +159,7 @@ fn frames_from_arrays_and_folders() {
     let printed: Vec<&str> = text.stdout.lines().collect();
     assert!(printed[2].ends_with("COLLIDING  1 pair, first 0 1"), "{text:?}");
     assert!(printed[4].starts_with("4 frames: 3 free, 1 colliding; median "), "{text:?}");
-    // The mesh at rest only names faces; ignoring its own pairs leaves none here.
+    // Only the faces of the mesh at rest are used. If the pairs that collide at rest are ignored, no pair remains.
     fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
     let ignored =
         lines(folder, &["touching.obj", "--frames", "frames", "--ignore-rest"], "ignored, left_out");

@@ -36,7 +36,7 @@ fn wall() -> serde_json::Value {
         .map(|(x, z): (f32, f32)| brick([x, 0.1, z], [x + 0.9, 0.7, z + 0.3]))
         .collect();
     let times = [[0.0, 1.0, 3.0]];
-    // Rotations that are unit only to single precision: two of three numbers each.
+    // Three quaternions of length 1 only up to single precision, in groups of three numbers.
     let turns = [[0.0, 0.0, 0.0], [1.0, 0.36, 0.48], [0.6, 0.529_15, -0.48], [0.0, 0.64, 0.6]];
     let named: Vec<(&str, &[[f32; 3]])> = bricks
         .iter()

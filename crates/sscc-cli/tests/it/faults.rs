@@ -121,7 +121,7 @@ fn killed_commands_leave_files_old_or_new() {
         sscc(folder, args);
         assert!(fs::read(&path).unwrap() == expected, "{name}");
     }
-    // The page is the largest file, so on a machine of any speed a kill comes while it is written sooner or later.
+    // The page is the largest file, so on a machine of any speed a kill comes sooner or later while it is written.
     let (_, page) = WRITERS[4];
     for _ in 0..200 {
         if parts > 0 {

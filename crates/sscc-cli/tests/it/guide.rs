@@ -223,7 +223,7 @@ fn models_that_cannot_move_are_refused() {
         assert!(message.contains(cause), "{model}: {message}");
         assert!(!folder.join("out/trajectories.npz").exists());
     }
-    // The same files with what was missing.
+    // The same files with the missing data.
     for model in [
         format!("{}\nmaterial = {{ density = 1000 }}", vega("free")),
         "file = \"light.model.safetensors\"\nmaterial = { density = 1000 }".into(),

@@ -301,7 +301,7 @@ fn a_diverging_motion_is_reported_and_its_states_are_written() {
     let folder = folder(&text);
     let run = simulate(folder.path(), &["scene.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
-    // The first line states what the shake does.
+    // The first line states the effect of the shake.
     let (note, message) = run.stderr.strip_suffix('\n').unwrap().split_once('\n').unwrap();
     assert!(note.starts_with("note: body 0 (spring): shake gives "), "{note}");
     assert!(message.starts_with("error: step "), "{message}");

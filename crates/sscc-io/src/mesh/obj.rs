@@ -1,6 +1,6 @@
 //! Reader for Wavefront OBJ files.
 //!
-//! The module has its own parser: general ones renumber vertices by first use and drop unused ones, after which modes
+//! The module has its own parser: general parsers renumber vertices by first use and drop unused ones, so that modes
 //! for the `v` lines of the file no longer fit.
 
 use std::borrow::Cow;

@@ -65,7 +65,8 @@ impl EarCandidates {
         grid
     }
 
-    /// Returns the cell of a point. It is monotone in each coordinate, so the cells of a box's corners enclose those of its points.
+    /// Returns the cell of a point. The cell is monotone in each coordinate, so the cells of a box's corners enclose those of
+    /// its points.
     fn cell(&self, point: DVec2) -> [usize; 2] {
         // The conversion maps negative numbers, and the NaN of grids without extent, to 0.
         let cells = (point - self.low) * self.scale;

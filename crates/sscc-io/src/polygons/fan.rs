@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn convex_and_star_shaped_polygons_are_fans() {
         assert!(is_fan(&[(0., 0.), (4., 0.), (4., 4.), (0., 4.)]));
-        // A reflex first corner that sees everything; the same polygon from another corner.
+        // The whole polygon is visible from its reflex first corner, but not from another corner.
         let arrow = [(2., 1.), (0., 4.), (0., 0.), (4., 0.), (4., 4.)];
         assert!(is_fan(&arrow));
         let mut turned = arrow;

@@ -44,7 +44,7 @@ pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
 /// As [`read_volume_mesh`], but for a Medit, gmsh or VTK file without tetrahedra and cubes returns the surface of its faces.
 ///
 /// # Errors
-/// As [`read_volume_mesh`], but a file without elements may have faces; then when a face is of higher order.
+/// As [`read_volume_mesh`], but a file may have faces in place of elements; these must not be of higher order.
 pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse_any,

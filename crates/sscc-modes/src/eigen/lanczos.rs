@@ -111,7 +111,7 @@ pub(super) fn largest(
 }
 
 /// Returns the cause of a failed iteration. `span` is the ratio of the largest to the smallest wanted value. Rounding
-/// leaves up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
+/// causes up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
 /// `docs/notes/modes.md#lanczos`.
 fn unconverged(converged: usize, wanted: usize, span: f64) -> ModesError {
     let is_rounding = f64::EPSILON * span >= RESIDUAL_TOLERANCE;

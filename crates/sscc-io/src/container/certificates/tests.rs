@@ -86,7 +86,7 @@ fn groups_round_trip() {
         read.check_model(&model()).unwrap();
         assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
     }
-    // Without groups the file is one of the version before.
+    // A file without groups has the version before.
     let plain = CertifyOptions::default().budget(16).local_budget(0);
     let plain = certificates_to_bytes(&Certificates::compute(&model(), &plain, &()).unwrap()).unwrap();
     assert_eq!(Container::parse(&plain, CERTIFICATES).unwrap().version(), 4);

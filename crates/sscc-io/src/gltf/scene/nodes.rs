@@ -13,7 +13,7 @@ pub(super) const NODE_SIZE: u64 = 512;
 pub(super) struct Nodes {
     transforms: Vec<Transform>,
     parents: Vec<Option<u32>>,
-    /// Every node after its parent.
+    /// Numbers of all nodes, each after its parent.
     order: Vec<u32>,
 }
 
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn parents_move_their_children() {
-        // A child may stand before its parent.
+        // A child may come before its parent.
         let nodes = nodes(
             r#"[{"translation":[1,0,0]},{"children":[0],"scale":[2,2,2]},{"children":[1],"translation":[0,0,5]}]"#,
         )

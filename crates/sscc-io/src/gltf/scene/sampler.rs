@@ -33,7 +33,7 @@ impl Interpolation {
 
 /// Key frames of one property.
 pub(super) struct Sampler {
-    /// At least one, ascending (s). Channels share them.
+    /// Times of the key frames (s), ascending, at least one. Channels share them.
     pub times: Arc<[f64]>,
     /// Items of `width` numbers, [`Interpolation::items_per_key`] for each time.
     pub values: Vec<f64>,
@@ -93,7 +93,8 @@ impl Sampler {
         }
     }
 
-    /// Returns an item of a key frame: 0 is its value; for splines 0 is the tangent before it, 1 the value, 2 the tangent after it.
+    /// Returns an item of a key frame: number 0 is its value; for splines 0 is the tangent before it, 1 the value, 2 the
+    /// tangent after it.
     fn item(&self, key: usize, number: usize) -> &[f64] {
         &self.values[(key * self.interpolation.items_per_key() + number) * self.width..][..self.width]
     }

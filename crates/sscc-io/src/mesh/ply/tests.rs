@@ -239,7 +239,7 @@ fn elements_with_unknown_faces_are_refused() {
     let grid = "element range_grid 1\nproperty list uchar int vertex_indices";
     assert!(message(grid, "1 3\n3 0 1 2\n").unwrap_err().contains("'range_grid'"));
     assert_eq!(message("element patch 0\nproperty list uchar int vertex_indices", "3 0 1 2\n"), Ok(1));
-    // Lines, numbers of other kinds.
+    // Elements of lines, and lists of numbers of other kinds, are skipped.
     assert_eq!(message("element edge 1\nproperty list uchar int vertex_indices", "2 3 4\n3 0 1 2\n"), Ok(1));
     assert_eq!(
         message("element edge 1\nproperty int vertex1\nproperty int vertex2", "3 4\n3 0 1 2\n"),
@@ -261,7 +261,7 @@ fn rows_of_another_length_name_their_line() {
     assert_eq!(message("3 0 1 2 3 255 0 0\n3 3 4 5 3 255 0 0\n"), format!("line 17: {more}"));
     assert_eq!(message("3 0 1 2 3\n3 3 4 5 3 9\n"), format!("line 18: {more}"));
     assert_eq!(message("3 0 1 2\n3 3 4 5\n"), "line 17: this row has fewer values than the header declares");
-    // Rows in one line, and over several ones, are read where all numbers fit.
+    // Rows in one line, and over several ones, are read if the count of all numbers fits.
     let rows = "3 0 1 2 3 3 3 4\n5 3\n";
     assert_eq!(parse(with_element(faces, rows).as_bytes()).unwrap().faces(), [[0, 1, 2], [3, 4, 5]]);
 }

@@ -33,8 +33,8 @@ impl Layout {
         }
     }
 
-    /// Expands an array in blocks. Its header has the number of blocks, the size of each, that of the last one if it is smaller (else 0), and the
-    /// compressed size of each.
+    /// Expands an array in blocks. Its header has the number of blocks, the size of each, that of the last one if it is
+    /// smaller (else 0), and the compressed size of each.
     fn inflate(self, data: &[u8], expected: u64) -> Result<Vec<u8>, String> {
         let count = self.number(data, 0)?;
         if count == 0 {

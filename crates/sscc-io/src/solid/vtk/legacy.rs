@@ -140,7 +140,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads the list of earlier versions: for each cell its number of corners, and these.
+    /// Reads the list of earlier versions: for each cell its number of corners, and the corners.
     fn counted_cells(&mut self, count: u64, size: u64) -> Result<(), FormatError> {
         let numbers = self.numbers.ints(size, "a corner")?;
         let mut rest = &numbers[..];

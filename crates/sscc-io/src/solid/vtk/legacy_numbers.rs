@@ -129,7 +129,7 @@ impl Numbers<'_> {
             let start = ahead.take::<1>(what)?[0] >> 6;
             let size = LENGTHS[usize::from(start)];
             let length = unsigned(self.words.bytes(size, what)?, true);
-            // The first two bits are those of the size.
+            // The first two bits state the size of the length.
             let length = if size == 8 { length } else { length & (u64::MAX >> (66 - 8 * size)) };
             self.words.bytes(length, what)?;
         }

@@ -86,8 +86,8 @@ fn every_encoding_has_the_same_grid() {
     }
 }
 
-/// Truncated files are refused, apart from ends that hold no array and from texts, whose last number may be cut; every damaged
-/// one is read or refused.
+/// Truncated files are refused, unless the missing end has no array, or only cuts the last number of a text. Every damaged
+/// file is read or refused.
 #[test]
 fn damaged_files_are_errors() {
     for name in FILES {

@@ -16,7 +16,7 @@ use crate::error::{cut, quoted};
 /// Beginning of the data that is no XML.
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// Advice where a file has another structure.
+/// Advice if a file has another structure.
 const SAVE: &str =
     "save it as an unstructured grid (.vtu) of one piece, as ParaView's filter Merge Blocks does";
 
@@ -127,7 +127,7 @@ fn is_in_array(found: &[Element<'_>], open: &[usize]) -> bool {
     open.last().is_some_and(|number| found[*number].name == "DataArray")
 }
 
-/// The error of a line. The cause may name words of the file.
+/// Returns the error of a line. The cause may name words of the file.
 fn malformed(line: usize, cause: &str) -> FormatError {
     FormatError::line(line, format!("malformed XML: {}", cut(cause, 120)))
 }
