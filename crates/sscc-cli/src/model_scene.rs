@@ -5,7 +5,7 @@ use sscc_io::LoadedModel;
 use sscc_modes::mode_frequencies;
 use sscc_view::{Arrays, ModelDetails, ModelScene, ViewError};
 
-/// Returns the description of a model and its arrays. `q`: the initial q; none: that of the file.
+/// Returns the description of a model and its arrays. `q` is the initial q; None uses that of the file.
 ///
 /// # Errors
 /// If the certificates belong to another model, or a number of the model exceeds the range of the page.

@@ -3,8 +3,8 @@
 use anyhow::Context;
 use rayon::ThreadPoolBuilder;
 
-/// Begins the threads that all commands share: one for each core, or none beside this one where the system refuses them. Without this, a
-/// command would end by a panic in the middle of its work.
+/// Starts the threads that all commands share: one for each core, or only the current one if the system refuses others.
+/// Without this function, a command could end by a panic in the middle of its work.
 pub fn begin() -> anyhow::Result<()> {
     let all = ThreadPoolBuilder::new().build_global();
     all.or_else(|_| ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()).context(

@@ -23,15 +23,15 @@ impl Allowance {
         Self { remaining: total, total }
     }
 
-    /// Adds that of another file with `read` bytes.
+    /// Adds the allowance of another file with `read` bytes.
     pub fn add(&mut self, read: u64) {
         let more = read.saturating_mul(MAX_GROWTH);
         self.remaining = self.remaining.saturating_add(more);
         self.total = self.total.saturating_add(more);
     }
 
-    /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if that exceeds the
-    /// remaining bytes.
+    /// Takes `count` items of `size` bytes. The error is the cause of the rejection, if the items
+    /// exceed the remaining bytes.
     pub fn take(&mut self, count: u64, size: u64) -> Result<(), String> {
         match count.checked_mul(size).and_then(|bytes| self.remaining.checked_sub(bytes)) {
             Some(remaining) => {

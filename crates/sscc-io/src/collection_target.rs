@@ -1,4 +1,4 @@
-//! Where a `.pvd` collection is written, and what must not be lost there.
+//! The target of a `.pvd` collection. Only the files of an earlier collection may be replaced.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -9,7 +9,7 @@ use crate::file::{check_target, folder, not_written};
 use crate::modes::{is_collection, read_collection};
 use crate::{IoError, split_mesh_name};
 
-/// Where a collection goes.
+/// The files of a collection.
 pub(crate) struct Target {
     pub path: PathBuf,
     /// Folder of its files.
@@ -33,7 +33,7 @@ impl Target {
         Ok(Self { path: path.to_owned(), folder, name })
     }
 
-    /// Refuses a target that would be lost: all but the files of an earlier collection.
+    /// Returns an error if the folder has anything but the files of an earlier collection, which would be lost.
     pub fn check(&self) -> Result<(), IoError> {
         check_target(&self.path)?;
         let refused = |cause| not_written(&self.folder, cause);

@@ -15,8 +15,8 @@ const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 /// Pipes and devices are rejected, because they have no size that bounds the bytes read.
 ///
 /// # Errors
-/// When the file does not exist, is not a regular file, is empty, is a Git LFS pointer, does not fit into memory, or the system reports an
-/// error.
+/// When the file does not exist, is not a regular file, is empty, is a Git LFS pointer, does not fit into memory, or the
+/// system reports an error.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
     let refused = |cause| read_error(path, cause);
     let (file, size) = open_regular(path)?;
@@ -83,6 +83,8 @@ pub(crate) struct WholeFile {
 }
 
 impl WholeFile {
+    /// Creates the temporary file.
+    ///
     /// # Errors
     /// As [`write_whole`].
     pub(crate) fn create(path: &Path) -> Result<Self, IoError> {

@@ -27,8 +27,8 @@ pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result
     }
 }
 
-/// As [`read_groups`], of the mesh that [`load_mesh`](crate::load_mesh) reads, at its first place: that of a glTF file needs
-/// no morph targets.
+/// As [`read_groups`], but for the mesh that [`load_mesh`](crate::load_mesh) reads, at its first place: the mesh of a glTF
+/// file needs no morph targets.
 ///
 /// # Errors
 /// As [`read_groups`].

@@ -23,7 +23,7 @@
 //! write_model(&in_folder("two.model.safetensors"), &model, &info)?;
 //! write_certificates(&in_folder("two.sscc.safetensors"), &certificates)?;
 //!
-//! // From then on:
+//! // In every later run:
 //! let (model, _info) = read_model(&in_folder("two.model.safetensors"))?;
 //! let certificates = read_certificates(&in_folder("two.sscc.safetensors"))?;
 //! let mut query = Query::new(&model, &certificates)?;
@@ -39,11 +39,11 @@
 //! | modes: `.npy`, VegaFEM's matrices, a folder of target meshes | [`read_modes_for`], [`modes`] |
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a `.pc2` point cache, VTK's `.vtu`, `.vtk` and `.pvd`, a folder of meshes | [`FrameReader`] |
-//! | the mesh of any file, without modes, where nodes put it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
+//! | the mesh of any file, without modes, at the place that nodes give it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
 //! | the files of a folder that have a mesh | [`list_mesh_files`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
-//! | what a glTF file contains | [`gltf::read_contents`] |
+//! | the contents of a glTF file | [`gltf::read_contents`] |
 //! | q, trajectories, weights, matrices | [`read_rows`], [`read_vector`], [`read_matrix`], [`write_npy`] |
 //! | models and certificates | [`container`] |
 //! | arrays with names, sounds | [`write_npz`], [`write_wav`] |
@@ -51,7 +51,7 @@
 //! | a pose with its colliding triangles marked; frames of such poses for ParaView | [`write_ply_pose`], [`write_obj_pose`], [`write_vtu_pose`]; [`VtkFramesWriter`] |
 //! | contact curves as polylines | [`write_ply_curves`], [`write_obj_curves`] |
 //!
-//! STL and glTF split vertices along seams. Their readers say so ([`sscc::TriMesh::has_split_vertices`]), and detectors and
+//! STL and glTF split vertices along seams. Their readers report this ([`sscc::TriMesh::has_split_vertices`]), and detectors and
 //! certificates weld them by default.
 //!
 //! All readers accept untrusted bytes. They report an error of one line with the file, the place and the cause. They

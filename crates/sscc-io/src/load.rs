@@ -49,16 +49,16 @@ pub struct LoadedModel {
     pub mode_names: Vec<String>,
     /// One number per mode from a `.npz` file (r), such as variances.
     pub mode_weights: Option<Vec<f64>>,
-    /// Lines about content of the file whose meaning is not clear ([`read_mesh_with_warnings`]), or that it lacks by its
-    /// standard.
+    /// Lines about content of the file whose meaning is not clear ([`read_mesh_with_warnings`]), or that its standard
+    /// requires but the file lacks.
     pub warnings: Vec<String>,
     /// The glTF file, and the name of the mesh.
     scene: Option<(PathBuf, Option<String>)>,
 }
 
 impl LoadedModel {
-    /// Reads where the nodes of a glTF file put the model: [`gltf::PlacedMesh::place`] moves its positions, which are in the
-    /// coordinates of the mesh, to the world. None for other files, whose positions are where they are.
+    /// Reads the places that the nodes of a glTF file give the model: [`gltf::PlacedMesh::place`] moves its positions, which
+    /// are in the coordinates of the mesh, to the world. None for other files, which have no nodes.
     ///
     /// # Errors
     /// When the file cannot be read, or its nodes or skins are malformed.
@@ -146,12 +146,12 @@ pub fn load_model_with(path: &Path, options: &LoadOptions<'_>) -> Result<LoadedM
 }
 
 /// Loads a mesh at rest from a file of any format: a mesh file, a glTF file at the first place of its mesh
-/// ([`gltf::read_placed_mesh`]), a model without its modes, or a solid, of which it is the surface of the elements with all
-/// vertices of the file, in a Medit, gmsh or VTK file without elements that of the faces. `FILE#NAME` ([`split_mesh_name`](crate::split_mesh_name)) names
-/// the mesh as `mesh_name` does.
+/// ([`gltf::read_placed_mesh`]), a model without its modes, or a solid. The mesh of a solid is the surface of its elements,
+/// or of the faces in a Medit, gmsh or VTK file without elements, with all vertices of the file. `FILE#NAME`
+/// ([`split_mesh_name`](crate::split_mesh_name)) names the mesh as `mesh_name` does.
 ///
 /// A grid of VTK is deformed by its displacements ([`Displacement::ByName`]), or by the point data that `mesh_name` names; an
-/// empty name: by none. Of a `.pvd` collection this is its first file.
+/// empty name leaves it undeformed. The grid of a `.pvd` collection is its first file.
 ///
 /// # Errors
 /// When a mesh is named for a file other than glTF and VTK, or twice; when the file cannot be read or is malformed, or has no
@@ -202,7 +202,7 @@ fn load_grid(path: &Path, displacement: &Displacement) -> Result<LoadedMesh, IoE
     Ok(LoadedMesh { mesh, warnings })
 }
 
-/// As [`load_mesh_with_warnings`], of a grid of VTK at rest, without its displacements.
+/// As [`load_mesh_with_warnings`], but a grid of VTK is at rest, without its displacements.
 fn load_rest_mesh(path: &Path) -> Result<LoadedMesh, IoError> {
     if is_vtk_name(path) { load_grid(path, &Displacement::None) } else { load_mesh_with_warnings(path, None) }
 }
@@ -350,7 +350,7 @@ mod tests {
         for mesh in ["a.obj", "a.STL"] {
             let read = load_mesh(&path(mesh), None).unwrap();
             assert_eq!(read.rest_positions(), first.model.mesh().rest_positions());
-            // What a format needs comes with its mesh.
+            // The mesh of a format that splits vertices is welded by default.
             assert_eq!(ContactFilter::of(&read).weld, mesh == "a.STL");
         }
         let named = load_mesh(&path("a.obj"), Some("x")).unwrap_err().to_string();

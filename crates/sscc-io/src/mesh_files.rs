@@ -9,8 +9,8 @@ use crate::gltf::is_gltf;
 use crate::mesh::is_mesh_name;
 use crate::solid::is_solid_name;
 
-/// Lists the meshes, solids and glTF files of a folder, in natural order: `9.obj` comes before `10.obj`. Of the two files of a
-/// TetGen solid it lists the `.node`. Other files, among them models with modes, hidden files and folders are skipped.
+/// Lists the meshes, solids and glTF files of a folder, in natural order: `9.obj` comes before `10.obj`. It lists a TetGen
+/// solid by its `.node` file alone. Other files, among them models with modes, hidden files and folders are skipped.
 ///
 /// # Errors
 /// When the folder cannot be read, or has no such file.

@@ -6,8 +6,8 @@ use crate::IoError;
 use crate::error::quoted;
 use crate::gltf::is_gltf;
 
-/// Splits `FILE#NAME` into the file and the name of one of its meshes. Other paths have no name: those of existing files,
-/// whatever they are called, and those where no part before a `#` is a file or ends as a glTF file.
+/// Splits `FILE#NAME` into the file and the name of one of its meshes. A path has no name if it is that of an
+/// existing file, or if no part before a `#` is a file or has the ending of a glTF file.
 pub fn split_mesh_name(path: &Path) -> (PathBuf, Option<String>) {
     let whole = || (path.to_owned(), None);
     let Some(text) = path.to_str().filter(|_| !path.exists()) else { return whole() };

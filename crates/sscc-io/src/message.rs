@@ -6,7 +6,7 @@ use std::path;
 
 macro_rules! settings {
     ($($setting:ident $name:literal),* $(,)?) => {
-        /// A setting of a request. Where a message names one, to change it is the remedy.
+        /// A setting of a request. A message that names a setting advises to change it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Setting {

@@ -7,10 +7,10 @@ use sscc::{Error, TriangleGroups};
 use crate::FormatError;
 use crate::error::{cut, quoted};
 
-/// What makes a group of triangles.
+/// The parts of a file that are groups of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroupsBy {
-    /// OBJ: lines `g`, where several names are one. glTF: primitives, named `#0`, `#1`, ...
+    /// OBJ: lines `g`; several names in a line are one name. glTF: primitives, named `#0`, `#1`, ...
     #[default]
     Group,
     /// OBJ: lines `o`. glTF: the node, which is one group.
@@ -31,14 +31,14 @@ pub struct NamedGroups {
     pub of_triangle: Vec<u32>,
 }
 
-/// The name of the group of triangles without one.
+/// The name of the group of triangles that have no group.
 pub(crate) const DEFAULT: &str = "default";
 
 impl NamedGroups {
-    /// The group of this name.
+    /// Returns the group of this name.
     ///
     /// # Errors
-    /// The cause, with the names there are.
+    /// The cause, with the names of all groups.
     pub fn number(&self, name: &str) -> Result<u32, String> {
         match self.names.iter().position(|known| known == name) {
             Some(number) => Ok(number as u32),
@@ -53,7 +53,7 @@ impl NamedGroups {
         }
     }
 
-    /// The two groups of the text `A,B`. A name may itself contain commas.
+    /// Returns the two groups of the text `A,B`. A name may itself contain commas.
     ///
     /// # Errors
     /// As [`NamedGroups::number`], and when there is no comma.
@@ -67,10 +67,10 @@ impl NamedGroups {
         }
     }
 
-    /// The groups for a contact filter. All pairs count.
+    /// Returns the groups for a contact filter. All pairs count.
     ///
     /// # Errors
-    /// When they are more than the core supports; readers return no such groups.
+    /// When there are more groups than the core supports; readers do not return so many groups.
     pub fn to_table(&self) -> Result<TriangleGroups, Error> {
         TriangleGroups::new(&self.of_triangle)
     }

@@ -22,8 +22,8 @@ impl PartFolder {
         &self.path
     }
 
-    /// Renames each first path to the second one. Where one cannot be renamed, those before it get their old names again; where
-    /// they cannot, this folder is kept, since it may contain what was there before.
+    /// Renames each first path to the second one. If one cannot be renamed, the paths before it get their old names again; if
+    /// this fails, this folder is kept, since it may contain the old files.
     pub(crate) fn rename_all(&mut self, moves: &[(PathBuf, PathBuf)]) -> io::Result<()> {
         for (number, (from, to)) in moves.iter().enumerate() {
             if let Err(error) = fs::rename(from, to) {

@@ -8,8 +8,10 @@ use sscc::TriMesh;
 
 use crate::{IoError, write_whole};
 
-/// Colours (RGB) of free and colliding triangles in a PLY file.
+/// Colour (RGB) of free triangles in a PLY file.
 const FREE: [u8; 3] = [200, 200, 200];
+
+/// Colour (RGB) of colliding triangles in a PLY file.
 const COLLIDING: [u8; 3] = [220, 30, 30];
 
 /// Writes a pose as OBJ: the triangles in the order of the mesh, in the groups `free` and `colliding` (a group can
@@ -50,9 +52,9 @@ pub(crate) fn check_pose(
 ) -> Result<(), IoError> {
     let (vertices, faces) = (mesh.rest_positions().len(), mesh.faces().len());
     let cause = if positions.len() != vertices {
-        format!("{} positions for {vertices} vertices", positions.len())
+        format!("there are {} positions for {vertices} vertices", positions.len())
     } else if colliding.len() != faces {
-        format!("{} marks for {faces} triangles", colliding.len())
+        format!("there are {} marks for {faces} triangles", colliding.len())
     } else if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
         format!("the position of vertex {vertex} (counted from 0) is not finite")
     } else {
@@ -131,7 +133,9 @@ mod tests {
         let message = |positions: &[DVec3], marks: &[bool]| {
             write_obj_pose(&path, &mesh(), positions, marks).unwrap_err().to_string()
         };
-        assert!(message(&[DVec3::ZERO; 3], &MARKS).ends_with("pose.ply: 3 positions for 4 vertices"));
+        assert!(
+            message(&[DVec3::ZERO; 3], &MARKS).ends_with("pose.ply: there are 3 positions for 4 vertices")
+        );
         assert!(message(&[DVec3::ZERO; 4], &[true; 3]).ends_with("3 marks for 4 triangles"));
         assert!(message(&[DVec3::NAN; 4], &MARKS).ends_with("vertex 0 (counted from 0) is not finite"));
         assert!(write_ply_pose(&path, &mesh(), &[], &MARKS).is_err());

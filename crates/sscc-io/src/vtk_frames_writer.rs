@@ -20,7 +20,7 @@ use crate::vtk_writer::vtu;
 /// [`write_vtu_pose`](crate::write_vtu_pose) describes.
 ///
 /// Files are written to a temporary folder beside `x`. [`VtkFramesWriter::finish`] renames it, and replaces an earlier collection of that
-/// name. Dropped before, it removes the folder, and what was there before is unchanged.
+/// name. A writer that is dropped before removes the folder, and earlier files are unchanged.
 pub struct VtkFramesWriter {
     target: Target,
     part: PartFolder,
@@ -90,8 +90,8 @@ impl VtkFramesWriter {
         Ok(())
     }
 
-    /// Completes the collection: an earlier one is set aside, and removed when the new one is in place. Where the process ends in
-    /// between, it is whole in the temporary folder.
+    /// Completes the collection: an earlier one is set aside, and removed when the new one is in place. If the process ends in
+    /// between, the earlier collection is whole in the temporary folder.
     ///
     /// # Errors
     /// When the target has become one that [`create`](Self::create) refuses, or cannot be replaced. It is then unchanged.
@@ -222,7 +222,7 @@ mod tests {
         let at = |name: &str| directory.path().join(name);
         let path = at("x.pvd");
         write(&path, 2).unwrap();
-        // Each is a folder that holds more than the files that the collection names.
+        // In each case the folder has files that the collection does not name.
         for (name, is_removed) in [("x/notes.txt", false), ("x/x_000002.vtu", false), ("x.pvd", true)] {
             let saved = fs::read(&path).unwrap();
             if is_removed {
@@ -238,7 +238,7 @@ mod tests {
             assert!(!message.contains('\n') && content(directory.path()) == before);
             if is_removed { fs::write(at(name), saved).unwrap() } else { fs::remove_file(at(name)).unwrap() }
         }
-        // It comes while frames are written.
+        // The other file appears while frames are written.
         let writer = VtkFramesWriter::create(&path).unwrap();
         fs::write(at("x/notes.txt"), "a").unwrap();
         assert!(writer.finish().unwrap_err().to_string().contains("contains 'notes.txt', which is not"));

@@ -41,7 +41,7 @@ pub(crate) fn vtu(mesh: &TriMesh, positions: &[DVec3], colliding: &[bool]) -> Ve
         start
     });
     let array = |kind: &str, name: &str, components: u8, offset: usize| {
-        // meshio reads one component that is stated as a table of one column.
+        // If the file states one component, meshio reads a table of one column.
         let components =
             if components > 1 { format!(" NumberOfComponents=\"{components}\"") } else { String::new() };
         format!(

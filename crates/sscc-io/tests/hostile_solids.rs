@@ -199,7 +199,7 @@ proptest! {
         check_any(vtk::parse_any(&bytes[..len]));
     }
 
-    /// Exchanged numbers, which damage of single bytes seldom produces.
+    /// Damage of single bytes seldom exchanges numbers.
     #[test]
     fn exchanged_numbers(
         seed in 0_usize..11,

@@ -1,5 +1,5 @@
-//! Proofs of certificates, and the checker that shares no code with what computes them: true ones are confirmed, all others
-//! refused.
+//! Proofs of certificates, and the checker, which shares no code with their computation: it confirms true proofs and refuses
+//! all others.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use sscc::parts::{CertificateParts, Digest, Prover, Scope};
@@ -24,7 +24,7 @@ fn certify(model: &ReducedModel, options: &CertifyOptions) -> Certificates {
     Certificates::compute(model, &options.clone().local_budget(0).reach(4.0), &()).unwrap()
 }
 
-/// The model as the checker takes it.
+/// Returns the model in the type of the checker.
 fn checked(model: &ReducedModel) -> sscc_checker::Model {
     let (mesh, modes) = (model.mesh(), model.modes());
     let positions = mesh.rest_positions().iter().map(|p| p.to_array()).collect();
@@ -49,7 +49,7 @@ fn check(model: &ReducedModel, certificates: &[u8], proof: &[u8]) -> Result<Conf
     sscc_checker::check(&checked(model), certificates, proof, 2)
 }
 
-/// The text of a refusal; `is_proof`: whether the proof is wrong, not its input.
+/// Returns the text of a refusal. `is_proof` states whether the proof must be refused, not its input.
 fn refusal(result: Result<Confirmed, Refusal>, is_proof: bool) -> String {
     let refusal = result.unwrap_err();
     assert_eq!(matches!(refusal, Refusal::Proof(_)), is_proof, "{refusal}");
@@ -58,7 +58,7 @@ fn refusal(result: Result<Confirmed, Refusal>, is_proof: bool) -> String {
     line
 }
 
-/// A certificate file in which a tensor was changed, sealed anew.
+/// Returns a certificate file with a changed tensor and a valid digest.
 fn tampered(file: &[u8], tensor: &str, change: impl FnOnce(&mut [u8])) -> Vec<u8> {
     let mut bytes = file.to_vec();
     let header = 8 + u64::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
@@ -72,7 +72,7 @@ fn tampered(file: &[u8], tensor: &str, change: impl FnOnce(&mut [u8])) -> Vec<u8
     bytes
 }
 
-/// The options under which a shape is certified: all that a proof has to follow.
+/// Returns the options of certificates for a seed: all kinds of filters, metrics, centres and budgets.
 fn options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     let (rank, triangles) = (model.rank(), model.mesh().faces().len() as u32);
     let mut random = Numbers(seed);
@@ -122,8 +122,8 @@ fn proofs_of_all_kinds_of_certificates_are_confirmed() {
     enough(positive, 16);
 }
 
-/// Where coordinates are large and the centre is not 0, positions at the centre are rounded by more than witnesses of near
-/// triangles can bear.
+/// If coordinates are large and the centre is not 0, rounding errors of positions at the centre exceed the tolerance of
+/// witnesses of near triangles.
 #[test]
 fn proofs_about_a_centre_far_from_the_origin_are_confirmed() {
     for (seed, kind) in [(3, Shape::Comb), (3, Shape::Sheet), (3, Shape::SlitDisk)] {
@@ -249,7 +249,7 @@ fn certificates_of_other_models_are_refused() {
 }
 
 #[test]
-fn exceptions_must_be_those_of_the_rule() {
+fn exceptions_must_count_and_collide_at_the_centre() {
     // The ends of the strip overlap at the centre.
     let mut shape = FlexibleShape::new(4, Shape::Sheet, 2);
     let fold = shape.positions.iter().map(|p| p.x).fold(0.0, f64::max);
@@ -273,7 +273,7 @@ fn exceptions_must_be_those_of_the_rule() {
         let [a, b] = [a, b].map(|t| model.mesh().faces()[t as usize]);
         exceptions.iter().all(|pair| *pair != (a[0], b[0])) && a.iter().all(|i| !b.contains(i))
     };
-    // Beside those of the rule a pair that is apart, and one that shares vertices.
+    // One additional pair does not collide at the centre, and one shares vertices.
     for (pair, cause) in [((0, triangles / 2), "do not collide at the centre"), ((0, 1), "do not count")] {
         assert!(is_apart(&pair) == (cause == "do not collide at the centre"));
         let mut more = exceptions.clone();
@@ -282,7 +282,7 @@ fn exceptions_must_be_those_of_the_rule() {
         more.dedup();
         assert!(refusal(check(&model, &bytes(&with(more)), &proof), true).contains(cause));
     }
-    // One that is missing: no witness can prove its entry.
+    // An exception is missing: no witness can prove its entry.
     let less = with(exceptions[1..].to_vec());
     assert!(refusal(check(&model, &bytes(&less), &proof), false).contains("other certificates"));
     let prover = Prover::new(&model, &less).unwrap();
@@ -290,7 +290,7 @@ fn exceptions_must_be_those_of_the_rule() {
     assert!(prover.prove(&all, None, &()).unwrap_err().to_string().contains("has no proof"));
 }
 
-/// One byte must not ask for the pairs of triangles of large nodes.
+/// One byte must not make the checker test all pairs of triangles of large nodes.
 #[test]
 fn lists_of_triangles_are_for_leaves_alone() {
     let model = sheet();
@@ -306,14 +306,14 @@ fn lists_of_triangles_are_for_leaves_alone() {
     assert!(lines.iter().any(|line| line.contains("too early")), "{lines:?}");
 }
 
-/// A proof in which anything was changed is refused, or a proof.
+/// A changed proof is refused, or still proves the certificates.
 #[test]
 fn damaged_proofs_never_confirm_more_than_is_true() {
     let model = sheet();
     let certificates = certify(&model, &CertifyOptions::default());
     let file = certificates_to_bytes(&certificates).unwrap();
     let proof = prove(&model, &certificates);
-    // The radii of all nodes are too large: no proof may pass, whatever is in it.
+    // The radii of all nodes are too large: no proof may pass, with any content.
     let larger = tampered(&file, "node_radii", |bytes| {
         for radius in bytes.as_chunks_mut::<8>().0 {
             *radius = (f64::from_le_bytes(*radius) * 1e3).to_le_bytes();
@@ -331,7 +331,7 @@ fn damaged_proofs_never_confirm_more_than_is_true() {
 }
 
 /// Models on which rounding matters, because all coordinates, or all modes but the first, have a large common part; and filters that
-/// mutations forget.
+/// some mutations omit.
 #[cfg(feature = "mutants")]
 fn models_for_mutations() -> Vec<(ReducedModel, CertifyOptions)> {
     let plain = CertifyOptions::default;
@@ -363,7 +363,7 @@ fn models_for_mutations() -> Vec<(ReducedModel, CertifyOptions)> {
     ]
 }
 
-/// What the checker says to certificates and proofs of the mutation that the environment names.
+/// Prints the result of the checker for certificates and proofs of the mutation that the environment names.
 #[cfg(feature = "mutants")]
 #[test]
 #[ignore = "for the test below, in a process of its own"]
@@ -384,7 +384,7 @@ fn outcome_of_the_mutation_of_this_process() {
     }
 }
 
-/// The checker refuses what is certified, and proven, by wrong bounds: `cargo test -p sscc-io --features mutants --test proofs`.
+/// The checker refuses certificates and proofs by wrong bounds: `cargo test -p sscc-io --features mutants --test proofs`.
 #[cfg(feature = "mutants")]
 #[test]
 fn proofs_by_mutated_bounds_are_refused() {

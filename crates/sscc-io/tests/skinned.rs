@@ -104,7 +104,7 @@ fn sizes_and_weld_classes_are_known() {
         assert_eq!(animation.name.as_deref(), record["animation_name"].as_str(), "{place}");
         for frame in record["frames"].as_array().unwrap() {
             let time = frame["time"].as_f64().unwrap();
-            // Some begin later than at 0; players then hold their first key frame.
+            // Some animations begin later than at 0; players then hold their first key frame.
             assert!(0.0 < time && time < animation.last_time, "{place}: {animation:?}");
             assert!((0.0..0.1).contains(&animation.first_time), "{place}: {animation:?}");
         }

@@ -2,6 +2,8 @@
 
 use sscc::{Error, Progress};
 
+/// Checks whether the work is cancelled.
+///
 /// # Errors
 /// When the work is cancelled.
 pub(crate) fn check_cancelled(progress: &dyn Progress) -> Result<(), Error> {

@@ -9,8 +9,8 @@ use crate::ModesError;
 use crate::eigen::dense::symmetric_eigen;
 use crate::eigen::fix_signs;
 
-/// Maximum eigenvalue, relative to the largest, that counts as 0. Rounding leaves about 1e-14 of a rigid motion, of
-/// either sign, which must not become the smallest positive weight.
+/// Maximum eigenvalue, relative to the largest, that counts as 0. Rounding gives rigid motions about 1e-14, of either
+/// sign, which must not become the smallest positive weight.
 const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Modes with a diagonal stiffness: see [`diagonalize`].
@@ -97,7 +97,7 @@ pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<DiagonalModes
 }
 
 /// Returns the eigenvalues of a stiffness, ascending. For mass-orthonormal modes they are squared natural angular
-/// frequencies. Rounding leaves about 1e-14 of the largest, of either sign, for zeros.
+/// frequencies. Zeros may become about 1e-14 of the largest, of either sign, by rounding.
 ///
 /// # Errors
 /// When the eigenvalues do not converge.

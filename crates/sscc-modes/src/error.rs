@@ -50,7 +50,7 @@ pub enum ModesError {
         /// The largest magnitude of an eigenvalue.
         largest: f64,
     },
-    /// The iteration for the eigenvalues of a dense matrix did not end. Not known to happen.
+    /// The iteration for the eigenvalues of a dense matrix did not end. This is not known to happen.
     #[error(
         "the eigenvalues of a matrix of {rows} rows did not converge: request another number of modes, and please report it"
     )]
@@ -85,7 +85,7 @@ pub enum ModesError {
         /// The lowest eigenvalue over the mean one: small for slender bodies.
         lowest: f64,
     },
-    /// A basis for large deformations could not be computed. Not known to happen.
+    /// A basis for large deformations could not be computed. This is not known to happen.
     #[error(
         "the modal derivatives have a relative residual of {residual:.0e}, because rounding is large where elements or materials differ much: use linear modes, or elements and materials that differ less"
     )]
@@ -161,7 +161,7 @@ pub enum ModesError {
         /// Motions of a body in one piece.
         expected: usize,
     },
-    /// The number of modes found is not the number that exist. Not known to happen.
+    /// The number of modes found is not the number that exist. This is not known to happen.
     #[error(
         "the search found {found} modes where {counted} exist: request a few more or fewer, or check the mesh for tiny elements"
     )]
@@ -248,7 +248,7 @@ pub enum ModesError {
         frame: usize,
         /// Its number of vertices.
         found: usize,
-        /// That of the mesh.
+        /// The mesh's number of vertices.
         expected: usize,
     },
     /// A position of a frame is out of range.

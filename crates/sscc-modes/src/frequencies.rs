@@ -6,7 +6,7 @@ use sscc_solid::Stiffness;
 
 use crate::{ModesError, stiffness_eigenvalues};
 
-/// Maximum eigenvalue, relative to the largest entry, that counts as 0; rounding leaves that much.
+/// Maximum eigenvalue, relative to the largest entry, that counts as 0, because it may be rounding.
 const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Returns the natural frequencies (Hz) of mass-orthonormal modes: in the order of the modes if the stiffness is

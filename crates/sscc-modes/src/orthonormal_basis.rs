@@ -1,6 +1,6 @@
 //! Orthonormal basis to which vectors are added one by one.
 
-/// Minimum new share of an independent vector. Rounding leaves about 1e-16 of a dependent one; a second projection
+/// Minimum new share of an independent vector. By rounding, a dependent one has about 1e-16; a second projection
 /// restores the precision that is lost at a share of 1e-10.
 const MIN_NEW_SHARE: f64 = 1e-10;
 

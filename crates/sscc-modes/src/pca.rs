@@ -33,12 +33,12 @@ pub struct Pca {
 }
 
 /// Principal component analysis of frames with common topology: `frame = mean + U q`, exactly (up to rounding) for all
-/// frames where `rank` is the number of independent directions.
+/// frames if `rank` is the number of independent directions.
 ///
 /// The inner product is the plain sum over the vertices that some face uses, as usual for animations: where the mesh
 /// is finer, motion counts more. `mesh` gives the faces; its positions are not used. Frames hold one position for each
-/// of its vertices. `rank`: how many components; none: as many as explain 99.9% of the variance. There are fewer than
-/// frames.
+/// of its vertices. `rank` is the number of components; None gives as many as explain 99.9% of the variance. There are
+/// fewer components than frames.
 ///
 /// Computes the eigenvectors of the Gram matrix (frames x frames). The same input gives the same bits, but other
 /// processors may round differently. Vertices that coincide in all frames coincide in all modes.

@@ -13,7 +13,7 @@ use crate::eigen::tall_matrix::{add_product, inner, product};
 /// directions.
 const ZERO_STIFFNESS: f64 = 1e-12;
 
-/// Maximum eigenvalue of `U'U`, relative to the largest, of directions that are left out of a fit: rounding leaves that much.
+/// Maximum eigenvalue of `U'U`, relative to the largest, of directions that are omitted from a fit, because they may be rounding.
 const DEPENDENT: f64 = 1e-12;
 
 /// Number of corrections of a fit by its own residual, which bring it to rounding.
@@ -51,7 +51,7 @@ pub fn static_configuration(stiffness: &Stiffness, forces: &[f64]) -> Result<Vec
     let (values, vectors) = symmetric_eigen(matrix.as_ref())?;
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let size = forces.iter().map(|f| f * f).sum::<f64>().sqrt();
-    // Beyond it no share of the load could be told.
+    // With an infinite size, no share of the load is defined.
     if !size.is_finite() {
         return Err(ModesError::OutOfRange);
     }
@@ -83,9 +83,9 @@ pub struct DisplacementFit {
 /// The q whose displacements are nearest to given ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedConfiguration {
-    /// The q; of several, that of the smallest norm, with each mode in units of its own norm.
+    /// The q; if several are equally near, that of the smallest norm, with each mode in units of its own norm.
     pub q: Vec<f64>,
-    /// What remains of the displacements: norm of the residual over that of the displacements; 0 for none.
+    /// Norm of the residual over that of the displacements; 0 without displacements.
     pub residual: f64,
     /// The largest distance of a vertex from its place.
     pub largest: f64,
@@ -94,8 +94,7 @@ pub struct FittedConfiguration {
 }
 
 impl DisplacementFit {
-    /// Prepares fits for these modes. Modes that depend on the others, up to 1e-6 of the largest singular value, are no
-    /// error.
+    /// Prepares fits for these modes. Modes may depend on the others, up to 1e-6 of the largest singular value.
     ///
     /// # Errors
     /// When the products of the modes are out of range.
@@ -120,7 +119,7 @@ impl DisplacementFit {
     /// Fits q to one displacement for each vertex.
     ///
     /// # Errors
-    /// When the number of displacements is another one, or the result is not finite.
+    /// When the number of displacements is not that of vertices, or the result is not finite.
     pub fn fit(&self, displacements: &[DVec3]) -> Result<FittedConfiguration, ModesError> {
         let (modes, vertices) = (self.modes.as_ref(), self.modes.nrows() / 3);
         if displacements.len() != vertices {
@@ -169,7 +168,7 @@ mod tests {
             static_configuration(&diagonal(&[0.0, 2.0]), &[1.0, 1.0]),
             Err(ModesError::NoStaticAnswer)
         );
-        // So large that no share of it could be told.
+        // The load is so large that no share of it is defined.
         assert_eq!(static_configuration(&diagonal(&[0.0, 2.0]), &[1e200, 1.0]), Err(ModesError::OutOfRange));
         assert!(static_configuration(&diagonal(&[-1.0, 2.0]), &[1.0, 1.0]).is_err());
         assert!(static_configuration(&diagonal(&[1.0, 2.0]), &[1.0]).is_err());
@@ -181,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn fits_reproduce_displacements_and_tell_what_remains() {
+    fn fits_reproduce_displacements_and_state_the_residual() {
         let modes =
             Modes::from_matrix(4, 3, |row, k| ((row * row + 3 * k * row + k) % 7) as f64 - 3.0).unwrap();
         let fit = DisplacementFit::new(&modes).unwrap();

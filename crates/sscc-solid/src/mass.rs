@@ -18,7 +18,7 @@ pub struct MassProperties {
 
 impl MassProperties {
     /// Returns the mass properties of a uniform body within a closed surface whose triangles are oriented outwards. None
-    /// where the enclosed volume is not positive.
+    /// if the enclosed volume is not positive.
     pub fn within(surface: &TriMesh, density: f64) -> Option<Self> {
         let p = surface.rest_positions();
         let origin = p[surface.faces()[0][0] as usize];

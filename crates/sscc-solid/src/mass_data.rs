@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::MassProperties;
 
-/// Mass of a body with modes: what the motion needs of the solid beside the elastic forces.
+/// Mass of a body with modes: the data of the solid that its motion needs beside the elastic forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassData {
     /// Mass, centre of mass and inertia at rest.

@@ -98,7 +98,8 @@ mod tests {
             exchanged.ends_with("each is nearer to the middle of another edge; exchange them"),
             "{exchanged}"
         );
-        // In every tetrahedron, as in files of another format: no edge has two nodes, but elements are inverted.
+        // The nodes are exchanged in every tetrahedron, as in files of another format: no edge has two nodes, but elements are
+        // inverted.
         let all: Vec<_> = middles.iter().map(|m| [m[0], m[1], m[2], m[3], m[5], m[4]]).collect();
         let alone = Solid::with_middles(
             vertices.clone(),
@@ -125,7 +126,7 @@ mod tests {
         );
         assert!(inverted.contains("move the nodes of its edges towards their middles"));
 
-        // A file of the opposite convention: all corners and middles are exchanged together.
+        // In a file of the opposite convention, all corners and middles are exchanged together.
         let reversed = |corners: &[u32; 4]| [corners[0], corners[1], corners[3], corners[2]];
         let tets: Vec<_> = solid.tets().iter().map(reversed).collect();
         let middles: Vec<_> = middles.iter().map(|m| [m[0], m[5], m[3], m[2], m[4], m[1]]).collect();

@@ -14,13 +14,15 @@ pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3
 /// or inverted there.
 const MIN_JACOBIAN: f64 = 1e-9;
 
-/// Orbits of the integration points in barycentric coordinates, with the weight of each point. The 14 points are exact for
-/// polynomials of degree 5 (Walkington 2000); where edges are straight, the mass has degree 4, energies of St. Venant-Kirchhoff
-/// have degree 4, too, and the stiffness has degree 2.
+/// Orbits of four integration points in barycentric coordinates, with the weight of each point. With [`EDGE_ORBIT`], the 14
+/// points are exact for polynomials of degree 5 (Walkington 2000); where edges are straight, the mass has degree 4, energies
+/// of St. Venant-Kirchhoff have degree 4, too, and the stiffness has degree 2.
 const CORNER_ORBITS: [(f64, f64); 2] = [
     (0.310_885_919_263_300_6, 0.112_687_925_718_015_85),
     (0.092_735_250_310_891_23, 0.073_493_043_116_361_95),
 ];
+
+/// Orbit of six integration points, as [`CORNER_ORBITS`].
 const EDGE_ORBIT: (f64, f64) = (0.045_503_704_125_649_65, 0.042_546_020_777_081_47);
 
 /// Returns the middle node of an edge between two corners, from 4.
@@ -112,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rule_is_exact_for_polynomials_of_degree_five() {
+    fn the_integration_points_are_exact_for_polynomials_of_degree_five() {
         let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
         for powers in
             (0..6).flat_map(|i| (0..6 - i).flat_map(move |j| (0..6 - i - j).map(move |k| [i, j, k])))

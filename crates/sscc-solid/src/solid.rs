@@ -137,7 +137,7 @@ impl Solid {
             }
         }
         if orient(vertices, tets)? {
-            // Without corners 2 and 3 exchanged, corners of the nodes would differ from those of the tetrahedra.
+            // The tetrahedra have exchanged corners 2 and 3, so their nodes must be exchanged in the same way.
             let reversed = [0, 1, 3, 2, 4, 9, 7, 6, 8, 5];
             tets10.iter_mut().for_each(|nodes| *nodes = reversed.map(|k| nodes[k]));
         }
@@ -211,7 +211,6 @@ impl Solid {
     }
 }
 
-/// Returns an error unless there are no middles, or six for each tetrahedron, one for each edge.
 /// Returns the error for the first tetrahedron whose middle nodes are exchanged, if there is one.
 fn exchanged_middles(vertices: &[DVec3], tets: &[[u32; 4]], middles: &[[u32; 6]]) -> Option<SolidError> {
     let is_exchanged = |(tet, middles): (&[u32; 4], &[u32; 6])| {

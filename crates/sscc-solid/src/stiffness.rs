@@ -5,10 +5,10 @@ use sscc::limits;
 use crate::SolidError;
 
 /// Maximum difference of mirrored entries of a symmetric matrix, relative to the largest entry. Sums over millions of
-/// vertices, in any order, leave about 1e-11; mistakes leave far more.
+/// vertices, in any order, have differences of about 1e-11; mistakes have far larger ones.
 const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
-/// Maximum off-diagonal entry of a diagonal matrix, relative to the largest entry; rounding leaves that much.
+/// Maximum off-diagonal entry of a diagonal matrix, relative to the largest entry; larger ones are not rounding.
 const DIAGONAL_TOLERANCE: f64 = 1e-12;
 
 /// The reduced stiffness `K~ = U'KU` of modes U (r x r): symmetric up to rounding, entries within [`sscc::limits`].

@@ -22,7 +22,7 @@ pub struct Audit {
     /// The certificates to attack
     #[arg(long, value_name = "FILE")]
     pub certificates: PathBuf,
-    /// Number of configurations to test; with --exact of entries to prove
+    /// Number of configurations to test; with --exact, number of entries to prove
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub samples: u32,
     /// Seed of the pseudo-random numbers; the same seed gives the same configurations

@@ -29,7 +29,7 @@ pub struct Certify {
     /// each of the first four modes
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
-    /// Also write why each radius holds (.proof): `sscc-checker MODEL CERTIFICATES FILE` confirms it in exact arithmetic. Not for
+    /// Also write a proof of each radius (.proof): `sscc-checker MODEL CERTIFICATES FILE` checks it in exact arithmetic. Not with
     /// --clearance
     #[arg(long, value_name = "FILE", conflicts_with = "clearance")]
     pub proof: Option<PathBuf>,
@@ -47,8 +47,8 @@ pub struct Certify {
 /// The clearance of certificates.
 #[derive(Debug, Args)]
 pub struct CertifiedClearance {
-    /// Certify at which |z| triangles come nearer than this distance (in units of the mesh), in place of when they collide: for
-    /// check --clearance up to D. Such certificates prove nothing about collisions
+    /// Certify the |z| below which no triangles are nearer than this distance (in units of the mesh), in place of the |z| below
+    /// which none collide: for check --clearance up to D. Such certificates prove nothing about collisions
     #[arg(long, value_name = "D", allow_hyphen_values = true)]
     pub clearance: Option<f64>,
     /// With --clearance: leave out triangles within N rings of each other on the surface: 1 for a common vertex, 2 for a common
@@ -58,7 +58,7 @@ pub struct CertifiedClearance {
 }
 
 impl CertifiedClearance {
-    /// Returns the clearance that is asked for.
+    /// Returns the clearance of these arguments.
     ///
     /// # Errors
     /// When it is not positive and finite.

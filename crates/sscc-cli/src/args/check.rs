@@ -63,8 +63,8 @@ pub struct Check {
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
     /// List the pairs nearer than this distance (in units of the mesh) in place of those that collide, with their distances,
-    /// and tell the smallest distance; triangles with a common vertex never count. With --certificates of this clearance, or a larger
-    /// one, most answers take one comparison; then the smallest distance is told only where it is below
+    /// and print the smallest distance; triangles with a common vertex never count. With --certificates of this clearance, or a
+    /// larger one, most answers take one comparison; the smallest distance is then printed only if it is below D
     #[arg(
         long,
         value_name = "D",
@@ -98,8 +98,9 @@ pub struct Check {
     /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]
     pub report: Option<PathBuf>,
-    /// Also write the positions of every frame or time, as the check sees them: .npy of shape (T, V, 3), or .pvd
-    /// with .vtu files for ParaView, which have the time of each frame and mark colliding triangles; --frames reads both. Of an animation that moves several nodes, with --node
+    /// Also write the positions that are checked in every frame or at every time: .npy of shape (T, V, 3), or .pvd
+    /// with .vtu files for ParaView, which have the time of each frame and mark colliding triangles; --frames reads both. For an
+    /// animation that moves several nodes, with --node
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "meshes", "against"])]
     pub frames_out: Option<PathBuf>,
     #[command(flatten)]
@@ -109,7 +110,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Returns the clearance that is asked for.
+    /// Returns the clearance of these arguments.
     ///
     /// # Errors
     /// When it is not positive and finite.
@@ -135,10 +136,10 @@ pub struct At {
     pub q: Option<String>,
 }
 
-/// Which answers to print.
+/// Selection of the answers to print.
 #[derive(Debug, Args)]
 pub struct Only {
-    /// Print these answers only; the summary and the exit code are those of all [default: print all]
+    /// Print these answers only; the summary and the exit code are about all answers [default: print all]
     #[arg(long, value_enum, value_name = "ANSWERS")]
     pub only: Option<Answers>,
 }
@@ -153,6 +154,6 @@ impl Only {
 /// Kinds of answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Answers {
-    /// Those of q, frames and meshes that collide
+    /// Answers for q, frames and meshes that collide
     Colliding,
 }

@@ -21,7 +21,7 @@ pub struct Load {
     /// A force on a vertex of the surface (N); may be repeated
     #[arg(long, value_name = "VERTEX:FX,FY,FZ", allow_hyphen_values = true, value_parser = force)]
     pub force: Vec<(u32, DVec3)>,
-    /// The weight of the body, with this acceleration [default where it has no value: 0,0,-9.81 m/s^2]
+    /// Add the weight of the body under this acceleration of gravity [without a value: 0,0,-9.81 m/s^2]
     #[arg(long, value_name = "GX,GY,GZ", num_args = 0..=1, require_equals = true, default_missing_value = "0,0,-9.81",
         allow_hyphen_values = true, value_parser = vector)]
     pub gravity: Option<DVec3>,

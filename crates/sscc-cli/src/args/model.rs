@@ -25,8 +25,7 @@ pub struct Model {
     pub mesh_name: Option<String>,
 }
 
-/// How to compute certificates. Each option may be absent, so a flag that contradicts given certificates can be
-/// refused.
+/// Options of certificates. Each option may be absent, so a flag that contradicts given certificates can be refused.
 #[derive(Debug, Args)]
 pub struct Options {
     /// Largest relative error of the root's radius; between 0 and 1. Much larger radii are less precise [default: 0.1]
@@ -43,8 +42,8 @@ pub struct Options {
     /// Which pairs of triangles with a common vertex count as colliding [default: exclude]
     #[arg(long, value_parser = neighbours(), value_name = "FILTER")]
     pub neighbours: Option<Neighbours>,
-    /// Ignore the pairs that collide at rest, and those within so many rings of them on the surface (--ignore-rest=1: those
-    /// whose triangles have a vertex in common with theirs): they never count
+    /// Ignore the pairs that collide at rest, and with --ignore-rest=N those within N rings of them on the surface (N = 1: pairs
+    /// whose triangles have a vertex in common with those of such a pair): they never count
     #[arg(long, value_name = "RINGS", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
     pub ignore_rest: Option<u32>,
     #[command(flatten)]
@@ -62,12 +61,12 @@ pub struct Options {
     /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]
     #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
-    /// Memory for local certificates of the scheme full, in bytes for each triangle, together with what the pair tree
-    /// leaves of its own and less 10 to 14 for the BVH and its radii; 0: none [default: 64]
+    /// Memory for local certificates of the scheme full, in bytes for each triangle; the memory that the pair tree does not use
+    /// is added, and 10 to 14 bytes for the BVH and its radii are subtracted; 0: no local certificates [default: 64]
     #[arg(long, value_name = "BYTES")]
     pub local_budget: Option<u32>,
-    /// How far radii of the scheme full may reach, in units of the paper's global radius, at least 1; they end before where
-    /// the budget does [default: 1]
+    /// Limit of the radii of the scheme full, as a multiple of the paper's global radius, at least 1; the budget may end them
+    /// before [default: 1]
     #[arg(long, value_name = "X", value_parser = parse_reach)]
     pub reach: Option<f64>,
     #[command(flatten)]
@@ -103,10 +102,10 @@ pub enum Switch {
 fn neighbours() -> impl TypedValueParser<Value = Neighbours> {
     named([
         ("exclude", "None"),
-        ("include-one-vertex", "Those with exactly one common vertex, where they have another common point"),
+        ("include-one-vertex", "Those with exactly one common vertex, if they have another common point"),
         (
             "include-folded",
-            "Those with one, two or three, where they have another common point than these vertices and the edges between them, \
+            "Those with one, two or three, if they have another common point than these vertices and the edges between them, \
              and doubled faces. For meshes without modes; not with --continuous",
         ),
     ])

@@ -36,7 +36,7 @@ pub struct Motion {
     )]
     pub times: Option<Vec<f64>>,
     /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. A glTF file with
-    /// several meshes that is not animated is compared so in any case
+    /// several meshes that is not animated is always compared in this way
     #[arg(long, conflicts_with_all = ["trajectory", "q", "frames", "against"])]
     pub between_nodes: bool,
     /// Check the mesh at this node only, by its name or its number in the file [default: every node with a mesh]
@@ -47,7 +47,7 @@ pub struct Motion {
     pub weights: Option<Weights>,
 }
 
-/// Readings of skin weights.
+/// Interpretations of skin weights that do not sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Weights {
     /// Divide the weights of each vertex by their sum, as three.js does

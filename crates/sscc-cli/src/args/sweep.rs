@@ -27,8 +27,8 @@ pub struct Sweep {
     /// Certificates of this model, from `sscc certify`; without them they are computed first
     #[arg(long, value_name = "FILE")]
     pub certificates: Option<PathBuf>,
-    /// The range of every weight [default: 0,1 for morph targets; 3 standard deviations for principal components; else as
-    /// far as moves a vertex by half the AABB's diagonal]
+    /// The range of every weight [default: 0,1 for morph targets; 3 standard deviations for principal components; else up
+    /// to the weight that moves a vertex by half the AABB's diagonal]
     #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub range: Option<String>,
     /// The weights at the start: r numbers, by name, as in jawOpen=0.5, or a file [default: the centre]
@@ -42,7 +42,8 @@ pub struct Sweep {
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "101", conflicts_with = "pose",
         value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     pub intervals: Option<u32>,
-    /// List the pairs of modes that, both at the upper end of their ranges, collide in pairs that collide with neither alone
+    /// List the pairs of modes that, both at the upper end of their ranges, make triangle pairs collide that are free with each
+    /// mode alone
     #[arg(long, conflicts_with_all = ["pose", "intervals"])]
     pub combinations: bool,
     /// Also write a page (.html) with the model, its intervals marked along the sliders, and the curve of the depth over each weight

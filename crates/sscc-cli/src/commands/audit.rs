@@ -33,7 +33,7 @@ pub fn run(args: &Audit) -> anyhow::Result<Outcome> {
     if args.exact {
         return audit_exactly(args, model, &request.read(&args.certificates, model)?);
     }
-    // Those of a clearance are attacked with near pairs.
+    // Certificates of a clearance are attacked with near pairs.
     let request = CertificateRequest { any_clearance: true, ..request };
     let certificates = request.read(&args.certificates, model)?;
     let options = AuditOptions::default()
@@ -90,9 +90,9 @@ struct ExactReport {
     entries: usize,
     proven: usize,
     seconds: f64,
-    /// Why the proof does not hold; null if it does.
+    /// The reason why the proof does not hold; null if it does.
     refused: Option<String>,
-    /// What the checker left out; null if the proof does not hold.
+    /// The content that the checker left out; null if the proof does not hold.
     left_out: Option<String>,
 }
 
@@ -145,7 +145,7 @@ fn audit_exactly(args: &Audit, model: &ReducedModel, certificates: &Certificates
     Ok(if report.refused.is_none() { Outcome::Done } else { Outcome::Finding })
 }
 
-/// The model for the checker, which compares its digest with that of the certificates.
+/// Returns the model for the checker, which compares its digest with that of the certificates.
 fn checked_model(model: &ReducedModel) -> anyhow::Result<sscc_checker::Model> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let positions = mesh.rest_positions().iter().map(|p| p.to_array()).collect();

@@ -37,9 +37,10 @@ struct Report {
     bytes: usize,
     rest_collisions: u64,
     exceptions: usize,
-    /// The clearance, and beyond how many rings; absent without one.
+    /// The clearance; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     clearance: Option<f64>,
+    /// The number of rings within which pairs do not count; absent without a clearance.
     #[serde(skip_serializing_if = "Option::is_none")]
     rings: Option<u32>,
     /// Absent without `--proof`.
@@ -91,7 +92,7 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         write_whole(path, &picture.png)?;
     }
     write_whole(&args.output, &bytes)?;
-    // Last, for there is no use of a proof without its certificates.
+    // The proof is written last, because it is useless without its certificates.
     let proof = proof
         .map(|(file, report)| file.finish().map(|proof_bytes| ProofReport { proof_bytes, ..report }))
         .transpose()?;
@@ -137,7 +138,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report has no bytes yet.
+/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report does not have
+/// the number of bytes yet.
 fn write_proof(
     args: &Certify,
     path: &Path,

@@ -16,10 +16,11 @@ use crate::{interrupt, load};
 struct Row {
     index: usize,
     q: Vec<f64>,
-    /// Norm of what remains over that of the displacements.
+    /// Norm of the residual over that of the displacements.
     residual: f64,
-    /// The largest distance of a vertex from its place, and that vertex.
+    /// The largest distance of a vertex from its given position.
     largest: f64,
+    /// The vertex at that distance.
     vertex: u32,
 }
 

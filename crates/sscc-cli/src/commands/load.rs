@@ -12,14 +12,15 @@ use crate::load;
 use crate::outcome::Outcome;
 use crate::output::{Output, length, note};
 
-/// Largest displacement, as a share of the longest side, of an answer without a note.
+/// Largest displacement, as a share of the longest side, for which no note is printed.
 const MAX_LINEAR: f64 = 0.1;
 
 #[derive(Serialize)]
 struct Report {
     q: Vec<f64>,
-    /// The largest displacement of a vertex (m), and that vertex.
+    /// The largest displacement of a vertex (m).
     largest_displacement: f64,
+    /// The vertex with that displacement.
     vertex: u32,
 }
 
@@ -45,7 +46,7 @@ pub fn run(args: &Load) -> Result<Outcome> {
     let share = report.largest_displacement / longest_side(loaded.model.mesh().rest_positions());
     if share > MAX_LINEAR {
         note(format_args!(
-            "the answer is linear, and {:.0}% of the longest side is more than that holds for",
+            "the answer is linear, and a displacement of {:.0}% of the longest side is too large for it",
             100.0 * share
         ));
     }

@@ -16,7 +16,7 @@ use crate::{interrupt, load};
 /// The largest number of entries of q in the text; `--json` prints all.
 const MAX_LISTED: usize = 24;
 
-/// A report with the number of its row, for the rows that are left of all.
+/// A report with the number of its row, because not all rows may be printed.
 #[derive(Serialize)]
 struct Row<'a> {
     index: usize,
@@ -39,7 +39,7 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
     let threads = load::threads(&args.options.threads);
     let found = resolve_rows(model, &certificates, &rows, &options, threads, &Bar::new("resolving"));
     interrupt::check()?;
-    // All else was checked before.
+    // All other arguments were checked before, so an error is about the start.
     let found = found.context("--from")?;
     let mut out = Output::new();
     let is_listed = |report: &ResolveReport| !args.only.is_colliding() || !report.is_free_as_given();

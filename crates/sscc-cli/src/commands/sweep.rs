@@ -26,7 +26,7 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let threads = Some(load::threads(&args.options.threads));
     let Sweep { q, range, pose, .. } = args;
     let request = SweepRequest { q: q.clone(), range: range.clone(), pose: pose.clone(), threads };
-    // Refused before certificates are computed.
+    // An unusable report is refused before certificates are computed.
     if let Some(report) = &args.report {
         load::check_output(report, ".html", &[&args.model.path])?;
     }
@@ -63,7 +63,7 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     print(args, &rows, &certificates, || {
         [vec![ranges.to_string()], sweep_table(&rows, "--q, --ignore-rest")].concat()
     })?;
-    // The table says so itself.
+    // The table itself states this.
     if args.json.json && rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
         note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
     }

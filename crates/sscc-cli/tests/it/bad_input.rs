@@ -28,7 +28,7 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) {
 }
 
 #[test]
-fn files_that_are_not_models() {
+fn files_that_are_not_models_are_refused() {
     let directory = strips();
     let folder = directory.path();
     let good = fs::read(folder.join(STRIPS)).unwrap();
@@ -82,7 +82,7 @@ fn files_that_are_not_models() {
 
 /// A missing file is reported before its kind, by every command and every reader.
 #[test]
-fn missing_files() {
+fn missing_files_are_reported() {
     let directory = strips();
     let folder = directory.path();
     let modes = ["modes", "-o", "out.model.safetensors", "--kind"];
@@ -118,7 +118,7 @@ fn missing_files() {
 }
 
 #[test]
-fn missing_meshes() {
+fn missing_meshes_are_reported() {
     let directory = strips();
     let folder = directory.path();
     write(folder, "still.gltf", r#"{"asset":{"version":"2.0"},"meshes":[{"name":"a","primitives":[]}]}"#);
@@ -135,7 +135,7 @@ fn missing_meshes() {
 }
 
 #[test]
-fn modes_that_do_not_fit() {
+fn modes_that_do_not_fit_are_refused() {
     let directory = strips();
     let folder = directory.path();
     let header = |rows: i32, rank: i32| [rows.to_le_bytes(), rank.to_le_bytes()].concat();
@@ -182,7 +182,7 @@ fn modes_that_do_not_fit() {
 }
 
 #[test]
-fn coordinates_that_do_not_fit() {
+fn coordinates_that_do_not_fit_are_refused() {
     let directory = strips();
     let folder = directory.path();
     let check = ["check", STRIPS, "--certificates", CERTIFIED];
@@ -215,7 +215,7 @@ fn coordinates_that_do_not_fit() {
 }
 
 #[test]
-fn metrics_that_do_not_fit() {
+fn metrics_that_do_not_fit_are_refused() {
     let directory = strips();
     let folder = directory.path();
     for (name, text) in
@@ -240,7 +240,7 @@ fn metrics_that_do_not_fit() {
 }
 
 #[test]
-fn certificates_that_do_not_fit() {
+fn certificates_that_do_not_fit_are_refused() {
     let directory = strips();
     let folder = directory.path();
     let check = |certificates: &str, named: &[&str]| {
@@ -282,7 +282,7 @@ fn certificates_that_do_not_fit() {
 
 /// A forged file: the digest is that of this model, and the hierarchy that of another.
 #[test]
-fn forged_certificates() {
+fn forged_certificates_are_refused() {
     let directory = strips();
     let folder = directory.path();
     write(folder, "one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -299,7 +299,7 @@ fn forged_certificates() {
 }
 
 #[test]
-fn outputs_that_cannot_be_written() {
+fn outputs_that_cannot_be_written_are_refused() {
     let directory = strips();
     let folder = directory.path();
     fs::create_dir(folder.join("taken.sscc.safetensors")).unwrap();

@@ -56,7 +56,7 @@ fn check(report: &Value, more: &str) {
         assert_eq!(keys(times), sorted(&format!("{COLUMNS}{kinetic}")), "{key}");
         assert!(times.as_object().unwrap().values().all(positive), "{report}");
     }
-    // Certified methods ran on all steps, so their times are there for each kind of state that there is.
+    // Certified methods ran on all steps, so they have times for each kind of state that occurs.
     let colliding = whole("colliding_steps");
     let counts = [whole("steps") - colliding, whole("steps") - colliding, colliding, colliding];
     for (key, count) in parts.iter().zip(counts) {
@@ -100,7 +100,7 @@ fn check_kinetic(folder: &Path) {
 
 /// Amplitudes, growth, kinetic and a scene, in one test so that they share a cache.
 #[test]
-fn measurements() {
+fn records_have_all_keys_and_models_come_from_the_cache() {
     let folder = tempfile::tempdir().unwrap();
     let cache = folder.path().join("cache");
 
@@ -114,7 +114,7 @@ fn measurements() {
     assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
     assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
 
-    // All three motions, and those of the states apart that collide.
+    // All three motions, and separately their states that collide.
     let mixed = ["mixed", "--only", "spring", "--quick", "--samples", "4", "--json"];
     let run = bench(folder.path(), &mixed);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
@@ -158,7 +158,7 @@ fn measurements() {
     assert_eq!(keys(&report["exponents"]), sorted("certify_seconds, certify_peak_bytes, discrete_ms"));
     assert_eq!(keys(&report["exponents"]["discrete_ms"]), sorted(COLUMNS));
 
-    // So do vibrations.
+    // The scenario kinetic also takes the model from the cache.
     check_kinetic(folder.path());
     assert_eq!((files(&cache), written()), (made.clone(), before));
 
@@ -275,7 +275,7 @@ fn figures_are_drawn() {
     assert_eq!(column(&metrics, "modes"), [5.0, 10.0, 20.0]);
     let [energy, displacement] = ["energy_mm", "displacement_mm"].map(|key| column(&metrics, key));
     assert!(energy.iter().zip(&displacement).all(|(e, d)| *e > 0.0 && *d > 0.0));
-    // More modes cost less under the energy metric: the paper's point.
+    // More modes cost less under the energy metric, as in the paper.
     assert!(energy[2] / energy[0] > displacement[2] / displacement[0], "{energy:?} {displacement:?}");
     assert_eq!(svg.matches("<polyline").count(), 2);
 
@@ -289,7 +289,7 @@ fn figures_are_drawn() {
 }
 
 #[test]
-fn refusals() {
+fn invalid_requests_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let list = bench(folder.path(), &["--list"]);
     assert_eq!(list.code, Some(0));

@@ -62,7 +62,7 @@ fn near_pairs_of_a_mesh_and_of_its_frames() {
 }
 
 #[test]
-fn rings_leave_out_what_is_near_on_the_surface() {
+fn rings_leave_out_pairs_that_are_near_on_the_surface() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     // A strip of five triangles: the first and the last two have no common vertex.
@@ -120,7 +120,7 @@ fn unusable_clearances_are_refused() {
     assert!(check(folder.path(), &["mesh.obj", "--rings=2"]).refusal().contains("--clearance"));
 }
 
-/// Certificates with a clearance answer alike, and are refused for anything else.
+/// Checks with certificates of a clearance have the same answers, and other commands refuse these certificates.
 #[test]
 fn certificates_with_a_clearance_serve_near_pairs_alone() {
     let folder = strips();
@@ -148,9 +148,9 @@ fn certificates_with_a_clearance_serve_near_pairs_alone() {
         for key in ["pairs", "distances", "colliding", "norm", "clearance", "rings"] {
             assert_eq!(with[key], without[key], "{q} {clearance} {key}");
         }
-        // The smallest distance beyond the clearance is left open.
-        let told = if code == 1 { without["distance"].clone() } else { Value::Null };
-        assert_eq!(with["distance"], told, "{q} {clearance}");
+        // A smallest distance that is not below the clearance is unknown.
+        let expected = if code == 1 { without["distance"].clone() } else { Value::Null };
+        assert_eq!(with["distance"], expected, "{q} {clearance}");
         proofs.push(with["proof"].clone());
     }
     assert_eq!(proofs[0], json!("radius"));
@@ -199,7 +199,7 @@ fn certificates_with_a_clearance_serve_near_pairs_alone() {
     );
     let info = &sscc(folder, &["info", file, "--json"]).json()[0];
     assert_eq!((&info["clearance"], &info["rings"]), (&json!(0.4), &json!(50)));
-    // Where too many pairs are near at the centre a note names the remedy.
+    // If too many pairs are near at the centre, a note names the remedy.
     let close = sscc(
         folder,
         &[
@@ -242,7 +242,7 @@ fn cube(at: f64, half: f64) -> String {
 }
 
 #[test]
-fn a_mesh_inside_another_one_is_told() {
+fn a_mesh_inside_another_one_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("housing.obj"), cube(0.0, 2.0)).unwrap();

@@ -220,7 +220,7 @@ fn schemes() {
         let refused = check(file, &["--reach=2"]);
         assert!(refused.refusal().contains(cause), "{refused:?}");
     }
-    // As --budget does, --reach asks for a pair tree of certificates that are computed at once.
+    // Like --budget, --reach requests a pair tree of certificates that are computed at once.
     let at_once = sscc(folder.path(), &["sweep", MODEL, "--reach", "2", "--json"]);
     assert!(at_once.code.is_some_and(|code| code < 2), "{at_once:?}");
 }
@@ -234,7 +234,7 @@ fn check_at_one_q() {
     assert!(
         free.stdout.starts_with("free: proven by the root's certificate alone (|z| = 0.5590, root radius ")
     );
-    // Beyond the radius, by the root's local certificate; without local certificates, by a search.
+    // Beyond the radius, the root's local certificate proves the answer; without local certificates, a search does.
     let free = run("--q=0,4");
     assert_eq!(free.code, Some(0));
     let start = "free: proven by the root's certificate alone (|z| = 4.000, root radius ";

@@ -97,7 +97,7 @@ fn text_lists_files_with_errors() {
     assert!(run.stdout.contains("\nset/empty.stl              ERROR      the file is empty\n"), "{run:?}");
     assert!(run.stdout.contains("set/10.obj ") && !run.stdout.contains("set/2.obj "), "{run:?}");
     assert!(run.stdout.contains("\n5 files: 4 free, 1 colliding, 4 files not checked; "), "{run:?}");
-    // Several files, and none that can be checked.
+    // None of several files can be checked.
     for args in
         [&["missing.obj", "set/2.obj"][..], &["missing.obj", "none.obj"], &["set/empty.stl", "set/more"]]
     {
@@ -137,7 +137,7 @@ fn folders_without_errors() {
     }
 }
 
-/// A folder of frames is one mesh that moves, where `--frames` says so.
+/// With `--frames`, a folder is one mesh that moves.
 #[test]
 fn frames_are_no_data_set() {
     let directory = small_files();

@@ -159,7 +159,7 @@ fn frames_from_arrays_and_folders() {
     let printed: Vec<&str> = text.stdout.lines().collect();
     assert!(printed[2].ends_with("COLLIDING  1 pair, first 0 1"), "{text:?}");
     assert!(printed[4].starts_with("4 frames: 3 free, 1 colliding; median "), "{text:?}");
-    // The mesh at rest only names faces; ignoring its own pairs leaves none here.
+    // Only the faces of the mesh at rest are used. If the pairs that collide at rest are ignored, no pair remains.
     fs::write(folder.join("touching.obj"), obj(0.0)).unwrap();
     let ignored =
         lines(folder, &["touching.obj", "--frames", "frames", "--ignore-rest"], "ignored, left_out");
@@ -168,9 +168,9 @@ fn frames_from_arrays_and_folders() {
     assert_eq!(ignored[0]["left_out"], json!("1 ignored pair and pairs with common vertices"));
 }
 
-/// Two triangles of an STL file with a common corner at rest, which parts: they are adjacent only while all frames have it.
+/// Two triangles of an STL file have a common corner at rest: they are adjacent only if it is common in all frames.
 #[test]
-fn vertices_are_welded_that_stay_together() {
+fn vertices_that_stay_together_are_welded() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let facet = |corners: [&str; 3]| {
@@ -356,7 +356,7 @@ fn curves_of_the_last_answer() {
 
 /// The file of curves is written even if no one reads the answers.
 #[test]
-fn curves_without_a_reader() {
+fn curves_are_written_without_a_reader_of_the_output() {
     let directory = folder();
     let folder = directory.path();
     fs::write(folder.join("crossing.obj"), CROSSING).unwrap();

@@ -8,7 +8,7 @@ use crate::common::sscc;
 use crate::detector::{folder, frames, obj};
 
 #[test]
-fn invalid_frames_and_animations() {
+fn invalid_frames_and_animations_are_refused() {
     let directory = folder();
     let folder = directory.path();
     let good = fs::read(folder.join("frames.npy")).unwrap();
@@ -95,7 +95,7 @@ fn invalid_frames_and_animations() {
 }
 
 #[test]
-fn invalid_groups() {
+fn invalid_groups_are_refused() {
     let directory = folder();
     let folder = directory.path();
     write_npy(&folder.join("three.npy"), &[3], &[0.0, 0.0, 1.0]).unwrap();
@@ -128,7 +128,7 @@ fn invalid_groups() {
 }
 
 #[test]
-fn files_of_curves_that_cannot_be_written() {
+fn files_of_curves_that_cannot_be_written_are_refused() {
     let directory = folder();
     let folder = directory.path();
     let before = fs::read(folder.join("lower.obj")).unwrap();
@@ -152,7 +152,7 @@ fn files_of_curves_that_cannot_be_written() {
     assert!(!folder.join("c.obj").exists());
 }
 
-/// Where players go on, so does the check, with one warning.
+/// Players show a mesh with a scale of zero, so the check continues, with one warning.
 #[test]
 fn scales_of_zero_are_warned_about() {
     let directory = folder();
@@ -170,7 +170,7 @@ fn scales_of_zero_are_warned_about() {
 }
 
 #[test]
-fn flags_that_contradict_each_other() {
+fn flags_that_contradict_each_other_are_refused() {
     let directory = folder();
     let folder = directory.path();
     for (args, named) in [

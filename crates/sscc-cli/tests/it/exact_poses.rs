@@ -29,14 +29,14 @@ fn is_apart(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
 }
 
 /// Two courses of bricks in a running bond: they touch along faces, and most touching pairs have no common vertex. Each is
-/// a primitive of one mesh, which nested nodes turn, scale and move.
+/// a primitive of one mesh, which nested nodes rotate, scale and move.
 fn wall() -> serde_json::Value {
     let bricks: Vec<Corners> = [(0.0, 0.0), (0.9, 0.0), (0.45, 0.3), (1.35, 0.3)]
         .into_iter()
         .map(|(x, z): (f32, f32)| brick([x, 0.1, z], [x + 0.9, 0.7, z + 0.3]))
         .collect();
     let times = [[0.0, 1.0, 3.0]];
-    // Rotations that are unit only to single precision: two of three numbers each.
+    // Three quaternions of length 1 only up to single precision, in groups of three numbers.
     let turns = [[0.0, 0.0, 0.0], [1.0, 0.36, 0.48], [0.6, 0.529_15, -0.48], [0.0, 0.64, 0.6]];
     let named: Vec<(&str, &[[f32; 3]])> = bricks
         .iter()

@@ -1,5 +1,5 @@
-//! Faults of the system: a command is killed, may write no large file, has no memory, or nobody reads its output. Each file is then the
-//! old one or the new one, whole.
+//! Faults of the system: a command is killed, may write no large file, has no memory, or its output has no reader. Each file
+//! is then the old one or the new one, whole.
 
 #![cfg(target_os = "linux")]
 
@@ -55,7 +55,7 @@ fn folder() -> TempDir {
     directory
 }
 
-/// Kills a command: after a delay, or as soon as it has begun to write its file, and then some more.
+/// Kills a command after a delay. With `is_writing`, the delay begins when the command begins to write its file.
 fn killed(folder: &Path, args: &[&str], delay: Duration, is_writing: bool) {
     let before = files(folder).len();
     let mut child = command(folder, args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -72,7 +72,8 @@ fn killed(folder: &Path, args: &[&str], delay: Duration, is_writing: bool) {
     child.wait().unwrap();
 }
 
-/// Removes temporary files, and returns how many there were: those of a killed command remain, and nobody but its user can know that it has ended.
+/// Removes temporary files, and returns their number. Temporary files of a killed command remain, because other commands
+/// cannot detect that it has ended.
 fn remove_parts(folder: &Path) -> usize {
     let mut count = 0;
     for path in files(folder) {
@@ -111,16 +112,16 @@ fn killed_commands_leave_files_old_or_new() {
             killed(folder, args, delay, is_writing);
             let found = fs::read(&path).unwrap();
             assert!(found == OLD || found == expected, "{name}, kill {kill}: {} bytes", found.len());
-            // One of the commands writes them again, with the same bytes.
+            // The certificates are unchanged, because the command that writes them again gives the same bytes.
             assert!(fs::read(&certificates).unwrap() == unchanged, "{name}, kill {kill}");
             old += usize::from(found == OLD);
             parts += remove_parts(folder);
         }
-        // The next run is as the first.
+        // The next run writes the whole file.
         sscc(folder, args);
         assert!(fs::read(&path).unwrap() == expected, "{name}");
     }
-    // The page is the largest file, so on a machine of any speed a kill comes while it is written sooner or later.
+    // The page is the largest file, so on a machine of any speed a kill comes sooner or later while it is written.
     let (_, page) = WRITERS[4];
     for _ in 0..200 {
         if parts > 0 {
@@ -190,7 +191,8 @@ fn a_full_disk_leaves_files_old() {
     fs::create_dir(folder.join("small")).unwrap();
     for (name, args) in &WRITERS[..5] {
         let output = format!("small/{name}");
-        let args: Vec<&str> = args.iter().map(|arg| if arg == name { output.as_str() } else { arg }).collect();
+        let args: Vec<&str> =
+            args.iter().map(|arg| if arg == name { output.as_str() } else { arg }).collect();
         let (run, files) = on_small_disk(folder, name, &args);
         let error = run.stderr.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
         assert_eq!(run.code, Some(2), "{run:?}");
@@ -200,7 +202,7 @@ fn a_full_disk_leaves_files_old() {
 }
 
 #[test]
-fn files_replaced_while_they_are_read_give_an_answer_of_one_of_them() {
+fn files_replaced_while_they_are_read_give_the_answer_of_one_of_them() {
     let directory = folder();
     let folder = directory.path();
     // Two meshes of one size: the second one collides.
@@ -249,7 +251,8 @@ fn without_memory_files_stay_old() {
     fs::write(folder.join(name), OLD).unwrap();
     let before = files(folder);
     let mut failed = 0;
-    // Kilobytes of address space: from too few for its threads to enough. With fewer, the system does not even begin it.
+    // The address space (kilobytes) is too small for the threads of the command at first, and then sufficient. With less, the
+    // system does not start the command.
     for kilobytes in [30_000, 36_000, 45_000, 60_000, 80_000, 120_000, 8_000_000] {
         let run = limited(folder, &format!("-v {kilobytes}"), args);
         assert!(!run.stderr.contains("thread pool has not been initialized"), "{kilobytes}: {run:?}");
@@ -259,7 +262,7 @@ fn without_memory_files_stay_old() {
                 continue;
             }
             Some(2) => assert!(run.stderr.starts_with("error: "), "{kilobytes}: {run:?}"),
-            // The loader or the allocator of the system ends a program by its own code or by a signal.
+            // The loader or the allocator of the system ends the program with another exit code or by a signal.
             _ => {}
         }
         failed += 1;
@@ -271,7 +274,7 @@ fn without_memory_files_stay_old() {
 }
 
 #[test]
-fn a_reader_that_goes_away_ends_nothing_with_a_panic() {
+fn commands_whose_reader_closes_the_pipe_do_not_panic() {
     let directory = folder();
     let folder = directory.path();
     sscc_io::write_npy(&folder.join("q.npy"), &[3000, 2], &vec![0.25; 6000]).unwrap();

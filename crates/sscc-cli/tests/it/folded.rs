@@ -1,4 +1,4 @@
-//! `sscc check MESH --neighbours include-folded`, and what refuses it.
+//! `sscc check MESH --neighbours include-folded`, and commands that refuse it.
 
 use std::fs;
 
@@ -7,8 +7,10 @@ use sscc_io::write_npy;
 
 use crate::common::{sscc, strips};
 
-/// Files in the folder of [`strips`].
+/// The model in the folder of [`strips`].
 const MODEL: &str = "strips.model.safetensors";
+
+/// The certificates in the folder of [`strips`].
 const CERTIFICATES: &str = "strips.sscc.safetensors";
 
 /// A triangle folded onto its neighbour, a hinge that is open, and a face that is there twice.

@@ -223,7 +223,7 @@ fn models_that_cannot_move_are_refused() {
         assert!(message.contains(cause), "{model}: {message}");
         assert!(!folder.join("out/trajectories.npz").exists());
     }
-    // The same files with what was missing.
+    // The same files with the missing data.
     for model in [
         format!("{}\nmaterial = {{ density = 1000 }}", vega("free")),
         "file = \"light.model.safetensors\"\nmaterial = { density = 1000 }".into(),
@@ -268,7 +268,7 @@ fn scaled_models_move_like_scaled_solids() {
 }
 
 #[test]
-fn surfaces_outside_their_solid_are_told_or_refused() {
+fn surfaces_outside_their_solid_are_reported_or_refused() {
     let directory = files();
     let folder = directory.path();
     let surface = sscc_io::read_mesh(&folder.join("octopus.obj")).unwrap();
@@ -331,7 +331,7 @@ fn surfaces_outside_their_solid_are_told_or_refused() {
     assert!(info.mass.unwrap().is_held);
 }
 
-/// VegaFEM's letter A with its own modes and forces: held, as its fixed vertices say, and its energy is kept.
+/// VegaFEM's letter A with its own modes and forces: it is held at its fixed vertices, and keeps its energy.
 #[test]
 fn the_letter_of_vegafem_vibrates() {
     let Some(models) = sscc_testing::models("the_letter_of_vegafem_vibrates") else { return };

@@ -58,7 +58,7 @@ fn words(command: &str) -> Vec<String> {
     let command = command.split(" | ").next().unwrap();
     assert!(
         !command.contains(['\'', '"', '\\', '$', '>', ';', '&', '*']) && !command.contains(" #"),
-        "{command}: the test knows no shell syntax"
+        "{command}: the test supports no shell syntax"
     );
     command.split_whitespace().skip(1).map(str::to_owned).collect()
 }

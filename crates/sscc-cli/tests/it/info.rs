@@ -122,7 +122,7 @@ fn stl(faces: &[[&str; 3]]) -> String {
 }
 
 #[test]
-fn closed_after_welding_or_why_not() {
+fn info_states_whether_a_mesh_is_closed_after_welding() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let obj: String = soup(4).as_flattened().iter().map(|corner| format!("v {corner}\n")).collect();

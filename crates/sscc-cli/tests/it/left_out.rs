@@ -1,4 +1,4 @@
-//! What an answer "free" leaves out, in the text and the JSON of `sscc check` and in reports.
+//! The pairs that an answer "free" leaves out, in the text and the JSON of `sscc check` and in reports.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn certify(folder: &Path, name: &str, flags: &[&str]) {
     assert_eq!(run.code, Some(0), "{run:?}");
 }
 
-/// Every kind of sweep names the pairs that it does not test, also where the certificates alone know them.
+/// Every kind of sweep names the pairs that it does not test, even if only the certificates list them.
 #[test]
 fn sweeps_name_ignored_pairs() {
     let directory = touching();

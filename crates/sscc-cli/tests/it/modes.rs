@@ -222,7 +222,7 @@ fn tetrahedra_of_second_order_bend_as_a_beam_and_linear_ones_are_noted() {
 }
 
 #[test]
-fn documented_parts_print_what_is_shown() {
+fn documented_commands_print_the_shown_output() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     fs::write(folder.join("bracket.obj"), BRACKET).unwrap();
@@ -338,7 +338,7 @@ fn the_help_lists_the_materials() {
 }
 
 #[test]
-fn refusals() {
+fn invalid_requests_are_refused() {
     let directory = folder();
     let folder = directory.path();
     let linear: &[&str] = &["--kind", "linear", "--rank", "3"];

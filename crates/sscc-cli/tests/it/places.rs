@@ -150,7 +150,7 @@ fn poses_and_reports_are_placed() {
     assert_eq!(center[2], 1e3);
 }
 
-/// Of a mesh at several nodes each place counts.
+/// A mesh at several nodes is compared at each of them.
 #[test]
 fn every_node_is_compared() {
     let directory = tempfile::tempdir().unwrap();
@@ -316,7 +316,7 @@ fn missing_morph_targets_move_nothing() {
         .map(|corner| [0, 1, 2].map(|k| 2.0 * f64::from(corner[k]) + [0.0, 0.0, 7.0][k]))
         .collect();
     assert_eq!(pose.rest_positions().iter().map(|x| x.to_array()).collect::<Vec<_>>(), expected);
-    // And so are those of sweeps, and contact curves.
+    // Poses of sweeps and contact curves are at this place, too.
     let sweep = sscc(folder, &["sweep", "m.vrm", "--range=0,1", "--pose=poses", "--json"]);
     assert_eq!(sweep.code, Some(1), "{sweep:?}");
     let hit = read_mesh(&folder.join("poses/000_down_up.ply")).unwrap();
@@ -334,9 +334,9 @@ fn missing_morph_targets_move_nothing() {
     assert!(modes.refusal().ends_with("a model file has its own modes: leave out --modes"), "{modes:?}");
 }
 
-/// One malformed animation refuses no other, and mesh data that a check does not need refuse nothing.
+/// A malformed animation does not refuse the others, and mesh data that a check does not need do not refuse the file.
 #[test]
-fn needless_content_refuses_nothing() {
+fn content_that_a_check_does_not_need_refuses_no_file() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let mut file = gltf(&[("sheet", &SHEET), ("times", &[[0.0, 1.0, 2.0]])], json!([{"mesh": 0}]));
@@ -362,7 +362,7 @@ fn needless_content_refuses_nothing() {
 
 /// Coincident triangles of different joints move apart, so their vertices are not welded.
 #[test]
-fn skins_part_vertices_at_rest_as_in_animations() {
+fn skins_separate_vertices_at_rest_as_in_animations() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let layers = [SHEET, SHEET].concat();

@@ -87,7 +87,7 @@ fn audits_are_exact_on_request() {
     let run = exact("large.sscc.safetensors", &[]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.stdout.starts_with("NOT CONFIRMED: "), "{run:?}");
-    // The proof of the right ones is not theirs.
+    // The proof of the right certificates does not prove those with larger radii.
     sscc(folder, &["certify", MODEL, "-o", "x.sscc.safetensors", "--proof", "x.proof"]);
     let refusal = check(folder, "large.sscc.safetensors", "x.proof").unwrap_err();
     assert!(matches!(refusal, Refusal::Proof(_)), "{refusal}");

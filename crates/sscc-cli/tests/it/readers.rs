@@ -146,7 +146,7 @@ fn soups_have_a_hint_at_welding() {
         );
         assert_eq!((found.code, found.stderr), (Some(1), expected));
     }
-    // The user has decided, or it would not help.
+    // There is no hint if the user has chosen, or if welding would not help.
     for (args, code) in [
         (&["soup.obj", "--weld"][..], 0),
         (&["soup.obj", "--weld=off"], 1),
@@ -159,11 +159,11 @@ fn soups_have_a_hint_at_welding() {
         let found = run(args);
         assert_eq!((found.code, found.stderr.as_str()), (Some(code), ""), "{found:?}");
     }
-    // A model.
+    // The hint is also given for a model.
     write_npy(&directory.path().join("u.npy"), &[12, 3], &[0.5; 36]).unwrap();
     let found = run(&["soup.obj", "--modes", "u.npy", "--q", "0", "--method", "brute-force"]);
     assert!(found.code == Some(1) && found.stderr.contains(hint), "{found:?}");
-    // The user has decided for a model, or the reader has.
+    // There is no hint for a model if the user has chosen, or the format has welded its vertices.
     let decided =
         run(&["soup.obj", "--modes", "u.npy", "--q", "0", "--method", "brute-force", "--weld", "off"]);
     assert!(decided.code == Some(1) && !decided.stderr.contains("note: "), "{decided:?}");
@@ -248,7 +248,7 @@ fn materials_whose_stiffness_is_not_computed_are_refused() {
 }
 
 #[test]
-fn causes_and_ways_out() {
+fn messages_state_causes_and_remedies() {
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n";
     let ply = format!(
         "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
@@ -265,7 +265,7 @@ fn causes_and_ways_out() {
         (
             "a.veg",
             b"# a body\n*INCLUDE parts.veg\n",
-            "a.veg: line 2: includes 'parts.veg', which does not exist",
+            "a.veg: line 2: the file includes 'parts.veg', which does not exist",
         ),
         (
             "a.fbx",

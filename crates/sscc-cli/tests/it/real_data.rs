@@ -113,7 +113,7 @@ struct Face {
     with_exceptions: Certificates,
 }
 
-/// Returns the face, which two tests share; none without real models.
+/// Returns the face, which two tests share; None without real models.
 fn face_of(test: &str) -> Option<&'static Face> {
     static FACE: OnceLock<Face> = OnceLock::new();
     let file = models(test)?.join("ict_face/ict_face_selfcollision_cases.json");

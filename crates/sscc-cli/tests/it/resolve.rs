@@ -42,13 +42,13 @@ fn every_q_of_a_trajectory_is_resolved() {
 }
 
 #[test]
-fn a_centre_that_collides_resolves_nothing_with_all() {
+fn with_all_a_colliding_centre_resolves_nothing() {
     let directory = strips();
     let folder = directory.path();
     let resolve = |args: &[&str]| {
         sscc(folder, &[&["resolve", MODEL, "--center=1,0", "--max-exceptions=44"], args].concat())
     };
-    // Exceptions are left as they are.
+    // Without --all, exceptions may collide.
     let run = resolve(&["--q=1,0", "--json"]);
     assert_eq!((run.code, &run.json()[0]["q"]), (Some(0), &json!([1.0, 0.0])), "{run:?}");
     let run = resolve(&["--q=1,0", "--all", "--json"]);

@@ -35,7 +35,7 @@ fn rows_of_check_have_numbers_and_a_summary() {
     );
     let worst = format!("; worst: row 3 ({} pairs); rows are counted from 0{APART}", counts[3]);
     assert!(summary.ends_with(&worst), "{summary}");
-    // Limited answers do not tell which row has the most pairs.
+    // Limited answers do not state which row has the most pairs.
     let first = run(&["--first"]).stdout;
     assert!(!first.contains("worst"), "{first}");
     assert!(first.ends_with(&format!("; rows are counted from 0{APART}\n")), "{first}");
@@ -123,7 +123,7 @@ fn rows_of_resolve_have_numbers_and_a_summary() {
 
 /// The text has four digits; JSON has all.
 #[test]
-fn numbers_of_resolve_are_rounded_for_people() {
+fn numbers_of_resolve_are_rounded_in_the_text() {
     let directory = strips();
     let folder = directory.path();
     let given = ["resolve", MODEL, "--certificates", CERTIFICATES, "--q=1,0.123456789"];

@@ -1,4 +1,4 @@
-//! The output in docs/command.md is that of the command, times apart.
+//! The output in docs/command.md is that of the command, apart from times.
 
 use std::fs;
 use std::path::Path;

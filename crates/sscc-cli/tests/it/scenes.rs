@@ -77,7 +77,7 @@ fn scenes_are_all_meshes_with_themselves_and_with_each_other() {
         for (line, (node, mesh)) in within.iter().zip(shown) {
             assert_eq!((&line["node"], &line["node_name"]), (&json!(node), &json!(format!("node {mesh}"))));
             if clearance.is_empty() {
-                // Where a node puts it changes no collision of a mesh with itself.
+                // The place that a node gives a mesh does not change the collisions of the mesh with itself.
                 let alone = lines(folder, &[&format!("scene.gltf#{mesh}")]);
                 assert_eq!(line["pairs"], alone[0]["pairs"], "{line}");
             }
@@ -110,7 +110,7 @@ fn scenes_are_all_meshes_with_themselves_and_with_each_other() {
     assert!(compared == 40 && (5..35).contains(&collided), "{compared} {collided}");
 }
 
-/// Rules about names of nodes, meshes and materials, against those pairs of the whole scene whose triangles have the names.
+/// Groups by names of nodes, meshes and materials, compared with the pairs of the whole scene whose triangles have the names.
 #[test]
 fn groups_of_scenes_hold_within_and_between_nodes() {
     let directory = tempfile::tempdir().unwrap();
@@ -197,7 +197,7 @@ fn groups_of_scenes_hold_within_and_between_nodes() {
     assert!(text.contains("pairs of groups that do not count"), "{text}");
 }
 
-/// Frames of a node, written as the check sees them, and read again.
+/// Frames of a node are written with the checked positions, and read again.
 #[test]
 fn frames_of_a_node_are_written() {
     let directory = tempfile::tempdir().unwrap();
@@ -218,7 +218,7 @@ fn frames_of_a_node_are_written() {
     let wanted = [[1.0, 1.0, 1.5], [-1.0, -1.0, -0.5], [-3.0, -3.0, -2.5]];
     lines(folder, &[&animated[..], &out].concat());
     assert_eq!(numbers("needle.npy"), wanted);
-    // Of a motion each time once.
+    // A motion has each time once.
     lines(folder, &[&animated[..], &out, &["--continuous"]].concat());
     assert_eq!(numbers("needle.npy"), wanted);
     // Frames are those of a mesh without animation.
@@ -231,7 +231,7 @@ fn frames_of_a_node_are_written() {
     let several = refused(&[&animated[..], &["--frames-out=all.npy"]].concat());
     assert_eq!(
         several,
-        "error: all.npy: several nodes have a mesh: name one by --node, or of a file at rest as FILE#NODE"
+        "error: all.npy: several nodes have a mesh: name one by --node, or for a file at rest as FILE#NODE"
     );
     assert!(!folder.join("all.npy").exists());
     assert!(
@@ -246,13 +246,13 @@ fn frames_of_a_node_are_written() {
     );
 }
 
-/// The mesh of the node that moves.
+/// Returns the mesh of the node that moves.
 fn needle() -> sscc::TriMesh {
     let corners = [[1.0, 1.0, 1.0], [1.5, 1.0, 1.0], [1.0, 1.0, 1.5]].map(Into::into);
     sscc::TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()
 }
 
-/// Groups of two files: the names are those of either.
+/// Groups between two files: names may be those of either file.
 #[test]
 fn groups_hold_between_two_meshes() {
     let directory = tempfile::tempdir().unwrap();
@@ -282,7 +282,7 @@ fn groups_hold_between_two_meshes() {
         refused(&["--ignore-groups=neck,cuff"])
             .contains("no triangle is in a group 'cuff'; groups: 'skin', ")
     );
-    // What no line "g" names is in the group "default"; the lack of a material is no name.
+    // Triangles without a line "g" are in the group "default"; there is no group for a missing material.
     assert_eq!(check(&["--ignore-groups=arm,hem"]), json!([[0, 0], [0, 1]]));
     fs::write(folder.join("n.txt"), "0 1").unwrap();
     let numbers = refused(&["--group-by=n.txt", "--ignore-groups=0,1"]);
@@ -342,7 +342,7 @@ fn nodes_of_animations_are_compared_on_request() {
         (&json!("sheet"), &json!("needle"), &json!(0), &json!([[0, 0]]))
     );
     assert!((line["times"][0].as_f64().unwrap() - 0.5).abs() < 1e-9, "{line}");
-    // At the times alone nothing touches but at a quarter of a second.
+    // Nothing touches at the times 0, 0.5 and 1, but at 0.25 two nodes do.
     assert_eq!(check(&["--times=0,0.5,1", "--between-nodes"]).len(), 6);
     let at = check(&["--times=0.25", "--between-nodes"]);
     assert_eq!((at.len(), &at[2]["against_node"]), (3, &json!(1)));

@@ -321,7 +321,7 @@ fn groups_can_be_left_out() {
 }
 
 #[test]
-fn poses_that_cannot_be_written() {
+fn poses_that_cannot_be_written_are_refused() {
     let directory = strips();
     let folder = directory.path();
     for (args, named) in [

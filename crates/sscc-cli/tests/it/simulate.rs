@@ -292,7 +292,7 @@ fn a_killed_simulation_resumes_to_the_same_bits() {
 }
 
 #[test]
-fn a_diverging_motion_is_named_and_kept() {
+fn a_diverging_motion_is_reported_and_its_states_are_written() {
     // So fast that even the shortest parts of a step have no solution.
     let text = SCENE
         .replace("kind = \"linear\"\nrank = 10", "kind = \"nonlinear\"\nrank = 4")
@@ -301,7 +301,7 @@ fn a_diverging_motion_is_named_and_kept() {
     let folder = folder(&text);
     let run = simulate(folder.path(), &["scene.toml"]);
     assert_eq!(run.code, Some(2), "{run:?}");
-    // The first line states what the shake does.
+    // The first line states the effect of the shake.
     let (note, message) = run.stderr.strip_suffix('\n').unwrap().split_once('\n').unwrap();
     assert!(note.starts_with("note: body 0 (spring): shake gives "), "{note}");
     assert!(message.starts_with("error: step "), "{message}");
@@ -338,20 +338,20 @@ fn the_steps_before_a_failure_are_written() {
     assert_eq!(states["time"].0, [failed + 1]);
     let steps = failed.to_string();
     let short = simulate(folder.path(), &["scene.toml", "--steps", &steps, "--out", "short"]);
-    // It has no failure but the animation, which is in single precision.
+    // This run only fails to write the animation, which is in single precision.
     assert!(short.stderr.lines().last().unwrap().starts_with("error: short/animation.glb: "), "{short:?}");
     let before = arrays(&folder.path().join("short/trajectories.npz"));
     for name in ["time", "positions", "orientations", "q_spring"] {
         let (shape, numbers) = &before[name];
         assert_eq!((shape[0], &states[name].1[..numbers.len()]), (failed, &numbers[..]), "{name}");
     }
-    // No run can continue there.
+    // A later run cannot continue from the failed step.
     let again = simulate(folder.path(), &["scene.toml"]);
     assert_eq!((again.code, again.stderr.lines().last()), (Some(2), Some(message)), "{again:?}");
 }
 
 #[test]
-fn refusals() {
+fn invalid_scenes_and_requests_are_refused() {
     let folder = folder(SCENE);
     let refused = |from: &str, to: &str| {
         assert_eq!(SCENE.matches(from).count(), 1, "{from}");

@@ -173,7 +173,7 @@ fn weights_have_names() {
     }
 }
 
-/// Principal components know their standard deviations: those of `sscc modes --kind pca`, and of archives with variances.
+/// Principal components have standard deviations: those of `sscc modes --kind pca`, and of archives with variances.
 #[test]
 fn principal_components_go_to_three_standard_deviations() {
     let directory = tempfile::tempdir().unwrap();
@@ -242,9 +242,9 @@ fn principal_components_go_to_three_standard_deviations() {
     );
 }
 
-/// One line says that the start collides, for any number of modes.
+/// One line states that the start collides, for any number of modes.
 #[test]
-fn a_start_that_collides_is_one_line() {
+fn a_start_that_collides_is_reported_in_one_line() {
     let directory = strips();
     let folder = directory.path();
     let run = sscc(folder, &["sweep", MODEL, "--certificates", CERTIFICATES, "--q=1,0", "--range=-2,2"]);

@@ -141,7 +141,7 @@ fn the_report_of_a_folder_is_served() {
 }
 
 #[test]
-fn refusals() {
+fn invalid_requests_are_refused() {
     let folder = strips();
     let folder = folder.path();
     // The port is taken, so that a command that is not refused for another reason ends, too.
@@ -193,7 +193,7 @@ fn refusals() {
 }
 
 #[test]
-fn reports() {
+fn reports_are_written_with_and_without_a_program() {
     let folder = strips();
     let folder = folder.path();
     let run = |more: &[&str]| sscc(folder, &[&["view"], &MODEL[..], more].concat());
@@ -205,7 +205,7 @@ fn reports() {
     assert!(
         plain.contains("\"root_radius\"") && !plain.contains("script-src 'unsafe-inline' 'wasm-unsafe-eval'")
     );
-    // What is no package is refused, and no file is written.
+    // A folder that is no package is refused, and no file is written.
     fs::remove_file(folder.join("page.html")).unwrap();
     let with = [&report[..], &["--wasm", "package"]].concat();
     let script = Path::new("package").join("script").join("sscc.js").display().to_string();
@@ -232,7 +232,7 @@ fn reports() {
     fs::write(&module, "<html>").unwrap();
     assert!(run(&with).refusal().contains("sscc_bg.wasm: not a file of the npm package sscc"));
     assert!(!folder.join("page.html").exists());
-    // The page with one.
+    // The page with a program.
     fs::write(&module, b"\0asm\x01\0\0\0").unwrap();
     assert_eq!(run(&with).code, Some(0));
     let html = fs::read_to_string(folder.join("page.html")).unwrap();
@@ -240,7 +240,7 @@ fn reports() {
         html.contains("let ssccPackage = 1;")
             && html.contains("script-src 'unsafe-inline' 'wasm-unsafe-eval'")
     );
-    // It is no file for other folders to take over: a server does not run its script.
+    // The server refuses such a page in a folder, because it must not run the scripts of a file.
     fs::rename(folder.join("page.html"), folder.join("package/report.html")).unwrap();
     let served = sscc(folder, &["view", "package", "--no-open"]);
     assert!(served.refusal().contains("report.html: not a report of sscc: it has a program"));

@@ -55,7 +55,7 @@ fn results_are_checked_as_they_are_deformed() {
     assert!(
         named
             .refusal()
-            .contains("result.vtu: point data: has no vectors 'T'; the point data has 'velocity', 'u'")
+            .contains("result.vtu: point data: there are no vectors 'T'; the point data has 'velocity', 'u'")
     );
     // `U` may be a velocity.
     let unclear = sscc(folder, &["check", "unclear.vtu"]);

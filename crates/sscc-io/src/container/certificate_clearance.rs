@@ -8,7 +8,7 @@ use crate::{FormatError, Place};
 /// Tensor: the clearance that triangles keep below the radii.
 pub(super) const CLEARANCE: &str = "clearance";
 
-/// Tensor: beyond how many rings.
+/// Tensor: the number of rings within which pairs do not count.
 pub(super) const RINGS: &str = "clearance_rings";
 
 /// The first version with clearances.

@@ -10,11 +10,13 @@ use crate::{FormatError, Place};
 /// Tensor: the group of each triangle.
 pub(super) const GROUPS: &str = "groups";
 
-/// Tensor: the listed pairs of groups. Text: what it lists.
+/// Name of the tensor of the listed pairs of groups, and of the text that states whether they are ignored or counted.
 pub(super) const PAIRS: &str = "group_pairs";
 
-/// Values of the text.
+/// Value of the text: listed pairs do not count.
 const IGNORED: &str = "ignored";
+
+/// Value of the text: only listed pairs count.
 const COUNTED: &str = "counted";
 
 /// The first version with groups.

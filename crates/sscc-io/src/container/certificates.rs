@@ -6,7 +6,7 @@
 //! | `nodes` | U32 | n x 4 | first triangle, number of triangles, first child, number of children |
 //! | `order` | U32 | N | permutation of the triangles; those of a node are contiguous |
 //! | `node_radii` | F64 | n | `R_n` |
-//! | `node_states` | U8 | n | 0: resolved radius, coarse far above that of the root; 1: capped at the limit, the true radius is not smaller |
+//! | `node_states` | U8 | n | 0: resolved radius, computed coarsely where it is far above the root's; 1: capped at the limit, the true radius is not smaller |
 //! | `root_pair_radii` | F64 | p | `R_nm` of the pairs of the root's children: (0,1), (0,2), ..., (2,3) |
 //! | `root_pair_states` | U8 | p | as `node_states` |
 //! | `metric_scales` | F64 | r | the diagonal of the metric's factor S, or |
@@ -18,20 +18,20 @@
 //! | `ignored` | U32 | i x 2 | ignored triangle pairs, sorted |
 //! | `groups` | U32 | N | the group of each triangle; absent where all pairs of groups count |
 //! | `group_pairs` | U32 | g x 2 | pairs of groups `a <= b`, sorted; with `groups` only |
-//! | `clearance` | F64 | 1 | below a radius no pair that counts is nearer than this; absent: none collides. With it triangles with a common vertex do not count |
-//! | `clearance_rings` | U32 | 1 | with `clearance` only: pairs within so many rings of each other on the surface do not count |
+//! | `clearance` | F64 | 1 | below a radius no pair that counts is nearer than this distance. Triangles with a common vertex do not count. Without this tensor: below a radius no pair collides |
+//! | `clearance_rings` | U32 | 1 | with `clearance` only: the number of rings; pairs within it of each other on the surface do not count |
 //! | `rest_collisions` | U64 | 1 | number of pairs that collide at rest, ignored ones included |
 //! | `pair_limit` | F64 | 1 | the pair tree holds all node pairs with a smaller radius: a missing node pair is certified up to here; 0: no tree |
 //! | `pair_starts` | U32 | n or 0 | for each node, the index of the first pair of its children; 2^32 - 1: no pair is below the limit, or the node is a bucket |
 //! | `pair_radii` | F32 | t | radius of each node pair, rounded down, below the limit |
 //! | `pair_links` | U32 | t | bits 0 to 27: index of its first child (0: none, both nodes are buckets); 28 to 30: its number among the children of its parent; 31: last sibling |
 //! | `local_nodes` | U32 | l | the node of each local certificate, ascending; this tensor and those below are absent where there are none |
-//! | `local_mode_starts` | U32 | l + 1 | where the modes of each start in `local_modes`, and the end |
-//! | `local_modes` | U32 | m | the modes that move the patch of each, ascending |
-//! | `local_gradients` | F32 | | of each the gradients G of its modes: for each mode eight entries of the 3 x 3 matrix, column by column, then the ninth of all its modes, padded with zeros to a multiple of eight |
-//! | `local_ellipsoids` | U32 | | of each W, upper triangular: for each eight rows their entries in all columns from the first row's diagonal on. Two entries in each number, the first in the lower half; an entry is the upper half of a single-precision number |
-//! | `local_bounds` | F64 | l x 9 | of each the ratio of the pairs within the node (infinite: none was found), rho, 1 / s, the largest Frobenius norm of a gradient, the largest norm of a column of W, the direction across a flat patch (3 numbers; else zeros), phi (infinite where the patch is not flat). l x 5 in version 6, which knows no flat patches |
-//! | `local_list_starts` | U32 | l + 1 | where the list of each starts in `local_list_nodes`, and the end |
+//! | `local_mode_starts` | U32 | l + 1 | for each certificate the start of its modes in `local_modes`, then the end |
+//! | `local_modes` | U32 | m | the modes that move the patch of each certificate, ascending |
+//! | `local_gradients` | F32 | | for each certificate the gradients G of its modes: for each mode eight entries of the 3 x 3 matrix, column by column, then the ninth of all its modes, padded with zeros to a multiple of eight |
+//! | `local_ellipsoids` | U32 | | for each certificate W, upper triangular: for each eight rows their entries in all columns from the first row's diagonal on. Two entries in each number, the first in the lower half; an entry is the upper half of a single-precision number |
+//! | `local_bounds` | F64 | l x 9 | for each certificate the ratio of the pairs within the node (infinite if there is no such pair), rho, 1 / s, the largest Frobenius norm of a gradient, the largest norm of a column of W, the direction across a flat patch (3 numbers; else zeros), phi (infinite where the patch is not flat). l x 5 in version 6, which has no flat patches |
+//! | `local_list_starts` | U32 | l + 1 | for each certificate the start of its list in `local_list_nodes`, then the end |
 //! | `local_list_nodes` | U32 | k | the nodes of each list, ascending |
 //! | `local_list_ratios` | F32 | k | the ratio of the pairs between the certificate's node and each node of its list; may be infinite |
 //!
@@ -39,15 +39,15 @@
 //! other node. Lists of siblings are stored breadth first; the lists of the nodes' own children come first.
 //! `local_certificates.rs` in the core has the inequality of local certificates.
 //!
-//! Text: `metric` (the kind), `scheme` ("full" with a pair tree or local certificates, else "paper"), `neighbours` ("exclude": triangles that
-//! share a vertex are no pair; "include-one-vertex": triangles that share exactly one vertex count if they meet at
-//! another point), `weld` ("none", or "equal": vertices of equal position and modes count as one for adjacency). With
-//! `groups` also `group_pairs`: what the tensor of that name lists ("ignored": pairs that do not count, the others do;
-//! "counted": pairs that count, the others do not). The name of the scheme implies nothing. A bucket has at most 64
-//! triangles and is not the root; the tree holds no pairs within a bucket. Clearances are new in version 8, local
-//! certificates in version 6, groups in version 5; version 6 has no flat patches. Files are written in
-//! the oldest of 4, 5, 7 and 8 that has what they hold. Version 3 has a tree with pairs within buckets, which is not read. Versions 1 and 2 have no
-//! tree, and a text `pairs` ("root-children").
+//! Text: `metric` (the kind), `scheme` ("full" with a pair tree or local certificates, else "paper"), `neighbours`
+//! ("exclude": triangles that share a vertex are no pair; "include-one-vertex": triangles that share exactly one vertex
+//! count if they meet at another point), `weld` ("none", or "equal": vertices of equal position and modes count as one
+//! for adjacency). With `groups` also `group_pairs`, the kind of the pairs in the tensor of that name ("ignored": pairs
+//! that do not count, the others do; "counted": pairs that count, the others do not). The text `scheme` adds nothing to
+//! the tensors. A bucket has at most 64 triangles and is not the root; the tree holds no pairs within a bucket.
+//! Clearances are new in version 8, local certificates in version 6, groups in version 5; version 6 has no flat patches.
+//! A file is written in the oldest of the versions 4, 5, 7 and 8 that supports its contents. Version 3 has a tree with
+//! pairs within buckets, which is not read. Versions 1 and 2 have no tree, and a text `pairs` ("root-children").
 
 use std::path::Path;
 
@@ -65,8 +65,10 @@ use crate::{FormatError, IoError, Place};
 /// Files without groups and local certificates are written in this version, which earlier builds read.
 const PLAIN_VERSION: u32 = 4;
 
-/// Values of the text `weld`.
+/// Value of the text `weld` if equal vertices count as one.
 const WELD: &str = "equal";
+
+/// Value of the text `weld` if each vertex counts alone.
 const NO_WELD: &str = "none";
 
 /// Returns the value of the text `scheme`.
@@ -116,7 +118,7 @@ pub fn read_certificates(path: &Path) -> Result<Certificates, IoError> {
     certificates_from_bytes(&read_whole(path)?).map_err(|error| error.of(path))
 }
 
-/// Returns the bytes of a certificate file: a function of the certificates.
+/// Returns the bytes of a certificate file. Equal certificates have equal bytes.
 ///
 /// # Errors
 /// None in practice, because all names and texts are short.

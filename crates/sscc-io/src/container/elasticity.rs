@@ -12,7 +12,7 @@ pub(super) const CUBIC: &str = "forces_cubic";
 
 /// Key of the text entry for the reduced mass matrix.
 const MASS: &str = "mass";
-/// Its only value: `M~` is the identity.
+/// The only value of this text: `M~` is the identity.
 const IDENTITY: &str = "identity";
 
 /// Returns the shapes of the three tensors.
@@ -71,7 +71,7 @@ pub(super) fn read(file: &Container<'_>, rank: usize) -> Result<Option<Elasticit
     Ok(Some(Elasticity::Nonlinear(forces)))
 }
 
-/// Returns the error at the tensor with the entry.
+/// Returns the error with its place, the tensor that has the invalid entry.
 fn refused(error: SolidError) -> FormatError {
     let tensor = match error {
         SolidError::ForceEntry { degree: 2, .. } | SolidError::ForceLength { degree: 2, .. } => QUADRATIC,

@@ -22,13 +22,13 @@ pub(super) const TENSORS: [&str; 9] =
 /// The version of files with local certificates.
 pub(super) const VERSION: u32 = 7;
 
-/// The first one. It knows no flat patches.
+/// The first version with local certificates. It has no flat patches.
 const FIRST_VERSION: u32 = 6;
 
-/// Count of bounds of a certificate, and how many of them the first version has.
+/// Number of bounds of a certificate.
 const BOUND_COUNT: usize = 9;
 
-/// See [`BOUND_COUNT`].
+/// Number of bounds of a certificate in the first version.
 const FIRST_BOUND_COUNT: usize = 5;
 
 /// Writes local certificates, if there are any.
@@ -36,8 +36,8 @@ pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
     if local.nodes.is_empty() {
         return;
     }
-    // Two numbers each: earlier builds know no U16, and would not say that a newer version wrote the file. The layout has
-    // an even number of them.
+    // Each U32 has two numbers: earlier builds cannot read U16, and would not report that a newer version wrote the file.
+    // The layout has an even number of them.
     let pair = |&[low, high]: &[u16; 2]| u32::from(low) | u32::from(high) << 16;
     let ellipsoids: Vec<u32> = local.ellipsoids.as_chunks().0.iter().map(pair).collect();
     let bounds: Vec<f64> = local
@@ -60,7 +60,8 @@ pub(super) fn write(writer: &mut ContainerWriter, local: &LocalCertificates) {
         .f32(LIST_RATIOS, &[local.list_ratios.len()], &local.list_ratios);
 }
 
-/// Reads local certificates; none from a file without. [`sscc::Certificates::try_from`] checks that they fit the hierarchy.
+/// Reads local certificates; empty if the file has none. [`sscc::Certificates::try_from`] checks that they fit the
+/// hierarchy.
 pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatError> {
     let names = file.names();
     let Some(name) = names.into_iter().find(|name| TENSORS.contains(&name.as_str())) else {
@@ -77,7 +78,7 @@ pub(super) fn read(file: &Container<'_>) -> Result<LocalCertificates, FormatErro
     if nodes.is_empty() {
         return Err(FormatError::new(
             Place::Tensor(NODES.into()),
-            "it is empty: files without have no such tensor",
+            "it is empty: files without local certificates have no such tensor",
         ));
     }
     let pairs = u32s(ELLIPSOIDS)?;

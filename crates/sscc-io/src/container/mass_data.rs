@@ -12,7 +12,7 @@ pub(super) const MOMENTS: &str = "mode_moments";
 
 /// Key of the text entry for fixed vertices.
 const SUPPORT: &str = "support";
-/// Its values: the body moves freely, or some of its vertices are fixed.
+/// The values of this text: the body moves freely, or some of its vertices are fixed.
 const SUPPORTS: [&str; 2] = ["free", "held"];
 
 /// Number of mass properties: mass, centre (3), inertia (9).
@@ -25,7 +25,7 @@ const NUMBERS: usize = 13;
 pub(super) fn write(writer: &mut ContainerWriter, data: &MassData, rank: usize) -> Result<(), FormatError> {
     let MassData { properties, moments, is_held } = data;
     if moments.len() != rank {
-        let cause = format!("{} moments, the model has {rank} modes", moments.len());
+        let cause = format!("it has {} moments, but the model has {rank} modes", moments.len());
         return Err(FormatError::new(Place::Tensor(MOMENTS.into()), cause));
     }
     let mut numbers = vec![properties.mass];

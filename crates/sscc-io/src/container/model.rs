@@ -8,11 +8,11 @@
 //! | `metric_scales` | F64 | r | the diagonal of the default metric's factor S, or |
 //! | `metric_factor` | F64 | r x r | S itself, upper triangular, where it is not diagonal |
 //! | `stiffness` | F64 | r x r | optional: the reduced stiffness `K~` at rest, symmetric |
-//! | `forces_quadratic` | F64 | r x r(r+1)/2 | optional, beside it: coefficients of `q_i q_j` in each force, i <= j |
-//! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with the former: of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
+//! | `forces_quadratic` | F64 | r x r(r+1)/2 | optional, with `stiffness`: coefficients of `q_i q_j` in each force, i <= j |
+//! | `forces_cubic` | F64 | r x r(r+1)(r+2)/6 | with `forces_quadratic`: coefficients of `q_i q_j q_k`, i <= j <= k, in lexicographic order |
 //! | `mass_properties` | F64 | 13 | optional: mass, centre of mass, inertia about it (3 x 3) at rest |
-//! | `mode_moments` | F64 | r x 3 | with the former: the integral of each mode over the mass |
-//! | `deviations` | F64 | r | optional: the standard deviation of each entry of q, of principal components |
+//! | `mode_moments` | F64 | r x 3 | with `mass_properties`: the integral of each mode over the mass |
+//! | `deviations` | F64 | r | optional, for principal components: the standard deviation of each entry of q |
 //!
 //! Text: `metric` (the kind of the metric), `units`, `provenance`. A file with a stiffness also has the text `mass`
 //! with the value "identity": the modes are mass-orthonormal, and `M~` is the identity. The natural frequencies in Hz
@@ -30,7 +30,7 @@ use super::{ANY, Container, ContainerWriter, Kind, MODEL, elasticity, mass_data,
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
 
-/// Additional data of a model file. Texts are free, and empty if unknown.
+/// Additional data of a model file. Texts have any content, and are empty if unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ModelInfo {
@@ -49,9 +49,10 @@ pub struct ModelInfo {
 /// The tensor of the standard deviations.
 const DEVIATIONS: &str = "deviations";
 
-/// Files with neither mass properties nor deviations are written in the first of these versions, files without
-/// deviations in the second one. Earlier builds read them.
+/// Version of files with neither mass properties nor deviations, which earlier builds read.
 const VERSION_WITHOUT_MASS: u32 = 1;
+
+/// Version of files with mass properties but without deviations, which earlier builds read.
 const VERSION_WITHOUT_DEVIATIONS: u32 = 2;
 
 impl ModelInfo {
@@ -118,7 +119,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
     }
     if let Some(deviations) = &info.deviations {
         if deviations.len() != rank {
-            let cause = format!("{} numbers, the model has {rank} modes", deviations.len());
+            let cause = format!("it has {} numbers, but the model has {rank} modes", deviations.len());
             return Err(FormatError::new(Place::Tensor(DEVIATIONS.into()), cause));
         }
         writer.f64(DEVIATIONS, &[rank], deviations);
@@ -169,7 +170,7 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<(ReducedModel, ModelInfo), Forma
     Ok((model, ModelInfo { elasticity, mass, deviations, ..info }))
 }
 
-/// Reads the standard deviations of a model of rank r; none if the file has none.
+/// Reads the standard deviations of a model of rank r; None if the file has none.
 fn read_deviations(file: &Container<'_>, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
     if !file.names().iter().any(|name| name == DEVIATIONS) {
         return Ok(None);

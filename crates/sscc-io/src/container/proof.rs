@@ -9,7 +9,7 @@ use crate::IoError;
 use crate::error::FormatError;
 use crate::file::WholeFile;
 
-/// Entries that are proven before their bytes are written: they bound the memory of a long proof.
+/// Number of entries that are proven before their bytes are written; it bounds the memory of a long proof.
 const ENTRIES_AT_ONCE: usize = 1 << 10;
 
 /// A proof that is written beside its target. Dropping it removes it.
@@ -53,7 +53,7 @@ pub fn write_proof(
     Ok(ProofFile { file, bytes: written + bytes.len() as u64 })
 }
 
-/// An entry without a proof is no fault of the user: certificates are proven right after they are computed.
+/// Returns the error for an entry without a proof: a defect, because certificates are proven right after they are computed.
 fn unproven(path: &Path, error: Error) -> IoError {
     match error {
         Error::Unproven(cause) => {

@@ -47,7 +47,7 @@ impl<'a> Accessors<'a> {
         Ok(self.accessor(index)?.count)
     }
 
-    /// Refuses an accessor without data: a reader of the compression would find its numbers elsewhere.
+    /// Refuses an accessor without a view: its numbers exist only in compressed form.
     pub fn check_uncompressed(&self, index: usize, part: &str) -> Result<(), FormatError> {
         if self.accessor(index)?.buffer_view.is_some() {
             return Ok(());

@@ -200,13 +200,19 @@ fn single_precision(values: &[f64]) -> Vec<f32> {
     values.iter().map(|x| *x as f32).collect()
 }
 
-/// Name and width of accessor types.
+/// Name and width of the accessor type of numbers.
 const SCALAR: (&str, usize) = ("SCALAR", 1);
+
+/// Name and width of the accessor type of vectors.
 const VEC3: (&str, usize) = ("VEC3", 3);
+
+/// Name and width of the accessor type of quaternions.
 const VEC4: (&str, usize) = ("VEC4", 4);
 
-/// Targets of views: vertices or indices.
+/// Target of views with vertices.
 const VERTICES: u32 = 34962;
+
+/// Target of views with indices.
 const CORNERS: u32 = 34963;
 
 /// Binary data of the file, with its views and accessors.

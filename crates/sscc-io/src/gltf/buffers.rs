@@ -73,7 +73,7 @@ impl<'a> Buffers<'a> {
         Ok(())
     }
 
-    /// Returns the bytes of a loaded buffer, else none.
+    /// Returns the bytes of a buffer; empty if it is not loaded.
     pub fn get(&self, index: usize) -> &[u8] {
         let length = self.declared.get(index).map_or(0, |buffer| buffer.byte_length);
         self.all_of(index).get(..length).unwrap_or_default()

@@ -40,7 +40,7 @@ impl Component {
     }
 
     /// Decodes one number from its bytes ([`Component::size`] of them). Normalized integers are divided by the largest
-    /// of their type, in f64; the smallest signed one counts as -1.
+    /// of their type, in f64; the smallest signed integer counts as -1.
     pub fn decode(self, bytes: &[u8], normalized: bool) -> f64 {
         let byte = |at: usize| bytes.get(at).copied().unwrap_or_default();
         let (two, four) = ([byte(0), byte(1)], [byte(0), byte(1), byte(2), byte(3)]);

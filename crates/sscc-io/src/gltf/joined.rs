@@ -32,7 +32,7 @@ pub(super) struct JoinedPrimitives {
 }
 
 impl JoinedPrimitives {
-    /// Starts without primitives. The first `rank` morph targets of each are read; missing ones move nothing.
+    /// Creates a mesh without primitives. The first `rank` morph targets of each are read; missing ones move nothing.
     pub fn new(rank: usize) -> Self {
         Self { rank, positions: Vec::new(), faces: Vec::new(), displacements: Vec::new() }
     }
@@ -121,7 +121,7 @@ fn faces_of(
         }
     };
     if let Some(largest) = corners.iter().max().filter(|index| **index as usize >= count) {
-        let cause = format!("names vertex {largest} (counted from 0), but there are {count}");
+        let cause = format!("an index names vertex {largest} (counted from 0), but there are {count}");
         return Err(refused(cause));
     }
     topology.triangles(&corners).ok_or_else(|| {

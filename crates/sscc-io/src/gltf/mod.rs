@@ -6,8 +6,8 @@
 //! in the coordinates of the mesh. An affine map, such as the transform of a node, does not change which triangles
 //! intersect. A mesh at rest ([`PlacedMesh`]) has world positions instead, for comparisons with other meshes.
 //!
-//! What no answer needs is not read, so an error there refuses no file: accessors, buffers, skins and nodes that the mesh
-//! does not use, materials, images, and extensions that a file uses but does not require.
+//! Data that no query needs are not read, so an error in them refuses no file: accessors, buffers, skins and nodes that
+//! the mesh does not use, materials, images, and extensions that a file uses but does not require.
 //!
 //! A scene ([`AnimatedScene`]) has world positions at any time of an animation, with node hierarchy, morph targets and
 //! skins.

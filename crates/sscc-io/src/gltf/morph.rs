@@ -25,7 +25,7 @@ pub struct MorphModel {
     pub mesh_name: String,
     /// Ranges of the primitives with triangles, in file order.
     pub primitives: Vec<PrimitiveRange>,
-    /// What the file lacks by the standard, and how it was understood: one line each.
+    /// Lines about data that the standard requires but the file lacks, and how the reader replaces them.
     pub notes: Vec<String>,
 }
 

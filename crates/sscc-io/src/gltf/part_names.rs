@@ -21,7 +21,7 @@ pub(super) struct PartNames {
     nodes: NodeNames,
 }
 
-/// What nodes have, by their numbers: most nodes of a hostile file may have nothing, in three bytes of text.
+/// Names and meshes of nodes, in maps by node number: a hostile file may have many empty nodes, in three bytes of text each.
 #[derive(Default)]
 struct NodeNames {
     names: BTreeMap<usize, Box<str>>,
@@ -56,12 +56,12 @@ impl PartNames {
         parse_parts(json)
     }
 
-    /// The first node that shows a mesh.
+    /// Returns the first node that shows a mesh.
     pub fn node_of_mesh(&self, mesh: usize) -> Option<usize> {
         self.nodes.first_of_mesh.get(&u32::try_from(mesh).ok()?).copied()
     }
 
-    /// The name of the group of a primitive; `node` shows its mesh. Materials that do not exist are named by number:
+    /// Returns the name of a primitive's group; `node` shows its mesh. Materials that do not exist are named by number:
     /// they do not change the shape.
     pub fn group(&self, by: GroupsBy, node: Option<usize>, mesh: usize, primitive: usize) -> String {
         let numbered = |name: Option<&Box<str>>, number: usize| {
@@ -89,7 +89,8 @@ impl PartNames {
     }
 }
 
-/// Returns a name as groups have it: one that looks like a number in place of a name (`#0`) has one more `#`, so that the two differ.
+/// Returns the name of a group for the name of a part. A name in the form of the numbers of unnamed parts (`#0`) gets one
+/// more `#`, so that the two differ.
 fn own(name: &str) -> String {
     let number = name.trim_start_matches('#');
     let is_number = number.len() < name.len() && !number.is_empty();

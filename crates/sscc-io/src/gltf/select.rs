@@ -42,11 +42,11 @@ pub(super) fn has_triangles(mesh: &Mesh) -> bool {
 /// The meshes that can be chosen.
 struct Wanted<'a> {
     is_candidate: &'a dyn Fn(&Mesh) -> bool,
-    /// What candidates have, in messages.
+    /// Name of the content that a candidate needs, in messages.
     content: &'a str,
     /// Settings that name a mesh, in messages.
     settings: Message,
-    /// Message without a candidate.
+    /// Message if there is no candidate.
     none: Message,
 }
 

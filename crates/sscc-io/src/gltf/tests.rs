@@ -208,7 +208,7 @@ fn errors_name_the_part() {
     bytes[99] = 4;
     let refused = parse(&glb(JSON, &bytes), None).unwrap_err().to_string();
     assert!(
-        refused.ends_with("primitives[0]: names vertex 4 (counted from 0), but there are 4"),
+        refused.ends_with("primitives[0]: an index names vertex 4 (counted from 0), but there are 4"),
         "{refused}"
     );
     for indices in [[0, 0], [2, 1], [0, 3], [0, u8::MAX]] {
@@ -225,7 +225,7 @@ fn errors_name_the_part() {
     assert!(parse(&glb(JSON, &bytes), None).unwrap_err().to_string().starts_with("mode 0 of vertex 0 "));
 }
 
-/// What no answer needs refuses no file.
+/// Errors in data that no query needs do not refuse a file.
 #[test]
 fn needless_content_is_not_read() {
     let whole = parse(&glb(JSON, &binary()), None).unwrap();
@@ -282,7 +282,7 @@ fn needless_content_is_not_read() {
 
 /// Data that exist only compressed are never read as zeros.
 #[test]
-fn compressed_data_without_others_are_refused() {
+fn data_that_exist_only_compressed_are_refused() {
     let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;
     let json = JSON.replace(r#""mode":5"#, draco);
     for accessor in [
@@ -322,7 +322,7 @@ fn missing_morph_targets_move_nothing() {
     assert_eq!(first.notes, [note.replace("1 to 2", "0 to 2")]);
     assert_eq!(first.modes.of_vertex(0), whole.modes.of_vertex(0));
     assert_eq!(first.modes.of_vertex(4), [DVec3::ZERO; 2]);
-    // Weights are those of the targets that there are.
+    // There is one weight for each target; missing weights are 0.
     for (weights, expected) in [("[0.25]", [0.25, 0.0]), ("[0.25,0.5,9]", [0.25, 0.5])] {
         let read = parse(&glb(&JSON.replace("[0.25,0]", weights), &binary()), None).unwrap();
         assert_eq!(read.default_weights, expected);

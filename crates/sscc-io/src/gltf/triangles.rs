@@ -54,17 +54,17 @@ pub(super) fn has_triangles(primitive: &Primitive) -> bool {
     Topology::from_mode(primitive.mode).is_ok() && primitive.attributes.position.is_some()
 }
 
-/// The primitives of a mesh that have triangles, with their numbers in the mesh.
+/// Returns the primitives of a mesh that have triangles, with their numbers in the mesh.
 pub(super) fn with_triangles(mesh: &Mesh) -> impl Iterator<Item = (usize, &Primitive)> {
     mesh.primitives.iter().enumerate().filter(|(_, primitive)| has_triangles(primitive))
 }
 
-/// The accessors of the positions and indices of a mesh's triangles; some may not exist.
+/// Returns the accessors of the positions and indices of a mesh's triangles; some may not exist.
 pub(super) fn geometry_accessors(mesh: &Mesh) -> impl Iterator<Item = usize> {
     with_triangles(mesh).flat_map(|(_, p)| p.attributes.position.into_iter().chain(p.indices))
 }
 
-/// Number of morph targets of a mesh: the largest of its primitives'. Those with fewer do not move in the others.
+/// Number of morph targets of a mesh: the largest of its primitives'. Targets that a primitive lacks do not move it.
 pub(super) fn morph_targets(mesh: &Mesh) -> usize {
     with_triangles(mesh).map(|(_, primitive)| primitive.targets.len()).max().unwrap_or(0)
 }

@@ -1,7 +1,8 @@
 //! Readers for triangle meshes: OBJ, OFF, PLY and STL.
 //!
 //! All vertices of the file are kept in its order, even unused ones, so that modes for the file's vertices fit.
-//! A polygon becomes triangles in its place: the fan around its first corner where that triangulates it, else others.
+//! A polygon becomes triangles in its place: the fan around its first corner if that triangulates it, else another
+//! triangulation.
 
 pub mod obj;
 pub mod off;

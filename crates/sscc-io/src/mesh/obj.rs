@@ -1,6 +1,6 @@
 //! Reader for Wavefront OBJ files.
 //!
-//! The module has its own parser: general ones renumber vertices by first use and drop unused ones, after which modes
+//! The module has its own parser: general parsers renumber vertices by first use and drop unused ones, so that modes
 //! for the `v` lines of the file no longer fit.
 
 use std::borrow::Cow;
@@ -134,7 +134,7 @@ fn position(text: &str, line: usize) -> Result<DVec3, FormatError> {
     for word in text.split_ascii_whitespace() {
         match values.get_mut(found) {
             Some(value) => *value = number(word, line)?,
-            // Nobody needs colours and weights, which may be NaN.
+            // Colours and weights are not used, and may be NaN.
             None if word.parse::<f64>().is_err() => _ = number(word, line)?,
             None => {}
         }
@@ -241,7 +241,7 @@ mod tests {
         let text = format!("{SQUARE}# a comment\nf 1 2 \\\n3\nf 1 3 5\n").replace('\n', "\r");
         assert_eq!(
             parse(text.as_bytes()).unwrap_err().to_string(),
-            "line 8: names vertex 5 (counted from 1), but there are 4"
+            "line 8: the face names vertex 5 (counted from 1), but there are 4"
         );
         assert_eq!(parse(text.replace("3 5", "3 4").as_bytes()).unwrap().faces(), [[0, 1, 2], [0, 2, 3]]);
     }
@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn errors_name_the_line() {
         assert_eq!(message("f 1 2 0"), "line 5: corner '0': vertices are counted from 1");
-        assert_eq!(message("f 1 2 5"), "line 5: names vertex 5 (counted from 1), but there are 4");
+        assert_eq!(message("f 1 2 5"), "line 5: the face names vertex 5 (counted from 1), but there are 4");
         assert_eq!(message("f 1 2 -5"), "line 5: corner '-5': only 4 vertices come before it");
         assert_eq!(message("f 1 2"), "line 5: a face needs at least 3 corners, this one has 2");
         assert_eq!(message("f"), "line 5: a face needs at least 3 corners, this one has 0");

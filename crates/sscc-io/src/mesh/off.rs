@@ -183,7 +183,7 @@ mod tests {
         );
         assert_eq!(
             with("4 0 1 2 3", "4 0 1 2 4"),
-            "line 9: names vertex 4 (counted from 0), but there are 4"
+            "line 9: the face names vertex 4 (counted from 0), but there are 4"
         );
         assert_eq!(with("4 0 1 2 3", "4 0 1 2 -1"), "line 9: '-1' is not a count");
         assert_eq!(with("4 0 1 2 3", "2 0 1"), "line 9: a face needs at least 3 corners, this one has 2");

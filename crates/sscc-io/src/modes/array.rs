@@ -100,7 +100,7 @@ mod tests {
         let one = from_array(&array(&[6]), 2).unwrap();
         assert_eq!((one.rank(), one.of_vertex(1)[0]), (1, DVec3::new(3.0, 4.0, 5.0)));
         assert_eq!(from_array(&array(&[2, 3]), 2).unwrap(), one);
-        // Three modes of one vertex: its rows are the first form.
+        // Three modes of one vertex: the first layout applies.
         assert_eq!(from_array(&array(&[3, 3]), 1).unwrap().rank(), 3);
     }
 

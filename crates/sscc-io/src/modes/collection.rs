@@ -46,10 +46,12 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Vec<TimedFile>, FormatError> {
     let text = std::str::from_utf8(bytes).map_err(|_| FormatError::whole("not XML in UTF-8"))?;
     let elements = elements(text.strip_prefix('\u{feff}').unwrap_or(text), false)?;
     let root = elements.first().filter(|root| root.name == "VTKFile");
-    let Some(root) = root else { return Err(FormatError::whole("no VTK file: '<VTKFile' was expected")) };
+    let Some(root) = root else {
+        return Err(FormatError::whole("the file is no VTK file: '<VTKFile' was expected"));
+    };
     if root.get("type") != Some("Collection") {
         let kind = quoted(root.get("type").unwrap_or_default());
-        return Err(root.refused(format!("a VTK file of type {kind}; a Collection was expected")));
+        return Err(root.refused(format!("the VTK file has the type {kind}; a Collection was expected")));
     }
     let mut files = Vec::new();
     for (number, element) in elements.iter().filter(|element| element.name == "DataSet").enumerate() {
@@ -107,7 +109,7 @@ mod tests {
     }
 
     proptest! {
-        /// Random damage is an error of one line, or leaves a collection of files below the folder.
+        /// A randomly damaged file is an error of one line, or still a collection of files below the folder.
         #[test]
         fn damaged_collections(
             damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
@@ -160,6 +162,6 @@ mod tests {
             assert!(message.contains(named), "{sets}: {message}");
         }
         let other = parse(b"<VTKFile type='PolyData'/>", Path::new(".")).err().unwrap().to_string();
-        assert_eq!(other, "line 1: a VTK file of type 'PolyData'; a Collection was expected");
+        assert_eq!(other, "line 1: the VTK file has the type 'PolyData'; a Collection was expected");
     }
 }

@@ -77,7 +77,7 @@ pub(crate) fn positions_like(
     if found != expected {
         return refused(format!("this {what} has {found} vertices, {other} has {expected}"));
     }
-    // Where the positions of this mesh would cut a polygon in another way, the triangles of the model stay.
+    // The triangles of the model are kept even if a polygon would be cut in another way at the positions of this mesh.
     if !read.fans.is_empty()
         && let Err(face) = read.has_polygons_of(model.faces())
     {

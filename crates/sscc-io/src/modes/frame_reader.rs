@@ -45,9 +45,9 @@ impl FrameReader {
     /// - a `.npy` file of floats or integers, of shape (T, V, 3), or (V, 3) for one frame;
     /// - a `.pc2` point cache;
     /// - a `.vtu` or `.vtk` grid, or a `.pvd` collection of them, deformed by its displacements, or by the point data that
-    ///   `FILE#NAME` names (`FILE#`: by none);
+    ///   `FILE#NAME` names (`FILE#` names none);
     /// - a folder of meshes with the same faces or none, in the natural order of their names (`9.obj` before `10.obj`), as
-    ///   of [`read_frames`](crate::read_frames).
+    ///   in [`read_frames`](crate::read_frames).
     ///
     /// `mesh_path` names the mesh in messages.
     ///
@@ -86,7 +86,7 @@ impl FrameReader {
         Ok(Self { path: path.to_owned(), mesh: mesh.clone(), name, source, warnings })
     }
 
-    /// Returns lines about the first frame where it is a grid of VTK: which point data moves its points, or may be meant to.
+    /// Returns lines about the first frame if it is a grid of VTK: the point data that moves its points, or that may be meant to.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -41,7 +41,7 @@ pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     Ok(Frames { mesh, positions, paths, warnings })
 }
 
-/// Reads the mesh of the first frame: of a grid of VTK its surface, moved by its displacements.
+/// Reads the mesh of the first frame. The mesh of a grid of VTK is its surface, moved by its displacements.
 fn read_first(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
     if is_vtk_name(path) { read_surface(path, &Displacement::ByName) } else { read_mesh_with_warnings(path) }
 }
@@ -100,7 +100,7 @@ mod tests {
         }
     }
 
-    /// A frame in which the fan of a polygon would do keeps the triangles of the first frame.
+    /// A frame has the triangles of the first frame, even if the fan of a polygon would triangulate it in this frame.
     #[test]
     fn frames_keep_the_triangles_of_the_first_one() {
         let directory = tempfile::tempdir().unwrap();

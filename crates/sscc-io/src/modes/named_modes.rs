@@ -9,6 +9,6 @@ pub struct NamedModes {
     pub modes: Modes,
     /// Name of each mode (r), or empty.
     pub names: Vec<String>,
-    /// The standard deviation of each entry of q (r), of principal components.
+    /// The standard deviation of each entry of q (r), for principal components.
     pub deviations: Option<Vec<f64>>,
 }

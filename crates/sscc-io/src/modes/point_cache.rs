@@ -44,13 +44,13 @@ fn parse_shape(bytes: &[u8]) -> Result<[usize; 3], FormatError> {
     let refused = |cause: String| Err(FormatError::whole(cause));
     let Some((header, data)) = bytes.split_at_checked(HEADER).filter(|(header, _)| header.starts_with(MAGIC))
     else {
-        return refused("no point cache: its first 32 bytes are not a header POINTCACHE2".into());
+        return refused("the file is no point cache: its first 32 bytes are not a header POINTCACHE2".into());
     };
     let words = header[MAGIC.len()..].as_chunks().0;
     let number = |word: usize| i32::from_le_bytes(words[word]);
     let (version, points, samples) = (number(0), number(1), number(4));
     if version != 1 {
-        return refused(format!("point cache of version {version}; version 1 was expected"));
+        return refused(format!("the point cache has version {version}; version 1 was expected"));
     }
     let (Ok(v), Ok(frames)) = (usize::try_from(points), usize::try_from(samples)) else {
         return refused(format!("the header states {samples} samples of {points} points"));

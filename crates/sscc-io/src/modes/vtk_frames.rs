@@ -13,7 +13,7 @@ use crate::{FormatError, IoError};
 /// The files of the frames.
 pub(super) struct VtkFrames {
     files: Vec<PathBuf>,
-    /// The time of each (s), in a collection.
+    /// The time of each frame (s), in a collection.
     pub times: Option<Vec<f64>>,
     displacement: Displacement,
 }
@@ -46,8 +46,8 @@ impl VtkFrames {
     }
 }
 
-/// Returns the positions of a grid whose surface has the triangles of a mesh: those of all points, or of those on the surface
-/// where the mesh has these alone, as a model of a solid does.
+/// Returns the positions of a grid whose surface has the triangles of a mesh: of all points, or only of those on the surface
+/// if the mesh has no others, as a model of a solid does.
 pub(super) fn positions_like(
     path: &Path,
     displacement: &Displacement,

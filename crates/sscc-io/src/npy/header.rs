@@ -36,7 +36,7 @@ pub(super) enum NumberKind {
 pub(super) struct Header {
     pub item: Item,
     pub fortran: bool,
-    /// Not yet checked against the file.
+    /// Length of each axis, not yet checked against the file.
     pub shape: Vec<usize>,
     /// Offset of the first byte after the header.
     pub body: usize,

@@ -17,7 +17,7 @@ pub fn to_bytes(shape: &[usize], values: &[f64]) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Returns the bytes before the values; none if the shape has more than 32 axes.
+/// Returns the bytes before the values; None if the shape has more than 32 axes.
 fn header(shape: &[usize]) -> Option<Vec<u8>> {
     if shape.len() > 32 {
         return None;
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_are_the_whole() {
+    fn arrays_written_in_parts_equal_those_written_at_once() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.npy");
         let values: Vec<f64> = (0..24).map(|i| f64::from(i) / 7.0).collect();
@@ -114,7 +114,7 @@ mod tests {
         assert!(!path.exists() && writer.push(&[0.0]).is_err());
         writer.finish().unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), to_bytes(&[4, 2, 3], &values).unwrap());
-        // An array that lacks values leaves the old file, and no other.
+        // If values are missing, the old file is kept, and no other file remains.
         let mut writer = NpyWriter::create(&path, &[4, 2, 3]).unwrap();
         writer.push(&values[1..]).unwrap();
         assert!(writer.finish().is_err() && NpyWriter::create(&path, &[usize::MAX, 2]).is_err());

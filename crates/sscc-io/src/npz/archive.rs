@@ -25,7 +25,7 @@ pub(super) fn entries(
     };
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| whole(&e))?;
     check_ends(bytes, &archive)?;
-    // Only accepted entries count. Bytes that two entries share count twice.
+    // Only accepted entries count towards the limit. Bytes that two entries share count twice.
     let mut allowance = Allowance::new(bytes.len() as u64, MAX_BYTES);
     let mut found = BTreeMap::new();
     for index in 0..archive.len() {

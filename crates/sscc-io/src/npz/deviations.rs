@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 1e-3;
 /// Components whose squared lengths are their variances are scaled already: a unit of q is one standard deviation.
 /// Variances below 0 come from rounding, and count as 0.
 ///
-/// Returns none if a variance is not finite.
+/// Returns None if a variance is not finite.
 pub(super) fn deviations(variances: &[f64], modes: &Modes) -> Option<Vec<f64>> {
     if variances.iter().any(|variance| !variance.is_finite()) {
         return None;

@@ -13,7 +13,7 @@
 //! Variances (`explained_variance`, and `eigenvalues` of `components`) state how far each entry of q goes in the samples
 //! of the model: [`NpzModel::deviations`].
 //!
-//! If a shape fits two forms, the one further left applies. Two names for one part are an error. Arrays are floats or
+//! If a shape fits two forms, the first one in the table applies. Two names for one part are an error. Arrays are floats or
 //! integers, faces integers. An archive may be stored or deflated (`numpy.savez`, `numpy.savez_compressed`). Its
 //! recognised arrays may take up to 100 times the file's size plus 64 MiB, at most 4 GiB.
 //!
@@ -72,8 +72,8 @@ pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
     Ok(NpzModel { mesh, modes, weights, deviations })
 }
 
-/// Parses the modes of a mesh, with the standard deviations of q if the file has their variances (and one array alone of
-/// numbers for each mode); faces and other arrays are skipped. If the archive has a mean, it must equal the rest positions
+/// Parses the modes of a mesh, with the standard deviations of q if the file has their variances (and only one array
+/// with a number for each mode); faces and other arrays are skipped. If the archive has a mean, it must equal the rest positions
 /// of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
 ///
 /// # Errors

@@ -16,8 +16,8 @@ use crate::{FormatError, Message, Place, Setting};
 pub(super) struct Parts(BTreeMap<Part, (String, Vec<u8>)>);
 
 impl Parts {
-    /// Reads these parts. Arrays of one part are refused if they are several; those of an optional part are then left out,
-    /// because none of them can be preferred.
+    /// Reads these parts. Several arrays for one part are an error. Several arrays for an optional part are skipped, because
+    /// none of them can be preferred.
     pub fn read(bytes: &[u8], wanted: &[Part], optional: Option<Part>) -> Result<Self, FormatError> {
         let is_wanted =
             |name: &str| Part::of(name).is_some_and(|part| wanted.contains(&part) || optional == Some(part));
@@ -104,7 +104,7 @@ impl Parts {
             let array = npy::parse(bytes)?;
             match *array.shape() {
                 [n] if n == rank => Ok(Some(array.to_c_order())),
-                [n] => Err(FormatError::whole(format!("{n} numbers for {rank} modes"))),
+                [n] => Err(FormatError::whole(format!("there are {n} numbers for {rank} modes"))),
                 _ => Ok(None),
             }
         });

@@ -192,7 +192,8 @@ fn errors_name_the_array() {
     assert!(message(&with("faces", faces("<i4", &[0, 1, 255]))).contains("face 0 names vertex -1 "));
     assert!(message(&with("faces", faces("<i4", &[]))).contains("no triangles"));
     assert!(
-        message(&with("eigenvalues", numbers(&[3]))).contains("array 'eigenvalues': 3 numbers for 2 modes")
+        message(&with("eigenvalues", numbers(&[3])))
+            .contains("array 'eigenvalues': there are 3 numbers for 2 modes")
     );
 }
 

@@ -59,7 +59,8 @@ impl Polygons {
             Some((index, place)) if index >= positions.len() as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
                 let vertices = positions.len();
-                let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
+                let cause =
+                    format!("the face names vertex {index} (counted from {first}), but there are {vertices}");
                 Err(FormatError::new(place, cause))
             }
             _ => Ok(Soup { larger: self.larger, ..Soup::of_triangles(positions, self.triangles) }),

@@ -65,9 +65,10 @@ impl EarCandidates {
         grid
     }
 
-    /// Returns the cell of a point. Monotone in each coordinate, so the cells of a box's corners enclose those of its points.
+    /// Returns the cell of a point. The cell is monotone in each coordinate, so the cells of a box's corners enclose those of
+    /// its points.
     fn cell(&self, point: DVec2) -> [usize; 2] {
-        // The conversion cuts off negative numbers and NaN, of grids without extent.
+        // The conversion maps negative numbers, and the NaN of grids without extent, to 0.
         let cells = (point - self.low) * self.scale;
         [cells.x, cells.y].map(|cell| (cell as usize).min(self.count - 1))
     }

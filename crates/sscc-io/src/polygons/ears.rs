@@ -11,11 +11,11 @@ use sscc::parts::orient2d;
 use super::ear_candidates::EarCandidates;
 use super::work::{STEPS_OF_EXACT_SIGNS, TooIntricate, Work};
 
-/// Cuts a polygon into triangles of its corners' numbers. All turn as the polygon does (`turn`: 1 left, -1 right); n
-/// corners give n - 2 triangles. None if there is no ear at some point, as where the polygon crosses itself.
+/// Cuts a polygon into triangles of its corners' numbers, with the polygon's orientation (`turn`: 1 left, -1 right); n
+/// corners give n - 2 triangles. None if at some step there is no ear, which happens if the polygon crosses itself.
 ///
 /// A simple polygon that turns this way always has an ear with area. Only polygons that touch themselves, or have repeated
-/// corners, also get triangles without area. Exact.
+/// corners, also get triangles without area. All decisions are exact.
 pub(super) fn cut_ears(
     points: &[DVec2],
     turn: i8,
@@ -79,7 +79,7 @@ pub(super) fn cut_ears(
     Ok((orient2d(a, b, c) != -turn).then_some(triangles))
 }
 
-/// The corners that are left, in a circle.
+/// The remaining corners, in a circular list.
 struct Ring<'a> {
     points: &'a [DVec2],
     turn: i8,
@@ -87,7 +87,7 @@ struct Ring<'a> {
     after: Vec<u32>,
     is_cut: Vec<bool>,
     candidates: EarCandidates,
-    /// A corner that is left.
+    /// One of the remaining corners.
     some: u32,
 }
 
@@ -122,7 +122,7 @@ impl<'a> Ring<'a> {
     /// Whether the edges of a corner lie on each other, or one of them has no length.
     fn is_spur(&self, corner: u32) -> bool {
         let [a, b, c] = self.ear(corner).map(|corner| self.points[corner as usize]);
-        // Of collinear points: whether b is between the others, in x or on a vertical line in y.
+        // For collinear points: whether b is between the others, in x or on a vertical line in y.
         let is_between = |k: usize| (a[k] < b[k] && b[k] < c[k]) || (c[k] < b[k] && b[k] < a[k]);
         orient2d(a, b, c) == 0 && !is_between(0) && !(a.x == c.x && is_between(1))
     }
@@ -158,7 +158,7 @@ impl<'a> Ring<'a> {
         Ok(!self.candidates.any_in_box(low, high, work, blocks)?)
     }
 
-    /// Whether a corner is in a closed ear; at the position of one of its corners, whether an edge goes into it.
+    /// Whether a corner is in a closed ear. If it is at a corner of the ear: whether an edge from it goes into the ear.
     fn enters(&self, corner: usize, ear: [DVec2; 3]) -> bool {
         let point = self.points[corner];
         let is_left = |p: DVec2, q: DVec2, r: DVec2| orient2d(p, q, r) * self.turn;

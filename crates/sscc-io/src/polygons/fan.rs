@@ -1,12 +1,12 @@
-//! Whether the fan around the first corner triangulates a polygon.
+//! Checks whether the fan around the first corner triangulates a polygon.
 
 use glam::DVec2;
 use sscc::parts::orient2d;
 
-/// Whether the fan around the first corner covers the polygon, and no point of the plane twice, apart from borders.
+/// Whether the fan around the first corner covers the polygon, and covers no point twice, apart from borders.
 ///
-/// So it is if no two triangles of the fan turn in opposite directions, and the polygon turns around its first corner
-/// once at most. A polygon without area is the union of its fan's segments.
+/// This holds if no two triangles of the fan have opposite orientations, and the polygon goes around its first corner at
+/// most once. A polygon without area is the union of its fan's segments.
 pub(super) fn is_fan_a_triangulation(polygon: &[DVec2]) -> bool {
     let [center, others @ ..] = polygon else { return true };
     let mut turn = 0;
@@ -17,12 +17,12 @@ pub(super) fn is_fan_a_triangulation(polygon: &[DVec2]) -> bool {
         }
         turn = if side == 0 { turn } else { side };
     }
-    // The directions from the centre turn one way, by at most half a turn at each step. They have passed the first
-    // direction again if one is on its side after another was behind it or opposite to it: an edge through the centre is half
-    // a turn.
+    // The directions from the centre to the corners rotate in one sense, by at most 180 degrees at each step (180 degrees if
+    // an edge goes through the centre). They have passed the first direction again if one is ahead of it after another was
+    // behind it or opposite to it.
     let Some(start) = others.iter().find(|p| *p != center) else { return true };
     let is_between = |a: f64, x: f64, b: f64| a < x && x < b || b < x && x < a;
-    // Of a point on the line through the centre and the first direction.
+    // For a point on the line through the centre and `start`: whether the centre is between the point and `start`.
     let is_opposite = |p: &DVec2| is_between(start.x, center.x, p.x) || is_between(start.y, center.y, p.y);
     let mut was_behind = false;
     for point in others {
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn convex_and_star_shaped_polygons_are_fans() {
         assert!(is_fan(&[(0., 0.), (4., 0.), (4., 4.), (0., 4.)]));
-        // A reflex first corner that sees everything; the same polygon from another corner.
+        // The whole polygon is visible from its reflex first corner, but not from another corner.
         let arrow = [(2., 1.), (0., 4.), (0., 0.), (4., 0.), (4., 4.)];
         assert!(is_fan(&arrow));
         let mut turned = arrow;
@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn crossing_and_twice_turning_polygons_are_no_fans() {
         assert!(!is_fan(&[(0., 0.), (4., 4.), (4., 0.), (0., 4.)]));
-        // Around the first corner twice.
+        // The polygon goes around its first corner twice.
         let ring = [(2., 0.), (0., 2.), (-2., 0.), (0., -2.), (3., 0.), (0., 3.), (-3., 0.), (0., -3.)];
         let twice: Vec<_> = [(0., 0.)].into_iter().chain(ring).collect();
         assert!(!is_fan(&twice));

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// Size of a normal over that of its parts up to which the parts cancel out.
+/// Size of a normal relative to that of its parts up to which the parts count as cancelling.
 const CANCELLED: f64 = 1e-9;
 
 /// A polygon in a coordinate projection.

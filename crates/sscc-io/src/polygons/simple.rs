@@ -6,9 +6,9 @@ use sscc::parts::orient2d;
 use super::work::{STEPS_OF_EXACT_SIGNS, TooIntricate, Work};
 
 /// Whether no two edges of a polygon have a common point, apart from the corner of neighbours. Repeated corners, one after
-/// the other, count as one. Exact.
+/// the other, count as one. The test is exact.
 ///
-/// The edges are swept along the axis along which they are shorter, compared with the whole.
+/// The edges are swept along the axis along which they are shorter, relative to the polygon.
 pub(super) fn is_simple(polygon: &[DVec2], work: &mut Work) -> Result<bool, TooIntricate> {
     let mut corners: Vec<DVec2> = polygon.to_vec();
     corners.dedup();
@@ -67,7 +67,7 @@ impl Edge {
     }
 }
 
-/// Returns the axis along which the edges are shorter, compared with the whole. Only the work depends on it.
+/// Returns the axis along which the edges are shorter, relative to the polygon. Only the work depends on it.
 fn shorter_axis(corners: &[DVec2]) -> usize {
     let (mut low, mut high, mut lengths) = (corners[0], corners[0], DVec2::ZERO);
     for pair in corners.windows(2) {
@@ -78,9 +78,9 @@ fn shorter_axis(corners: &[DVec2]) -> usize {
     usize::from(share.y < share.x)
 }
 
-/// Whether the edge from b to c lies along the one from a to b, both different from points.
+/// Whether the edge from b to c lies along the one from a to b; both have positive length.
 fn folds_back(a: DVec2, b: DVec2, c: DVec2) -> bool {
-    // Collinear points on the same side of b: in x, or in y on a vertical line.
+    // For collinear points: whether a and c are on the same side of b, in x, or in y on a vertical line.
     let same_side = |k: usize| (a[k] < b[k] && c[k] < b[k]) || (a[k] > b[k] && c[k] > b[k]);
     orient2d(a, b, c) == 0 && (same_side(0) || (a.x == b.x && same_side(1)))
 }

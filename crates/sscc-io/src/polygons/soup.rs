@@ -15,7 +15,7 @@ pub(crate) struct Soup {
     pub larger: Vec<LargerPolygon>,
     /// Whether the format splits vertices along seams.
     pub has_split_vertices: bool,
-    /// Lines about content that breaks a rule of the format, and how it was understood.
+    /// Lines about content that violates the format, and how the reader interprets it.
     pub warnings: Vec<String>,
 }
 
@@ -36,7 +36,7 @@ impl Soup {
         self.into_mesh_with_warnings().map(|(mesh, _)| mesh)
     }
 
-    /// Returns the mesh, and lines about polygons whose triangles may not be what the file means.
+    /// Returns the mesh, and lines about polygons whose triangles the file does not determine.
     pub fn into_mesh_with_warnings(self) -> Result<(TriMesh, Vec<String>), FormatError> {
         let Self { positions, mut fans, larger, has_split_vertices, mut warnings } = self;
         // Invalid positions are an error of the mesh.

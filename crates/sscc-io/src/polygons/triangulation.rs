@@ -42,7 +42,7 @@ fn triangulate_within(
     mut work: Work,
 ) -> Result<Vec<String>, FormatError> {
     let (mut bent, mut crossing) = (NamedFaces::default(), NamedFaces::default());
-    // Number of a face less the number of its first triangle.
+    // Number of a face minus the number of its first triangle.
     let mut extra = 0;
     for polygon in larger {
         let face = polygon.start - extra;
@@ -94,7 +94,7 @@ fn replace_fan(
     triangles: &mut [[u32; 3]],
     work: &mut Work,
 ) -> Option<bool> {
-    // The turn of a sliver may be rounded: only one of both can succeed.
+    // The orientation of a sliver may be wrong by rounding; only one of the two can succeed.
     let turn = if view.turns_left { 1 } else { -1 };
     let cut = match cut_ears(&view.points, turn, work).ok()? {
         None => cut_ears(&view.points, -turn, work).ok()?,

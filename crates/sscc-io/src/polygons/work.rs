@@ -12,7 +12,7 @@ pub(super) const STEPS_OF_EXACT_SIGNS: usize = 8;
 /// Steps that remain.
 pub(super) struct Work(u64);
 
-/// The work is used up.
+/// Error: the allowed work is used up.
 #[derive(Debug, PartialEq)]
 pub(super) struct TooIntricate;
 

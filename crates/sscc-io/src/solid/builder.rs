@@ -12,7 +12,7 @@ use crate::{FormatError, Place};
 /// Name of the material of elements without a material.
 const DEFAULT_MATERIAL: &str = "default";
 
-/// Cause where a file has vertices, but only points and lines at them.
+/// Cause of the error if a file has no cells but points and lines.
 const NO_CELLS: &str = "no cell is a triangle, a polygon, a tetrahedron or a hexahedron: save the surface or the solid, not only its \
     points and lines";
 
@@ -135,7 +135,7 @@ impl Builder {
             let (vertex, first) = (twice.saturating_add(self.first), self.first);
             return Err(FormatError::new(
                 place,
-                format!("names vertex {vertex} (counted from {first}) twice"),
+                format!("the element names vertex {vertex} (counted from {first}) twice"),
             ));
         }
         let largest = corners.iter().copied().max().unwrap_or_default();
@@ -159,12 +159,14 @@ impl Builder {
         match self.largest {
             Some((index, place)) if vertices > 0 && index >= vertices as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
-                let cause = format!("names vertex {index} (counted from {first}), but there are {vertices}");
+                let cause = format!(
+                    "the element names vertex {index} (counted from {first}), but there are {vertices}"
+                );
                 return Err(FormatError::new(place, cause));
             }
             _ => {}
         }
-        // A solid has its own middles, so its surface needs corners only.
+        // The elements of a solid have their own edge midpoints, so its faces need corners only.
         let is_surface = self.elements() == 0;
         for ([a, b, c, ab, bc, ca], place) in self.second_order {
             let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
@@ -244,7 +246,7 @@ mod tests {
     fn repeated_corners_are_rejected() {
         let mut builder = with_vertices(4);
         let error = builder.tet([0, 3, 2, 3], 0, Place::Line(2)).unwrap_err().to_string();
-        assert_eq!(error, "line 2: names vertex 4 (counted from 1) twice");
+        assert_eq!(error, "line 2: the element names vertex 4 (counted from 1) twice");
         assert!(builder.cube([0, 1, 2, 3, 4, 5, 6, 0], 0, Place::Whole).is_err());
         assert!(builder.face([0, 0, 1], Place::Whole).is_err());
     }

@@ -32,7 +32,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     parse_any(bytes)?.into_volume()
 }
 
-/// As [`parse`]; of a file without tetrahedra and cubes, returns the surface of its faces.
+/// As [`parse`], but for a file without tetrahedra and cubes returns the surface of its faces.
 ///
 /// # Errors
 /// As [`parse`]; when such a file has faces of higher order.
@@ -125,7 +125,10 @@ fn corners<const N: usize>(words: &mut Words) -> Result<[u64; N], FormatError> {
     for corner in &mut corners {
         *corner = match words.integer("the last element")? {
             index @ 1.. => index as u64 - 1,
-            other => return words.refused(format!("names vertex {other}, but vertices are counted from 1")),
+            other => {
+                return words
+                    .refused(format!("the element names vertex {other}, but vertices are counted from 1"));
+            }
         };
     }
     Ok(corners)
@@ -212,13 +215,16 @@ mod tests {
         );
         assert_eq!(
             with("2 3 4 5 -1", "2 3 4 0 -1"),
-            "line 17: names vertex 0, but vertices are counted from 1"
+            "line 17: the element names vertex 0, but vertices are counted from 1"
         );
         assert_eq!(
             with("2 3 4 5 -1", "2 3 4 6 -1"),
-            "line 17: names vertex 6 (counted from 1), but there are 5"
+            "line 17: the element names vertex 6 (counted from 1), but there are 5"
         );
-        assert_eq!(with("2 3 4 5 -1", "2 3 4 3 -1"), "line 17: names vertex 3 (counted from 1) twice");
+        assert_eq!(
+            with("2 3 4 5 -1", "2 3 4 3 -1"),
+            "line 17: the element names vertex 3 (counted from 1) twice"
+        );
         assert_eq!(with("2 3 4 5 -1", "2 3 4 5 a"), "line 17: 'a' is not an integer");
         assert_eq!(with("Ridges", "Vertices"), "line 18: the section Vertices is repeated");
         assert_eq!(with("Ridges", "12"), "line 18: the name of a section was expected, not '12'");

@@ -41,10 +41,10 @@ pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
     read_volume_or_surface(path)?.into_volume().map_err(|error| error.of(path))
 }
 
-/// As [`read_volume_mesh`]; of a Medit, gmsh or VTK file without tetrahedra and cubes, returns the surface of its faces.
+/// As [`read_volume_mesh`], but for a Medit, gmsh or VTK file without tetrahedra and cubes returns the surface of its faces.
 ///
 /// # Errors
-/// As [`read_volume_mesh`], but an element may be missing if there are faces; then when a face is of higher order.
+/// As [`read_volume_mesh`], but a file may have faces in place of elements; these must not be of higher order.
 pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse_any,

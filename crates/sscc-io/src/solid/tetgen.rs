@@ -99,7 +99,7 @@ pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
         for corner in &mut corners {
             *corner = corner
                 .checked_sub(nodes.first)
-                .ok_or_else(|| at("names vertex 0, but vertices are counted from 1".into()))?;
+                .ok_or_else(|| at("the element names vertex 0, but vertices are counted from 1".into()))?;
         }
         let material = match rest.next() {
             Some(attribute) => builder.material(&value(attribute).map_err(at)?.to_string()),
@@ -201,9 +201,15 @@ mod tests {
             ele("2  4  1", "2 10 1"),
             "ele line 1: tetrahedra of 10 nodes are not supported: only 4 are"
         );
-        assert_eq!(ele("5  20", "6 20"), "ele line 3: names vertex 6 (counted from 1), but there are 5");
-        assert_eq!(ele("5  20", "0 20"), "ele line 3: names vertex 0, but vertices are counted from 1");
-        assert_eq!(ele("5  20", "4 20"), "ele line 3: names vertex 4 (counted from 1) twice");
+        assert_eq!(
+            ele("5  20", "6 20"),
+            "ele line 3: the element names vertex 6 (counted from 1), but there are 5"
+        );
+        assert_eq!(
+            ele("5  20", "0 20"),
+            "ele line 3: the element names vertex 0, but vertices are counted from 1"
+        );
+        assert_eq!(ele("5  20", "4 20"), "ele line 3: the element names vertex 4 (counted from 1) twice");
         assert_eq!(ele("5  20", "-1 20"), "ele line 3: '-1' is not a number of a vertex or element");
         assert_eq!(ele("5  20", "5"), "ele line 3: the attribute that the header declares is missing");
         assert_eq!(ele("5  20", "5 x"), "ele line 3: 'x' is not a number");
@@ -234,7 +240,12 @@ mod tests {
         let missing = read(&path("a.1.node")).unwrap_err().to_string();
         assert!(missing.ends_with("a.1.node: the .ele file of the same name does not exist beside it"));
         std::fs::write(path("a.1.ele"), ELE.replace("5  20", "6 20")).unwrap();
-        assert!(read(&path("a.1.node")).unwrap_err().to_string().contains("a.1.ele: line 3: names vertex 6"));
+        assert!(
+            read(&path("a.1.node"))
+                .unwrap_err()
+                .to_string()
+                .contains("a.1.ele: line 3: the element names vertex 6")
+        );
         std::fs::write(path("a.1.ele"), ELE).unwrap();
         let mesh = read(&path("a.1.node")).unwrap();
         assert_eq!((read(&path("a.1.ele")).unwrap(), mesh.tets().len()), (mesh.clone(), 2));

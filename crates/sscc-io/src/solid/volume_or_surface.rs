@@ -14,7 +14,7 @@ pub enum VolumeOrSurface {
     Surface {
         /// The mesh, with all vertices of the file.
         mesh: TriMesh,
-        /// Lines about faces whose triangles may not be what the file means.
+        /// Lines about faces whose triangles the file does not determine.
         warnings: Vec<String>,
     },
 }
@@ -34,7 +34,7 @@ impl VolumeOrSurface {
         }
     }
 
-    /// Returns the surface, with all vertices of the file: of a volumetric mesh that of its elements
+    /// Returns the surface, with all vertices of the file. The surface of a volumetric mesh is that of its elements
     /// ([`VolumeMesh::surface_mesh`]).
     pub(crate) fn into_surface(self) -> Result<(TriMesh, Vec<String>), FormatError> {
         match self {

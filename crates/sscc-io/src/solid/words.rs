@@ -133,7 +133,7 @@ impl<'a> Words<'a> {
         Ok(())
     }
 
-    /// Skips to after the next line with this beginning, if there is one.
+    /// Skips all text up to the end of the next line with this beginning, if there is one.
     pub fn skip_past_line(&mut self, start: &str) -> bool {
         while self.at < self.bytes.len() {
             if self.rest_of_line().trim_ascii_start().starts_with(start.as_bytes()) {

@@ -1,4 +1,4 @@
-//! What a format needs comes with the mesh: detectors and certificates weld the vertices of formats that split them.
+//! The default filter depends on the format of the mesh: detectors and certificates weld vertices of formats that split them.
 
 use std::fs;
 use std::path::Path;
@@ -26,8 +26,10 @@ const CORNERS: [[f32; 3]; 9] = [
     [1.0, 1.0, 1.0],
 ];
 
-/// The colliding pairs: of the seam, and the true one.
+/// The colliding pairs without welding: that of the seam, and the true one.
 const UNWELDED: [Pair; 2] = [(0, 1), (0, 2)];
+
+/// The colliding pair with welding.
 const WELDED: [Pair; 1] = [(0, 2)];
 
 fn text_stl() -> String {
@@ -43,7 +45,7 @@ fn obj() -> String {
     format!("{vertices}f 1 2 3\nf 4 5 6\nf 7 8 9\n")
 }
 
-/// With one morph target, which lifts the last triangle by 1.
+/// Returns a glTF file with one morph target, which lifts the last triangle by 1.
 fn gltf() -> String {
     let lifted = (0..9).flat_map(|v| [0.0, 0.0, if v < 6 { 0.0 } else { 4.0 }]);
     let floats = CORNERS.iter().flatten().copied().chain(lifted);
@@ -69,7 +71,8 @@ fn detected(mesh: &TriMesh) -> Vec<Pair> {
     Detector::new(mesh).discrete(mesh.rest_positions()).unwrap().to_vec()
 }
 
-/// The exceptions of default certificates, which are the pairs that collide at rest; and those without certificates.
+/// Returns the exceptions of default certificates, which are the pairs that collide at rest, and the pairs that a search
+/// without certificates finds there.
 fn of_model(model: &ReducedModel) -> [Vec<Pair>; 2] {
     let certificates = Certificates::compute(model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::without_certificates(model, Scope::of(model), Method::BruteForce).unwrap();
@@ -84,7 +87,7 @@ fn model(folder: &Path, mesh: &str) -> ReducedModel {
 }
 
 #[test]
-fn detectors_and_certificates_weld_what_a_format_splits() {
+fn detectors_and_certificates_weld_vertices_that_a_format_splits() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("a.stl"), text_stl()).unwrap();
@@ -97,12 +100,12 @@ fn detectors_and_certificates_weld_what_a_format_splits() {
         let default = ContactFilter::of(&mesh);
         assert_eq!((default.weld, default.neighbours), (file != "a.obj", Neighbours::Exclude), "{file}");
         assert_eq!(detected(&mesh), expected, "{file}");
-        // It stays with the mesh at other positions, and in a model.
+        // The default is the same for the mesh at other positions, and in a model.
         let moved = mesh.rest_positions().iter().map(|p| *p * 2.0).collect();
         assert_eq!(detected(&mesh.with_rest_positions(moved).unwrap()), expected, "{file}");
         let model = model(folder, file);
         assert_eq!(of_model(&model), [expected, expected], "{file}");
-        // Options override it.
+        // Options override the default.
         for (weld, expected) in [(false, &UNWELDED[..]), (true, &WELDED)] {
             let filter = ContactFilter::new(Neighbours::Exclude).weld(weld);
             let mut detector = Detector::with_filter(&mesh, &filter).unwrap();

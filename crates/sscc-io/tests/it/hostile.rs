@@ -179,7 +179,7 @@ fn random_polygon() -> impl Strategy<Value = Vec<[i8; 3]>> {
 }
 
 proptest! {
-    /// Every polygon becomes two triangles less than it has corners, of its corners, with its border.
+    /// Every polygon of n corners becomes n - 2 triangles, which have its corners and its border.
     #[test]
     fn random_polygons(polygon in random_polygon(), is_flat: bool, scale in prop::sample::select(vec![1.0, 1e-300, 1e59])) {
         let mut text = String::new();

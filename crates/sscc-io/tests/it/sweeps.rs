@@ -4,8 +4,8 @@ use sscc::{Certificates, CertifyOptions, KineticQuery, ModeRange, Query, Reduced
 use sscc_io::{LoadOptions, load_model, load_model_with};
 use sscc_testing::{cases, models};
 
-/// Nothing that queries find is below `first_free`, and the brackets are narrow. The first queries are of another method:
-/// a kinetic query answers close weights in little time.
+/// Checks that queries find no collision from the start up to `first_free`, and that the brackets are narrow. Kinetic queries
+/// answer most weights, because they are fast for weights close to each other.
 fn check(model: &ReducedModel, certificates: &Certificates, q: &[f64], sweeps: &[Sweep], weights: usize) {
     let mut kinetic = KineticQuery::new(model, certificates).unwrap();
     let mut query = Query::new(model, certificates).unwrap();
@@ -75,7 +75,7 @@ fn expressions_of_a_face() {
     let count = cases(32).min(30);
     let ranges: Vec<_> = (0..count).map(|mode| ModeRange { mode, low: 0.0, high: 1.0 }).collect();
     let weights = cases(10_000) / 25;
-    // With the pairs of closed lips and lids ignored.
+    // The pairs of closed lips and lids are ignored.
     let rest = vec![0.0; 30];
     let certificates = certify(&model, true, None);
     let query = Query::new(&model, &certificates).unwrap();
@@ -83,7 +83,7 @@ fn expressions_of_a_face() {
     check(&model, &certificates, &rest, &sweeps, weights);
     let hits = sweeps.iter().filter(|sweep| sweep.first_hit.is_some()).count();
     assert!(hits > 0);
-    // About the open mouth, which is free.
+    // The centre is the open mouth, which is free.
     let mut open = rest.clone();
     open[0] = 1.0;
     let certificates = certify(&model, false, Some(open.clone()));
@@ -91,7 +91,7 @@ fn expressions_of_a_face() {
     let sweeps = query.sweep_modes(&open, &ranges, None, &()).unwrap();
     assert!(sweeps[0].to == 0.0 && sweeps[0].first_hit.is_some_and(|hit| hit > 0.0), "{:?}", sweeps[0]);
     check(&model, &certificates, &open, &sweeps, weights);
-    // At rest it collides.
+    // At rest the face collides.
     let all = certify(&model, false, None);
     let sweep = Query::new(&model, &all).unwrap().sweep(&rest, 0, 1.0).unwrap();
     assert_eq!((sweep.outcome, sweep.pairs.len()), (SweepOutcome::CollidingAtStart, 124));

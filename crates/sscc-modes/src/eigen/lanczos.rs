@@ -87,7 +87,7 @@ pub(super) fn largest(
         if size >= wanted {
             let (values, rotation) = descending(projected.as_ref().submatrix(0, 0, size, size))?;
             let residuals = &rest * rotation.as_ref().subrows(done, BLOCK);
-            // A Ritz value is a lower bound, so this one is a proof.
+            // A Ritz value is a lower bound of an eigenvalue, so this one proves that the body is a mechanism.
             if values[0] >= operator.ceiling {
                 return Ok(RitzPairs { values, vectors: Mat::zeros(space.size(), 0) });
             }
@@ -111,7 +111,7 @@ pub(super) fn largest(
 }
 
 /// Returns the cause of a failed iteration. `span` is the ratio of the largest to the smallest wanted value. Rounding
-/// leaves up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
+/// causes up to EPSILON of the largest in each residual, which may exceed the tolerance of the smallest: see
 /// `docs/notes/modes.md#lanczos`.
 fn unconverged(converged: usize, wanted: usize, span: f64) -> ModesError {
     let is_rounding = f64::EPSILON * span >= RESIDUAL_TOLERANCE;

@@ -8,8 +8,10 @@ use super::space::Space;
 use super::tall_matrix::Random;
 use crate::sparse::BlockSparse;
 
-/// Poisson's ratio and Young's modulus.
+/// Poisson's ratio.
 const NU: f64 = 0.3;
+
+/// Young's modulus.
 const YOUNG: f64 = 1.0;
 
 /// A box of unit cubes of density 1.

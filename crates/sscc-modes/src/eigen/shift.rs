@@ -6,8 +6,8 @@ use super::tall_matrix::Random;
 use crate::ModesError;
 use crate::sparse::{Analysis, BlockSparse, Cholesky};
 
-/// First shift, relative to the mean eigenvalue. It is far above rounding, which leaves about 1e-15 of the largest
-/// eigenvalue in rigid motions, and far below the lowest eigenvalue of a compact body of a million vertices, about 1e-5
+/// First shift, relative to the mean eigenvalue. It is far above rounding, which gives rigid motions about 1e-15 of the largest
+/// eigenvalue, and far below the lowest eigenvalue of a compact body of a million vertices, about 1e-5
 /// of the mean one.
 const FIRST_SHIFT: f64 = 1e-8;
 
@@ -17,7 +17,7 @@ const SHIFT_SHARE: f64 = 0.1;
 /// Minimum shift, relative to the mean eigenvalue; lower shifts are close to rounding.
 const MIN_SHIFT: f64 = 1e-12;
 
-/// Maximum eigenvalue of a motion without energy, relative to the mean eigenvalue. Rounding leaves about 1e-14; the
+/// Maximum eigenvalue of a motion without energy, relative to the mean eigenvalue. Rounding gives about 1e-14; the
 /// lowest eigenvalues of slender springs are about 1e-9.
 const ZERO_TOLERANCE: f64 = 1e-12;
 

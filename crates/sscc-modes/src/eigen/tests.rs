@@ -139,7 +139,8 @@ fn mechanisms_are_counted() {
             assert_eq!(error, Some(mechanism), "{apart:?}, scale {scale}");
         }
     }
-    // A cube fixed along an edge rotates about it, one fixed at a vertex about that. Of two parts, only one is fixed.
+    // A cube fixed along an edge rotates about the edge, and one fixed at a vertex rotates about the vertex. In the last case,
+    // only one of two parts is fixed.
     for nodes in [3, 6] {
         let hinged = Lattice::new([nodes; 3], |p| p[0] == 0 && p[1] == 0, |_| true);
         assert_eq!(lowest(&hinged, 6).err(), Some(ModesError::Mechanism { found: 1, expected: 0 }));

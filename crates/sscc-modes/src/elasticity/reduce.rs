@@ -18,7 +18,7 @@ use crate::cancel::check_cancelled;
 /// Components of a symmetric strain, off-diagonal ones times the root of 2 (Mandel): their square sum is `E : E`.
 const COMPONENTS: usize = 6;
 
-/// Number of elements whose strains are multiplied at once: of cubes about 3,000 rows, which fit into the cache.
+/// Number of elements whose strains are multiplied at once: for cubes about 3,000 rows, which fit into the cache.
 const BATCH: usize = 64;
 
 /// Maximum number of integration points of an element.

@@ -40,7 +40,7 @@ pub fn choose(
                     continue;
                 }
                 let shared = |e: &u32| tree.vertices(*e).iter().filter(|vertex| own.contains(vertex)).count();
-                // The first of equals.
+                // Of equal candidates, the first one is taken.
                 chosen[*w as usize] = of(*w).iter().copied().rev().max_by_key(|e| shared(e));
                 queue.push_back(*w);
             }

@@ -21,10 +21,10 @@ use element_tree::{Candidates, ElementTree};
 /// Maximum distance of a surface vertex from the solid, relative to the longest side of the solid's AABB.
 const MAX_DISTANCE: f64 = 0.1;
 
-/// Maximum distance, relative to that side, of vertices that count as inside; rounding leaves less.
+/// Maximum distance, relative to that side, of vertices that count as inside; rounding errors are smaller.
 const INSIDE: f64 = 1e-9;
 
-/// Number of vertices between two looks at the progress.
+/// Number of vertices between two checks of the progress.
 const BATCH: usize = 4096;
 
 /// Computes the weights of all vertices of the surface. Vertices without faces do not move.

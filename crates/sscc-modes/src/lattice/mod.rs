@@ -3,7 +3,7 @@
 //! The lattice keeps parts separate that are close in space but not along the surface, for example neighbouring coils
 //! of a spring. If a cell of the grid contains several pieces of the solid that are not connected within it, each has
 //! a copy of the cell with its own nodes (Molino, Bao and Fedkiw 2004, "A virtual node algorithm"; Nesme et al. 2009,
-//! "Preserving topology and elasticity for embedded deformable models"). Two rules decide connectivity:
+//! "Preserving topology and elasticity for embedded deformable models"). Two criteria decide connectivity:
 //! - lines through the solid, 16 through each cell along each axis: an inside interval is one piece, however thin, and
 //!   a gap separates two pieces, however narrow;
 //! - the surface: triangles that share an edge within a cell belong to one piece.

@@ -6,8 +6,8 @@ use super::crossings::Interval;
 use super::surface::Surface;
 use crate::ModesError;
 
-/// Checks each part of the surface that is connected by edges: at most of its crossings, lines must pass from outside to
-/// inside or back. Triangles that share a vertex may be folded, so single crossings may be inconsistent.
+/// Checks each part of the surface that is connected by edges: at the majority of its crossings, lines must pass from
+/// outside to inside or back. Triangles that share a vertex may be folded, so single crossings may be inconsistent.
 ///
 /// # Errors
 /// When a part lies within another body, or is inside out.

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-/// Maximum number of Newton steps of a projection, and its tolerance (model unit). A start within a lattice cell of the
-/// surface needs about four steps.
+/// Maximum number of Newton steps of a projection. A start within a lattice cell of the surface needs about four steps.
 const MAX_NEWTON_STEPS: usize = 8;
+
+/// Tolerance of a projection (model unit).
 const PROJECTION_TOLERANCE: f64 = 1e-12;
 
 /// Function and gradient of the empty union.

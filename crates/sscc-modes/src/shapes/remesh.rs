@@ -47,8 +47,8 @@ pub(super) fn decimate(surface: &mut Surface, solid: &Implicit, faces: usize, be
 
 /// Iterates edge flips towards Delaunay triangles and a step of every vertex along the surface, towards the mean of its
 /// neighbours. The number of faces is unchanged.
-pub(super) fn relax(surface: &mut Surface, solid: &Implicit, rounds: usize) {
-    for _ in 0..rounds {
+pub(super) fn relax(surface: &mut Surface, solid: &Implicit, iterations: usize) {
+    for _ in 0..iterations {
         for [a, b] in surface.edges() {
             flip_if_better(surface, [a, b]);
         }

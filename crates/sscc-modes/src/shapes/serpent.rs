@@ -10,8 +10,10 @@ use sscc::TriMesh;
 
 use super::capped_tube::CappedTube;
 
-/// Number of rings along the body, and of vertices of each: 77,184 triangles of aspect ratio about 1.
+/// Number of rings along the body.
 const RINGS: usize = 1206;
+
+/// Number of vertices of each ring; with [`RINGS`] there are 77,184 triangles of aspect ratio about 1.
 const AROUND: usize = 32;
 
 /// Radius of the body at its thickest (metre).
@@ -26,13 +28,16 @@ const COIL_INWARD: f64 = 1.35;
 /// Radius of the centreline of the outermost coil (metre).
 const OUTER_RADIUS: f64 = 0.55;
 
-/// Number of turns of the coil, and of control points of the spline in each.
+/// Number of turns of the coil.
 const TURNS: f64 = 4.6;
+
+/// Number of control points of the spline in each turn.
 const CONTROLS_PER_TURN: f64 = 18.0;
 
-/// Amplitude of the radial oscillation of the body (body radii), and number of periods per turn. The number is not whole,
-/// so that the gap of neighbouring coils varies.
+/// Amplitude of the radial oscillation of the body (body radii).
 const WINDING: f64 = 0.13;
+
+/// Periods of this oscillation per turn: not a whole number, so that the gap of neighbouring coils varies.
 const WINDINGS_PER_TURN: f64 = 3.5;
 
 /// Control points of the raised neck and the head after the last coil (metre), relative to the end of the coil: forward,
@@ -57,8 +62,10 @@ const PROFILE: [[f64; 3]; 7] = [
     [1.0, 0.50, 0.40],
 ];
 
-/// Shares of the length over which the tail and the snout are rounded.
+/// Share of the length over which the tail is rounded.
 const TAIL_END: f64 = 0.002;
+
+/// Share of the length over which the snout is rounded.
 const SNOUT_END: f64 = 0.006;
 
 /// Returns the serpent: 77,184 triangles, 38,594 vertices, in metres. It is one closed component (a sphere), oriented

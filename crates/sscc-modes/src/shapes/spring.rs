@@ -29,8 +29,10 @@ const TURNS: f64 = 5.0;
 /// tube radii everywhere.
 const JOIN_ANGLE: f64 = 0.6 * PI;
 
-/// Number of rings along the tube, and of vertices of each: 16,000 triangles of aspect ratio about 2.
+/// Number of rings along the tube.
 const RINGS: usize = 500;
+
+/// Number of vertices of each ring; with [`RINGS`] there are 16,000 triangles of aspect ratio about 2.
 const AROUND: usize = 16;
 
 /// Returns the spring: 16,000 triangles, 8,000 vertices, in metres. It is one closed component (a torus), oriented

@@ -14,7 +14,7 @@ static SERPENT: LazyLock<TriMesh> = LazyLock::new(shapes::serpent);
 const AROUND: usize = 32;
 
 #[test]
-fn counts() {
+fn shapes_have_the_documented_counts() {
     assert_eq!((HARE.faces().len(), HARE.rest_positions().len()), (14_964, 7_484));
     assert_eq!((SERPENT.faces().len(), SERPENT.rest_positions().len()), (77_184, 38_594));
 }

@@ -132,7 +132,7 @@ fn the_nonlinear_basis_contains_the_lowest_modes() {
 fn bodies_without_a_spectrum_are_rejected() {
     let material = Material::default();
     let cube = bar(DVec3::ONE, [1, 1, 1], material);
-    // A second cube that shares only an edge (corners 6 and 5) is a hinge; another one shares nothing.
+    // A second cube that shares only an edge (corners 6 and 5) is a hinge; in the other case it shares nothing.
     for (shared, expected) in [(true, 7), (false, 12)] {
         let mut vertices = cube.vertices().to_vec();
         let start = vertices.len() as u32;

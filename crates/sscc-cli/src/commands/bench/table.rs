@@ -6,6 +6,8 @@ use crate::output::{counted, grouped};
 
 /// Ratios are times of the methods [`COMPARED`] over the time of this one.
 const REFERENCE: &str = "full";
+
+/// Methods whose times are divided by that of [`REFERENCE`].
 const COMPARED: [&str; 2] = ["parry", "traditional"];
 
 /// A table with a row for each record and a column for each method.
@@ -146,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_for_people() {
+    fn times_and_ratios_have_four_digits() {
         assert_eq!([123.456, 1.5, 0.000_05].map(|ms| shown(Some(ms))), ["123.5", "1.500", "0.00005000"]);
         assert_eq!([0.5, 99.0, 12_345.6].map(|x| times(Some(x))), ["0.50 x", "99.00 x", "12,346 x"]);
         assert_eq!((shown(None), times(None)), ("-".into(), "-".into()));

@@ -8,26 +8,29 @@ use sscc_sim::{DetectionAnswer, LeftOut, Near};
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]
 pub struct Answer<'a> {
-    /// The mesh, where there are several.
+    /// The mesh, if the run has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// The node and the time, in an animation; the node also where several show the mesh, with --against.
+    /// The node, in an animation; with --against also if several nodes show the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node: Option<usize>,
-    /// The node of the other mesh, where several show it.
+    /// The node of the other mesh, if several show it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_node: Option<usize>,
-    /// The names of both, in a scene at rest and of two nodes; text has them in any case.
+    /// The name of the node, in a scene at rest and in an answer about two nodes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_name: Option<&'a str>,
+    /// The name of the other node, in the same cases.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_node_name: Option<&'a str>,
+    /// The names of both nodes, for the text.
     #[serde(skip)]
     pub names: [Option<&'a str>; 2],
+    /// The time (s), in an animation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     pub index: usize,
-    /// |z|; none without modes.
+    /// |z|; null without modes.
     pub norm: Option<f64>,
     pub colliding: bool,
     pub count: usize,
@@ -36,9 +39,10 @@ pub struct Answer<'a> {
     /// The time of impact of each pair, for continuous queries.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times: Option<&'a [f64]>,
-    /// The penetration depth of each pair, and the direction in which its second triangle leaves the first.
+    /// The penetration depth of each pair.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depths: Option<Vec<f64>>,
+    /// For each pair the direction in which its second triangle leaves the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub directions: Option<Vec<[f64; 3]>>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
@@ -49,14 +53,15 @@ pub struct Answer<'a> {
     pub penetration: Option<PenetrationAnswer>,
     pub microseconds: f64,
     pub root_certified: Option<bool>,
-    /// What proved the answer: `radius`, `local` or `search`; none without modes.
+    /// The kind of proof of the answer: `radius`, `local` or `search`; null without modes.
     pub proof: Option<&'static str>,
-    /// Pairs that no certificate covers, where there are any.
+    /// Number of pairs that no certificate covers; absent if it is 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub exceptions: usize,
-    /// The number of ignored pairs, and the names of all pairs that are left out, where pairs are ignored.
+    /// Number of ignored pairs; absent if it is 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub ignored: usize,
+    /// Names of all pairs that are left out, if pairs are ignored.
     #[serde(rename = "left_out", skip_serializing_if = "Option::is_none")]
     pub listed_left_out: Option<String>,
     #[serde(skip)]
@@ -66,23 +71,25 @@ pub struct Answer<'a> {
     pub triangle_tests: u64,
 }
 
-/// Where nothing collides, but one mesh has parts inside the other one.
+/// The parts of two meshes that are inside the other one, if nothing collides.
 #[derive(Serialize)]
 pub struct InsideAnswer {
-    /// How many connected components of the mesh are inside the other one, and of the other inside the mesh.
+    /// Number of connected components of the mesh inside the other one, and of the other one inside the mesh.
     pub inside: [usize; 2],
-    /// How many they have.
+    /// Number of all connected components of the mesh, and of the other one.
     pub components: [usize; 2],
 }
 
-/// How deep two closed meshes are in each other.
+/// The overlap of two closed meshes.
 #[derive(Serialize)]
 pub struct PenetrationAnswer {
-    /// The volume that both share, and a bound of its error.
+    /// The volume that both share.
     pub penetration_volume: f64,
+    /// Bound of the error of this volume.
     pub penetration_volume_error: f64,
-    /// The diameter of a ball inside of both, and by how much more no such ball is larger.
+    /// The diameter of a ball inside of both.
     pub penetration_depth: f64,
+    /// Bound of the error: no ball inside of both has a diameter larger by more than this.
     pub penetration_depth_error: f64,
 }
 
@@ -104,19 +111,19 @@ impl InsideAnswer {
     }
 }
 
-/// Which pairs are nearer than a clearance.
+/// The pairs that are nearer than a clearance.
 #[derive(Serialize)]
 pub struct NearAnswer<'a> {
     pub clearance: f64,
     pub rings: u32,
-    /// The smallest distance of two triangles that count, also where it is not below the clearance; none where none count, and
-    /// where it is not below and certificates leave it open.
+    /// The smallest distance of two triangles that count, even if it is not below the clearance. Null if none count, or if it
+    /// is not below the clearance and certificates do not determine it.
     pub distance: Option<f64>,
-    /// These triangles.
+    /// The triangles at the smallest distance.
     pub nearest: Option<Pair>,
     /// The distance of each pair.
     pub distances: &'a [f64],
-    /// Whether certificates leave the smallest distance open.
+    /// Whether the smallest distance is unknown, because certificates only prove that it is not below the clearance.
     #[serde(skip)]
     pub is_open: bool,
 }
@@ -140,7 +147,7 @@ impl<'a> Answer<'a> {
         self.count > 0
     }
 
-    /// Takes the values of an answer. `has_files`: whether the run has several files.
+    /// Creates the line of an answer. `has_files` states whether the run has several files.
     pub fn new(found: &DetectionAnswer<'a>, has_files: bool) -> Self {
         let has_names = found.time.is_none() || found.other_node.is_some();
         Self {

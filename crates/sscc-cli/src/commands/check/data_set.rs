@@ -1,4 +1,4 @@
-//! The files of a data set: those of folders in their place, and those that could not be checked.
+//! The files of a data set: files of folders are in the folder's place, and files that cannot be checked are counted.
 
 use std::path::{Path, PathBuf};
 

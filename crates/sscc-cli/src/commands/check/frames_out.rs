@@ -26,7 +26,7 @@ impl<'a> FramesOut<'a> {
         Self { path, writer: None }
     }
 
-    /// Writes the frame of an answer; that of the last one also where it ends.
+    /// Writes the frame of an answer; the last answer of a motion also gives the frame at its end.
     pub fn add(&mut self, found: &DetectionAnswer<'_>) -> Result<()> {
         let Some(shape) = found.shape else { return Ok(()) };
         let each = found.frames - usize::from(!shape.x_t1.is_empty());
@@ -35,7 +35,7 @@ impl<'a> FramesOut<'a> {
             writer => {
                 ensure!(
                     found.queries == each,
-                    "{}: several nodes have a mesh: name one by --node, or of a file at rest as FILE#NODE",
+                    "{}: several nodes have a mesh: name one by --node, or for a file at rest as FILE#NODE",
                     self.path.display()
                 );
                 let shape = [found.frames, found.mesh.rest_positions().len(), 3];

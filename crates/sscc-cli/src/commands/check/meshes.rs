@@ -73,7 +73,7 @@ pub fn check(args: &Check) -> Result<bool> {
             added.with_context(|| path.display().to_string())?;
         }
         shapes::write_curves(args.curves.as_deref(), found)?;
-        // Files have all frames, also where nobody reads the output.
+        // Files have all frames, even if the output has no reader.
         let go_on = args.report.is_some() || args.frames_out.is_some();
         printer.answer(found).map(|next| if go_on { ControlFlow::Continue(()) } else { next })
     };
@@ -93,7 +93,7 @@ fn is_welded(request: &Detection, mesh: &TriMesh) -> bool {
     request.weld.is_some() || mesh.has_split_vertices()
 }
 
-/// Returns the frames of the mesh: those of `--frames`, or of the mesh itself where it is a collection.
+/// Returns the frames of the mesh: those of `--frames`, or of the mesh itself if it is a collection.
 fn frames(args: &Check) -> Option<PathBuf> {
     let own = || is_own_frames(&args.model.path).then(|| args.model.path.clone());
     args.motion.frames.clone().or_else(own)

@@ -35,7 +35,7 @@ fn check_model(args: &Check) -> Result<bool> {
     if let Some(second) = args.meshes.first() {
         bail!("{}: --q and --trajectory take one model: leave it out", second.display());
     }
-    // Distances are those of positions, without certificates unless some of a clearance are given.
+    // Distances are computed from positions, without certificates unless certificates with a clearance are given.
     let is_certified = args.certificates.is_some();
     let default = if args.clearance.is_some() && !is_certified { Method::BdTree } else { Method::Certified };
     let method = args.method.unwrap_or(default);

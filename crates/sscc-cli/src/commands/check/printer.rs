@@ -45,7 +45,7 @@ impl Printer {
         }
     }
 
-    /// Names a query otherwise: the first answer shows that the file is a scene.
+    /// Changes the noun of a query, if the first answer shows that the file is a scene.
     pub fn set_noun(&mut self, noun: &'static str) {
         (self.noun, self.summary.noun) = (noun, noun);
     }
@@ -57,7 +57,7 @@ impl Printer {
         self.answers += 1;
         let is_listed = answer.is_finding() || !self.only_colliding;
         match (is_listed, self.is_json) {
-            // The summary counts it.
+            // A free answer is not printed, but the summary counts it.
             (false, _) => {}
             (true, true) => self.out.json(&answer)?,
             (true, false) if found.queries == 1 && !self.has_files => {
@@ -84,7 +84,7 @@ impl Printer {
         if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Prints the summary of several answers, of a folder also beside JSON. Returns whether any of them has a collision: the
+    /// Prints the summary of several answers, for a folder also with JSON. Returns whether any of them has a collision: the
     /// exit code is that of the answers so far.
     pub fn finish(mut self) -> Result<bool> {
         let is_summarized =

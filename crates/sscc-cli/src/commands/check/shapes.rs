@@ -55,7 +55,7 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// Returns what the queries compute beside pairs.
+/// Returns the data that the queries compute in addition to pairs.
 pub fn contacts(args: &Check) -> ContactOptions {
     ContactOptions { depths: args.depths, curves: args.curves.is_some() }
 }
@@ -80,8 +80,8 @@ pub fn marks(mesh: &TriMesh, pairs: &[Pair]) -> Vec<bool> {
     colliding
 }
 
-/// Writes the contact curves of an answer about a model, where the file puts the model. With a skin, which has no single
-/// transform, they stay in the coordinates of the mesh.
+/// Writes the contact curves of an answer about a model, at the place that the file gives the model. With a skin, which has
+/// no single transform, they stay in the coordinates of the mesh.
 pub fn write_placed_curves(
     path: Option<&Path>,
     found: &DetectionAnswer<'_>,

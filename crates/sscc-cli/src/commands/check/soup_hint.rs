@@ -1,4 +1,4 @@
-//! A hint at `--weld` where colliding pairs meet at corners that are equal, but not shared.
+//! A hint at `--weld` if colliding pairs meet at corners that are equal, but not shared.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::output::{counted, grouped, note};
 pub struct SoupHint {
     pairs: usize,
     all: usize,
-    /// File of the first of them.
+    /// File of the first of these pairs.
     file: Option<PathBuf>,
 }
 

@@ -51,14 +51,14 @@ impl Answer<'_> {
         format!("{} {:>9}  {result}{more}", self.place(noun), duration(self.microseconds))
     }
 
-    /// Returns the volume that both meshes share, and their depth.
+    /// Returns the volume that both meshes share, and their penetration depth.
     fn penetration(&self) -> String {
         let Some(found) = &self.penetration else { return String::new() };
         let (volume, depth) = (length(found.penetration_volume), length(found.penetration_depth));
         format!("; shared volume {volume}, penetration depth {depth}")
     }
 
-    /// Returns which mesh has parts inside the other one.
+    /// Returns the sentence about the mesh that has parts inside the other one.
     fn inside(&self) -> String {
         let Some(InsideAnswer { inside, components }) = &self.inside else { return String::new() };
         let part = |n: usize, [own, other]: [&str; 2]| match (inside[n], components[n]) {
@@ -72,7 +72,7 @@ impl Answer<'_> {
         format!("; {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
     }
 
-    /// Returns which pairs are nearer than the clearance, and the nearest pair.
+    /// Returns the number of pairs nearer than the clearance, and the nearest pair.
     fn near_result(&self, is_near: bool) -> String {
         let word = if is_near { format!("NEAR       {}", self.counted()) } else { "clear".to_owned() };
         let nearest = self.near.as_ref().and_then(|near| near.nearest.zip(near.distance));
@@ -84,12 +84,12 @@ impl Answer<'_> {
         if is_near { format!("{word}, {nearest}") } else { format!("{word:<10} {nearest}") }
     }
 
-    /// Returns what proves that no pair is near, where certificates leave the smallest distance open.
+    /// Returns the kind of proof that no pair is near, if the smallest distance is unknown.
     fn near_proof(&self) -> &'static str {
         if self.is_root_certified() { "by the root's certificate" } else { "by a search" }
     }
 
-    /// Returns the time, the depth or the distance of a pair; empty without any.
+    /// Returns the time, the depth or the distance of a pair; empty if it has none.
     fn of_pair(&self, at: usize) -> String {
         if let Some(near) = &self.near {
             return format!("  distance {}", length(near.distances[at]));
@@ -169,7 +169,7 @@ pub fn single(answer: &Answer<'_>, root_radius: Option<f64>) -> Vec<String> {
     )
 }
 
-/// Returns two lines, and those of the first pairs.
+/// Returns these two lines, and the lines of the first pairs.
 fn listed_below(first: String, cost: String, answer: &Answer<'_>) -> Vec<String> {
     let mut lines = vec![first, cost];
     let listed = answer.pairs.iter().take(MAX_LISTED).enumerate();
@@ -198,7 +198,7 @@ pub struct Summary {
     is_near: bool,
     /// Files that could not be checked.
     pub failures: usize,
-    /// Whether an answer does not have all of its pairs. Then none is the worst.
+    /// Whether an answer does not have all of its pairs. Then there is no worst answer.
     is_limited: bool,
     worst: Option<Worst>,
     microseconds: Vec<f64>,
@@ -209,7 +209,7 @@ pub struct Summary {
 
 /// The answer with the deepest pair, or the most pairs.
 struct Worst {
-    /// Depth (0 without depths) and number of pairs.
+    /// The largest depth (0 without depths; for a clearance the negative smallest distance), and the number of pairs.
     size: (f64, usize),
     text: String,
 }

@@ -59,7 +59,7 @@ impl Report {
         }
     }
 
-    /// The report as text.
+    /// Returns the report as text.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![
             format!(
@@ -100,7 +100,7 @@ impl Report {
         lines
     }
 
-    /// The rows of the table on the page: labels and values.
+    /// Returns the rows of the table on the page: labels and values.
     pub fn table(&self) -> Vec<(String, String)> {
         let row = |label: &str, value: String| (label.to_owned(), value);
         let mut rows = vec![

@@ -23,9 +23,10 @@ pub struct CertificatesInfo {
     rest_collisions: u64,
     exceptions: usize,
     ignored: usize,
-    /// The clearance that triangles keep below the radii, and beyond how many rings; absent for radii of collisions.
+    /// The clearance that triangles keep below the radii; absent for radii of collisions.
     #[serde(skip_serializing_if = "Option::is_none")]
     clearance: Option<f64>,
+    /// The number of rings within which pairs do not count; absent without a clearance.
     #[serde(skip_serializing_if = "Option::is_none")]
     rings: Option<u32>,
     /// 0 if all pairs of groups of triangles count.

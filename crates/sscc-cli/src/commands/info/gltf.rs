@@ -15,7 +15,7 @@ pub struct Gltf {
     default_scene: Option<usize>,
     #[serde(skip)]
     all_nodes: usize,
-    /// Those that place a mesh.
+    /// Nodes that place a mesh.
     nodes: Vec<Node>,
     meshes: Vec<Mesh>,
     skins: Vec<Skin>,
@@ -146,7 +146,7 @@ impl Gltf {
         table.lines()
     }
 
-    /// The meshes, and below them the names of their morph targets, in columns.
+    /// Returns the lines of the meshes, and below them the names of their morph targets, in columns.
     fn mesh_table(&self) -> Vec<String> {
         let mut table = Table::new(["mesh", "triangles", "vertices", "targets"]);
         for (number, mesh) in self.meshes.iter().enumerate() {

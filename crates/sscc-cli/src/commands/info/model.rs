@@ -31,10 +31,10 @@ pub struct Model {
     /// The reason why a model with a stiffness has no frequencies.
     #[serde(skip)]
     no_frequencies: String,
-    /// One number for each mode from a `.npz` file, such as variances; absent without.
+    /// One number for each mode from a `.npz` file, such as variances; absent if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     mode_weights: Option<Vec<f64>>,
-    /// The standard deviation of each entry of q, of principal components; absent without.
+    /// The standard deviation of each entry of q, for principal components; absent if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     deviations: Option<Vec<f64>>,
     units: String,
@@ -87,7 +87,7 @@ impl Model {
         lines.extend(self.elasticity());
         if let Some(all) = &self.mode_weights {
             lines.push(format!("mode weights   {}", first(all)));
-            // Archives have no word on the unit of q.
+            // Archives do not state the unit of q.
             lines.push("unit of q      q_k = 1 adds the k-th mode once as stored".to_owned());
         }
         if let Some(all) = &self.deviations {
@@ -101,7 +101,7 @@ impl Model {
         lines
     }
 
-    /// The line about stiffness and forces; none without a stiffness.
+    /// Returns the line about stiffness and forces; None without a stiffness.
     fn elasticity(&self) -> Option<String> {
         let forces = if self.nonlinear? { "nonlinear" } else { "linear" };
         Some(match &self.frequencies_hz {

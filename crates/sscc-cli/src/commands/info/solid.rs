@@ -22,7 +22,7 @@ pub struct Solid {
     listed_triangles: usize,
     lower: [f64; 3],
     upper: [f64; 3],
-    /// The boundary surface of the elements; none if `sscc modes` refuses the solid.
+    /// The boundary surface of the elements; null if `sscc modes` refuses the solid.
     boundary: Option<Surface>,
     /// The reason of the refusal.
     #[serde(skip_serializing_if = "Option::is_none")]

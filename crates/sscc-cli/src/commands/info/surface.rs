@@ -14,7 +14,7 @@ pub struct Surface {
     used_vertices: usize,
     #[serde(flatten)]
     topology: Topology,
-    /// The mesh with one vertex for all at the same position; absent where all are at different positions.
+    /// The mesh with one vertex for all at the same position; absent if all are at different positions.
     #[serde(skip_serializing_if = "Option::is_none")]
     welded: Option<Welded>,
     /// Whether the format splits vertices, so that only the welded mesh has a meaningful topology.
@@ -56,7 +56,7 @@ impl Surface {
         }
     }
 
-    /// The counts of triangles and vertices, and the topology, as text.
+    /// Returns the counts of triangles and vertices, and the topology, as text.
     pub fn form(&self) -> String {
         let [vertices, used] = [self.vertices, self.used_vertices].map(|n| grouped(n as u64));
         let counts =
@@ -121,7 +121,7 @@ impl Topology {
     }
 }
 
-/// The side lengths of an AABB as text.
+/// Returns the side lengths of an AABB as text.
 pub fn size(lower: &[f64; 3], upper: &[f64; 3]) -> String {
     let sides: Vec<String> = lower.iter().zip(upper).map(|(l, u)| length(u - l)).collect();
     sides.join(" x ")

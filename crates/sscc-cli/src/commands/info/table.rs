@@ -6,7 +6,7 @@ const MAX_ROWS: usize = 100;
 /// Maximum width of a line of columns.
 const WIDTH: usize = 100;
 
-/// Rows of numbers, each with a name behind them.
+/// Rows of numbers, each followed by a name.
 pub struct Table<const N: usize> {
     titles: [&'static str; N],
     rows: Vec<([String; N], String)>,
@@ -25,7 +25,7 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Returns the titles and the rows, numbers to the right; nothing without rows.
+    /// Returns the titles and the rows, with numbers aligned to the right; no lines without rows.
     pub fn lines(self) -> Vec<String> {
         if self.rows.is_empty() {
             return Vec::new();

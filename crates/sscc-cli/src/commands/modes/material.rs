@@ -12,7 +12,7 @@ const KEYS: [&str; 3] = ["youngs", "poisson", "density"];
 /// Parses the name of a material, or some of `youngs=1e6,poisson=0.4,density=1000`.
 ///
 /// # Errors
-/// When a name or a key is unknown (the error has the nearest one), a key repeats, or a number is none.
+/// When a name or a key is unknown (the error has the nearest one), a key is repeated, or a value is not a number.
 pub fn parse(typed: &str) -> Result<PartialMaterial> {
     if let Some(known) = MATERIALS.iter().find(|material| material.name == typed.trim()) {
         return Ok(known.elastic.into());
@@ -38,7 +38,7 @@ pub fn parse(typed: &str) -> Result<PartialMaterial> {
     Ok(material)
 }
 
-/// A key without a number, or neither a key nor the name of a material.
+/// Returns the error for a key without a number, or for text that is neither a key nor the name of a material.
 fn unknown_name(part: &str) -> Error {
     let part = part.trim();
     if KEYS.contains(&part) {
@@ -47,7 +47,7 @@ fn unknown_name(part: &str) -> Error {
     let names = MATERIALS.map(|material| material.name);
     if names.contains(&part) {
         return anyhow!(
-            "--material: the name '{part}' stands alone: leave out the rest, or give numbers only"
+            "--material: the name '{part}' must be the only part: leave out the rest, or give numbers only"
         );
     }
     anyhow!(
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(message("youngs"), "--material: 'youngs' has no number: youngs=NUMBER was expected");
         assert_eq!(message("youngs=x"), "--material: youngs: 'x' is not a number");
         assert_eq!(message("density=1,density=2"), "--material: 'density' is named twice");
-        assert!(message("steel,density=3").contains("the name 'steel' stands alone"));
+        assert!(message("steel,density=3").contains("the name 'steel' must be the only part"));
     }
 
     #[test]

@@ -27,7 +27,7 @@ struct Report {
     /// Mass of the solid (kg).
     #[serde(skip_serializing_if = "Option::is_none")]
     mass: Option<f64>,
-    /// Tetrahedra and cubes of the solid; none without a solid.
+    /// Tetrahedra and cubes of the solid; absent without a solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     elements: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,7 +41,7 @@ struct Report {
     components: Option<Components>,
 }
 
-/// Maximum excess of the first frequency (percent) without a note.
+/// Maximum excess of the first frequency (percent) for which no note is printed.
 const MAX_EXCESS: f64 = 5.0;
 
 pub fn run(args: &args::Modes) -> Result<Outcome> {

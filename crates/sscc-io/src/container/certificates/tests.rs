@@ -86,7 +86,7 @@ fn groups_round_trip() {
         read.check_model(&model()).unwrap();
         assert_eq!(certificates_to_bytes(&read).unwrap(), bytes);
     }
-    // Without groups the file is one of the version before.
+    // A file without groups has the version before.
     let plain = CertifyOptions::default().budget(16).local_budget(0);
     let plain = certificates_to_bytes(&Certificates::compute(&model(), &plain, &()).unwrap()).unwrap();
     assert_eq!(Container::parse(&plain, CERTIFICATES).unwrap().version(), 4);
@@ -127,7 +127,7 @@ fn clearances_round_trip_and_damaged_ones_are_rejected() {
             && changed(8, &[], Some(3)).is_err()
             && changed(8, &[1.0, 2.0], Some(3)).is_err()
     );
-    // Others are of another scope: they are read, and refused for the model.
+    // Certificates with another clearance are read, but refused for the model.
     for (distance, rings) in [(&[0.02][..], Some(3)), (&[0.01], Some(2)), (&[], None)] {
         assert!(changed(8, distance, rings).unwrap().check_model(&model()).is_err());
     }
@@ -172,7 +172,7 @@ fn damaged_groups_are_rejected() {
         message(5, &|w| _ = w.u32("group_pairs", &[0, 2], &[])).unwrap_err().contains("groups': missing")
     );
     assert!(message(5, &|w| _ = w.u32("groups", &[22], &[0; 22])).unwrap_err().contains("missing"));
-    // Other groups, or another table, are no certificates of the model.
+    // Certificates with other groups, or another table, are refused for the model.
     let other = message(5, &write(GROUPS, "ignored", &[1, 3])).unwrap();
     assert!(other.check_model(&model()).is_err());
     assert!(message(5, &|_| ()).unwrap().check_model(&model()).is_err());

@@ -50,7 +50,7 @@ fn mass() -> MassData {
 }
 
 #[test]
-fn mass_and_support_are_kept_in_a_version_of_their_own() {
+fn files_with_mass_and_support_have_version_2_and_round_trip() {
     let version = |bytes: &[u8]| Container::parse(bytes, MODEL).unwrap().version();
     assert_eq!(version(&sample()), 1);
     for is_held in [true, false] {
@@ -61,11 +61,11 @@ fn mass_and_support_are_kept_in_a_version_of_their_own() {
     }
     let few = MassData { moments: vec![DVec3::X], ..mass() };
     let refused = model_to_bytes(&model(), &ModelInfo::new("m", "").with_mass(few)).unwrap_err();
-    assert_eq!(refused.to_string(), "tensor 'mode_moments': 1 moments, the model has 3 modes");
+    assert_eq!(refused.to_string(), "tensor 'mode_moments': it has 1 moments, but the model has 3 modes");
 }
 
 #[test]
-fn deviations_are_kept_in_a_version_of_their_own() {
+fn files_with_deviations_have_version_3_and_round_trip() {
     let with_deviations = |deviations: &[f64]| ModelInfo {
         deviations: Some(deviations.to_vec()),
         ..ModelInfo::new("m", "").with_mass(mass())
@@ -76,7 +76,7 @@ fn deviations_are_kept_in_a_version_of_their_own() {
     assert_eq!(model_from_bytes(&bytes).unwrap().1, info);
     assert!((0..bytes.len()).all(|length| model_from_bytes(&bytes[..length]).is_err()));
     let refused = model_to_bytes(&model(), &with_deviations(&[1.0])).unwrap_err();
-    assert_eq!(refused.to_string(), "tensor 'deviations': 1 numbers, the model has 3 modes");
+    assert_eq!(refused.to_string(), "tensor 'deviations': it has 1 numbers, but the model has 3 modes");
     for wrong in [-1.0, f64::NAN, f64::INFINITY] {
         let bytes = model_to_bytes(&model(), &with_deviations(&[1.0, wrong, 1.0])).unwrap();
         let refused = model_from_bytes(&bytes).unwrap_err().to_string();

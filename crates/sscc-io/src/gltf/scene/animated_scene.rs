@@ -46,7 +46,7 @@ impl AnimatedScene {
         &self.mesh_nodes
     }
 
-    /// What the meshes lack by the standard, and how it was understood: one line each.
+    /// Lines about data that the standard requires but the meshes lack, and how the reader replaces them.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -26,7 +26,7 @@ pub struct AnimationInfo {
 }
 
 impl AnimationInfo {
-    /// Of an animation that cannot be evaluated.
+    /// Returns the entry of an animation that cannot be evaluated.
     pub(super) fn unreadable(name: Option<String>) -> Self {
         Self { name, first_time: 0.0, last_time: 0.0, channels: 0, extension_channels: 0 }
     }
@@ -61,7 +61,7 @@ pub(super) struct NodeStates {
 }
 
 impl Animation {
-    /// Takes the channels of an animation. The error is a node for which two channels move the same property.
+    /// Creates an animation from its channels. The error is a node for which two channels move the same property.
     pub fn new(mut channels: Vec<Channel>) -> Result<Self, usize> {
         let property = |channel: &Channel| (channel.node, channel.property);
         channels.sort_by_key(property);

@@ -87,7 +87,7 @@ impl AnimationReader<'_, '_> {
         }
         info.channels = channels.len();
         if info.channels == 0 {
-            // Some exporters write animations without channels. They are errors where they are evaluated.
+            // Some exporters write animations without channels. Only their evaluation is an error.
             (info.first_time, info.last_time) = (0.0, 0.0);
         }
         let animation = Animation::new(channels).map_err(|node| {

@@ -25,7 +25,7 @@ use crate::{FormatError, IoError, read_whole};
 pub struct Contents {
     /// Scenes, with the number of root nodes of each.
     pub scenes: Vec<NamedPart>,
-    /// Number of the scene that players show first; none without scenes.
+    /// Number of the scene that players show first; None without scenes.
     pub default_scene: Option<usize>,
     /// Number of all nodes.
     pub nodes: usize,
@@ -59,7 +59,7 @@ pub struct MeshNodeContents {
     pub name: Option<String>,
     /// Number of the mesh.
     pub mesh: usize,
-    /// Number of the skin; none if the node moves the mesh by its own transform.
+    /// Number of the skin; None if the node moves the mesh by its own transform.
     pub skin: Option<usize>,
     /// Whether the default scene has the node.
     pub is_in_default_scene: bool,
@@ -77,7 +77,7 @@ pub struct MeshContents {
     pub targets: Vec<String>,
     /// Stored weight of each morph target.
     pub default_weights: Vec<f64>,
-    /// Numbers of triangles and vertices, both 0 without primitives of triangles; the error of a malformed mesh.
+    /// Numbers of triangles and vertices, both 0 without primitives of triangles; or the error of a malformed mesh.
     pub size: Result<[usize; 2], FormatError>,
 }
 

@@ -1,4 +1,4 @@
-//! Selection of an animation or a node; errors list what there is.
+//! Selection of an animation or a node; errors list the available ones.
 
 use super::animated_scene::AnimatedScene;
 use super::mesh_node::MeshNode;

@@ -22,7 +22,7 @@ pub(super) struct Influences {
 }
 
 impl Influences {
-    /// Starts without vertices.
+    /// Creates influences without vertices.
     pub fn new() -> Self {
         Self { starts: vec![0], ..Self::default() }
     }

@@ -84,7 +84,7 @@ struct NodeExtensions {
 }
 
 impl Node {
-    /// A note on a node whose mesh an extension shows at many places.
+    /// Returns a note if an extension shows the node's mesh at many places.
     pub fn instancing_note(&self, node: usize) -> Option<String> {
         self.extensions.as_ref()?.instancing.as_ref().map(|_| {
             format!(
@@ -95,7 +95,7 @@ impl Node {
     }
 }
 
-/// The same mesh as in the structure for meshes, with the attributes of its skin alone.
+/// A mesh of the file, with the attributes of its skin alone.
 #[derive(Deserialize)]
 pub(super) struct Mesh {
     pub primitives: Vec<Primitive>,

@@ -45,7 +45,7 @@ impl MeshNode {
         self.mesh_name.as_deref()
     }
 
-    /// Index of the skin in the file; none if the node moves the mesh by its own transform.
+    /// Index of the skin in the file; None if the node moves the mesh by its own transform.
     pub fn skin(&self) -> Option<usize> {
         self.skin
     }
@@ -71,12 +71,12 @@ impl MeshNode {
     }
 
     /// Weld class of each vertex (V): the smallest index of a vertex with equal rest position, displacements in all
-    /// morph targets and influences (weights of 0 left out; none without a skin). 0 equals -0.
+    /// morph targets and influences (without weights of 0; no influences without a skin). 0 equals -0.
     pub fn weld_classes(&self) -> &[u32] {
         &self.shape.weld_classes
     }
 
-    /// The group of each triangle.
+    /// Returns the group of each triangle.
     ///
     /// # Errors
     /// When there are more than 65,536 groups.

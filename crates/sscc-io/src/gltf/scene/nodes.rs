@@ -6,19 +6,19 @@ use super::json;
 use super::transform::{Parts, Transform};
 use crate::FormatError;
 
-/// Memory of a node for each 3 bytes of text (`{},`), in bytes.
+/// Memory of a node in bytes. The text of a node has at least 3 bytes (`{},`).
 pub(super) const NODE_SIZE: u64 = 512;
 
 /// Nodes with their parents and stored transforms.
 pub(super) struct Nodes {
     transforms: Vec<Transform>,
     parents: Vec<Option<u32>>,
-    /// Every node after its parent.
+    /// Numbers of all nodes, each after its parent.
     order: Vec<u32>,
 }
 
 impl Nodes {
-    /// Takes the nodes of a file. A child that does not exist, a node with two parents, and a cycle are errors.
+    /// Creates the hierarchy of a file's nodes. A child that does not exist, a node with two parents, and a cycle are errors.
     pub fn new(nodes: &[json::Node]) -> Result<Self, FormatError> {
         let refused = |node: usize, cause: String| Err(FormatError::part(format!("nodes[{node}]"), cause));
         let mut transforms = Vec::with_capacity(nodes.len());
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn parents_move_their_children() {
-        // A child may stand before its parent.
+        // A child may come before its parent.
         let nodes = nodes(
             r#"[{"translation":[1,0,0]},{"children":[0],"scale":[2,2,2]},{"children":[1],"translation":[0,0,5]}]"#,
         )
@@ -123,7 +123,7 @@ mod tests {
             assert_eq!(nodes(json).err().as_deref(), Some(message));
         }
         assert_eq!(nodes("[]").ok().unwrap().len(), 0);
-        // A chain is not walked by recursion.
+        // The hierarchy of a chain is not traversed by recursion.
         let chain: Vec<_> = (1..=50_000).map(|n| format!(r#"{{"children":[{n}]}}"#)).collect();
         assert_eq!(nodes(&format!("[{},{{}}]", chain.join(","))).ok().unwrap().len(), 50_001);
     }

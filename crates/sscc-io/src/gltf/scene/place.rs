@@ -17,7 +17,7 @@ pub enum SkinWeights {
     AsStored,
 }
 
-/// What moves the vertices of a mesh at a node from the mesh's own coordinates to the world.
+/// The map of the vertices of a mesh at a node from the mesh's own coordinates to the world.
 pub(super) enum Place<'a> {
     /// The world transform of the node.
     Rigid(DMat4),
@@ -104,7 +104,7 @@ pub(super) fn check_joints(
     Err(FormatError::part(place, cause))
 }
 
-/// Refuses positions in the world that no answer could be about.
+/// Refuses positions in the world that are not finite or exceed [`sscc::limits::LARGEST`].
 pub(super) fn check_positions(positions: &[DVec3], place: &str) -> Result<(), FormatError> {
     match positions.iter().position(|x| !sscc::limits::contains(*x)) {
         Some(vertex) => {

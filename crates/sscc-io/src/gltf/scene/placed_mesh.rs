@@ -1,4 +1,4 @@
-//! A mesh at rest, where the nodes of its file put it.
+//! A mesh at rest, at the places that the nodes of its file give it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -57,7 +57,7 @@ pub fn read_placed_mesh(path: &Path, name: Option<&str>) -> Result<PlacedMesh, I
 /// mesh, and [`PlacedMesh::place`] moves their positions to the world.
 ///
 /// # Errors
-/// As those.
+/// As [`read_placed_mesh`] and [`read`](crate::gltf::read).
 pub fn read_model_placement(path: &Path, name: Option<&str>) -> Result<PlacedMesh, IoError> {
     read_in(path, |root, placed| {
         let mesh = select::choose(root, name)?;
@@ -124,7 +124,7 @@ fn parse_in(
     }
     let notes = shown.iter().filter_map(|node| placed.nodes[*node].instancing_note(*node)).collect();
     let shown = shown.into_iter().map(|node| (node, skin_of(&node))).collect();
-    // Most of the memory of a file of empty nodes.
+    // These nodes take most of the memory for a file of empty nodes.
     drop(placed);
     let (world, names) = (nodes.world_transforms(&[]), PartNames::parse(chunks.json)?);
     Ok(PlacedMesh { mesh: index, shape, nodes: shown, skins, world, names, notes })
@@ -136,7 +136,7 @@ impl PlacedMesh {
         self.mesh
     }
 
-    /// What of the nodes was not evaluated: one line each.
+    /// Lines about content of the nodes that was not evaluated.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -146,12 +146,12 @@ impl PlacedMesh {
         self.nodes.len().max(1)
     }
 
-    /// Index of the node at a place; none if no node shows the mesh.
+    /// Index of the node at a place; None if no node shows the mesh.
     pub fn node(&self, place: usize) -> Option<usize> {
         self.nodes.get(place).map(|(node, _)| *node)
     }
 
-    /// Index of the skin that deforms the mesh at a place; none without a skin.
+    /// Index of the skin that deforms the mesh at a place; None without a skin.
     pub fn skin(&self, place: usize) -> Option<usize> {
         self.nodes.get(place)?.1
     }
@@ -192,7 +192,7 @@ impl PlacedMesh {
         if place >= self.places() || positions.len() != self.shape.rest.len() {
             let (places, vertices, found) = (self.places(), self.shape.rest.len(), positions.len());
             return Err(FormatError::whole(format!(
-                "place {place} of {found} positions: there are {places} places and {vertices} vertices"
+                "place {place} or {found} positions do not fit the mesh: there are {places} places and {vertices} vertices"
             )));
         }
         let Some(map) = self.map(place) else { return Ok(()) };
@@ -200,7 +200,7 @@ impl PlacedMesh {
         check_positions(positions, &format!("nodes[{}]", self.nodes[place].0))
     }
 
-    /// The transform from the mesh's own coordinates to the world, at a place; none with a skin, which has no single one.
+    /// Returns the transform from the mesh's own coordinates to the world, at a place; None with a skin, which has several.
     pub fn transform(&self, place: usize) -> Option<DMat4> {
         match self.map(place) {
             None => Some(DMat4::IDENTITY),
@@ -214,13 +214,13 @@ impl PlacedMesh {
         self.map(place).is_some_and(|map| map.is_flat())
     }
 
-    /// For each vertex (V) the first vertex that coincides with it in every pose of the skin at a place: the position and
-    /// the influences are equal. None without a skin, where positions alone decide.
+    /// Returns for each vertex (V) the first vertex that coincides with it in every pose of the skin at a place: the
+    /// position and the influences are equal. None without a skin, where positions alone decide.
     pub fn weld_classes(&self, place: usize) -> Option<&[u32]> {
         self.skin(place).map(|_| &self.shape.weld_classes[..])
     }
 
-    /// The group of each triangle, at a place.
+    /// Returns the group of each triangle, at a place.
     ///
     /// # Errors
     /// When there are more than 65,536 groups.

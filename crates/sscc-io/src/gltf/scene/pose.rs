@@ -21,8 +21,8 @@ pub struct ScenePose<'a> {
 
 impl AnimatedScene {
     /// Evaluates one animation at a time (s), or the stored state without an animation. Properties that the animation
-    /// does not move have their stored values. Times before the first or after the last key frame of a channel count as
-    /// that key frame's. Costs O(nodes + channels log key frames).
+    /// does not move have their stored values. Times before the first or after the last key frame of a channel give
+    /// the values at that key frame. Costs O(nodes + channels log key frames).
     ///
     /// # Errors
     /// When there is no such animation, it has no key frames or is malformed, or the time is NaN.
@@ -56,7 +56,7 @@ impl AnimatedScene {
     /// As [`AnimatedScene::pose`] and [`ScenePose::positions`], for one node.
     ///
     /// # Errors
-    /// As those.
+    /// As these two functions.
     pub fn positions(
         &self,
         node: usize,

@@ -32,7 +32,7 @@ use crate::{FormatError, IoError, read_whole};
 /// a cycle or a node with two parents; when joints, nodes, skins or meshes do not exist; when weights are negative; when a
 /// number is not finite; when the numbers would take more than 100 times the files' size and 64 MiB. An animation that is
 /// malformed (no key frames, key frames out of order, another number of values, nodes or samplers that do not exist) is an
-/// error where it is evaluated.
+/// error when it is evaluated.
 pub fn read_scene(path: &Path) -> Result<AnimatedScene, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, Some(folder)).map_err(|error| error.of(path))

@@ -2,7 +2,7 @@
 
 use glam::DQuat;
 
-/// Returns a quaternion divided by its length; none if that is 0 or not finite.
+/// Returns a quaternion divided by its length; None if the length is 0 or not finite.
 pub(super) fn unit(q: DQuat) -> Option<DQuat> {
     let [x, y, z, w] = q.to_array();
     // Squares of large numbers overflow.
@@ -29,8 +29,8 @@ pub(super) fn slerp(a: &[f64], b: &[f64], share: f64) -> DQuat {
     if unit_a.dot(unit_b) < 0.0 {
         (unit_b, of_b) = (-unit_b, -of_b);
     }
-    // From lengths: acos of the dot product has errors of 1e-8 for small angles. The functions of libm have the same
-    // results on every machine, and so have the pairs that collide.
+    // The angle follows from lengths: acos of the dot product has errors of 1e-8 for small angles. The functions of libm have
+    // the same results on every machine, so the pairs that collide are the same, too.
     let angle = 2.0 * libm::atan2((unit_a - unit_b).length(), (unit_a + unit_b).length());
     let sine = libm::sin(angle);
     let (share_a, share_b) = if sine < 1e-12 {

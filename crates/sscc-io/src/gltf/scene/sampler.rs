@@ -6,7 +6,7 @@ use glam::DQuat;
 
 use super::rotation::{slerp, unit_or_identity};
 
-/// How a property moves between two key frames.
+/// Interpolation of a property between two key frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
     Step,
@@ -33,7 +33,7 @@ impl Interpolation {
 
 /// Key frames of one property.
 pub(super) struct Sampler {
-    /// At least one, ascending (s). Channels share them.
+    /// Times of the key frames (s), ascending, at least one. Channels share them.
     pub times: Arc<[f64]>,
     /// Items of `width` numbers, [`Interpolation::items_per_key`] for each time.
     pub values: Vec<f64>,
@@ -41,9 +41,9 @@ pub(super) struct Sampler {
     pub interpolation: Interpolation,
 }
 
-/// A time among key frames.
+/// Position of a time among the key frames.
 enum At {
-    /// At this key frame, or held from it on.
+    /// The value is that of this key frame.
     Key(usize),
     /// Between a key frame and the next: the share of the segment that has passed, and its duration (s).
     Between { key: usize, share: f64, duration: f64 },
@@ -93,7 +93,8 @@ impl Sampler {
         }
     }
 
-    /// Item of a key frame: 0 is the value, for splines 0 is the tangent before it, 1 the value, 2 the tangent after it.
+    /// Returns an item of a key frame: number 0 is its value; for splines 0 is the tangent before it, 1 the value, 2 the
+    /// tangent after it.
     fn item(&self, key: usize, number: usize) -> &[f64] {
         &self.values[(key * self.interpolation.items_per_key() + number) * self.width..][..self.width]
     }
@@ -102,7 +103,7 @@ impl Sampler {
         self.item(key, self.interpolation.items_per_key() / 2)
     }
 
-    /// Cubic Hermite spline between a key frame and the next (appendix C of the format).
+    /// Evaluates the cubic Hermite spline between a key frame and the next (appendix C of the format).
     fn spline(&self, key: usize, t: f64, duration: f64) -> Vec<f64> {
         let (t2, t3) = (t * t, t * t * t);
         let (from, to) = (2.0 * t3 - 3.0 * t2 + 1.0, -2.0 * t3 + 3.0 * t2);
@@ -138,7 +139,7 @@ mod tests {
         ] {
             assert_eq!((step.values_at(time), line.values_at(time)), (vec![held], vec![between]), "{time}");
         }
-        // Of equal times the last counts from then on.
+        // Of key frames with equal times, the last one holds from that time on.
         let jump = sampler(Interpolation::Linear, &[0.0, 1.0, 1.0, 2.0], 1, &[0.0, 1.0, 5.0, 6.0]);
         assert_eq!([0.5, 1.0, 1.5].map(|t| jump.values_at(t)[0]), [0.5, 5.0, 5.5]);
         let single = sampler(Interpolation::CubicSpline, &[1.0], 1, &[7.0, 8.0, 9.0]);

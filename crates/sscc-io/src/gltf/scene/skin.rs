@@ -12,7 +12,7 @@ use crate::gltf::role::Role;
 pub(super) struct Skin {
     /// Nodes of the joints.
     joints: Vec<u32>,
-    /// One for each joint; none: the identity for all.
+    /// The inverse bind matrix of each joint; empty if all are the identity.
     inverse_bind: Vec<DMat4>,
 }
 

@@ -55,8 +55,8 @@ impl Transform {
         }
     }
 
-    /// Returns translation, rotation and scale. Players split matrices so if an animation moves the node: shear is
-    /// lost. None if an axis has length 0.
+    /// Returns translation, rotation and scale. Players split matrices like this if an animation moves the node;
+    /// shear is lost. None if an axis has length 0.
     pub fn parts(&self) -> Option<Parts> {
         let matrix = match self {
             Self::Parts(parts) => return Some(*parts),

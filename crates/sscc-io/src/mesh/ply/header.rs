@@ -85,7 +85,7 @@ impl Number {
         }
     }
 
-    /// Smallest and largest integer; none for floating point.
+    /// Smallest and largest integer; None for floating point.
     pub fn range(self) -> Option<(i64, i64)> {
         Some(match self {
             Self::I8 => (i8::MIN.into(), i8::MAX.into()),
@@ -120,7 +120,7 @@ impl Header {
                 ["format", name, "1.0"] if encoding.is_none() => encoding = Some(encoding_of(name, line)?),
                 ["element", name, rows] => {
                     if elements.iter().any(|e| e.name == name) {
-                        return refused(format!("a second element {}", quoted(name)));
+                        return refused(format!("there is a second element {}", quoted(name)));
                     }
                     if elements.len() == MAX_DECLARATIONS {
                         return refused(format!("more than {MAX_DECLARATIONS} elements"));
@@ -134,7 +134,7 @@ impl Header {
                     };
                     let property = property(rest, line)?;
                     if element.properties.iter().any(|p| p.name == property.name) {
-                        return refused(format!("a second property {}", quoted(&property.name)));
+                        return refused(format!("there is a second property {}", quoted(&property.name)));
                     }
                     if element.properties.len() == MAX_DECLARATIONS {
                         return refused(format!("more than {MAX_DECLARATIONS} properties"));

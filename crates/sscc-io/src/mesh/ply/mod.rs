@@ -23,9 +23,9 @@ use crate::polygons::{Polygons, Soup};
 /// Numbers in text files have their declared type, too, so a text file and a binary file with the same declarations give
 /// the same mesh.
 ///
-/// In a list of strips, -1 ends a strip; of an unsigned type, the largest number does so where no vertex has it. Every other
-/// triangle of a strip is turned, so that all have the same side. Triangles with a repeated corner, which connect strips,
-/// are left out.
+/// In a list of strips, -1 ends a strip; in a list of an unsigned type, the largest number does so if it is no vertex. The
+/// winding of every other triangle of a strip is reversed, so that all have the same orientation. Triangles with a repeated
+/// corner, which connect strips, are left out.
 ///
 /// # Errors
 /// When the header is malformed, lacks one of these, or declares more data than the file has; when another element has

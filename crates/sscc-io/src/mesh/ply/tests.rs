@@ -115,8 +115,8 @@ fn errors_in_headers_name_the_line() {
         "line 7: the length of a list must be of an integer type"
     );
     assert_eq!(with("int z", "int w"), "line 8: the element 'vertex' has no scalar property 'z'");
-    assert_eq!(with("int z", "int x"), "line 12: a second property 'x'");
-    assert_eq!(with("element camera", "element vertex"), "line 8: a second element 'vertex'");
+    assert_eq!(with("int z", "int x"), "line 12: there is a second property 'x'");
+    assert_eq!(with("element camera", "element vertex"), "line 8: there is a second element 'vertex'");
     assert_eq!(
         with("vertex_indices", "corners"),
         "line 13: the element 'face' has no list 'vertex_indices' or 'vertex_index'"
@@ -135,7 +135,10 @@ fn errors_in_headers_name_the_line() {
 #[test]
 fn errors_in_rows_name_the_place() {
     let with = |from: &str, to: &str| message(text().replace(from, to).as_bytes());
-    assert_eq!(with("4 0 1 2 3", "4 0 1 2 4"), "line 23: names vertex 4 (counted from 0), but there are 4");
+    assert_eq!(
+        with("4 0 1 2 3", "4 0 1 2 4"),
+        "line 23: the face names vertex 4 (counted from 0), but there are 4"
+    );
     assert_eq!(with("4 0 1 2 3", "4 0 1 2 -1"), "line 23: -1 is negative");
     assert_eq!(with("4 0 1 2 3", "2 0 1"), "line 23: a face needs at least 3 corners, this one has 2");
     assert_eq!(with("9 1 0 0", "9 1 0 0.5"), "line 20: '0.5' is not a number of the declared type");
@@ -186,7 +189,7 @@ fn strips_are_faces() {
     assert_eq!(strips("int int", "3 0 1 -2\n").unwrap_err(), "line 16: -2 is neither a vertex nor -1");
     assert_eq!(
         strips("int int", "3 0 1 6\n").unwrap_err(),
-        "line 16: names vertex 6 (counted from 0), but there are 6"
+        "line 16: the face names vertex 6 (counted from 0), but there are 6"
     );
     assert!(strips("int float", "3 0 1 2\n").unwrap_err().contains("of an integer type"));
     assert!(strips("int int", "3 0 1\n").is_err());
@@ -236,7 +239,7 @@ fn elements_with_unknown_faces_are_refused() {
     let grid = "element range_grid 1\nproperty list uchar int vertex_indices";
     assert!(message(grid, "1 3\n3 0 1 2\n").unwrap_err().contains("'range_grid'"));
     assert_eq!(message("element patch 0\nproperty list uchar int vertex_indices", "3 0 1 2\n"), Ok(1));
-    // Lines, numbers of other kinds.
+    // Elements of lines, and lists of numbers of other kinds, are skipped.
     assert_eq!(message("element edge 1\nproperty list uchar int vertex_indices", "2 3 4\n3 0 1 2\n"), Ok(1));
     assert_eq!(
         message("element edge 1\nproperty int vertex1\nproperty int vertex2", "3 4\n3 0 1 2\n"),
@@ -258,7 +261,7 @@ fn rows_of_another_length_name_their_line() {
     assert_eq!(message("3 0 1 2 3 255 0 0\n3 3 4 5 3 255 0 0\n"), format!("line 17: {more}"));
     assert_eq!(message("3 0 1 2 3\n3 3 4 5 3 9\n"), format!("line 18: {more}"));
     assert_eq!(message("3 0 1 2\n3 3 4 5\n"), "line 17: this row has fewer values than the header declares");
-    // Rows in one line, and over several ones, are read where all numbers fit.
+    // Rows in one line, and over several ones, are read if the count of all numbers fits.
     let rows = "3 0 1 2 3 3 3 4\n5 3\n";
     assert_eq!(parse(with_element(faces, rows).as_bytes()).unwrap().faces(), [[0, 1, 2], [3, 4, 5]]);
 }
@@ -268,7 +271,10 @@ fn lines_may_end_with_cr_alone() {
     let mesh = parse(text().as_bytes()).unwrap();
     assert_eq!(parse(text().replace('\n', "\r").as_bytes()).unwrap(), mesh);
     let wrong = text().replace("4 0 1 2 3", "4 0 1 2 4").replace('\n', "\r");
-    assert_eq!(message(wrong.as_bytes()), "line 23: names vertex 4 (counted from 0), but there are 4");
+    assert_eq!(
+        message(wrong.as_bytes()),
+        "line 23: the face names vertex 4 (counted from 0), but there are 4"
+    );
     for big in [false, true] {
         let lf = header(if big { "binary_big_endian" } else { "binary_little_endian" }, 4);
         let body = binary(big)[lf.len()..].to_vec();

@@ -42,7 +42,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Reads a row. In a text file, a row that is not a line of its own is remembered: errors of later rows have its cause.
+    /// Reads a row. In a text file, a row that is not a line of its own is recorded, because it can cause errors in later rows.
     pub fn row<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<T, FormatError>,

@@ -189,12 +189,16 @@ impl Reader<'_, '_> {
             *corner = self.node()?;
         }
         if let Some(twice) = repeated(&corners) {
-            return self.numbers.refused(format!("names node {twice} twice"));
+            return self.numbers.refused(format!("the element names node {twice} twice"));
         }
         for corner in &mut corners {
             *corner = match self.nodes.vertex(*corner) {
                 Some(vertex) => vertex,
-                None => return self.numbers.refused(format!("names node {corner}, which does not exist")),
+                None => {
+                    return self
+                        .numbers
+                        .refused(format!("the element names node {corner}, which does not exist"));
+                }
             };
         }
         Ok(corners)

@@ -43,7 +43,7 @@ impl Groups {
         Ok(())
     }
 
-    /// Reads points, curves, surfaces and volumes: tag, bounding box (of a point: position), physical groups, and the tags
+    /// Reads points, curves, surfaces and volumes: tag, bounding box (for a point its position), physical groups, and the tags
     /// of bounding entities (not for points).
     pub fn read_entities(&mut self, numbers: &mut Numbers) -> Result<(), FormatError> {
         let mut counts = [0; 4];
@@ -79,7 +79,7 @@ impl Groups {
         Ok(())
     }
 
-    /// Returns the material of a physical group; 0 is none.
+    /// Returns the material of a physical group; 0 means no group.
     pub fn material(&self, group: u64, builder: &mut Builder) -> u32 {
         match (group, self.names.get(&group)) {
             (0, _) => builder.default_material(),

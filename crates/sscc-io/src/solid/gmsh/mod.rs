@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     parse_any(bytes)?.into_volume()
 }
 
-/// As [`parse`]; of a file without tetrahedra and hexahedra, returns the surface of its faces.
+/// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.
 ///
 /// # Errors
 /// As [`parse`]; when such a file has faces of higher order.
@@ -71,7 +71,7 @@ pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
                 nodes = Some(Nodes::read(&mut numbers, version, parametric, &mut builder)?);
             }
             ("Elements", _) if elements => return refused(second()),
-            ("Elements", None) => return refused("$Elements before $Nodes".into()),
+            ("Elements", None) => return refused("$Elements comes before $Nodes".into()),
             ("Elements", Some(nodes)) => {
                 elements = true;
                 elements::read(&mut numbers, version, nodes, &groups, &mut builder)?;

@@ -148,8 +148,8 @@ fn errors_name_the_line() {
         "line 13: a coordinate is not finite, or beyond 2^200: repair it, or change the unit"
     );
     assert_eq!(v2("30 0 1 0", "-30 0 1 0"), "line 13: -30 is not a tag");
-    assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: names node 8, which does not exist");
-    assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: names node 20 twice");
+    assert_eq!(v2("30 40 7\n", "30 40 8\n"), "line 22: the element names node 8, which does not exist");
+    assert_eq!(v2("30 40 7\n", "30 40 20\n"), "line 22: the element names node 20 twice");
     assert!(
         v2("4 4 2 6", "4 6 2 6")
             .starts_with("line 22: element type 6 is not supported: solid elements must be tetrahedra of 4")
@@ -172,7 +172,10 @@ fn errors_name_the_line() {
     );
     assert!(message("$MeshFormat\n4.1 1 8\nabcd\n").contains("the byte order is not clear"));
     assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").contains("no section $Elements"));
-    assert!(message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Elements\n").contains("$Elements before $Nodes"));
+    assert!(
+        message("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Elements\n")
+            .contains("$Elements comes before $Nodes")
+    );
 }
 
 #[test]
@@ -205,5 +208,8 @@ fn tetrahedra_and_triangles_of_second_order_are_read() {
     let face = format!("{nodes}1\n1 9 2 0 1 1 3 2 7 6 5\n$EndElements\n");
     let (surface, _) = parse_any(face.as_bytes()).unwrap().into_surface().unwrap();
     assert_eq!(surface.faces(), [[0, 6, 4], [6, 2, 5], [4, 5, 1], [6, 5, 4]]);
-    assert_eq!(message(&tet.replace("8 9 10\n", "8 9 11\n")), "line 20: names node 11, which does not exist");
+    assert_eq!(
+        message(&tet.replace("8 9 10\n", "8 9 11\n")),
+        "line 20: the element names node 11, which does not exist"
+    );
 }

@@ -73,7 +73,7 @@ impl Reader<'_> {
             self.seen.push(path.clone());
             let path = main.parent().unwrap_or(Path::new("")).join(path);
             if check_exists(&path).is_err() {
-                let cause = format!("includes {}, which does not exist", quoted(file));
+                let cause = format!("the file includes {}, which does not exist", quoted(file));
                 return Err(within(FormatError::line(line, cause)));
             }
             self.feed(&read_whole(&path)?, Some(file), depth + 1)?;

@@ -5,7 +5,7 @@ use sscc_solid::{NamedMaterial, PartialMaterial};
 use crate::error::{cut, quoted};
 use crate::solid::statements::value;
 
-/// Parses `type, density, values`. Of a type other than those with an isotropic stiffness, only the density is read.
+/// Parses `type, density, values`. For a type without an isotropic stiffness, only the density is read.
 pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, String> {
     let mut fields = text.split(',').map(str::trim_ascii);
     let kind = fields.next().unwrap_or_default();

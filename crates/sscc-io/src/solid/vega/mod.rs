@@ -1,6 +1,6 @@
 //! Reader for VegaFEM's `.veg` files, text.
 //!
-//! Sections begin with `*`; fields are parted by commas or blanks; `#` begins a comment.
+//! Sections begin with `*`; fields are separated by commas or blanks; `#` begins a comment.
 //!
 //! | section | content |
 //! | --- | --- |
@@ -19,7 +19,7 @@
 //! | --- | --- | --- |
 //! | `ENU, density, E, nu` | as given | as given |
 //! | `MOONEYRIVLIN, density, mu01, mu10, v1` | as given | those of the same stiffness at rest |
-//! | `ORTHOTROPIC..., density, ...`, other types | as given | none: a solid of them needs a stiffness from the caller |
+//! | `ORTHOTROPIC..., density, ...`, other types | as given | not read: the caller must give the stiffness |
 
 mod count;
 mod include;

@@ -117,13 +117,13 @@ impl Parser {
             "ELEMENTS" if self.elements.is_some() => {
                 return Err("the section *ELEMENTS is repeated: a file has one kind of elements".into());
             }
-            "ELEMENTS" if self.vertices.is_none() => return Err("*ELEMENTS before *VERTICES".into()),
+            "ELEMENTS" if self.vertices.is_none() => return Err("*ELEMENTS comes before *VERTICES".into()),
             "ELEMENTS" => ExpectedLine::Kind,
             "MATERIAL" if !self.names.insert(name()) => {
                 return Err(format!("the material {} is repeated", quoted(&name())));
             }
             "MATERIAL" => ExpectedLine::Material(name()),
-            "SET" if self.elements.is_none() => return Err("*SET before *ELEMENTS".into()),
+            "SET" if self.elements.is_none() => return Err("*SET comes before *ELEMENTS".into()),
             "SET" => {
                 self.regions.begin_set(name())?;
                 ExpectedLine::Set
@@ -199,7 +199,9 @@ impl Parser {
         self.first_element = numbered(fields.next(), done, self.first_element, &self.elements, "elements")?;
         let first = self.builder.first;
         let from_0 = |corner: u64| {
-            corner.checked_sub(first).ok_or("names vertex 0, but vertices are counted from 1".to_owned())
+            corner
+                .checked_sub(first)
+                .ok_or("the element names vertex 0, but vertices are counted from 1".to_owned())
         };
         let material = self.builder.default_material();
         let added = if self.corners == 4 {

@@ -61,8 +61,8 @@ impl Regions {
     pub fn materials(&self, elements: usize, materials: &[NamedMaterial]) -> Result<Vec<u32>, FormatError> {
         let by_name: BTreeMap<&str, u32> = materials.iter().map(|m| m.name.as_str()).zip(0..).collect();
         let mut of_element = vec![UNDECIDED; elements];
-        // The loop goes backwards and visits each set once: later regions override earlier ones, and a file with many
-        // regions of one large set would take quadratic time.
+        // The loop goes backwards, because later regions override earlier ones. It visits each set once, because a file with
+        // many regions of one large set would otherwise take quadratic time.
         let mut seen = vec![false; self.sets.len()];
         let mut all = false;
         for region in self.regions.iter().rev() {

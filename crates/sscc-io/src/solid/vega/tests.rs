@@ -56,7 +56,7 @@ fn errors_name_the_line() {
     assert_eq!(message("v 0 0 0\n"), "line 1: a section (*VERTICES, ...) was expected, not 'v 0 0 0'");
     assert_eq!(message("*PLANES\n"), "line 1: the section '*PLANES' is not known");
     assert_eq!(message("*VERTICES\n"), "the number of vertices is missing in *VERTICES");
-    assert_eq!(message("*ELEMENTS\n"), "line 1: *ELEMENTS before *VERTICES");
+    assert_eq!(message("*ELEMENTS\n"), "line 1: *ELEMENTS comes before *VERTICES");
     assert_eq!(message("*MATERIAL a\n*SET b\n"), "line 2: the values are missing in *MATERIAL");
     assert_eq!(with("5 3 0 0", "5 2 0 0"), "line 3: the section declares 2 coordinates: 3 were expected");
     assert_eq!(with("5 3 0 0", "6 3 0 0"), "line 3: the file has 5 of the 6 vertices declared here");
@@ -75,9 +75,15 @@ fn errors_name_the_line() {
     );
     assert_eq!(with("2 4 0", "2 10 0"), "line 12: the section declares 10 corners: 4 were expected");
     assert_eq!(with("2 4 0", "3 4 0"), "line 12: the file has 2 of the 3 elements declared here");
-    assert_eq!(with("2 2,3,4,5", "2 2 3 4 6"), "line 14: names vertex 6 (counted from 1), but there are 5");
-    assert_eq!(with("2 2,3,4,5", "2 2 3 4 0"), "line 14: names vertex 0, but vertices are counted from 1");
-    assert_eq!(with("2 2,3,4,5", "2 2 3 4 4"), "line 14: names vertex 4 (counted from 1) twice");
+    assert_eq!(
+        with("2 2,3,4,5", "2 2 3 4 6"),
+        "line 14: the element names vertex 6 (counted from 1), but there are 5"
+    );
+    assert_eq!(
+        with("2 2,3,4,5", "2 2 3 4 0"),
+        "line 14: the element names vertex 0, but vertices are counted from 1"
+    );
+    assert_eq!(with("2 2,3,4,5", "2 2 3 4 4"), "line 14: the element names vertex 4 (counted from 1) twice");
     assert_eq!(with("2 2,3,4,5", "2 2 3 4"), "line 14: an element has 4 corners, this one has 3");
     assert_eq!(
         with("0.45", "0.5"),
@@ -137,15 +143,18 @@ fn files_are_included() {
     assert_eq!((mesh.vertices().len(), mesh.tets()), (4, &[[0, 1, 2, 3]][..]));
     assert!(parse(main.as_bytes()).unwrap_err().to_string().starts_with("line 2: *INCLUDE refers to a file"));
     let error = |main: &str, others: &[(&str, &str)]| read_files(main, others).unwrap_err();
-    assert_eq!(error(main, &files[..1]), "main.veg: line 5: includes './a.ele', which does not exist");
+    assert_eq!(
+        error(main, &files[..1]),
+        "main.veg: line 5: the file includes './a.ele', which does not exist"
+    );
     let nested = error("*INCLUDE a\n", &[("a", "# a\n\n*INCLUDE b\n")]);
-    assert_eq!(nested, "main.veg: a: line 3: includes 'b', which does not exist");
+    assert_eq!(nested, "main.veg: a: line 3: the file includes 'b', which does not exist");
     let bad = [files[0], ("a.ele", "1 4 0\n1 1 2 3 x\n")];
     assert_eq!(error(main, &bad), "main.veg: ./a.ele: line 2: 'x' is not a number of a vertex or element");
     let late = [files[0], ("a.ele", "1 4 0\n1 1 2 3 9\n")];
     assert_eq!(
         error(main, &late),
-        "main.veg: ./a.ele: line 2: names vertex 9 (counted from 1), but there are 4"
+        "main.veg: ./a.ele: line 2: the element names vertex 9 (counted from 1), but there are 4"
     );
     assert_eq!(
         error(main, &[files[0], ("a.ele", "# nothing\n")]),

@@ -7,7 +7,7 @@ use flate2::{Decompress, FlushDecompress, Status};
 /// Bytes that are expanded at a time.
 const BUFFER: usize = 1 << 14;
 
-/// How a file stores binary arrays.
+/// Encoding of the binary arrays of a file.
 #[derive(Clone, Copy)]
 pub(super) struct Layout {
     /// Bytes of a number in the header of an array: 4 or 8.
@@ -17,7 +17,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Returns the bytes of an array that has `expected` of them. `data` begins with its header; what follows the array is
+    /// Returns the bytes of an array that has `expected` of them. `data` begins with its header; bytes after the array are
     /// ignored. Memory is that of the data and of `expected`, which the caller has checked.
     pub fn unpack(self, data: &[u8], expected: u64) -> Result<Vec<u8>, String> {
         if self.is_compressed { self.inflate(data, expected) } else { self.plain(data, expected) }
@@ -33,8 +33,8 @@ impl Layout {
         }
     }
 
-    /// The header has the number of blocks, the size of each, that of the last one if it is smaller (else 0), and the
-    /// compressed size of each.
+    /// Expands an array in blocks. Its header has the number of blocks, the size of each, that of the last one if it is
+    /// smaller (else 0), and the compressed size of each.
     fn inflate(self, data: &[u8], expected: u64) -> Result<Vec<u8>, String> {
         let count = self.number(data, 0)?;
         if count == 0 {
@@ -89,7 +89,7 @@ impl Blocks {
         Self { zlib: Decompress::new(true), buffer: vec![0; BUFFER].into() }
     }
 
-    /// Appends the bytes of a block: whether it is whole and has `size` of them. At most [`BUFFER`] more are appended.
+    /// Appends the bytes of a block; returns whether it is whole and has `size` bytes. At most [`BUFFER`] more are appended.
     fn expand(&mut self, packed: &[u8], size: u64, bytes: &mut Vec<u8>) -> bool {
         self.zlib.reset(true);
         loop {
@@ -190,7 +190,7 @@ mod tests {
             let cut = layout.unpack(&packed[..packed.len() - 1], bytes.len() as u64);
             assert!(cut.unwrap_err().contains("is the file cut off?"), "{size}");
         }
-        // A block that is cut off, has a wrong sum, or expands to less or more than the header says.
+        // A block that is cut off, has a wrong sum, or expands to less or more than the header states.
         let whole = zlib(&bytes[..300], 300);
         let with = |at: usize, value: u8| {
             let mut damaged = whole.clone();

@@ -1,4 +1,4 @@
-//! Which point data of a grid moves its points.
+//! Selection of the point data that moves the points of a grid.
 
 use crate::FormatError;
 use crate::error::quoted;
@@ -15,18 +15,18 @@ const UNCLEAR: &str = "U";
 /// The point data of a grid that moves its points.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Displacement {
-    /// The vectors with a name that solvers give to displacements, such as `displacement` and `u`; without any, none. `U` is not
-    /// among them: it is also a name of velocities.
+    /// The vectors with a name that solvers give to displacements, such as `displacement` and `u`; if there are none, no data.
+    /// `U` is not such a name, because it is also a name of velocities.
     #[default]
     ByName,
-    /// None: points are where they are.
+    /// No data: the points keep their positions.
     None,
     /// The vectors of this name.
     Named(String),
 }
 
 impl Displacement {
-    /// Returns the choice by a name; an empty one: none.
+    /// Returns the choice by a name; an empty name chooses no data.
     pub(crate) fn of_name(name: Option<&str>) -> Self {
         match name {
             None => Self::ByName,
@@ -62,7 +62,7 @@ impl Displacement {
                     let vectors = arrays.filter(|(_, components)| *components == 3);
                     let known: Vec<String> = vectors.take(10).map(|(name, _)| quoted(name)).collect();
                     let has = if known.is_empty() { "no vectors".into() } else { known.join(", ") };
-                    let cause = format!("has no vectors {}; the point data has {has}", quoted(wanted));
+                    let cause = format!("there are no vectors {}; the point data has {has}", quoted(wanted));
                     Err(FormatError::part("point data", cause))
                 }
             },

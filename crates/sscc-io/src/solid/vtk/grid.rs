@@ -14,7 +14,8 @@ pub(crate) struct Grid {
     pub(super) cells: Cells,
     /// Name and vectors of the point data that moves the points.
     pub(super) displacement: Option<(String, Vec<DVec3>)>,
-    /// Whether vectors may be displacements, but have not been asked for: see [`Displacement::is_unclear`](super::Displacement).
+    /// Whether the data has vectors that may be displacements, but were not chosen: see
+    /// [`Displacement::is_unclear`](super::Displacement).
     pub(super) is_unclear: bool,
 }
 

@@ -13,7 +13,7 @@ use crate::error::quoted;
 /// Types of cells of the lists of a PolyData.
 const LISTS: [(&str, u64); 4] = [("VERTICES", 2), ("LINES", 4), ("POLYGONS", 7), ("TRIANGLE_STRIPS", 6)];
 
-/// What attributes belong to.
+/// The objects to which attributes belong.
 #[derive(Clone, Copy, PartialEq)]
 enum Section {
     /// The whole grid.
@@ -27,7 +27,7 @@ struct Parser<'a, 'd> {
     displacement: &'d Displacement,
     points: Option<Vec<DVec3>>,
     cells: Cells,
-    /// Of an unstructured grid, whether its types have been read.
+    /// Whether the types of an unstructured grid have been read.
     has_types: bool,
     section: (Section, u64),
     /// Names of all vectors of the points, and their values.
@@ -60,7 +60,7 @@ pub(super) fn parse(bytes: &[u8], displacement: &Displacement) -> Result<Grid, F
 }
 
 impl Parser<'_, '_> {
-    /// Reads the kind of the data set: whether it is an unstructured grid, not polygons.
+    /// Reads the kind of the data set; returns whether it is an unstructured grid, not polygons.
     fn dataset(&mut self) -> Result<bool, FormatError> {
         let words = &mut self.numbers.words;
         let keyword = words.word("DATASET")?;
@@ -140,7 +140,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads the list of earlier versions: for each cell its number of corners, and these.
+    /// Reads the list of earlier versions: for each cell its number of corners, and the corners.
     fn counted_cells(&mut self, count: u64, size: u64) -> Result<(), FormatError> {
         let numbers = self.numbers.ints(size, "a corner")?;
         let mut rest = &numbers[..];
@@ -169,7 +169,7 @@ impl Parser<'_, '_> {
     /// Reads an attribute of points, cells or the grid.
     fn attribute(&mut self, keyword: &str) -> Result<(), FormatError> {
         if keyword == "METADATA" {
-            // It ends with an empty line.
+            // The metadata end with an empty line.
             self.numbers.words.rest_of_line();
             while !self.numbers.words.rest_of_line().trim_ascii().is_empty() {}
             return Ok(());
@@ -186,7 +186,7 @@ impl Parser<'_, '_> {
             "TENSORS6" => 6,
             "TENSORS" => 9,
             _ => {
-                let cause = format!("{} is no part of a grid that is known", quoted(keyword));
+                let cause = format!("{} is no known part of a grid", quoted(keyword));
                 return self.numbers.words.refused(cause);
             }
         };
@@ -257,7 +257,7 @@ impl Parser<'_, '_> {
             return self.skip(&name, components, count, kind);
         }
         let found = (name.as_str(), 3);
-        // Of many vectors only those that can be chosen are kept.
+        // Only vectors that can be chosen are kept, because there may be many.
         let is_wanted = match self.displacement {
             Displacement::Named(wanted) => *wanted == name,
             displacement => displacement.choose([found].into_iter())?.is_some(),

@@ -13,7 +13,7 @@ pub(super) struct Numbers<'a> {
 /// Type of the items of an array.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
-    /// Bytes of an item; 0: they are not whole bytes.
+    /// Bytes of an item; 0 if items are not whole bytes.
     size: u64,
     form: Form,
 }
@@ -23,9 +23,9 @@ enum Form {
     Float,
     Signed,
     Unsigned,
-    /// Eight of them are a byte. They are only skipped.
+    /// Bits, eight in a byte. They are only skipped.
     Bit,
-    /// Lines, or bytes after their length. They are only skipped.
+    /// Texts: lines, or bytes after their length. They are only skipped.
     Text,
 }
 
@@ -129,7 +129,7 @@ impl Numbers<'_> {
             let start = ahead.take::<1>(what)?[0] >> 6;
             let size = LENGTHS[usize::from(start)];
             let length = unsigned(self.words.bytes(size, what)?, true);
-            // The first two bits are those of the size.
+            // The first two bits state the size of the length.
             let length = if size == 8 { length } else { length & (u64::MAX >> (66 - 8 * size)) };
             self.words.bytes(length, what)?;
         }

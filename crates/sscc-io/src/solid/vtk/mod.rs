@@ -45,7 +45,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     parse_any(bytes)?.into_volume()
 }
 
-/// As [`parse`]; of a file without tetrahedra and hexahedra, returns the surface of its faces.
+/// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.
 ///
 /// # Errors
 /// As [`parse`].

@@ -86,8 +86,8 @@ fn every_encoding_has_the_same_grid() {
     }
 }
 
-/// Truncated files are refused, apart from ends that hold no array and from texts, whose last number may be cut; every damaged
-/// one is read or refused.
+/// Truncated files are refused, unless the missing end has no array, or only cuts the last number of a text. Every damaged
+/// file is read or refused.
 #[test]
 fn damaged_files_are_errors() {
     for name in FILES {
@@ -148,7 +148,7 @@ fn displacements_are_chosen_by_name() {
     let message = name_of(&all, &Displacement::of_name(Some("disp"))).unwrap_err();
     assert_eq!(
         message,
-        "point data: has no vectors 'disp'; the point data has 'velocity', 'u', 'Displacement'"
+        "point data: there are no vectors 'disp'; the point data has 'velocity', 'u', 'Displacement'"
     );
 }
 
@@ -189,9 +189,12 @@ fn bad_input_is_refused() {
         (vtu(TET, ["0 1 2 3", "4", "42"], ""), "a polyhedron (cell type 42)"),
         (vtu(TET, ["0 1 2 3", "4", "200"], ""), "cell type 200 is not supported"),
         (vtu(TET, ["0 1 2", "3", "10"], ""), "a cell of type 10 has 4 points, this one has 3"),
-        (vtu(TET, ["0 1 2 4", "4", "10"], ""), "names vertex 4 (counted from 0), but there are 4"),
-        (vtu(TET, ["0 1 2 2", "4", "10"], ""), "names vertex 2 (counted from 0) twice"),
-        (vtu(TET, ["0 1 2 -3", "4", "10"], ""), "array 'connectivity': '-3' is no such number"),
+        (
+            vtu(TET, ["0 1 2 4", "4", "10"], ""),
+            "the element names vertex 4 (counted from 0), but there are 4",
+        ),
+        (vtu(TET, ["0 1 2 2", "4", "10"], ""), "the element names vertex 2 (counted from 0) twice"),
+        (vtu(TET, ["0 1 2 -3", "4", "10"], ""), "array 'connectivity': '-3' is no number of its type"),
         (vtu(TET, ["0 1 2 3", "5", "10"], ""), "array 'connectivity': it has 4 numbers, 5 are needed"),
         (vtu(TET, ["0 1 2 3 0 1 2", "4 3", "10 10"], ""), "it has 7 numbers, 3 are needed"),
         (
@@ -210,7 +213,7 @@ fn bad_input_is_refused() {
         (vtu("0 0 0", ["", "", ""], ""), "no cell is a triangle, a polygon"),
         (
             vtu(TET, ["0 1 2 3", "4", "10"], "").replace("UnstructuredGrid", "ImageData"),
-            "line 2: a VTK file of type 'ImageData': save it",
+            "line 2: the VTK file has the type 'ImageData': save it",
         ),
         (
             vtu(TET, ["0 1 2 3", "4", "10"], "")
@@ -259,7 +262,7 @@ fn bad_input_is_refused() {
         let message = binary(text);
         assert!(message.contains(named), "{text}: {message}");
     }
-    // Sizes that lie reserve no memory.
+    // False sizes reserve no memory.
     let large =
         vtu(TET, ["0 1 2 3", "4", "10"], "").replace("NumberOfPoints='4'", "NumberOfPoints='999999999999'");
     let large = large.replace("'3' format='ascii'>", "'3' format='binary'>");
@@ -287,7 +290,7 @@ fn bad_legacy_files_are_refused() {
             format!("{whole}POINT_DATA 3\nVECTORS u float\n0 0 0 0 0 0 0 0 0\n"),
             "'u' has 3 vectors for 4 points",
         ),
-        (format!("{whole}SPLINES 3\n"), "line 11: 'SPLINES' is no part of a grid that is known"),
+        (format!("{whole}SPLINES 3\n"), "line 11: 'SPLINES' is no known part of a grid"),
         (
             format!("{whole}POINT_DATA 4\nVECTORS u bit\n0 0 0 0 0 0 0 0 0 0 0 1\n"),
             "line 12: numbers of type 'bit' are not supported",
@@ -305,7 +308,7 @@ fn bad_legacy_files_are_refused() {
         let message = refused(&text);
         assert!(message.contains(named), "{named}: {message}");
     }
-    // Attributes of other kinds are skipped, and a text that is no number is none of theirs.
+    // Attributes of other kinds are skipped, also values that are no numbers.
     let data = "CELL_DATA 1\nSCALARS a float\nLOOKUP_TABLE default\nnan\nMETADATA\nINFORMATION 0\n\nPOINT_DATA 4\n\
                 FIELD f 2\nx 1 4 int\n1 2 3 4\nu 3 4 float\n0 0 0 0 0 0 0 0 0 0 0 2\nTENSORS t float\n";
     let text = format!("{whole}{data}{}", "1 ".repeat(36));
@@ -388,7 +391,7 @@ fn references_and_cdata_in_arrays_are_refused() {
     }
     let message = refused(&whole.replace("\n0 1 2 3\n", "\n0 1 2<!-- x --> 3\n"));
     assert!(message.contains("the text of an array is in several parts"), "{message}");
-    // Elsewhere they are of no consequence.
+    // Outside of arrays, references and CDATA sections are allowed.
     let named =
         whole.replace("<PointData>", "<FieldData><Array>a&amp;b<![CDATA[c]]></Array></FieldData><PointData>");
     assert!(parse(named.as_bytes()).is_ok());

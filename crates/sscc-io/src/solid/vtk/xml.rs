@@ -16,14 +16,14 @@ use crate::error::{cut, quoted};
 /// Beginning of the data that is no XML.
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// Advice where a file has another structure.
+/// Advice if a file has another structure.
 const SAVE: &str =
     "save it as an unstructured grid (.vtu) of one piece, as ParaView's filter Merge Blocks does";
 
-/// Maximum number of elements within each other, which bounds memory; real files have about six.
+/// Maximum depth of nested elements, which bounds memory; real files have about six.
 const MAX_DEPTH: usize = 64;
 
-/// An element with its attributes and, of an array, the text in it, apart from that of its children.
+/// An element with its attributes. An array also has its text, without that of its children.
 pub(crate) struct Element<'a> {
     pub name: String,
     /// Number of the element around it.
@@ -84,7 +84,7 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
                 let element = element(&start, open.last(), line)?;
                 if open.len() == MAX_DEPTH {
                     return Err(
-                        element.refused(format!("more than {MAX_DEPTH} elements are within each other"))
+                        element.refused(format!("elements are nested more than {MAX_DEPTH} levels deep"))
                     );
                 }
                 open.push(found.len());
@@ -94,7 +94,7 @@ pub(crate) fn elements(text: &str, is_head: bool) -> Result<Vec<Element<'_>>, Fo
             Event::End(_) => drop(open.pop()),
             Event::Text(part) if is_in_array(&found, &open) && !part.trim_ascii().is_empty() => {
                 let start = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
-                // Text is borrowed from the file, so its end is where the reader is.
+                // Text is borrowed from the file, so its end is the position of the reader.
                 let part = text.get(start - part.len()..start).unwrap_or_default();
                 if let Some(parent) = open.last().map(|number| &mut found[*number]) {
                     if !parent.text.is_empty() {
@@ -127,7 +127,7 @@ fn is_in_array(found: &[Element<'_>], open: &[usize]) -> bool {
     open.last().is_some_and(|number| found[*number].name == "DataArray")
 }
 
-/// The error of a line. The cause may name words of the file.
+/// Returns the error of a line. The cause may name words of the file.
 fn malformed(line: usize, cause: &str) -> FormatError {
     FormatError::line(line, format!("malformed XML: {}", cut(cause, 120)))
 }
@@ -150,7 +150,7 @@ fn element<'a>(
     Ok(Element { name, parent: parent.copied(), attributes, text: "", line })
 }
 
-/// Counts lines once, as a reader goes on.
+/// Counts the lines of a text once, while a reader advances.
 struct LineCounter<'a> {
     text: &'a [u8],
     at: usize,
@@ -183,11 +183,13 @@ pub(super) fn parse(bytes: &[u8], displacement: &Displacement) -> Result<Grid, F
 
 fn decoder<'a>(elements: &[Element<'_>], tail: &'a [u8], size: u64) -> Result<Decoder<'a>, FormatError> {
     let Some(root) = elements.first().filter(|root| root.name == "VTKFile") else {
-        return Err(FormatError::whole("no VTK file: '<VTKFile' or '# vtk DataFile Version' was expected"));
+        return Err(FormatError::whole(
+            "the file is no VTK file: '<VTKFile' or '# vtk DataFile Version' was expected",
+        ));
     };
     let kind = root.get("type").unwrap_or_default();
     if kind != "UnstructuredGrid" {
-        return Err(root.refused(format!("a VTK file of type {}: {SAVE}", quoted(kind))));
+        return Err(root.refused(format!("the VTK file has the type {}: {SAVE}", quoted(kind))));
     }
     let is_compressed = match root.get("compressor") {
         None | Some("") => false,
@@ -232,7 +234,7 @@ fn appended(tail: &[u8]) -> Result<(bool, Option<&[u8]>), FormatError> {
         _ => return Err(refused("its encoding is neither 'raw' nor 'base64'")),
     };
     let data = tail[begin + 1..].trim_ascii_start();
-    let Some(data) = data.strip_prefix(b"_") else { return Err(refused("its data begins with '_'")) };
+    let Some(data) = data.strip_prefix(b"_") else { return Err(refused("its data must begin with '_'")) };
     // The end of raw data is not searched: it may contain any bytes.
     let end =
         if is_base64 { data.iter().position(|byte| *byte == b'<').unwrap_or(data.len()) } else { data.len() };
@@ -254,7 +256,7 @@ fn read_grid(
     let mut pieces = elements.iter().filter(|element| element.name == "Piece");
     let Some(piece) = pieces.next() else { return Err(FormatError::whole("the file has no 'Piece'")) };
     if let Some(second) = pieces.next() {
-        return Err(second.refused(format!("a second piece of the grid: {SAVE}")));
+        return Err(second.refused(format!("there is a second piece of the grid: {SAVE}")));
     }
     if let Some(step) = elements.iter().find(|element| element.get("TimeStep").is_some()) {
         let cause = "the file has several time steps: save each as a file, in a collection (.pvd)";

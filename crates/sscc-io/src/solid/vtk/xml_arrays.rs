@@ -15,7 +15,7 @@ pub(super) struct Array<'a> {
     pub data: Data<'a>,
 }
 
-/// Where the numbers of an array are.
+/// Location of the numbers of an array.
 pub(super) enum Data<'a> {
     Ascii(&'a str),
     Base64(&'a str),
@@ -70,7 +70,7 @@ impl<'a> Array<'a> {
 /// Decodes the arrays of one file.
 pub(super) struct Decoder<'a> {
     pub layout: Layout,
-    /// The appended data after its `_`; None: the file has none.
+    /// The appended data after its `_`; None if the file has none.
     pub appended: Option<&'a [u8]>,
     /// Whether the appended data is base64.
     pub is_base64: bool,
@@ -122,7 +122,9 @@ impl Decoder<'_> {
         let mut numbers = Vec::new();
         for word in text.split_ascii_whitespace() {
             let number = parse(word);
-            numbers.push(number.ok_or_else(|| array.refused(format!("{} is no such number", quoted(word))))?);
+            numbers.push(
+                number.ok_or_else(|| array.refused(format!("{} is no number of its type", quoted(word))))?,
+            );
         }
         if numbers.len() as u64 != count {
             let found = numbers.len();

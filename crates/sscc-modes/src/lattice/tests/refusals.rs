@@ -14,7 +14,7 @@ fn refusal(mesh: &TriMesh, cells: Option<usize>) -> ModesError {
 }
 
 #[test]
-fn open_and_mixed_surfaces() {
+fn open_and_mixed_surfaces_are_refused() {
     let ball = sphere(2);
     let open = mesh(ball.rest_positions().to_vec(), ball.faces()[1..].to_vec());
     let ModesError::OpenEdge { from, to, forward, backward } = refusal(&open, None) else { panic!() };
@@ -28,7 +28,7 @@ fn open_and_mixed_surfaces() {
 }
 
 #[test]
-fn without_volume() {
+fn surfaces_without_volume_are_refused() {
     let flat = moved(&sphere(2), |p| DVec3::new(p.x, p.y, 0.0));
     assert_eq!(refusal(&flat, None), ModesError::NoVolume);
     assert_eq!(refusal(&moved(&flat, |p| p + 1e6), None), ModesError::NoVolume);
@@ -38,14 +38,14 @@ fn without_volume() {
 }
 
 #[test]
-fn collisions_at_rest() {
+fn collisions_at_rest_are_refused() {
     let boxes = [DVec3::ZERO, DVec3::new(0.4, 0.3, 0.2)].map(|p| cuboid(p, p + 1.0));
     let crossing = refusal(&joined(&boxes), None);
     assert!(matches!(crossing, ModesError::CollidesAtRest { a: 0..12, b: 12..24 }), "{crossing}");
 }
 
 #[test]
-fn several_bodies() {
+fn several_bodies_are_refused() {
     let [a, b, c] = [0.0, 1.001, 3.0].map(|x| cuboid(DVec3::X * x, DVec3::X * x + 1.0));
     for cells in [None, Some(1), Some(3), Some(50)] {
         assert_eq!(refusal(&joined(&[a.clone(), b.clone()]), cells), ModesError::Pieces { count: 2 });
@@ -64,7 +64,7 @@ fn several_bodies() {
 }
 
 #[test]
-fn resolutions() {
+fn resolutions_out_of_range_are_refused() {
     let ball = sphere(3);
     for cells in [0, 1_000_000_000_000] {
         let ModesError::Resolution { cells: requested, max } = refusal(&ball, Some(cells)) else { panic!() };
@@ -74,7 +74,7 @@ fn resolutions() {
 }
 
 #[test]
-fn cancelled() {
+fn cancelled_work_is_an_error() {
     let error = Lattice::around(&sphere(2), None, &CancelToken::when(|| true)).err();
     assert_eq!(error, Some(ModesError::Core(sscc::Error::Cancelled)));
 }

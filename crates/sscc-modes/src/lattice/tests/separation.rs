@@ -21,7 +21,7 @@ fn rotated(of: &TriMesh) -> TriMesh {
 
 /// The path through cubes between the ends of a nearly closed ring is as long as the ring.
 #[test]
-fn ends_of_a_ring() {
+fn ends_of_a_nearly_closed_ring_stay_separate() {
     for gap in [1e-3, 1e-6, 1e-9, 1e-14] {
         for ring in [cut_ring(gap), rotated(&cut_ring(gap))] {
             for cells in [Some(12), Some(40), None] {
@@ -47,14 +47,14 @@ fn ends_of_a_ring() {
 
 /// All layers of a folded plate lie in the same cells, but the path through cubes is as long as the plate.
 #[test]
-fn layers_of_a_folded_plate() {
+fn layers_of_a_folded_plate_stay_separate() {
     for height in [0.02, 1e-3, 1e-7] {
         let plate = folded_plate(12, height);
         for plate in [plate.clone(), rotated(&plate)] {
             let lattice = lattice(&plate, Some(9));
             let last = plate.rest_positions().len() - 4;
             let steps = surface_distances(&lattice, 0)[last];
-            // Diagonal steps; both cubes at a fold may belong to both layers.
+            // The path has diagonal steps, and both cubes at a fold may belong to both layers.
             let shortest = 12.0 * (1.0 / (lattice.spacing * 3_f64.sqrt()) - 2.0);
             assert!(f64::from(steps) >= shortest && shortest > 20.0, "{height}: {steps} < {shortest}");
             let copies = duplicates(&lattice) as f64 / lattice.cubes.len() as f64;
@@ -68,7 +68,7 @@ fn layers_of_a_folded_plate() {
 
 /// A closed ring has no duplicate cells.
 #[test]
-fn a_closed_ring() {
+fn a_closed_ring_has_no_duplicate_cells() {
     let cut = cut_ring(0.0);
     let count = cut.rest_positions().len() as u32 - 4;
     let faces = cut.faces()[4..].iter().map(|face| face.map(|v| v % count)).collect();
@@ -80,7 +80,7 @@ fn a_closed_ring() {
 
 /// Coils of the spring are a tube radius (0.03) apart, less than a cell, and stay separate.
 #[test]
-fn coils_of_a_spring() {
+fn coils_of_a_spring_stay_separate() {
     let spring = spring();
     let rings: Vec<DVec3> =
         spring.rest_positions().chunks_exact(16).map(|ring| ring.iter().sum::<DVec3>() / 16.0).collect();
@@ -106,7 +106,7 @@ fn coils_of_a_spring() {
 
 /// Plates much thinner than cells are one piece, and both sides share cubes.
 #[test]
-fn thin_plates() {
+fn plates_thinner_than_cells_are_one_piece() {
     for thickness in [0.1, 1e-3, 1e-8] {
         let slab = cuboid(DVec3::ZERO, DVec3::new(2.0, 1.5, thickness));
         for (plate, cells) in [(slab.clone(), Some(20)), (rotated(&slab), Some(20)), (rotated(&slab), None)] {
@@ -118,7 +118,7 @@ fn thin_plates() {
 
 /// The surface connects a rod that is thinner than the distance of the lines.
 #[test]
-fn a_needle() {
+fn a_needle_thinner_than_the_distance_of_lines_is_one_piece() {
     for width in [0.05, 1e-3, 1e-6] {
         let needle = cuboid(DVec3::ZERO, DVec3::new(2.0, width, 0.7 * width));
         for (needle, cells) in [(needle.clone(), 20), (rotated(&needle), 20), (rotated(&needle), 7)] {
@@ -129,7 +129,7 @@ fn a_needle() {
 
 /// An unused vertex does not change the lattice and does not move.
 #[test]
-fn unused_vertices() {
+fn unused_vertices_do_not_change_the_lattice() {
     let ball = sphere(3);
     let mut positions = ball.rest_positions().to_vec();
     positions.push(DVec3::splat(1e9));
@@ -139,7 +139,7 @@ fn unused_vertices() {
 }
 
 #[test]
-fn surfaces_split_along_seams() {
+fn surfaces_split_along_seams_have_the_same_lattice() {
     let whole = sphere(3);
     let apart = whole.faces().iter().flatten().map(|v| whole.rest_positions()[*v as usize]).collect();
     let split = mesh(apart, (0..whole.faces().len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect());

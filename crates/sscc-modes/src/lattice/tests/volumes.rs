@@ -8,7 +8,7 @@ use super::{duplicates, lattice, mesh_volume, volume};
 use crate::shapes::{hare, serpent, spring};
 
 #[test]
-fn boxes() {
+fn boxes_have_their_volume() {
     let aligned = cuboid(DVec3::new(-1.0, 2.0, 0.0), DVec3::new(1.0, 3.3, 1.1));
     let rotation = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
     let tilted = moved(&aligned, |p| rotation * p);
@@ -32,7 +32,7 @@ fn boxes() {
 }
 
 #[test]
-fn a_ball_and_a_hollow_one() {
+fn a_ball_and_a_hollow_ball_have_their_volume() {
     let ball = sphere(4);
     let shell = joined(&[ball.clone(), inverted(&moved(&ball, |p| 0.8 * p))]);
     for mesh in [&ball, &shell] {
@@ -46,7 +46,7 @@ fn a_ball_and_a_hollow_one() {
 }
 
 #[test]
-fn embedded_shapes() {
+fn embedded_shapes_have_their_volume() {
     for (name, mesh) in [("spring", spring()), ("hare", hare()), ("serpent", serpent())] {
         for cells in [None, Some(60)] {
             let lattice = lattice(&mesh, cells);
@@ -58,7 +58,7 @@ fn embedded_shapes() {
 
 /// A moved and scaled shape has the same cubes.
 #[test]
-fn places_and_sizes() {
+fn moved_and_scaled_shapes_have_the_same_cubes() {
     let mesh = hare();
     let plain = lattice(&mesh, Some(40));
     let places =

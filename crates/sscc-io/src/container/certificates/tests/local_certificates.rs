@@ -7,7 +7,7 @@ use crate::container::local_certificates::TENSORS;
 
 const VALUES: [f32; 3] = [f32::MIN_POSITIVE, 1.5e-40, 3.0];
 
-/// A larger model, and its certificates.
+/// Returns a larger model and its certificates.
 fn large() -> (ReducedModel, Certificates) {
     let model = strip(900);
     let options = CertifyOptions::default().budget(8).local_budget(256);
@@ -15,7 +15,7 @@ fn large() -> (ReducedModel, Certificates) {
     (model, certificates)
 }
 
-/// Would fail if a field were left out, or two of them exchanged.
+/// This test fails if a field is omitted, or two fields are exchanged.
 #[test]
 fn every_field_round_trips_bit_for_bit() {
     let (model, certificates) = large();
@@ -51,9 +51,9 @@ fn every_field_round_trips_bit_for_bit() {
     }
 }
 
-/// With groups the file has both.
+/// A file may have groups and local certificates.
 #[test]
-fn groups_and_local_certificates_are_in_one_file() {
+fn files_with_groups_and_local_certificates_round_trip() {
     let groups = TriangleGroups::new(&(0..22).map(|t| t / 6).collect::<Vec<u32>>()).unwrap().between_only();
     let filter = ContactFilter::default().with_groups(groups);
     let options = CertifyOptions::default().filter(filter).local_budget(64);
@@ -65,9 +65,9 @@ fn groups_and_local_certificates_are_in_one_file() {
     assert_eq!(read, certificates);
 }
 
-/// Certificates differ in nothing else from those that are computed without.
+/// Certificates computed with and without local certificates differ in nothing else.
 #[test]
-fn the_rest_of_the_file_does_not_depend_on_them() {
+fn local_certificates_change_nothing_else_in_the_file() {
     let (model, certificates) = large();
     let options = CertifyOptions::default().budget(8).local_budget(0);
     let plain = Certificates::compute(&model, &options, &()).unwrap();
@@ -80,7 +80,7 @@ fn the_rest_of_the_file_does_not_depend_on_them() {
     assert!(file.names().iter().all(|name| !name.starts_with("local")));
 }
 
-/// A file of version 7 without the tensors has none; every tensor is needed where there is one.
+/// A file of version 7 without the tensors has no local certificates; a file with one of the tensors needs all of them.
 #[test]
 fn incomplete_tensors_are_rejected() {
     let bytes = sample();
@@ -193,9 +193,9 @@ fn damaged_tensors_are_rejected_or_harmless() {
     assert!(rejected > threshold(500) && harmless > threshold(100), "{rejected} {harmless}");
 }
 
-/// Files of version 6 know no flat patches.
+/// Files of version 6 have no flat patches.
 #[test]
-fn files_of_the_first_version_are_read() {
+fn files_of_version_6_are_read() {
     let bytes = sample();
     let file = Container::parse(&bytes, CERTIFICATES).unwrap();
     let mut writer = ContainerWriter::new(crate::container::Kind { version: 6, ..CERTIFICATES });

@@ -1,4 +1,4 @@
-//! Positions differ from the real numbers of the standard by no more than docs/guarantees.md says.
+//! Positions differ from the real numbers of the standard by no more than docs/guarantees.md states.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -120,6 +120,6 @@ fn nested_nodes_are_as_accurate_as_stated() {
             }
         }
     }
-    // The bound is no idle one: errors are above a thousandth of it.
+    // The bound is not far too large: the largest error exceeds a thousandth of it.
     assert!(largest > 1e-3, "{largest}");
 }

@@ -3,18 +3,18 @@
 use super::file::{JSON, binary, changed, glb, scene};
 use crate::gltf::{SkinWeights, parse_scene};
 
-/// The error of a file, or of its animation, where it is evaluated.
+/// Returns the error of reading a file, or else of evaluating its animation.
 fn error(bytes: &[u8]) -> String {
     let evaluated = parse_scene(bytes).and_then(|scene| scene.pose(Some(0), 0.0).map(drop));
     evaluated.unwrap_err().to_string()
 }
 
-/// The error for the valid file with one change.
+/// Returns the error for the valid file with one change.
 fn with(from: &str, to: &str) -> String {
     error(&changed(&[(from, to)]))
 }
 
-/// The error for the valid file with other bytes in the buffer.
+/// Returns the error for the valid file with other bytes in the buffer.
 fn with_bytes(at: usize, bytes: &[u8]) -> String {
     let mut binary = binary();
     binary[at..at + bytes.len()].copy_from_slice(bytes);

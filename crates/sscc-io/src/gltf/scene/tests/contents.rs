@@ -44,7 +44,7 @@ fn malformed_parts_have_their_errors() {
     let error = broken.animations[0].error.as_ref().unwrap().to_string();
     assert_eq!(error, "accessors[77]: there is no such accessor");
     assert_eq!(broken.animations[0].info.name.as_deref(), Some("wave"));
-    // A missing buffer leaves the rest of the list.
+    // If a buffer is missing, the rest of the list is complete.
     let missing = JSON.replace(r#"{"byteLength":512}"#, r#"{"byteLength":512,"uri":"missing.bin"}"#);
     let missing = parse_contents(missing.as_bytes()).unwrap();
     assert!(missing.meshes[0].size.is_err() && missing.animations[0].error.is_some());

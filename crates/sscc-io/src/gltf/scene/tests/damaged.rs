@@ -79,7 +79,7 @@ proptest! {
         evaluate(&bytes);
     }
 
-    /// Exchanged numbers leave the JSON valid.
+    /// The JSON stays valid when numbers are exchanged.
     #[test]
     fn exchanged_numbers(
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..12), 1..4),

@@ -50,7 +50,7 @@ fn unusual_files_are_read() {
     assert!(scene(&[(r#""mode":5"#, r#""mode":0"#)]).mesh_nodes().is_empty());
     let none = parse_scene(br#"{"asset":{"version":"2.0"}}"#).unwrap();
     assert!(none.mesh_nodes().is_empty() && none.animations().is_empty());
-    // Channels of extensions are counted, and nothing else.
+    // Channels of extensions are counted, but not evaluated.
     let json = JSON.replace(r#""node":3,"#, "").replace(r#""mesh":0,"#, "");
     let unused = parse_scene(&glb(&json, &binary())).unwrap();
     let info = &unused.animations()[0];

@@ -1,4 +1,4 @@
-//! Meshes at rest stand where nodes put them.
+//! Meshes at rest are at the places that nodes give them.
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -63,7 +63,7 @@ fn a_node_can_be_named() {
     let one = placed(&changed(&[]), Some("skinned")).unwrap();
     assert_eq!(nodes(&one), [Some(3)]);
     assert_eq!(one.groups(0, GroupsBy::Object).unwrap().names, ["skinned"]);
-    // A mesh is preferred; a node without triangles is none.
+    // The name of a mesh is preferred to that of a node; a node without triangles does not count.
     let node = r#"{"name":"skinned","mesh":0"#;
     let both = placed(&changed(&[(node, r#"{"name":"flag","mesh":0"#)]), Some("flag")).unwrap();
     assert_eq!(nodes(&both), [Some(3), Some(4)]);
@@ -99,7 +99,7 @@ fn the_default_scene_is_preferred() {
 }
 
 #[test]
-fn a_mesh_without_nodes_is_where_it_is() {
+fn a_mesh_without_nodes_keeps_its_own_coordinates() {
     let json = JSON.replace(r#""mesh":0,"#, "");
     let own = placed(&glb(&json, &binary()), None).unwrap();
     assert_eq!((nodes(&own), own.transform(0)), (vec![None], Some(DMat4::IDENTITY)));
@@ -108,7 +108,7 @@ fn a_mesh_without_nodes_is_where_it_is() {
 }
 
 #[test]
-fn places_that_no_answer_can_be_about() {
+fn flat_places_are_reported_and_invalid_ones_are_rejected() {
     let flat = placed(&changed(&[(r#""scale":[-1,1,1]"#, r#""scale":[1,0,1]"#)]), None).unwrap();
     assert!(flat.is_flattened(1) && !flat.is_flattened(0));
     let far = placed(&changed(&[(r#""scale":[-1,1,1]"#, r#""scale":[1e300,1,1]"#)]), None).unwrap();

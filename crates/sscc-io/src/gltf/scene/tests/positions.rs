@@ -10,7 +10,7 @@ fn stored_state_without_an_animation() {
     let half_turn = DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
     let scale = DVec3::new(1.0, 2.0, 1.0);
     assert_close(&positions(&scene(&[]), 3, None), &skinned(10.0, half_turn, scale, 0.0));
-    // Without a skin, the node counts: its transform, and its own weights before those of the mesh.
+    // Without a skin, the node's transform applies, and its own weights are preferred to those of the mesh.
     let rigid = [
         DVec3::new(0.0, 0.0, 5.0),
         DVec3::new(-1.0, 0.0, 6.0),
@@ -54,7 +54,7 @@ fn missing_inverse_bind_matrices_are_the_identity() {
 }
 
 #[test]
-fn readings_of_weights() {
+fn skin_weights_are_normalized_or_used_as_stored() {
     let mut binary = binary();
     for vertex in 0..4 {
         for (at, weight) in [[0.5_f32, 0.0], [0.0, 0.0], [0.5, 1.5], [1.5, 0.5]][vertex].iter().enumerate() {
