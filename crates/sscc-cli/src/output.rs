@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use serde::Serialize;
-pub use sscc_sim::text::{counted, duration, grouped, length, one_line};
+pub use sscc_tasks::text::{counted, duration, grouped, length, one_line};
 
 /// Standard output: line by line to a terminal, else in blocks.
 ///

@@ -5,8 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc::parts::Surface;
-use sscc_sim::text::{counted, grouped, one_line};
-use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
+use sscc_tasks::text::{counted, grouped, one_line};
+use sscc_tasks::{DetectionAnswer, LeftOut, ShapeInMotion};
 
 use super::contact_segments::contact_segments;
 use super::node_pairs::NodePairs;
@@ -23,7 +23,7 @@ const MAX_CONTACTS: usize = 1 << 16;
 /// Maximum number of bodies with a row of their own in the report's table.
 const MAX_ROWS: usize = 20;
 
-/// A report of meshes, of their frames or of animations, built from the answers of [`detect`](sscc_sim::detect) in their
+/// A report of meshes, of their frames or of animations, built from the answers of [`detect`](sscc_tasks::detect) in their
 /// order.
 ///
 /// Positions are stored in single precision, relative to the middle of the first frame.
