@@ -1,6 +1,7 @@
 //! Formats numbers and names for people.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Returns text with control characters escaped, so that it is one line. Errors name files, and names of files may have
 /// line breaks.
@@ -14,6 +15,11 @@ pub fn one_line(text: &str) -> String {
         }
     }
     line
+}
+
+/// Returns the name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// The longest text that an error repeats.

@@ -31,6 +31,7 @@ pub(super) struct Side<'m, 'w> {
 }
 
 /// The result of one query.
+#[derive(Default)]
 pub(super) struct QueryResult {
     pub pairs: Vec<Pair>,
     pub times: Option<Vec<f64>>,
@@ -154,19 +155,7 @@ fn discrete(
     let options = ContactOptions { depths, curves: curves && is_last };
     let contacts = Contacts::of(x.surface(), other.as_deref().map(Side::surface), &pairs, options)?;
     let is_complete = statistics.complete;
-    let positions = Vec::new();
-    Ok(QueryResult {
-        pairs,
-        times: None,
-        contacts,
-        near: None,
-        enclosed: None,
-        penetration: None,
-        is_complete,
-        microseconds,
-        statistics,
-        positions,
-    })
+    Ok(QueryResult { pairs, contacts, is_complete, microseconds, statistics, ..QueryResult::default() })
 }
 
 fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryResult, sscc::Error> {
@@ -183,15 +172,11 @@ fn near((x, other): Sides<'_, '_, '_>, clearance: &Clearance) -> Result<QueryRes
     }?;
     Ok(QueryResult {
         pairs,
-        times: None,
-        contacts: Contacts::default(),
         near: Some(near),
-        enclosed: None,
-        penetration: None,
         is_complete: true,
         microseconds: start.elapsed().as_secs_f64() * 1e6,
         statistics: x.detector.statistics(),
-        positions: Vec::new(),
+        ..QueryResult::default()
     })
 }
 
@@ -208,14 +193,10 @@ fn continuous(limit: Option<usize>, (x, other): Sides<'_, '_, '_>) -> Result<Que
     Ok(QueryResult {
         pairs: kept.iter().map(|impact| impact.pair).collect(),
         times: Some(kept.iter().map(|impact| impact.time).collect()),
-        contacts: Contacts::default(),
-        near: None,
-        enclosed: None,
-        penetration: None,
         is_complete,
         microseconds,
         statistics: x.detector.statistics(),
-        positions: Vec::new(),
+        ..QueryResult::default()
     })
 }
 

@@ -12,6 +12,7 @@ use super::given_model::{GivenModel, ModelFiles};
 use crate::error::At;
 use crate::models::{SolidSource, is_solid, read_embedded};
 use crate::resize::{Resize, scaled};
+use crate::text::file_name;
 use crate::{TaskError, Watch};
 
 /// Rings of the embedded spring, and vertices of each.
@@ -133,10 +134,6 @@ impl Shape {
             ),
         }
     }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into()
 }
 
 /// Returns the folder of real models: `wanted`, else that of the environment variable `SSCC_MODELS`, else None.

@@ -1,11 +1,9 @@
 //! Reports of meshes without modes.
 
-use std::path::Path;
-
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc::parts::Surface;
-use sscc_tasks::text::{counted, grouped, one_line};
+use sscc_tasks::text::{counted, file_name, grouped, one_line};
 use sscc_tasks::{DetectionAnswer, LeftOut, ShapeInMotion};
 
 use super::contact_segments::contact_segments;
@@ -193,10 +191,6 @@ fn middle(points: &[DVec3]) -> DVec3 {
 
 fn surface(shape: ShapeInMotion<'_>) -> Surface<'_> {
     Surface { faces: shape.mesh.faces(), positions: shape.x_t0 }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// Size of the positions and faces of a body in a report (bytes).
