@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sscc::{Pair, Proof, Statistics};
-use sscc_sim::text::{counted, length};
+use sscc_tasks::text::{counted, length};
 
 use crate::arrays::{CachedArray, cached, pairs};
 use crate::errors::{kind, value};

@@ -4,7 +4,7 @@ use numpy::{PyFixedUnicode, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use sscc_sim::text::{counted, grouped};
+use sscc_tasks::text::{counted, grouped};
 
 use crate::answer::{Answer, PickledAnswer, Reduction, pickled, unpickled};
 use crate::arguments::count;

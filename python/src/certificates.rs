@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList, PyType};
 use sscc_io::container::{certificates_from_bytes, certificates_to_bytes};
 use sscc_io::{read_certificates, write_certificates};
-use sscc_sim::text::{counted, length};
+use sscc_tasks::text::{counted, length};
 
 use crate::answer::{Answer, Reduction};
 use crate::arguments::{check_ending, count, path};

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use sscc::parts::GroupTable;
 use sscc::parts::body_penetration;
 use sscc::{Answer, Error, TriMesh};
-use sscc_sim::text::{counted, grouped};
+use sscc_tasks::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arguments::{count, switch};

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyList};
 use sscc::parts::Penetration;
 use sscc::{Answer, Impact, Pair, Statistics};
-use sscc_sim::text::counted;
+use sscc_tasks::text::counted;
 
 use crate::answer::{Reduction, pair_bytes, pairs_of_bytes, result};
 use crate::arrays::{CachedArray, cached, frozen, line, pairs, table};

@@ -4,7 +4,7 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use sscc::Answer;
-use sscc_sim::text::{counted, grouped};
+use sscc_tasks::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arrays::{CachedArray, cached, line, table};

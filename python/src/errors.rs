@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use sscc::Error;
 use sscc_io::IoError;
 use sscc_sim::SimError;
+use sscc_tasks::TaskError;
 
 /// Returns a `ValueError`.
 pub fn value(message: impl Into<String>) -> PyErr {
@@ -44,12 +45,21 @@ pub fn file(error: &IoError) -> PyErr {
     }
 }
 
+/// Converts an error of a task on files.
+pub fn refused_task(error: &TaskError) -> PyErr {
+    of_cause(Some(error), error.to_string())
+}
+
 /// Converts an error of a scene or simulation.
 pub fn refused_simulation(error: &SimError) -> PyErr {
-    match error.file() {
-        Some(error) => file(error),
-        None if error.is_system() => PyOSError::new_err(error.to_string()),
-        None => value(error.to_string()),
+    of_cause(error.task(), error.to_string())
+}
+
+/// Returns the exception of a message, of the class of its cause.
+fn of_cause(cause: Option<&TaskError>, message: String) -> PyErr {
+    match cause {
+        Some(cause) if cause.is_system() => PyOSError::new_err(message),
+        _ => cause.and_then(TaskError::file).map_or_else(|| value(message), file),
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use sscc::parts::Node;
-use sscc_sim::text::counted;
+use sscc_tasks::text::counted;
 
 use crate::arrays::line;
 use crate::pool::Pool;

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use sscc::{Impact, Pair, Statistics};
-use sscc_sim::text::counted;
+use sscc_tasks::text::counted;
 
 use crate::answer::{PickledAnswer, Reduction, pickled, unpickled};
 use crate::arrays::{CachedArray, cached, line, pairs};

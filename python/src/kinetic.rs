@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use sscc::Error;
-use sscc_sim::text::counted;
+use sscc_tasks::text::counted;
 
 use crate::answer::Answer;
 use crate::arrays::vector;

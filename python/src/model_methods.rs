@@ -9,8 +9,8 @@ use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{LoadOptions, ModelInfo, load_model_with, write_model};
 use sscc_modes::DisplacementFit;
-use sscc_sim::static_answer;
-use sscc_sim::text::{counted, grouped};
+use sscc_tasks::static_answer;
+use sscc_tasks::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arguments::{check_ending, path};

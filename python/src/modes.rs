@@ -9,11 +9,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sscc::{Progress, TriMesh};
 use sscc_io::read_frames;
-use sscc_sim::{
-    ModesKind, NewModel, SimError, SolidSource, elastic_model, is_solid, pca_model, polynomial_model,
+use sscc_solid::PartialMaterial;
+use sscc_tasks::{
+    ModesKind, NewModel, SolidSource, TaskError, elastic_model, is_solid, pca_model, polynomial_model,
     read_surface,
 };
-use sscc_solid::PartialMaterial;
 
 use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
@@ -53,7 +53,7 @@ impl Source {
     }
 
     /// Converts an error; the message names the file.
-    fn refused(&self, error: &SimError) -> PyErr {
+    fn refused(&self, error: &TaskError) -> PyErr {
         match error.file() {
             Some(error) => file(error),
             None => match self {
@@ -152,7 +152,7 @@ fn elastic(
     kind: ModesKind,
     options: BodyOptions,
     progress: &dyn Progress,
-) -> Result<(NewModel, Option<String>), SimError> {
+) -> Result<(NewModel, Option<String>), TaskError> {
     let BodyOptions { rank, material, fixed, fixed_box, resolution } = options;
     let solid = match source {
         Source::File(path) => SolidSource::read(path, resolution, 1.0, &material, progress)?,
@@ -165,7 +165,7 @@ fn elastic(
     if let Some([a, b]) = fixed_box {
         let within = solid.within(a.min(b), a.max(b));
         if within.is_empty() {
-            return Err(SimError::refused("fix_box", "it contains no vertex: enlarge or move it"));
+            return Err(TaskError::refused("fix_box", "it contains no vertex: enlarge or move it"));
         }
         held.extend(within);
     }
@@ -181,7 +181,7 @@ fn compute(
     source: Source,
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
-    make: impl FnOnce(&Source, &dyn Progress) -> Result<(NewModel, Option<String>), SimError> + Send + 'static,
+    make: impl FnOnce(&Source, &dyn Progress) -> Result<(NewModel, Option<String>), TaskError> + Send + 'static,
 ) -> PyResult<Model> {
     let threads = pool::threads(threads)?;
     let source = Arc::new(source);

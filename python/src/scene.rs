@@ -9,14 +9,14 @@ use pyo3::types::PyList;
 use sscc::{Clearance, Pair};
 use sscc_io::gltf::{AnimatedScene, SkinWeights, read_scene};
 use sscc_io::{FormatError, IoError};
-use sscc_sim::{
-    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, SimError, Times, detect,
+use sscc_tasks::{
+    AnimationMotion, Detection, DetectionAnswer, GroupRules, MeshMotion, TaskError, Times, detect,
 };
 
 use crate::arguments::{self, choice, count, neighbours_by_name, number, switch};
 use crate::arrays::{frozen, line, pairs, vector};
 use crate::certify::rest_rings;
-use crate::errors::{file, refused_simulation, room, value, warn};
+use crate::errors::{file, refused_task, room, value, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
 use crate::watching::Watching;
@@ -172,13 +172,13 @@ pub fn _check_scene<'py>(
         let mut kept = Vec::new();
         let found = detect(&request, &watch, |_, found| {
             kept.push(Kept::of(found?));
-            Ok::<_, SimError>(ControlFlow::Continue(()))
+            Ok::<_, TaskError>(ControlFlow::Continue(()))
         });
         (found.map(|()| kept), watch.notes())
     })?;
     warn(py, &warnings)?;
     let class = py.import("sscc._scene")?.getattr("SceneAnswer")?;
-    let made = found.map_err(|error| refused_simulation(&error))?.into_iter().map(|kept| {
+    let made = found.map_err(|error| refused_task(&error))?.into_iter().map(|kept| {
         let ([node, other], [name, other_name]) = (kept.nodes, kept.names);
         let numbers = |all: Option<Vec<f64>>| all.map(|all| frozen(line(py, all))).transpose();
         let found = frozen(pairs(py, &kept.pairs)?)?;

@@ -5,7 +5,7 @@ use numpy::{PyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 use sscc::{ModeRange, Sweep, SweepOutcome, WeightInterval};
-use sscc_sim::{SweepRange, nearest};
+use sscc_tasks::{SweepRange, nearest};
 
 use crate::arguments::count;
 use crate::arrays::{copied, floats, frozen, pairs, vector};

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use sscc::{CancelToken, Progress};
-use sscc_sim::{Stage, Watch};
+use sscc_tasks::{Stage, Watch};
 
 /// Reports to `progress`, and keeps notes.
 pub struct Watching<'a> {

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use sscc::{Certificates, CertifyOptions, KineticQuery, Method, Query};
 use sscc_modes::shapes::elastic_spring;
-use sscc_sim::PeakMemory;
+use sscc_tasks::PeakMemory;
 
 /// Configurations of one period.
 const PERIOD: usize = 100_000;

@@ -24,7 +24,7 @@ use sscc::{Pair, TriMesh};
 use sscc_bench::Random;
 use sscc_io::gltf::{SkinWeights, read_scene};
 use sscc_modes::shapes::{hare, serpent, spring};
-use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, SimError, Times, detect};
+use sscc_tasks::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, TaskError, Times, detect};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -80,12 +80,12 @@ fn check(path: &Path, times: &[f64], all: &mut Found) -> Result<()> {
         threads: Some(1),
         ..Detection::default()
     };
-    let take = |_: &Path, found: std::result::Result<&DetectionAnswer<'_>, SimError>| {
+    let take = |_: &Path, found: std::result::Result<&DetectionAnswer<'_>, TaskError>| {
         let found = found?;
         if let Some(node) = found.node.filter(|_| !found.pairs.is_empty()) {
             all.insert((found.index, node, found.other_node.unwrap_or(node)), found.pairs.to_vec());
         }
-        Ok::<_, SimError>(ControlFlow::Continue(()))
+        Ok::<_, TaskError>(ControlFlow::Continue(()))
     };
     Ok(detect(&request, &(), take)?)
 }

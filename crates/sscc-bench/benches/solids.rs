@@ -12,8 +12,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use sscc_io::write_model;
-use sscc_sim::{ModesKind, PeakMemory, SolidSource, elastic_model};
 use sscc_solid::PartialMaterial;
+use sscc_tasks::{ModesKind, PeakMemory, SolidSource, elastic_model};
 
 /// Any error ends the bench.
 type Result<T> = std::result::Result<T, Box<dyn Error>>;

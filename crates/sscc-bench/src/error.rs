@@ -1,6 +1,7 @@
 //! Errors of benches.
 
 use sscc_sim::SimError;
+use sscc_tasks::TaskError;
 
 /// Error of a bench; its message is one line.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +30,10 @@ pub enum Error {
     /// A query failed, or the work was cancelled.
     #[error(transparent)]
     Core(#[from] sscc::Error),
-    /// Error of a model or a simulation.
+    /// Error of a model or a file.
+    #[error(transparent)]
+    Task(#[from] TaskError),
+    /// Error of a scene or a simulation.
     #[error(transparent)]
     Sim(#[from] SimError),
     /// The data of the report cannot be written.

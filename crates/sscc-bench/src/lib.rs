@@ -5,7 +5,7 @@
 //! `docs/benchmarks.md` explains the measurement. A scenario measures one model after the other, and returns a record
 //! of each, which is one line of JSON.
 //!
-//! A [`sscc_sim::Watch`] follows and cancels long work. The crate prints nothing.
+//! A [`sscc_tasks::Watch`] follows and cancels long work. The crate prints nothing.
 
 pub mod demo;
 mod error;

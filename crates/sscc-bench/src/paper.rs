@@ -1,7 +1,7 @@
 //! Tables 1 to 3 of the paper beside our results. The paper's times are those of a machine of 2009; ratios can be
 //! compared.
 
-use sscc_sim::text::grouped;
+use sscc_tasks::text::grouped;
 
 use crate::record::Record;
 

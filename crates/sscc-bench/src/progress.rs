@@ -1,13 +1,9 @@
-//! Progress of repetitions, and cancellation between them.
+//! Counter of repetitions, which can be cancelled between them.
 
 use sscc::Progress;
+use sscc_tasks::check_cancelled;
 
 use crate::error::Error;
-
-/// Returns an error if `progress` cancels.
-pub fn check_cancelled(progress: &dyn Progress) -> Result<(), Error> {
-    if progress.is_cancelled() { Err(sscc::Error::Cancelled.into()) } else { Ok(()) }
-}
 
 /// Counts repetitions.
 pub struct Counter<'a> {
@@ -26,6 +22,6 @@ impl<'a> Counter<'a> {
     pub fn count(&mut self) -> Result<(), Error> {
         self.done += 1;
         self.progress.report(self.done, self.total);
-        check_cancelled(self.progress)
+        Ok(check_cancelled(self.progress)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sscc_sim::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, Shape, Stage, Watch};
+use sscc_tasks::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, Recipe, Shape, Stage, Watch};
 
 use crate::error::Error;
 

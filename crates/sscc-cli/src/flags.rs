@@ -4,6 +4,7 @@ use std::error::Error;
 
 use sscc_io::{IoError, Setting};
 use sscc_sim::SimError;
+use sscc_tasks::TaskError;
 use sscc_view::ViewError;
 
 /// Returns the flag of a setting.
@@ -13,7 +14,11 @@ pub fn flag(setting: Setting) -> String {
 
 /// Returns the message of an error, without those of its sources.
 pub fn message(error: &(dyn Error + 'static)) -> String {
-    if let Some(error) = error.downcast_ref::<SimError>() {
+    if let Some(error) = error.downcast_ref::<TaskError>() {
+        error.message().with_names(flag)
+    } else if let Some(error) = error.downcast_ref::<SimError>() {
+        error.message().with_names(flag)
+    } else if let Some(sscc_bench::Error::Task(error)) = error.downcast_ref() {
         error.message().with_names(flag)
     } else if let Some(sscc_bench::Error::Sim(error)) = error.downcast_ref() {
         error.message().with_names(flag)

@@ -7,7 +7,7 @@ use anyhow::{Context, Error, Result, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
 use sscc_io::{IoError, LoadOptions, LoadedModel, Setting, check_writable, folder};
-use sscc_sim::{CertificateRequest, GroupRules, Scheme, SimError, available_threads, read_configuration};
+use sscc_tasks::{CertificateRequest, GroupRules, Scheme, TaskError, available_threads, read_configuration};
 
 use crate::output::{note, warn};
 use crate::progress::Bar;
@@ -95,7 +95,7 @@ pub fn certificates_now(
 
 /// Adds the file's name to an error. Errors of readers and writers contain it already.
 pub fn in_file(error: Error, path: &Path) -> Error {
-    let is_named = error.is::<IoError>() || error.downcast_ref().and_then(SimError::file).is_some();
+    let is_named = error.is::<IoError>() || error.downcast_ref().and_then(TaskError::file).is_some();
     if is_named { error } else { error.context(path.display().to_string()) }
 }
 

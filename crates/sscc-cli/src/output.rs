@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use serde::Serialize;
-pub use sscc_sim::text::{counted, duration, grouped, length, one_line};
+pub use sscc_tasks::text::{counted, duration, file_name, grouped, length, one_line};
 
 /// Standard output: line by line to a terminal, else in blocks.
 ///
@@ -84,9 +84,4 @@ pub fn note(text: impl Display) {
 /// Writes a warning about a file to standard error.
 pub fn warn(path: &Path, warning: impl Display) {
     write_stderr(format_args!("warning: {}: {warning}", path.display()));
-}
-
-/// Returns the name of a file without its folder.
-pub fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use sscc::{CancelToken, Progress};
 use sscc_io::Setting;
-use sscc_sim::{Stage, Watch};
+use sscc_tasks::{Stage, Watch};
 
 use crate::flags;
 use crate::interrupt;

@@ -13,7 +13,8 @@ use glam::DVec3;
 use sscc::Query;
 use sscc::parts::{Aabb, PosedShape};
 use sscc_dynamics::{Phase, Start, World};
-use sscc_sim::{Cache, PreparedScene, models_folder, read_scene};
+use sscc_sim::{PreparedScene, read_scene};
+use sscc_tasks::{Cache, models_folder};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -20,8 +20,9 @@ use std::process::ExitCode;
 use glam::{DQuat, DVec3};
 use random_scene::{Random, RandomScene};
 use sscc_dynamics::{Damping, Shape, Start, World};
-use sscc_sim::{Cache, PreparedModel, PreparedScene, Scene, models_folder};
+use sscc_sim::{PreparedModel, PreparedScene, Scene};
 use sscc_solid::{Elasticity, ReducedForces, Stiffness};
+use sscc_tasks::{Cache, models_folder};
 
 /// Simulated time of each scene (s).
 const DURATION: f64 = 0.6;

@@ -1,43 +1,26 @@
-//! Errors of models, scenes and simulations: one line each, which names the file, the place and the cause.
+//! Errors of scenes and simulations: one line each, which names the file, the place and the cause.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use sscc_dynamics::DynamicsError;
-use sscc_io::{IoError, Message, Setting};
+use sscc_io::{IoError, Message};
 use sscc_modes::ModesError;
-use sscc_solid::{MaterialError, SolidError};
+use sscc_tasks::TaskError;
 
 /// The result of a function of this crate.
 pub(crate) type Result<T, E = SimError> = std::result::Result<T, E>;
 
-/// Error of a model, a scene, a simulation or a file; its message is one line.
+/// Error of a scene or a simulation; its message is one line.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// Error of the core, or cancellation by the caller's progress.
+    /// Error of a model, a request or a file, or cancellation by the caller's progress.
     #[error(transparent)]
-    Core(#[from] sscc::Error),
-    /// Error of the computation of modes.
-    #[error(transparent)]
-    Modes(#[from] ModesError),
-    /// Error of a solid or its material.
-    #[error(transparent)]
-    Solid(#[from] SolidError),
+    Task(#[from] TaskError),
     /// Error of a world of bodies.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
-    /// Error of a file: it cannot be read or written, or its content is invalid.
-    #[error(transparent)]
-    File(#[from] IoError),
-    /// Error of the operating system.
-    #[error("{place}: {cause}")]
-    System {
-        /// The file or folder.
-        place: Message,
-        /// The system's error.
-        cause: io::Error,
-    },
     /// A scene file has an error in a line.
     #[error("{}: line {line}: {cause}", path.display())]
     Scene {
@@ -48,18 +31,10 @@ pub enum SimError {
         /// The error.
         cause: String,
     },
-    /// A request that cannot be fulfilled.
-    #[error("{place}: {cause}")]
-    Refused {
-        /// The file, the key or the part at fault.
-        place: Message,
-        /// The error, and the way out.
-        cause: Message,
-    },
     /// Another error, with its place.
     #[error("{place}: {error}")]
     At {
-        /// The file, the scene or the part.
+        /// The scene or the part.
         place: Message,
         /// The error there.
         error: Box<SimError>,
@@ -100,30 +75,16 @@ pub enum SimError {
 }
 
 impl SimError {
-    /// Returns a [`SimError::Refused`] with the part at fault and the cause.
-    pub fn refused(place: impl Into<Message>, cause: impl Into<Message>) -> Self {
-        Self::Refused { place: place.into(), cause: cause.into() }
-    }
-
-    pub(crate) fn system(path: &Path, cause: io::Error) -> Self {
-        Self::System { place: path.display().into(), cause }
-    }
-
-    /// Returns this error with a place. A cancellation is returned unchanged.
-    pub fn at(self, place: impl Into<Message>) -> Self {
-        if self.is_cancelled() { self } else { Self::At { place: place.into(), error: Box::new(self) } }
+    /// Returns a [`TaskError::Refused`] with the part at fault and the cause.
+    pub(crate) fn refused(place: impl Into<Message>, cause: impl Into<Message>) -> Self {
+        TaskError::refused(place, cause).into()
     }
 
     /// Returns the message with its settings as data.
     pub fn message(&self) -> Message {
         match self {
-            Self::File(error) => error.message(),
-            Self::Refused { place, cause } => place.clone() + ": " + cause.clone(),
+            Self::Task(error) => error.message(),
             Self::At { place, error } => place.clone() + ": " + error.message(),
-            Self::System { place, cause } => place.clone() + ": " + cause.to_string(),
-            Self::Solid(SolidError::UnsupportedMaterial { .. }) => {
-                Message::from(self.to_string()) + ", as in " + Setting::Material + " youngs=1e6,poisson=0.4"
-            }
             error => error.to_string().into(),
         }
     }
@@ -131,29 +92,19 @@ impl SimError {
     /// Whether the error is a cancellation by the caller's progress.
     pub fn is_cancelled(&self) -> bool {
         match self {
-            Self::Core(error)
-            | Self::Modes(ModesError::Core(error))
-            | Self::Dynamics(DynamicsError::Core(error)) => *error == sscc::Error::Cancelled,
+            Self::Task(error) => error.is_cancelled(),
+            Self::Dynamics(DynamicsError::Core(error)) => *error == sscc::Error::Cancelled,
             Self::Interrupted { .. } => true,
             _ => false,
         }
     }
 
-    /// Returns the error of a file if that is the cause.
-    pub fn file(&self) -> Option<&IoError> {
+    /// Returns the error of a model, a request or a file if that is the cause.
+    pub fn task(&self) -> Option<&TaskError> {
         match self {
-            Self::File(error) => Some(error),
-            Self::At { error, .. } => error.file(),
+            Self::Task(error) => Some(error),
+            Self::At { error, .. } => error.task(),
             _ => None,
-        }
-    }
-
-    /// Whether the cause is an error of the operating system.
-    pub fn is_system(&self) -> bool {
-        match self {
-            Self::System { .. } => true,
-            Self::At { error, .. } => error.is_system(),
-            _ => false,
         }
     }
 }
@@ -162,41 +113,48 @@ fn in_parentheses(error: &Option<Box<SimError>>) -> String {
     error.as_ref().map(|error| format!(" ({error})")).unwrap_or_default()
 }
 
-impl From<MaterialError> for SimError {
-    fn from(error: MaterialError) -> Self {
-        Self::Solid(error.into())
+impl From<sscc::Error> for SimError {
+    fn from(error: sscc::Error) -> Self {
+        Self::Task(error.into())
+    }
+}
+
+impl From<ModesError> for SimError {
+    fn from(error: ModesError) -> Self {
+        Self::Task(error.into())
+    }
+}
+
+impl From<IoError> for SimError {
+    fn from(error: IoError) -> Self {
+        Self::Task(error.into())
     }
 }
 
 /// Adds a place to errors; cancellations stay unchanged.
 pub(crate) trait At<T> {
-    /// Adds a place.
-    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T, SimError>;
-
-    /// Adds a file as the place, except to errors of readers and writers, which name their file already.
-    fn in_file(self, path: &Path) -> Result<T, SimError>;
+    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T>;
 }
 
 impl<T, E: Into<SimError>> At<T> for Result<T, E> {
-    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T, SimError> {
-        self.map_err(|error| error.into().at(place()))
-    }
-
-    fn in_file(self, path: &Path) -> Result<T, SimError> {
-        match self.map_err(Into::into) {
-            Err(SimError::File(error)) => Err(error.into()),
-            found => found.at(|| path.display()),
-        }
+    fn at<P: Into<Message>>(self, place: impl FnOnce() -> P) -> Result<T> {
+        self.map_err(Into::into).map_err(|error| {
+            if error.is_cancelled() {
+                error
+            } else {
+                SimError::At { place: place().into(), error: Box::new(error) }
+            }
+        })
     }
 }
 
 /// Adds the file to errors of the operating system.
 pub(crate) trait InSystem<T> {
-    fn system(self, path: &Path) -> Result<T, SimError>;
+    fn system(self, path: &Path) -> Result<T>;
 }
 
 impl<T> InSystem<T> for io::Result<T> {
-    fn system(self, path: &Path) -> Result<T, SimError> {
-        self.map_err(|cause| SimError::system(path, cause))
+    fn system(self, path: &Path) -> Result<T> {
+        self.map_err(|cause| TaskError::system(path, cause).into())
     }
 }

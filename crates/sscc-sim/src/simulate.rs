@@ -1,16 +1,13 @@
 //! Runs a simulation: from the name of its scene to its states.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use sscc_io::{Message, Setting, check_writable};
+use sscc_io::Setting;
+use sscc_tasks::{Cache, Watch, available_threads, make_folder, models_folder};
 
 use crate::error::{At, Result, SimError};
-use crate::machine::available_threads;
-use crate::recipes::{Cache, models_folder};
 use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, announcement, run, traditional_costs};
 use crate::scenes::{Scene, read_scene};
-use crate::watch::Watch;
 
 /// Request for a simulation.
 #[derive(Clone, Debug, Default)]
@@ -84,21 +81,6 @@ fn finish(
     };
     let failure = failure.or(unmeasured);
     Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure })
-}
-
-/// Makes a folder if it does not exist, and checks that it can be written to. Callers do this before long work.
-///
-/// # Errors
-/// When the folder cannot be made or written to.
-pub fn make_folder(folder: &Path) -> Result<(), SimError> {
-    let make = || {
-        fs::create_dir_all(folder)?;
-        check_writable(folder)
-    };
-    make().map_err(|cause| SimError::System {
-        place: Message::from(folder.display()) + ": cannot write to this folder",
-        cause,
-    })
 }
 
 /// Returns the folder that is named after the scene.

@@ -11,7 +11,8 @@ use std::sync::{Arc, Barrier, LazyLock, Mutex};
 use std::thread;
 
 use sscc::{CancelToken, Progress};
-use sscc_sim::{FinishedRun, Outputs, Request, SimError, Stage, Watch, simulate};
+use sscc_sim::{FinishedRun, Outputs, Request, SimError, simulate};
+use sscc_tasks::{Stage, TaskError, Watch};
 use tempfile::TempDir;
 
 /// A small ring falls on the ground.
@@ -213,7 +214,11 @@ fn refusals_name_the_file_and_the_way_out() {
         "{unknown}"
     );
     let missing = refused(scene(SCENE));
-    assert!(missing.file().is_some() && missing.to_string().ends_with("ring.obj: not found"), "{missing}");
+    assert!(
+        missing.task().and_then(TaskError::file).is_some()
+            && missing.to_string().ends_with("ring.obj: not found"),
+        "{missing}"
+    );
     let large = message(&"#".repeat((1 << 20) + 1));
     assert!(large.ends_with("bad.toml: file has 1048577 bytes; scenes may have at most 1048576"), "{large}");
     let models = folder.path().join("none");
@@ -222,5 +227,8 @@ fn refusals_name_the_file_and_the_way_out() {
     let file = folder.path().join("bad.toml");
     let error = refused(Request { out: Some(file.clone()), ..request(folder.path()) });
     let start = format!("{}: cannot write to this folder: ", file.display());
-    assert!(error.is_system() && error.to_string().starts_with(&start), "{error}");
+    assert!(
+        error.task().is_some_and(TaskError::is_system) && error.to_string().starts_with(&start),
+        "{error}"
+    );
 }

@@ -1,7 +1,7 @@
 //! Reports of animations: one shape, with its q and its colliding pairs in every frame.
 
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::LeftOut;
+use sscc_tasks::LeftOut;
 
 use crate::{
     Arrays, Axis, Body, Clock, Colliding, ModelDetails, ModelScene, Playback, Plot, Report, Scene, Series,

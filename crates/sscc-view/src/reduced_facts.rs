@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::{FreeProof, IntervalRow, LeftOut, SweepRange, free_sentence};
+use sscc_tasks::{FreeProof, IntervalRow, LeftOut, SweepRange, free_sentence};
 
 use crate::extremal::{Extremal, extremal};
 use crate::levels::{Level, levels};

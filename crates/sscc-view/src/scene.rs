@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 use sscc::{Certificates, ReducedModel};
-use sscc_sim::IntervalRow;
+use sscc_tasks::IntervalRow;
 
 use crate::error::check_certificates;
 use crate::reduced_facts::{ModelDetails, ReducedFacts};

@@ -3,7 +3,7 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use sscc_sim::{CertifiedModel, ModesSpec, Recipe, Shape};
+use sscc_tasks::{CertifiedModel, ModesSpec, Recipe, Shape};
 use sscc_view::{Picture, ViewError};
 
 use super::figure_record::FigureRecord;

@@ -4,7 +4,7 @@
 //! along the first mode alone that is proven free.
 
 use sscc::{Certificates, CertifyOptions, Metric, Modes, ReducedModel};
-use sscc_sim::{ModesSpec, Recipe, Shape};
+use sscc_tasks::{ModesSpec, Recipe, Shape};
 
 use super::figure_record::FigureRecord;
 use super::mode_displacements::largest_displacements;

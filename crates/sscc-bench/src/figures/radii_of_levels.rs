@@ -1,7 +1,7 @@
 //! Figure 7 of the paper: radii grow at finer levels of the hierarchy (bunny, 30 modes).
 
 use sscc::{Certificates, CertifyOptions};
-use sscc_sim::{ModesSpec, Recipe, Shape};
+use sscc_tasks::{ModesSpec, Recipe, Shape};
 use sscc_view::{Level, levels};
 
 use super::figure_record::FigureRecord;

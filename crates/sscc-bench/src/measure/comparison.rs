@@ -1,7 +1,7 @@
 //! Compares all methods on the same steps: their times and their answers.
 
 use sscc::Progress;
-use sscc_sim::CertifiedModel;
+use sscc_tasks::{CertifiedModel, check_cancelled};
 
 use super::agreement::{agree_on_motion, compare_discrete};
 use super::step::Step;
@@ -9,7 +9,7 @@ use super::timer::{REPETITIONS, Timer};
 use super::times::Times;
 use crate::error::Error;
 use crate::methods::{COLUMNS, Column, Engine, Role};
-use crate::progress::{Counter, check_cancelled};
+use crate::progress::Counter;
 use crate::sampling::{Counts, Strata, Stratum};
 
 /// Maximum number of queries (steps times bodies) for which comparators run on all discrete ones.

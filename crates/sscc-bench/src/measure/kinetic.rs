@@ -2,13 +2,12 @@
 //! alone or repeated.
 
 use sscc::{KineticQuery, Progress, Query};
-use sscc_sim::CertifiedModel;
+use sscc_tasks::{CertifiedModel, check_cancelled};
 
 use super::clock::{median, seconds};
 use super::step::Step;
 use super::timer::REPETITIONS;
 use crate::error::Error;
-use crate::progress::check_cancelled;
 
 /// Times of kinetic queries on the steps of a scene.
 pub struct KineticTimes {

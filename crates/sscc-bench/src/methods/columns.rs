@@ -2,7 +2,7 @@
 
 use parry3d_f64::partitioning::BvhBuildStrategy;
 use sscc::{Method, Query};
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use super::engine::Engine;
 use super::parry::Parry;

@@ -1,6 +1,6 @@
 //! Page with the records of a scenario, in one file.
 
-use sscc_sim::text::duration;
+use sscc_tasks::text::duration;
 use sscc_view::{Arrays, Axis, Plot, Report, Scene, Series};
 
 use crate::error::Error;
@@ -32,7 +32,7 @@ impl BenchPage {
         let records = &self.records;
         let mut scene = Scene::new(format!("sscc bench {scenario}"));
         scene.summary = records.iter().map(line).collect();
-        scene.summary.push(("machine".into(), sscc_sim::machine_description()));
+        scene.summary.push(("machine".into(), sscc_tasks::machine_description()));
         scene.plots.extend(self.costs.iter().cloned());
         // Cost of a model over its displacement.
         for group in records.chunk_by(|a, b| a.scenario == b.scenario).filter(|group| group.len() > 1) {

@@ -1,7 +1,8 @@
 //! The record of one model in a scenario: the keys that scripts rely on.
 
 use serde::Serialize;
-use sscc_sim::{CertifiedModel, STEP_PARTS};
+use sscc_sim::STEP_PARTS;
+use sscc_tasks::CertifiedModel;
 
 use super::means::Means;
 use crate::measure::Comparison;
@@ -203,7 +204,7 @@ impl Record {
             colliding_ms: Means(discrete.means(&colliding, strata)),
             colliding_ms_median: Means(discrete.medians(&colliding, strata)),
             discrete_ms_all_steps: Means(all_steps),
-            machine: sscc_sim::machine_description(),
+            machine: sscc_tasks::machine_description(),
         }
     }
 }

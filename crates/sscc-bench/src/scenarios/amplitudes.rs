@@ -1,6 +1,6 @@
 //! Scenario `amplitudes`: the cost of queries over the displacement of the shape.
 
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use super::displacement::displacement_steps;
 use crate::error::Error;

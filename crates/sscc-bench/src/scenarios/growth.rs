@@ -1,7 +1,7 @@
 //! Scenario `growth`: the cost of certificates and queries over the number of triangles.
 
 use serde::Serialize;
-use sscc_sim::{ModesSpec, Recipe, SPRING_RINGS, Shape};
+use sscc_tasks::{ModesSpec, Recipe, SPRING_RINGS, Shape};
 
 use super::displacement::displacement_steps;
 use crate::error::Error;
@@ -88,7 +88,7 @@ impl GrowthRecord {
             mismatches: sizes.iter().map(|record| record.mismatches).sum(),
             exponents: Exponents::of(&sizes),
             sizes,
-            machine: sscc_sim::machine_description(),
+            machine: sscc_tasks::machine_description(),
         }
     }
 }

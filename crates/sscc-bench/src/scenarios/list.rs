@@ -1,6 +1,7 @@
 //! List of the scenarios by name.
 
-use sscc_sim::{OWN_AMPLITUDE_SCENES, SHIPPED, Scene, nearest};
+use sscc_sim::{OWN_AMPLITUDE_SCENES, SHIPPED, Scene};
+use sscc_tasks::nearest;
 
 use super::models::ModelsScenario;
 use crate::error::Error;

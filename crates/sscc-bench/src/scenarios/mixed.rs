@@ -1,6 +1,6 @@
 //! Scenario `mixed`: the cost of queries while a body swings in all its modes at once.
 
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use super::displacement::displacement_steps;
 use super::oscillators::Oscillators;

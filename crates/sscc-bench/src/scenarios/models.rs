@@ -1,6 +1,6 @@
 //! Scenarios that measure models by name: bunny, dragon and springs.
 
-use sscc_sim::{ModesSpec, Recipe, Shape};
+use sscc_tasks::{ModesSpec, Recipe, Shape};
 
 use super::{amplitudes, mixed, norms};
 use crate::error::Error;

@@ -2,7 +2,7 @@
 
 use sscc::Query;
 use sscc::parts::ProvenShares;
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use super::displacement::displacement_steps;
 use crate::error::Error;

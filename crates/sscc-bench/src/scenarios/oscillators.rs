@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use crate::random::Random;
 

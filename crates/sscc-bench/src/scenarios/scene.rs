@@ -1,9 +1,8 @@
 //! Measures steps of a scene, which is simulated whole or read from the cache.
 
-use sscc_sim::text::one_line;
-use sscc_sim::{
-    CertifiedModel, History, PreparedScene, RunOutcome, STEP_PARTS, Scene, StateLog, make_folder, run,
-};
+use sscc_sim::{History, PreparedScene, RunOutcome, STEP_PARTS, Scene, StateLog, run};
+use sscc_tasks::text::one_line;
+use sscc_tasks::{CertifiedModel, make_folder};
 use sscc_view::Plot;
 
 use crate::error::Error;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::values::Json;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use sscc_sim::UNITS;
+use sscc_tasks::UNITS;
 
 /// `sscc modes`
 #[derive(Debug, Args)]

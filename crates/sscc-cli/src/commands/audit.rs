@@ -8,7 +8,7 @@ use sscc::parts::Prover;
 use sscc::{AuditOptions, Certificates, ReducedModel};
 use sscc_checker::Refusal;
 use sscc_io::read_whole;
-use sscc_sim::CertificateRequest;
+use sscc_tasks::CertificateRequest;
 
 use crate::args::Audit;
 use crate::outcome::Outcome;

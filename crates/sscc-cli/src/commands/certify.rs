@@ -9,7 +9,7 @@ use sscc::parts::Prover;
 use sscc::{Certificates, Clearance, ReducedModel};
 use sscc_io::container::certificates_to_bytes;
 use sscc_io::{ProofFile, write_whole};
-use sscc_sim::{CertificateRequest, ZeroRadius};
+use sscc_tasks::{CertificateRequest, ZeroRadius};
 use sscc_view::Picture;
 
 use super::zero_radius;

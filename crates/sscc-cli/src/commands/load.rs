@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, ensure};
 use serde::Serialize;
 use sscc_io::write_npy;
-use sscc_sim::{longest_side, static_answer};
+use sscc_tasks::{longest_side, static_answer};
 
 use crate::args::Load;
 use crate::load;

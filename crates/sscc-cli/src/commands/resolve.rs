@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 use sscc::ResolveOptions;
 use sscc_io::Setting;
-use sscc_sim::{ResolveReport, read_configuration, resolve_rows};
+use sscc_tasks::{ResolveReport, read_configuration, resolve_rows};
 
 use super::check::coordinates;
 use crate::args::Resolve;

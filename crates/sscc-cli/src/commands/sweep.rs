@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use serde::Serialize;
 use sscc::{Certificates, SweepOutcome};
 use sscc_io::{LoadedModel, write_whole};
-use sscc_sim::{
+use sscc_tasks::{
     IntervalRow, LeftOut, SweepRequest, combination_table, interval_table, sweep_model,
     sweep_model_combinations, sweep_model_intervals, sweep_table,
 };

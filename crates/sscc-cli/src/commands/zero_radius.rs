@@ -1,6 +1,6 @@
 //! Notes on certificates with a root radius of 0.
 
-use sscc_sim::ZeroRadius;
+use sscc_tasks::ZeroRadius;
 
 /// Maximum number of triangles in a note.
 const MAX_LISTED: usize = 8;

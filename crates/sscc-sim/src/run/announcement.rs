@@ -4,13 +4,12 @@ use sscc::{Modes, ReducedModel};
 use sscc_dynamics::{Damping, LinearOscillator};
 use sscc_modes::{diagonalize, natural_frequencies};
 use sscc_solid::Stiffness;
+use sscc_tasks::text::{counted, length, size_and_mass};
+use sscc_tasks::{ModesSpec, Recipe, Shape, longest_side};
 
 use super::prepared::{PreparedModel, PreparedScene};
 use crate::error::{At, Result};
-use crate::recipes::{ModesSpec, Recipe, Shape};
-use crate::resize::longest_side;
 use crate::scenes::{Scene, Shake};
-use crate::text::{counted, length, size_and_mass};
 
 /// Time of the free vibration that a line describes (s).
 const FIRST: f64 = 1.0;

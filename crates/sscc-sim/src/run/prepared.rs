@@ -6,11 +6,10 @@ use glam::{DQuat, DVec3};
 use sscc_dynamics::{Shape, SoundBank};
 use sscc_modes::natural_frequencies;
 use sscc_solid::{Elasticity, MassData};
+use sscc_tasks::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, Watch, vibrations};
 
 use crate::error::{At, Result, SimError};
-use crate::recipes::{Cache, CertifiedModel, LoadedRecipe, ModesSpec, vibrations};
 use crate::scenes::{ModelSpec, Scene};
-use crate::watch::Watch;
 
 /// Maximum memory for the sounds of all bodies (2 GB).
 const MAX_SOUND_BYTES: usize = 2_000_000_000;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use cpu_time::ThreadTime;
 use sscc_dynamics::{DynamicsError, SoundBank, World};
 use sscc_io::Setting;
+use sscc_tasks::{Stage, Watch, check_cancelled};
 
 use super::clock::SystemClocks;
 use super::history::{History, StateLayout};
@@ -16,7 +17,6 @@ use super::world::{restore, world};
 use crate::error::SimError;
 use crate::files::remove_outputs;
 use crate::scenes::Scene;
-use crate::watch::{Stage, Watch, check_cancelled};
 
 /// Time from one checkpoint to the next.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
@@ -81,7 +81,7 @@ pub fn run(
     watch.report(log.len(), steps);
     while log.len() + stepper.pending_states() < steps {
         if let Err(error) = check_cancelled(watch) {
-            failure = Some(error);
+            failure = Some(error.into());
             break;
         }
         if let Err(error) = stepper.step() {

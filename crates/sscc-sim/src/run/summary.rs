@@ -1,12 +1,12 @@
 //! Results of a simulation in numbers: the keys of `sscc simulate --json`, and lines for people.
 
 use serde::Serialize;
+use sscc_tasks::machine_description;
+use sscc_tasks::text::{counted, grouped};
 
 use super::history::History;
 use super::prepared::PreparedScene;
-use crate::machine::machine_description;
 use crate::scenes::Scene;
-use crate::text::{counted, grouped};
 
 /// The result as JSON.
 #[derive(Clone, Debug, Serialize)]

@@ -2,12 +2,12 @@
 
 use cpu_time::ThreadTime;
 use sscc::{Method, Query};
+use sscc_tasks::{Stage, Watch, check_cancelled};
 
 use super::history::History;
 use super::prepared::PreparedScene;
 use crate::error::Result;
 use crate::scenes::Scene;
-use crate::watch::{Stage, Watch, check_cancelled};
 
 /// Maximum number of measured states, evenly spread.
 const MAX_STATES: usize = 100;

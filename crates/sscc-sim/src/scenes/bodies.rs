@@ -1,12 +1,12 @@
 //! Reads the bodies of a scene: `[[bodies]]`, each a single body or a grid.
 
 use glam::{DQuat, DVec3};
+use sscc_tasks::nearest;
 
 use super::models::ModelSpec;
 use super::section::Section;
 use super::shake::Shake;
 use crate::error::Result;
-use crate::nearest::nearest;
 
 /// Maximum number of bodies of a scene.
 const MAX_BODIES: usize = 4096;

@@ -6,12 +6,10 @@ use sscc_dynamics::{Damping, MATERIALS};
 use sscc_io::gltf::is_gltf;
 use sscc_io::split_mesh_name;
 use sscc_solid::PartialMaterial;
+use sscc_tasks::{Fix, ModelFiles, ModesSpec, Recipe, Resize, Shape, UNITS};
 
 use super::section::Section;
 use crate::error::Result;
-use crate::models::Fix;
-use crate::recipes::{ModelFiles, ModesSpec, Recipe, Shape};
-use crate::resize::{Resize, UNITS};
 
 /// Maximum number of modes of a body.
 pub const MAX_RANK: usize = 500;

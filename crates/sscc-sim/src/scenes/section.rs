@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use glam::DVec3;
+use sscc_tasks::text::one_line;
+use sscc_tasks::{did_you_mean, nearest};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::error::{Result, SimError};
-use crate::nearest::{did_you_mean, nearest};
-use crate::text::one_line;
 
 /// Text of a file, from which errors compute the line.
 #[derive(Clone, Copy)]

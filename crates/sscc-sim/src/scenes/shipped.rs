@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use sscc_tasks::nearest;
+
 use super::scene::Scene;
 use crate::error::SimError;
-use crate::nearest::nearest;
 
 /// Names and texts of the scenes of the paper's Table 1: the Earth's gravity, and materials that exist.
 pub const SHIPPED: [(&str, &str); 5] = [

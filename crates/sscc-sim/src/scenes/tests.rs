@@ -1,12 +1,10 @@
 use std::path::Path;
 
 use glam::DVec3;
+use sscc_tasks::{Fix, ModesSpec, Resize, Shape};
 
 use super::*;
 use crate::error::Result;
-use crate::models::Fix;
-use crate::recipes::{ModesSpec, Shape};
-use crate::resize::Resize;
 
 const GOOD: &str = r#"
 about = "two soft springs"

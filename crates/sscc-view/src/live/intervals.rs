@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use sscc::{ModeRange, Query};
-use sscc_sim::IntervalRow;
+use sscc_tasks::IntervalRow;
 
 use super::cancellation::Cancellation;
 use crate::ViewError;

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sscc::{CancelToken, Certificates, Method, Query, ReducedModel};
-use sscc_sim::IntervalRow;
+use sscc_tasks::IntervalRow;
 
 use crate::error::check_certificates;
 use crate::{Arrays, Scene, ViewError};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::TriMesh;
-use sscc_sim::DetectionAnswer;
+use sscc_tasks::DetectionAnswer;
 
 use crate::ViewError;
 use crate::scene::fits;

@@ -1,7 +1,7 @@
 //! The recording of several bodies as the data of the page.
 
 use glam::DVec3;
-use sscc_sim::LeftOut;
+use sscc_tasks::LeftOut;
 
 use super::node_pairs::{NodePairs, of_frame};
 use super::recorded_body::RecordedBody;

@@ -1,12 +1,10 @@
 //! Reports of meshes without modes.
 
-use std::path::Path;
-
 use glam::DVec3;
 use sscc::TriMesh;
 use sscc::parts::Surface;
-use sscc_sim::text::{counted, grouped, one_line};
-use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
+use sscc_tasks::text::{counted, file_name, grouped, one_line};
+use sscc_tasks::{DetectionAnswer, LeftOut, ShapeInMotion};
 
 use super::contact_segments::contact_segments;
 use super::node_pairs::NodePairs;
@@ -23,7 +21,7 @@ const MAX_CONTACTS: usize = 1 << 16;
 /// Maximum number of bodies with a row of their own in the report's table.
 const MAX_ROWS: usize = 20;
 
-/// A report of meshes, of their frames or of animations, built from the answers of [`detect`](sscc_sim::detect) in their
+/// A report of meshes, of their frames or of animations, built from the answers of [`detect`](sscc_tasks::detect) in their
 /// order.
 ///
 /// Positions are stored in single precision, relative to the middle of the first frame.
@@ -193,10 +191,6 @@ fn middle(points: &[DVec3]) -> DVec3 {
 
 fn surface(shape: ShapeInMotion<'_>) -> Surface<'_> {
     Surface { faces: shape.mesh.faces(), positions: shape.x_t0 }
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// Size of the positions and faces of a body in a report (bytes).

@@ -5,7 +5,8 @@ use std::ops::Range;
 use sscc::{Error, Progress, Query};
 use sscc_io::gltf::key_frames;
 use sscc_io::{WavFormat, wav_to_bytes};
-use sscc_sim::{FinishedRun, History, LeftOut, SoundTrack};
+use sscc_sim::{FinishedRun, History, SoundTrack};
+use sscc_tasks::LeftOut;
 
 use super::plots::costs;
 use crate::{Arrays, Body, Clock, Colliding, Playback, Track};

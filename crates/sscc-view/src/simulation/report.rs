@@ -3,7 +3,7 @@
 use sscc::Progress;
 use sscc_modes::mode_frequencies;
 use sscc_sim::FinishedRun;
-use sscc_sim::text::one_line;
+use sscc_tasks::text::one_line;
 
 use super::playback::playback;
 use super::plots::{energy, sound};

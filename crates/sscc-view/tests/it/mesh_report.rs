@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use serde_json::{Value, json};
 use sscc::{ContactFilter, Pair, TriMesh};
-use sscc_sim::{DetectionAnswer, LeftOut, ShapeInMotion};
+use sscc_tasks::{DetectionAnswer, LeftOut, ShapeInMotion};
 use sscc_view::{MeshReport, Report};
 
 /// A coordinate at which single precision has steps of 8.

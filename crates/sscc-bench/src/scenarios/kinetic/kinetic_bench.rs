@@ -3,14 +3,13 @@
 use std::iter;
 
 use sscc::{KineticQuery, Query};
-use sscc_sim::{CertifiedModel, ModesSpec, Recipe, Shape};
+use sscc_tasks::{CertifiedModel, ModesSpec, Recipe, Shape, check_cancelled};
 
 use super::kinetic_record::KineticRecord;
 use super::vibration::Vibration;
 use crate::error::Error;
 use crate::measure::{REPETITIONS, median, seconds};
 use crate::methods::{COLUMNS, Engine, Role};
-use crate::progress::check_cancelled;
 use crate::record::Means;
 use crate::sampling::{Strata, Stratum, weighted_mean};
 use crate::setup::Setup;
@@ -101,7 +100,7 @@ impl<'a> KineticBench<'a> {
             mismatches: motion.mismatches,
             kinetic_us_colliding: (colliding > 0).then(|| motion.kinetic_colliding * 1e6 / colliding as f64),
             microseconds: Means(times),
-            machine: sscc_sim::machine_description(),
+            machine: sscc_tasks::machine_description(),
         })
     }
 

@@ -1,7 +1,7 @@
 //! Free vibration of a body: each mode oscillates with its natural frequency.
 
 use sscc::{Method, Progress, Query};
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use crate::error::Error;
 use crate::sampling::{directions, half_diagonal, largest_displacement, scaled};

@@ -1,7 +1,7 @@
 //! The records of the scenario `kinetic` as text.
 
 use sscc_bench::KineticRecord;
-use sscc_sim::CertifiedModel;
+use sscc_tasks::CertifiedModel;
 
 use crate::output::grouped;
 

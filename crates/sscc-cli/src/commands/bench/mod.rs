@@ -10,7 +10,7 @@ mod table;
 use anyhow::{Context, ensure};
 use sscc_bench::{ModelsScenario, Scenario, Setup};
 use sscc_io::write_whole;
-use sscc_sim::{Cache, machine_description, models_folder};
+use sscc_tasks::{Cache, machine_description, models_folder};
 
 use crate::args::Bench;
 use crate::load;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sscc::parts::BodyPenetration;
 use sscc::{Clearance, Enclosed, Pair, Proof};
-use sscc_sim::{DetectionAnswer, LeftOut, Near};
+use sscc_tasks::{DetectionAnswer, LeftOut, Near};
 
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]

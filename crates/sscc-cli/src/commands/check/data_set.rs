@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail, ensure};
 use serde::Serialize;
 use sscc_io::list_mesh_files;
-use sscc_sim::SimError;
+use sscc_tasks::TaskError;
 
 use crate::args::Check;
 use crate::flags;
@@ -58,7 +58,7 @@ impl DataSet {
     }
 
     /// Counts a file that could not be checked. Returns its line.
-    pub fn fail(&mut self, file: &Path, error: &SimError) -> FileError {
+    pub fn fail(&mut self, file: &Path, error: &TaskError) -> FileError {
         self.failures += 1;
         let line = || FileError::new(file, error);
         self.first.get_or_insert_with(line);
@@ -79,7 +79,7 @@ impl DataSet {
 }
 
 impl FileError {
-    fn new(file: &Path, error: &SimError) -> Self {
+    fn new(file: &Path, error: &TaskError) -> Self {
         let file = one_line(&file.display().to_string());
         let message = one_line(&flags::message(error));
         let cause = message.strip_prefix(&file).and_then(|cause| cause.strip_prefix(": "));

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 use glam::DVec3;
 use sscc_io::{NpyWriter, VtkFramesWriter, is_collection};
-use sscc_sim::DetectionAnswer;
+use sscc_tasks::DetectionAnswer;
 
 use super::shapes;
 

@@ -7,7 +7,9 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc::TriMesh;
 use sscc_io::gltf::SkinWeights;
 use sscc_io::{is_collection, split_mesh_name, write_whole};
-use sscc_sim::{AnimationMotion, Detection, DetectionAnswer, MeshMotion, OtherMesh, SimError, Times, detect};
+use sscc_tasks::{
+    AnimationMotion, Detection, DetectionAnswer, MeshMotion, OtherMesh, TaskError, Times, detect,
+};
 use sscc_view::MeshReport;
 
 use super::data_set::DataSet;
@@ -45,7 +47,7 @@ pub fn check(args: &Check) -> Result<bool> {
     let mut answers = 0;
     let mut hint = SoupHint::default();
     let watch = Stages::default();
-    let take = |file: &Path, found: Result<&DetectionAnswer<'_>, SimError>| {
+    let take = |file: &Path, found: Result<&DetectionAnswer<'_>, TaskError>| {
         let found = match found {
             Ok(found) => found,
             Err(error) if data_set.has_several() => return printer.fail(&data_set.fail(file, &error)),

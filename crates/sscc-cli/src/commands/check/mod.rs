@@ -15,7 +15,7 @@ use anyhow::{Context, Result, bail, ensure};
 use sscc::parts::Scope;
 use sscc::{Certificates, Method, Query};
 use sscc_io::{LoadedModel, Rows, Setting, read_rows};
-use sscc_sim::{CertificateRequest, DetectionAnswer, RowQueries, check_rows, read_configuration};
+use sscc_tasks::{CertificateRequest, DetectionAnswer, RowQueries, check_rows, read_configuration};
 
 use crate::args::{At, Check};
 use crate::outcome::Outcome;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use anyhow::Result;
-use sscc_sim::DetectionAnswer;
+use sscc_tasks::DetectionAnswer;
 
 use super::answer::Answer;
 use super::data_set::FileError;

@@ -10,7 +10,7 @@ use sscc_io::{
     LoadedModel, VtkFramesWriter, is_collection, split_mesh_name, write_obj_curves, write_obj_pose,
     write_ply_curves, write_ply_pose, write_vtu_pose,
 };
-use sscc_sim::{ContactOptions, DetectionAnswer};
+use sscc_tasks::{ContactOptions, DetectionAnswer};
 
 use crate::args::Check;
 use crate::load;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sscc_sim::DetectionAnswer;
+use sscc_tasks::DetectionAnswer;
 
 use crate::output::{counted, grouped, note};
 

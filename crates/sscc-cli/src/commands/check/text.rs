@@ -1,6 +1,6 @@
 //! The answers of `sscc check` as text.
 
-use sscc_sim::{FreeProof, LeftOut, free_sentence};
+use sscc_tasks::{FreeProof, LeftOut, free_sentence};
 
 use super::answer::{Answer, InsideAnswer};
 use super::data_set::FileError;

@@ -11,7 +11,7 @@ use sscc::CertifyOptions;
 use sscc_bench::demo::{Frames, demo_animation};
 use sscc_modes::mode_frequencies;
 use sscc_modes::shapes::elastic_spring;
-use sscc_sim::make_folder;
+use sscc_tasks::make_folder;
 use sscc_view::Animation;
 
 use crate::args::{Demo, Threads};

@@ -17,7 +17,7 @@ use sscc_io::{
     IoError, LoadOptions, LoadedMesh, LoadedModel, VolumeOrSurface, load_mesh_with_warnings, load_model_with,
     read_certificates, read_model, read_volume_or_surface,
 };
-use sscc_sim::is_solid;
+use sscc_tasks::is_solid;
 
 use crate::args::Info;
 use crate::outcome::Outcome;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use serde::Serialize;
-use sscc_sim::SolidSource;
 use sscc_solid::{NamedMaterial, PartialMaterial, VolumeMesh};
+use sscc_tasks::SolidSource;
 
 use super::surface::{Surface, size};
 use crate::flags;

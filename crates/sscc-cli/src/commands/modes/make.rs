@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use sscc_io::read_frames;
-use sscc_sim::{
+use sscc_tasks::{
     Fix, ModesKind, NewModel, POLYNOMIAL_MODES_ERROR, SolidSource, elastic_model, is_solid, pca_model,
     polynomial_model, read_surface, scaled,
 };

@@ -2,9 +2,9 @@
 
 use anyhow::{Error, Result, anyhow};
 use sscc_dynamics::MATERIALS;
-use sscc_sim::did_you_mean;
-use sscc_sim::text::quoted;
 use sscc_solid::PartialMaterial;
+use sscc_tasks::did_you_mean;
+use sscc_tasks::text::quoted;
 
 /// The keys of the numbers, in the order of the texts.
 const KEYS: [&str; 3] = ["youngs", "poisson", "density"];

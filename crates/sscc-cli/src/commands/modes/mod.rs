@@ -8,8 +8,8 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use sscc_io::write_model;
-use sscc_sim::text::size_and_mass;
-use sscc_sim::{Components, has_equal_vertices, longest_side};
+use sscc_tasks::text::size_and_mass;
+use sscc_tasks::{Components, has_equal_vertices, longest_side};
 
 use crate::args;
 use crate::outcome::Outcome;
