@@ -8,6 +8,8 @@ less than the clock. `all_ms`, `first_ms` and `yes_no_ms` are from two NumPy arr
 hierarchy made anew each time; `prepare_ms` is the part in which the mesh is made, as far as a call makes it alone. `again_ms`
 (all pairs) and `again_yes_no_ms` are times from a mesh that is kept and was asked before. `memory_mb` is the largest memory of
 all that, above that of the arrays and imports.
+Embree and parry, which have no package for Python, are compiled first (`compiled.py`); without a compiler or a library of theirs
+they are skipped, and the record says why, as it does for a package that is not installed.
 A tester that takes longer than `--seconds` of processor time for all that is stopped, and the record says so.
 
 `missing` and `extra` compare all pairs of triangles without a common vertex with the exact ones: those that `sscc` lists,
@@ -19,7 +21,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import importlib.metadata
 import json
 import os
 import resource
@@ -35,6 +36,7 @@ from typing import Any
 
 import numpy as np
 
+import compiled
 from testers import TESTERS, Tester
 
 MESHES = {
@@ -118,7 +120,7 @@ def child(name: str, path: str) -> None:
     data = np.load(path)
     tester = TESTERS[name]()
     row: dict[str, Any] = {"licence": tester.licence, "arithmetic": tester.arithmetic}
-    row["version"] = importlib.metadata.version(tester.package)
+    row["version"] = tester.version()
     exact = {(a, b) for a, b in data["pairs"].tolist()}
     try:
         row |= answers(tester, data["x"], data["f"], exact)
@@ -166,6 +168,8 @@ def main() -> None:
         paths = {name: Path(arguments.models) / mesh for name, mesh in MESHES.items()}
     if not paths:
         parser.error("name the folder of real models by --models or SSCC_MODELS, or meshes")
+    names = arguments.only or list(TESTERS)
+    skipped = {name: compiled.build(name) for name in names}
     with open(arguments.out, "w", newline="") as file, tempfile.TemporaryDirectory() as folder:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
@@ -175,8 +179,8 @@ def main() -> None:
             pairs = sscc.self_intersections(x, f)
             data = f"{folder}/mesh.npz"
             np.savez(data, x=x, f=f, pairs=pairs)
-            for name in arguments.only or TESTERS:
-                row = ask(name, data, arguments.seconds)
+            for name in names:
+                row = {"note": skipped[name]} if skipped[name] else ask(name, data, arguments.seconds)
                 row |= {"mesh": mesh, "triangles": len(f), "pairs": len(pairs), "tester": name}
                 times = {key: f"{row[key]:.4g}" for key in row if key.endswith(("_ms", "_mb"))}
                 writer.writerow(row | times)

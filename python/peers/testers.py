@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+import compiled
 
 Array = Any
 Call = Callable[[Any], Any]
@@ -16,7 +19,7 @@ Call = Callable[[Any], Any]
 class Tester:
     """One way to ask one package."""
 
-    package: str  # the distribution on PyPI
+    package: str  # the distribution on PyPI, or none
     licence: str
     arithmetic: str  # of its answer, as its documentation says: "exact" or "floating point"
     prepare: Callable[[Array, Array], Any]  # from positions (V, 3) and faces (F, 3)
@@ -24,6 +27,10 @@ class Tester:
     first: Call | None = None  # one pair; whether there is one
     yes_no: Call | None = None  # whether there is one
     lists_faces: bool = False
+    own_version: str = ""  # without a distribution
+
+    def version(self) -> str:
+        return self.own_version or importlib.metadata.version(self.package)
 
 
 def arrays(x: Array, f: Array) -> tuple[Array, Array]:
@@ -216,6 +223,62 @@ def of_ipctk() -> Tester:
     return Tester("ipctk", "MIT", "floating point", prepare, None, None, yes_no)
 
 
+# compiled from this folder
+
+
+def of_embree() -> Tester:
+    """Candidates by `rtcCollide`, which has no test of triangles: CGAL's exact predicates decide."""
+    library = compiled.embree()
+
+    class Mesh:
+        def __init__(self, x: Array, f: Array) -> None:
+            self.arrays = np.ascontiguousarray(x, np.float64), np.ascontiguousarray(f, np.int64)
+            x, f = self.arrays
+            self.handle = library.peer_make(x.ctypes.data, f.ctypes.data, len(f))
+
+        def collide(self, first_only: bool) -> int:
+            count: int = library.peer_collide(self.handle, int(first_only))
+            if count < 0:
+                raise ValueError(f"error {-count} of Embree")
+            return count
+
+        def __del__(self) -> None:
+            library.peer_free(self.handle)
+
+    def every(mesh: Mesh) -> Array:
+        count = mesh.collide(False)
+        if count == 0:
+            return np.zeros((0, 2), np.int64)
+        return np.ctypeslib.as_array(library.peer_pairs(mesh.handle), (count, 2)).copy()
+
+    def yes_no(mesh: Mesh) -> bool:
+        return mesh.collide(True) > 0
+
+    version = compiled.embree_version(library)
+    return Tester("", "Apache-2.0, with CGAL's LGPL-3.0", "exact", Mesh, every, None, yes_no, own_version=version)
+
+
+def of_parry(exact: bool) -> Tester:
+    """A deformable `TriMesh`, whose `set_vertices` is part of each answer; GJK, or the exact test of sscc, decides."""
+    module = compiled.parry()
+
+    def prepare(x: Array, f: Array) -> Any:
+        x = np.ascontiguousarray(x, np.float64)
+        return module.Mesh(x, np.ascontiguousarray(f, np.uint32)), x
+
+    def every(a: Any) -> Array:
+        a[0].set_vertices(a[1])
+        return a[0].all(exact)
+
+    def first(a: Any) -> bool:
+        a[0].set_vertices(a[1])
+        return bool(a[0].any(exact))
+
+    arithmetic = "exact" if exact else "floating point"
+    version = compiled.parry_version()
+    return Tester("", "Apache-2.0", arithmetic, prepare, every, first, first, own_version=version)
+
+
 TESTERS: dict[str, Callable[[], Tester]] = {
     "sscc, one call": of_sscc_call,
     "sscc, Detector": of_sscc_detector,
@@ -224,6 +287,9 @@ TESTERS: dict[str, Callable[[], Tester]] = {
     "CGAL": of_cgal,
     "trueform, yes or no": of_trueform,
     "trueform, all ids": of_trueform_gather,
+    "Embree, CGAL's test": of_embree,
+    "parry, exact test of sscc": lambda: of_parry(True),
+    "parry, its own test": lambda: of_parry(False),
     "MeshLib": of_meshlib,
     "IPC Toolkit": of_ipctk,
     "FCL (trimesh)": of_fcl,

@@ -21,6 +21,7 @@ mod page;
 mod program;
 mod public;
 mod python;
+mod semver;
 mod serial;
 mod site;
 mod soundness;
@@ -52,6 +53,7 @@ const TASKS: &[Task] = &[
     ("lemmas", "proves the rounding lemmas of docs/proofs with Gappa", lemmas::run),
     ("lines", "counts the lines of the product", lines::run),
     ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
+    ("semver", "[REVISION]: public items of the core and its version, since the last release", semver::run),
     ("mutants", "[names]: the tests catch wrong variants of the core", mutants::run),
     (
         "soundness",

@@ -1,6 +1,6 @@
 // The package. Queries take a Float64Array and answer without pairs by a way of their own, since the module's own methods allocate memory for each q, pack
 // results into arrays and make a new array for no pairs, all of which takes longer than the query. These methods do all else, errors too.
-import { Query, initSync } from "./sscc.js";
+import { Batch, Impacts, Query, initSync } from "./sscc.js";
 
 export * from "./sscc.js";
 export { default } from "./sscc.js";
@@ -9,7 +9,7 @@ export { default } from "./sscc.js";
 let doubles = new Float64Array(0);
 let integers = new Uint32Array(0);
 
-function view() {
+function renew() {
     const { memory } = initSync();
     doubles = new Float64Array(memory.buffer);
     integers = new Uint32Array(memory.buffer);
@@ -34,19 +34,21 @@ function find(query, q, limit) {
         query[AT] = address / 8;
         query[LENGTH] = q.length;
     }
-    if (doubles.length === 0) view();
+    if (doubles.length === 0) renew();
     doubles.set(q, query[AT]);
     return query.find(limit);
 }
 
-/** The array of all answers without pairs, and a number in its buffer, which is gone once the buffer was transferred. */
-let guard = new Uint32Array(1);
-let none = new Uint32Array(guard.buffer, 4, 0);
+/** The array of all answers without pairs. A view without bytes as well throws once their buffer was transferred, and tells it fastest. */
+let none = new Uint32Array(0);
+let view = new DataView(none.buffer);
 
 function noPairs() {
-    if (guard.length === 0) {
-        guard = new Uint32Array(1);
-        none = new Uint32Array(guard.buffer, 4, 0);
+    try {
+        view.byteLength;
+    } catch {
+        none = new Uint32Array(0);
+        view = new DataView(none.buffer);
     }
     return none;
 }
@@ -56,7 +58,7 @@ Query.prototype.discrete = function (q) {
     if (found < 0) return discrete.call(this, q);
     if (found === 0) return noPairs();
     const at = this.addressOfPairs() / 4;
-    if (integers.length === 0) view();
+    if (integers.length === 0) renew();
     return integers.slice(at, at + 2 * found);
 };
 
@@ -75,3 +77,19 @@ Query.prototype.free = function () {
     free.call(this);
 };
 if (Symbol.dispose) Query.prototype[Symbol.dispose] = Query.prototype.free;
+
+// Arrays of an answer are copied at the first access. From then on the answer itself has them.
+for (const [type, names] of [
+    [Batch, ["pairs", "offsets"]],
+    [Impacts, ["pairs", "times"]],
+]) {
+    for (const name of names) {
+        const { get } = Object.getOwnPropertyDescriptor(type.prototype, name);
+        const copyOnce = function () {
+            const value = get.call(this);
+            Object.defineProperty(this, name, { value });
+            return value;
+        };
+        Object.defineProperty(type.prototype, name, { get: copyOnce, configurable: true });
+    }
+}

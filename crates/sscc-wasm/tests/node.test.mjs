@@ -54,6 +54,17 @@ test("a batch has the answers of its q", () => {
     assert.deepEqual([...batch.offsets], [0, 0, 1, 1, 2]);
     assert.deepEqual([...batch.pairs], [0, 1, 0, 1]);
     assert.equal(query.batch([]).count, 0);
+    // Arrays are copied once, and stay when the answer is freed.
+    const impacts = query.continuous([0], [-2]);
+    for (const [answer, names] of [[batch, ["pairs", "offsets"]], [impacts, ["pairs", "times"]]]) {
+        const arrays = names.map((name) => answer[name]);
+        answer.free();
+        names.forEach((name, i) => assert.equal(answer[name], arrays[i]));
+    }
+    const [freed, other] = [query.batch([-1]), query.batch([-3])];
+    assert.notEqual(freed.pairs.length, other.pairs.length);
+    freed.free();
+    assert.throws(() => freed.offsets, /null pointer/);
 });
 
 test("typed arrays, other arrays and freed queries have the answers and errors that one expects", () => {
@@ -69,6 +80,7 @@ test("typed arrays, other arrays and freed queries have the answers and errors t
     // An answer without pairs may be given to another thread, as may any other.
     for (let i = 0; i < 3; i++) {
         const found = query.discrete(Float64Array.of(-0.5));
+        assert.deepEqual([found.length, found.buffer.byteLength], [0, 0]);
         structuredClone(found, { transfer: [found.buffer] });
     }
     // Views of the memory are made anew once it has grown.
