@@ -7,7 +7,7 @@
 
 use glam::{BVec4A, Mat4, Vec4};
 
-/// Numbers in a vector.
+/// The number of numbers in a vector.
 pub(crate) const LANES: usize = 8;
 
 /// The operations on vectors of eight numbers that kernels use.
@@ -90,7 +90,7 @@ impl InstructionSet {
         }
     }
 
-    /// Asks the processor to fetch all of a slice into its caches, where it has AVX2. Loads that depend on each other then
+    /// Requests that the processor fetch all of a slice into its caches, where it has AVX2. Loads that depend on each other then
     /// wait for memory once, not one after the other (docs/notes/traversal.md#growth-with-triangles).
     #[inline(always)]
     pub(crate) fn prefetch<T>(self, data: &[T]) {
@@ -187,7 +187,7 @@ mod avx2 {
     /// Bytes in a line of the caches.
     const LINE: usize = 64;
 
-    /// Asks for each line of a slice.
+    /// Requests each line of a slice.
     #[inline(always)]
     pub(super) fn prefetch<T>(simd: V3, data: &[T]) {
         let first = data.as_ptr().cast::<i8>();
@@ -292,7 +292,7 @@ mod tests {
     use super::*;
     use crate::test_models::Random;
 
-    /// All operations, on eight integers and eight numbers.
+    /// Applies all operations to eight integers and eight numbers.
     struct AllOperations([i16; LANES], [f32; LANES]);
 
     impl Kernel for AllOperations {

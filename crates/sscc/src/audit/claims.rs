@@ -42,7 +42,7 @@ impl<'a> Claims<'a> {
         for (index, a) in parts.hierarchy.order().iter().enumerate() {
             index_in_order[*a as usize] = index as u32;
         }
-        // Certificates have checked that the pair tree is one over their hierarchy.
+        // Certificates are checked when they are made: their pair tree belongs to their hierarchy.
         let entries = parts.pair_tree.pairs(&parts.hierarchy).unwrap_or_default();
         Self { parts, index_in_order, entries }
     }
@@ -97,7 +97,7 @@ impl<'a> Claims<'a> {
         missing.map(|which| Claim { nodes: all[which], radius: tree.limit() }).collect()
     }
 
-    /// A random claim of the pair tree, of an entry or of an absent pair; none where the tree is empty.
+    /// Returns a random claim of the pair tree, about an entry or an absent pair. None if the tree is empty.
     pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
         if self.entries.is_empty() {
             return None;
@@ -121,7 +121,7 @@ impl<'a> Claims<'a> {
             (node.first_triangle..node.first_triangle + node.triangle_count).contains(&index)
         };
         let is_refuted = |claim: &Claim| norm < claim.radius;
-        // Down to the smallest node that contains both.
+        // Descends to the smallest node that contains both.
         let mut n = 0;
         let (child_a, child_b) = loop {
             if let Some(claim) = Some(self.node(n)).filter(is_refuted) {
@@ -141,7 +141,7 @@ impl<'a> Claims<'a> {
         if tree.limit() <= 0.0 || hierarchy.is_bucket_below_root(n) {
             return None;
         }
-        // From there down the node pairs that contain one triangle each.
+        // From there, descends through the node pairs that contain one of the triangles in each node.
         let mut pair = (child_a, child_b);
         let mut siblings: Vec<_> = {
             let all: Vec<NodePair> = nodes[n as usize].child_pairs().collect();

@@ -72,7 +72,7 @@ impl<'m> LeafPair<'m> {
         }
     }
 
-    /// Takes the triangles of two leaves.
+    /// Loads the triangles of two leaves.
     pub(crate) fn load(&mut self, leaf_a: &[u32], leaf_b: &[u32]) {
         for (vertices, triangles) in [(&mut self.vertices_a, leaf_a), (&mut self.vertices_b, leaf_b)] {
             vertices.clear();

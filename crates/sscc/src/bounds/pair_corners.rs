@@ -14,7 +14,7 @@ pub(crate) struct PairCorners<'m> {
 }
 
 impl<'m> PairCorners<'m> {
-    /// Two triangles of a model (or simplices with these vertices), by their vertices.
+    /// Looks up two triangles of a model (or simplices), given by their vertices.
     pub(super) fn of(model: &'m ScaledModel, a: [u32; 3], b: [u32; 3]) -> Self {
         let positions = |face: [u32; 3]| face.map(|i| model.positions[i as usize]);
         let modes = |face: [u32; 3]| face.map(|i| model.modes(i));

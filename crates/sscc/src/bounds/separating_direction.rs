@@ -11,7 +11,7 @@
 //! `(dir.d_ij - e0) / (|B_ij' dir| + e1)` with the two parts of the [`RoundingBound`]. A clearance needs a gap of more than
 //! `D |dir|` in place of 0 (`required_gap.rs`), which adds `D |dir|` to e0: any two points of the triangles are convex combinations of
 //! corners, so their gap along dir is at least the smallest of the nine, and their distance at least that over |dir|.
-//! `LeastGap` has both.
+//! [`LeastGap`] contains e0 and e1 with both terms.
 
 use glam::DVec3;
 

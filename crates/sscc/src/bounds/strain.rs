@@ -43,7 +43,7 @@ pub(super) fn bound_rate(gram: &StrainGram, row_len: usize) -> f64 {
     if trace == 0.0 {
         return UNDERFLOW; // infinite and NaN traces continue: the bound that uses them becomes 0
     }
-    // In units of the trace: eigenvalues at most 1, the largest at least 1/6.
+    // In units of the trace, all eigenvalues are at most 1, and the largest is at least 1/6.
     let unit = gram.map(|r| r.map(|x| x / trace));
     let square = |m: &[[f64; 6]; 6]| -> [[f64; 6]; 6] {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| m[i][k] * m[k][j]).sum()))

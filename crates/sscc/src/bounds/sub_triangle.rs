@@ -40,7 +40,7 @@ impl SubPair {
         }
     }
 
-    /// Which of the two to divide: that whose modes vary more, so that both shrink alike.
+    /// Whether to divide the first triangle. The one whose modes vary more is divided, so that both shrink alike.
     pub(super) fn is_first_divided(&self, pair: &PairCorners<'_>) -> bool {
         let variation = |corners: &[&[f64]; 3], depth: u8| {
             let d = |i: usize, j: usize| squared_distance(corners[i], corners[j]);

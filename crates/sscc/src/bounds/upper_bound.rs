@@ -21,7 +21,7 @@ pub(super) struct Ray<'z> {
 
 /// The relative modes of two points, one of each triangle. Owns its memory.
 pub(super) struct RelativeModes {
-    /// Three rows.
+    /// The relative modes: three rows.
     rows: Vec<f64>,
 }
 
@@ -46,8 +46,8 @@ impl RelativeModes {
         gram(&self.rows)
     }
 
-    /// The smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite where the
-    /// modes cannot move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
+    /// The smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite if the modes cannot
+    /// move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
     pub(super) fn bound_at(
         &mut self,
         pair: &PairCorners<'_>,

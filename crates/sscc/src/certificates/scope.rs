@@ -19,7 +19,8 @@ pub struct Scope {
     pub filter: ContactFilter,
     /// Pairs that collide at the centre, or are nearer than the clearance: no radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
-    /// The clearance that triangles keep below the radii, and beyond how many rings; none: they do not collide.
+    /// The clearance that triangles keep below the radii, and beyond how many rings. None if the radii only prove that they do
+    /// not collide.
     pub clearance: Option<Clearance>,
 }
 
@@ -44,11 +45,11 @@ impl Scope {
         }
     }
 
-    /// The pairs that radii cover: those that count and are no exceptions; with a clearance they share no vertex, and are not within the
-    /// rings, which are the second part of the result.
+    /// Returns the pairs that radii cover: those that count and are no exceptions; with a clearance they share no vertex, and are
+    /// not within the rings, which are the second part of the result.
     ///
     /// # Errors
-    /// When too many pairs are within the rings.
+    /// If too many pairs are within the rings.
     pub(crate) fn counted_pairs(&self, model: &ReducedModel) -> Result<(PairFilter, RingPairs), Error> {
         let Some(clearance) = self.clearance else {
             let filter = PairFilter::new(model, &self.filter).excluding(&self.exceptions);

@@ -1,4 +1,4 @@
-//! Triangles with common corners: whether they have another point in common than these corners and the edges between them.
+//! Decides whether triangles with common corners have a point in common beyond these corners and the edges between them.
 
 use glam::DVec3;
 
@@ -30,9 +30,10 @@ impl ClassedCorners<'_> {
     }
 }
 
-/// Whether two closed triangles have a point in common beyond their common corners, exactly; with `edges_are_common` beyond the
-/// edges between these, too. Triangles all of whose corners are common have: they are one face twice.
-#[cold] // By default no pair comes here, and the test of pairs without common vertices stays small.
+/// Whether two closed triangles have a point in common beyond their common corners, exactly. If `edges_are_common`, points on the
+/// edges between these corners do not count either. The answer is yes for triangles all of whose corners are common: they are one
+/// face twice.
+#[cold] // By default no pair needs this; out of line, it keeps the test of pairs without common vertices small.
 #[inline(never)]
 pub(super) fn intersect_beyond_common_corners(
     a: ClassedCorners<'_>,

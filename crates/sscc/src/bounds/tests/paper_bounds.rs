@@ -45,7 +45,7 @@ impl OraclePair {
         squares.fold(f64::INFINITY, f64::min).max(0.0).sqrt()
     }
 
-    /// The bound of Eq. 11 for one triangle: how far its modes stray from their mean, as a 2-norm.
+    /// The bound of Eq. 11 for one triangle: the distance of its modes from their mean, as a 2-norm.
     fn stray(&self, side: usize) -> f64 {
         let mean = self.mean(side);
         let k: [f64; 3] =
@@ -62,7 +62,7 @@ impl OraclePair {
         singular_values(&difference(&self.mean(1), &self.mean(0)))
     }
 
-    /// Eq. 10 as Appendix A proves it: **norms**, the third singular value, the rest pose tested first.
+    /// Returns Eq. 10 as Appendix A proves it: with **norms** and the third singular value, after a test of the rest pose.
     pub(super) fn eq10_safe(&self) -> f64 {
         let sigma = self.mean_singular_values()[2];
         if self.rank() < 3 || sigma <= 0.0 || self.collides(&vec![0.0; self.rank()]) {
@@ -100,13 +100,13 @@ impl OraclePair {
         ((cy - cx).length() - rx - ry, (0..self.rank()).map(rate).collect())
     }
 
-    /// The 1D triangle estimate of section 5.2, one maximum per mode, combined.
+    /// Returns the 1D triangle estimate of section 5.2, in which the largest rates of all modes are combined.
     pub(super) fn line_estimate_safe(&self) -> f64 {
         let (gap, rates) = self.line_estimate();
         if gap > 0.0 { gap / length(&rates) } else { 0.0 }
     }
 
-    /// The same as printed: the largest of all rates.
+    /// Returns the 1D triangle estimate as printed, which uses the largest of all rates alone.
     pub(super) fn line_estimate_printed(&self) -> f64 {
         let (gap, rates) = self.line_estimate();
         if gap > 0.0 { gap / rates.into_iter().fold(0.0, f64::max) } else { 0.0 }
@@ -150,7 +150,8 @@ fn enclosing_ball(p: [DVec3; 3]) -> (DVec3, f64) {
     (best, radius(best) * (1.0 + 1e-14))
 }
 
-/// A BD-tree box (James and Pai 2004): rest interval and, for each mode, how its centre moves and it grows.
+/// A BD-tree box (James and Pai 2004): its rest interval and, for each mode, the rates at which its centre moves and its half
+/// extents grow.
 struct MovingBox {
     center: DVec3,
     half: DVec3,
@@ -192,7 +193,7 @@ impl OraclePair {
         self.boxes().map(bound).into_iter().fold(0.0, f64::max)
     }
 
-    /// The same as printed: on each axis the mode that closes the gap soonest, alone.
+    /// Returns the AABB-AABB estimate as printed, which uses on each axis only the mode that closes the gap soonest.
     pub(super) fn box_estimate_printed(&self) -> f64 {
         let bound = |(gap, rates): (f64, Vec<f64>)| {
             if gap > 0.0 { gap / rates.into_iter().fold(0.0, f64::max) } else { 0.0 }

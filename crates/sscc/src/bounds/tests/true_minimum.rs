@@ -121,7 +121,8 @@ impl OraclePair {
         self.meeting_point(best.1)
     }
 
-    /// The least z that brings two points together, solved until it no longer changes; none where it does.
+    /// Returns the norm of the smallest z that brings two points together, found by iteration. None if the iteration does not
+    /// converge.
     fn meeting_point(&self, weights: [DVec3; 2]) -> Option<f64> {
         let (d, b) = self.relative(weights);
         let inverse = gram(&b).inverse();
@@ -132,14 +133,14 @@ impl OraclePair {
             z.iter_mut().zip(&b).for_each(|(z, b)| *z -= b.dot(y));
             apart = b.iter().zip(&z).fold(d, |x, (b, z)| x + *b * *z);
         }
-        // How much z may still change to bring them together exactly.
+        // Accepts z only if a small change of it brings the points together exactly.
         let sigma = singular_values(&b)[2];
         let reach = self.a.iter().flatten().map(|a| a.length()).fold(0.0, f64::max);
         let exact = sigma > 1e-13 * reach && apart.length() <= 1e-10 * sigma * length(&z);
         exact.then(|| length(&z))
     }
 
-    /// Collisions found by the exact test along rays.
+    /// Returns the smallest norm of a collision that the exact test finds along rays.
     fn along_rays(&self, effort: usize, random: &mut Random) -> Option<f64> {
         let rank = self.rank();
         let mut rays: Vec<Vec<f64>> = Vec::new();
@@ -186,7 +187,7 @@ impl OraclePair {
         best
     }
 
-    /// The least rest distance found between points of the two triangles.
+    /// Returns the smallest rest distance found between points of the two triangles.
     pub(super) fn rest_distance(&self, effort: usize, random: &mut Random) -> f64 {
         let steps = Self {
             p: self.p,

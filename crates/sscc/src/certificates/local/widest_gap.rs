@@ -1,9 +1,9 @@
-//! For tests: the gaps that a search for ratios may have used.
+//! Computes, for tests, the gaps that a search for ratios may have used.
 
 use super::corner_gaps::CornerGaps;
 use crate::hierarchy::Hierarchy;
 
-/// For each node its parent; the root's is itself.
+/// Returns for each node its parent; for the root itself.
 pub(super) fn parents(hierarchy: &Hierarchy) -> Vec<u32> {
     let nodes = hierarchy.nodes();
     let mut parents = vec![0; nodes.len()];

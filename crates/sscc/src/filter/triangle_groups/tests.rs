@@ -11,7 +11,7 @@ fn random(state: &mut u64, n: u64) -> u32 {
 }
 
 #[test]
-fn tables_are_those_of_sets() {
+fn tables_exclude_the_same_pairs_as_sets() {
     let state = &mut 5;
     for case in 0..400 {
         let count = 1 + random(state, 7);
