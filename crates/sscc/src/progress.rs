@@ -7,8 +7,8 @@ pub trait Progress: Sync {
     /// Receives the report that `done` of `total` steps are finished. Threads may report out of order.
     fn report(&self, done: usize, total: usize);
 
-    /// The token that cancels the computation, which then ends soon with [`Error::Cancelled`](crate::Error::Cancelled). None by
-    /// default.
+    /// Returns the token that cancels the computation, which then ends soon with [`Error::Cancelled`](crate::Error::Cancelled).
+    /// None by default.
     fn cancel_token(&self) -> Option<&CancelToken> {
         None
     }

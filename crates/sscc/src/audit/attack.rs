@@ -119,7 +119,7 @@ impl Attack<'_> {
         Some(pairs.find_map(|faces| self.claims.violation(faces, norm, &q)))
     }
 
-    /// The claim that a sample attacks.
+    /// Returns the claim that a sample attacks.
     fn draw_claim(&self, sample: usize, random: &mut Random) -> Claim {
         let hierarchy = &self.certificates.parts().hierarchy;
         let nodes = hierarchy.nodes();
@@ -158,7 +158,7 @@ impl Attack<'_> {
         self.claims.node(n as u32)
     }
 
-    /// A q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one; for two
+    /// Returns a q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one; for two
     /// nodes mostly where two of their triangles approach.
     fn draw_configuration(&self, claim: Claim, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
         let Claim { nodes: (n, m), radius } = claim;

@@ -113,7 +113,7 @@ impl Comparison<'_> {
         missed.map(|impact| impact.pair)
     }
 
-    /// A random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
+    /// Returns a random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
     /// five times it; for every third sample up to the limit of the pair tree.
     pub(super) fn draw_configuration(&self, random: &mut Random, sample: usize) -> Vec<f64> {
         let certificates = self.certificates;
@@ -150,7 +150,7 @@ impl Comparison<'_> {
         Motion { q_t0: draw(), q_t1: draw() }
     }
 
-    /// The q in the direction of z with a norm of about `goal`.
+    /// Returns the q in the direction of z with a norm of about `goal`.
     fn scale_to(&self, z: &[f64], goal: f64) -> Vec<f64> {
         let norm = z.iter().map(|z| z * z).sum::<f64>().sqrt();
         self.certificates.parts().scope.at(z, if norm > 0.0 { goal / norm } else { 0.0 })

@@ -133,7 +133,8 @@ impl LocalAttack<'_> {
         Some(at(low))
     }
 
-    /// An offset from the centre: where two triangles of a claim approach, in the direction of a known collision, or a random one.
+    /// Returns an offset from the centre: where two triangles of a claim approach, in the direction of a known collision, or a
+    /// random one.
     fn draw_ray(&self, (n, m): NodePair, random: &mut Random) -> Option<Vec<f64>> {
         let scope = &self.certificates.parts().scope;
         let hierarchy = self.certificates.hierarchy();

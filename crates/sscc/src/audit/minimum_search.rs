@@ -106,7 +106,7 @@ impl MinimumSearch<'_> {
         Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed })
     }
 
-    /// The points of two simplices.
+    /// Returns the points of two simplices.
     fn points(&self, simplices: SimplexPair<u32>) -> PointPairs<'_> {
         let distance = self.clearance.map_or(0.0, |clearance| clearance.distance());
         PointPairs { scaled: self.scaled, simplices, distance }
@@ -171,7 +171,7 @@ impl MinimumSearch<'_> {
     }
 }
 
-/// The pair of points with the smallest radius, on a grid and then by random steps of decreasing width.
+/// Returns the pair of points with the smallest radius, on a grid and then by random steps of decreasing width.
 fn minimize(points: &PointPairs<'_>, random: &mut Random) -> Candidate {
     let mut best = Candidate { radius: f64::INFINITY, weights: Weights { a: DVec3::X, b: DVec3::X } };
     for a in grid() {

@@ -40,7 +40,7 @@ impl Weights {
     /// The centroids.
     pub(super) const CENTROIDS: Self = Self { a: DVec3::splat(1.0 / 3.0), b: DVec3::splat(1.0 / 3.0) };
 
-    /// Random points.
+    /// Returns random points.
     pub(super) fn random(random: &mut Random) -> Self {
         let mut point = || {
             let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
@@ -49,14 +49,14 @@ impl Weights {
         Self { a: point(), b: point() }
     }
 
-    /// The weights of both points, changed alike.
+    /// Returns the weights of both points, changed alike.
     pub(super) fn map(self, mut f: impl FnMut(DVec3) -> DVec3) -> Self {
         Self { a: f(self.a), b: f(self.b) }
     }
 }
 
 impl PointPairs<'_> {
-    /// The difference d and the relative modes B of two points.
+    /// Returns the difference d and the relative modes B of two points.
     pub(super) fn relative(&self, weights: Weights) -> Relative {
         let row_len = self.scaled.row_len;
         let mut difference = DVec3::ZERO;
@@ -116,7 +116,7 @@ impl Relative {
     }
 }
 
-/// Barycentric weights on a regular grid.
+/// Returns barycentric weights on a regular grid.
 pub(super) fn grid() -> impl Iterator<Item = DVec3> {
     (0..=GRID).flat_map(|i| {
         (0..=GRID - i).map(move |j| DVec3::new(i as f64, j as f64, (GRID - i - j) as f64) / GRID as f64)

@@ -108,7 +108,7 @@ fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     (0..count).step_by(count.div_ceil(most).max(1))
 }
 
-/// The claims of the root and of the pairs of its children, and claims of nodes and stored node pairs spread evenly.
+/// Returns the claims of the root and of the pairs of its children, and claims of nodes and stored node pairs spread evenly.
 fn spread_claims(certificates: &Certificates, claims: &Claims<'_>) -> Vec<Claim> {
     let hierarchy = &certificates.parts().hierarchy;
     let mut measured = vec![claims.node(0)];
@@ -121,7 +121,7 @@ fn spread_claims(certificates: &Certificates, claims: &Claims<'_>) -> Vec<Claim>
     measured
 }
 
-/// The triangle pair whose bound is the smallest below a claim's node or node pair.
+/// Returns the triangle pair whose bound is the smallest below a claim's node or node pair.
 fn find_critical_pair(
     search: &mut RadiusSearch<'_>,
     certificates: &Certificates,

@@ -84,12 +84,12 @@ impl AffineBound {
         is_fitted
     }
 
-    /// The squared difference of the residuals of two points, rounded to nearest.
+    /// Returns the squared difference of the residuals of two points, rounded to nearest.
     pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
         self.fit.squared_residual(i, j)
     }
 
-    /// The bound of two triangles among the points.
+    /// Returns the bound of two triangles among the points.
     pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, model: &ScaledModel) -> f64 {
         let terms = self.terms(&pair, model);
         let over_all_directions = terms.bound(self.rate);
@@ -106,7 +106,8 @@ impl AffineBound {
         }
     }
 
-    /// The rate over a pyramid of directions that proves two triangles apart below a radius, and the pyramid. None if that fails.
+    /// Returns the rate over a pyramid of directions that proves two triangles apart below a radius, and the pyramid. None if
+    /// that fails.
     pub(super) fn witness(
         &self,
         pair: AffinePair<'_>,
@@ -144,7 +145,7 @@ impl AffineBound {
         self.fit.gradient()
     }
 
-    /// The bound of two triangles by an affine map of their own six corners.
+    /// Returns the bound of two triangles by an affine map of their own six corners.
     pub(super) fn fit_and_bound(
         &mut self,
         pair: &PairCorners<'_>,

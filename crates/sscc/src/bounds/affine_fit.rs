@@ -92,18 +92,18 @@ impl AffineFit {
         &self.gradient
     }
 
-    /// An upper bound of the Frobenius norm of the gradient.
+    /// Returns an upper bound of the Frobenius norm of the gradient.
     pub(super) fn frobenius(&self) -> f64 {
         self.frobenius
     }
 
-    /// `|E_j - E_i|^2`, rounded to nearest.
+    /// Returns `|E_j - E_i|^2`, rounded to nearest.
     pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
         let width = 3 * self.row_len;
         squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
     }
 
-    /// An upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
+    /// Returns an upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
     /// is not included; the affine bound adds that of both.
     ///
     /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to

@@ -26,7 +26,7 @@ struct Cone {
     directions: [DVec3; 3],
 }
 
-/// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
+/// Returns an upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
 /// refinement helps; infinite if the directions do not fit into a narrow cone.
 pub(super) fn bound_rate_in_cone(
     d: &[DVec3; 9],
@@ -71,7 +71,7 @@ pub(super) fn bound_rate_in_cone(
     cones.iter().map(|cone| cone.rate).fold(0.0, f64::max)
 }
 
-/// Four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
+/// Returns four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
 /// their widest extent. None if they do not lie well within a half-space.
 pub(super) fn enclose_in_pyramid(d: &[DVec3; 9], margin: f64) -> Option<[DVec3; 4]> {
     let axis = d.iter().map(|d| d.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
@@ -130,7 +130,7 @@ impl Forms<'_> {
         self.square(u, u).sqrt()
     }
 
-    /// An upper bound of `f` on the cone of three unit directions.
+    /// Returns an upper bound of `f` on the cone of three unit directions.
     fn bound(&self, u: &[DVec3; 3]) -> f64 {
         let mut largest = 0.0_f64;
         for i in 0..3 {

@@ -112,7 +112,7 @@ impl ConfigurationLine {
     }
 }
 
-/// The nine differences of the vectors of two triangles' vertices.
+/// Returns the nine differences of the vectors of two triangles' vertices.
 #[inline]
 fn differences(of: &[DVec3], a: [u32; 3], b: [u32; 3]) -> [DVec3; 9] {
     let (a, b) = (a.map(|i| of[i as usize]), b.map(|j| of[j as usize]));
@@ -129,7 +129,7 @@ pub(crate) struct MovingAabb {
 impl MovingAabb {
     pub(crate) const EMPTY: Self = Self { positions: Aabb::EMPTY, velocities: Aabb::EMPTY };
 
-    /// The AABBs of both sets of points.
+    /// Returns the AABBs of both sets of points.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self {
             positions: self.positions.union(&other.positions),

@@ -11,7 +11,7 @@ const SAMPLES: usize = 24;
 /// Largest distance outside a feature at which a contact counts, in barycentric units.
 const TOLERANCE: f64 = 1e-7;
 
-/// The smallest t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
+/// Returns the smallest t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
 pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -> Option<f64> {
     let mut first = f64::INFINITY;
     let mut consider = |feature: &dyn Fn(f64) -> [DVec3; 4], is_contact: fn(&[DVec3; 4]) -> bool| {
@@ -64,7 +64,7 @@ pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -
     first.is_finite().then_some(first)
 }
 
-/// The smallest t in (0, 1] at which two triangles are as near as a distance, if one is found.
+/// Returns the smallest t in (0, 1] at which two triangles are as near as a distance, if one is found.
 pub(super) fn estimate_first_nearness(
     corners_at: impl Fn(f64) -> TwoTriangles,
     distance: f64,

@@ -75,7 +75,7 @@ impl NodeModes {
         Self { center, half, residual, modes, gradient }
     }
 
-    /// The vector between the closest points of the AABBs of two nodes, from this one to the other; 0 where they touch.
+    /// Returns the vector between the closest points of the AABBs of two nodes, from this one to the other; 0 where they touch.
     pub(super) fn gap(&self, other: &Self) -> DVec3 {
         let (between, half) = (other.center - self.center, self.half + other.half);
         (between - half).max(DVec3::ZERO) + (between + half).min(DVec3::ZERO)

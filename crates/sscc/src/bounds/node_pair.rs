@@ -85,7 +85,7 @@ impl NodePairBounds {
         Self { nodes: parallel::map(hierarchy.nodes(), fit) }
     }
 
-    /// The squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.
+    /// Returns the squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.
     pub(crate) fn size(&self, n: u32) -> f64 {
         self.nodes[n as usize].half.length_squared()
     }
@@ -104,7 +104,7 @@ impl NodePairBounds {
         if gap == DVec3::ZERO { None } else { scale_direction(inverse * gap) }
     }
 
-    /// The modes of a node.
+    /// Returns the modes of a node.
     pub(crate) fn of_node(&self, n: u32) -> &NodeModes {
         &self.nodes[n as usize]
     }
@@ -199,7 +199,7 @@ fn candidates(
     tried.filter(move |_| gap != DVec3::ZERO).filter_map(scale_direction).filter(is_separating)
 }
 
-/// The inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for
+/// Returns the inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for
 /// points with the difference d is `gram^-1 d`.
 #[inline(always)]
 fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> DMat3 {
@@ -215,7 +215,7 @@ fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> 
     metric.inverse()
 }
 
-/// The bound along one direction: the smallest of the 64 pairs of corners.
+/// Returns the bound along one direction: the smallest of the 64 pairs of corners.
 #[inline(always)]
 fn bound_corners_along(
     n: &NodeModes,

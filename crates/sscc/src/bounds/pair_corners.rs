@@ -25,7 +25,7 @@ impl<'m> PairCorners<'m> {
         }
     }
 
-    /// The nine differences `b_j - a_i` of corners, at index `3 i + j`.
+    /// Returns the nine differences `b_j - a_i` of corners, at index `3 i + j`.
     pub(crate) fn differences(&self) -> [DVec3; 9] {
         self.corners.differences()
     }

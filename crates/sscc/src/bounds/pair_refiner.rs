@@ -71,13 +71,13 @@ impl<'m> PairRefiner<'m> {
         }
     }
 
-    /// The direction that gave the largest bound of the last pair.
+    /// Returns the direction that gave the largest bound of the last pair.
     pub(crate) fn best_direction(&self) -> Option<DVec3> {
         self.best_direction
     }
 
-    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` needs. A smaller upper
-    /// bound that it finds is stored in `target.upper`.
+    /// Returns a certified lower bound for two triangles, given by their vertices, refined as far as `target` needs. A smaller
+    /// upper bound that it finds is stored in `target.upper`.
     pub(crate) fn refine(&mut self, a: [u32; 3], b: [u32; 3], target: &mut RefinementTarget) -> f64 {
         let pair = PairCorners::of(self.model, a, b);
         let lower = self.bound_corners(&pair, target);
@@ -138,7 +138,7 @@ impl<'m> PairRefiner<'m> {
         lower
     }
 
-    /// The largest of the cheap bounds of two (sub-)triangles.
+    /// Returns the largest of the cheap bounds of two (sub-)triangles.
     pub(super) fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
         self.best_direction = None;
         let model = self.model;

@@ -74,7 +74,7 @@ impl PairRefiner<'_> {
         parts.all(|part| self.prove_part(pair, part, radius, list, corner_modes))
     }
 
-    /// A witness for these corners without subdivision.
+    /// Returns a witness for these corners without subdivision.
     fn witness(&mut self, pair: &PairCorners<'_>, radius: f64, known: &[DVec3]) -> Option<PairWitness> {
         let model = self.model;
         let differences = pair.differences();

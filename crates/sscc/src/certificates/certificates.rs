@@ -54,22 +54,22 @@ impl Certificates {
         Self(Arc::new(parts))
     }
 
-    /// The contents, for writing.
+    /// Returns the contents, for writing.
     pub fn parts(&self) -> &CertificateParts {
         &self.0
     }
 
-    /// The hierarchy over the triangles.
+    /// Returns the hierarchy over the triangles.
     pub(crate) fn hierarchy(&self) -> &Hierarchy {
         &self.0.hierarchy
     }
 
-    /// The metric in which radii are measured.
+    /// Returns the metric in which radii are measured.
     pub fn metric(&self) -> &Metric {
         &self.0.scope.metric
     }
 
-    /// The configuration from which radii are measured (r entries).
+    /// Returns the configuration from which radii are measured (r entries).
     pub fn center(&self) -> &[f64] {
         &self.0.scope.center
     }
@@ -100,20 +100,20 @@ impl Certificates {
         &self.0.scope.exceptions
     }
 
-    /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the exceptions. If
-    /// the certificates have a [`clearance`](Self::clearance), no triangles that count are nearer than it, but others may
-    /// collide.
+    /// Returns the radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
+    /// exceptions. If the certificates have a [`clearance`](Self::clearance), no triangles that count are nearer than it, but
+    /// others may collide.
     pub fn root_radius(&self) -> f64 {
         self.0.node_radii[0]
     }
 
-    /// The radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built, if that
-    /// is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
+    /// Returns the radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built,
+    /// if that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
     pub fn global_radius(&self) -> f64 {
         self.0.global_radius
     }
 
-    /// `R_n` of a node.
+    /// Returns `R_n` of a node.
     pub(crate) fn node_radius(&self, node: u32) -> f64 {
         self.0.node_radii[node as usize]
     }
@@ -123,7 +123,7 @@ impl Certificates {
         self.0.rest_collisions
     }
 
-    /// `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
+    /// Returns `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
     ///
     /// # Errors
     /// If the length of q is not the number of modes.

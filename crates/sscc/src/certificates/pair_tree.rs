@@ -108,7 +108,7 @@ impl PairTree {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
 
-    /// The entry of an index.
+    /// Returns the entry of an index.
     pub(crate) fn entry(&self, index: usize) -> PairEntry {
         self.entries[index]
     }
@@ -142,7 +142,7 @@ impl PairTree {
         self.siblings(self.starts[node as usize])
     }
 
-    /// The stored children of a pair that has some.
+    /// Returns the stored children of a pair that has some.
     #[inline]
     pub(crate) fn below(&self, index: u32) -> impl Iterator<Item = StoredPair> {
         self.siblings(self.entries[index as usize].start())

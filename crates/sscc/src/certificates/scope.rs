@@ -25,7 +25,8 @@ pub struct Scope {
 }
 
 impl Scope {
-    /// The default scope of a model: its own metric, centre q = 0, the contact filter of its mesh ([`ContactFilter::of`]).
+    /// Returns the default scope of a model: its own metric, centre q = 0, the contact filter of its mesh
+    /// ([`ContactFilter::of`]).
     pub fn of(model: &ReducedModel) -> Self {
         Self {
             metric: model.metric().clone(),
@@ -36,7 +37,7 @@ impl Scope {
         }
     }
 
-    /// The model in scaled coordinates about the centre, whose parts keep the clearance.
+    /// Returns the model in scaled coordinates about the centre, whose parts keep the clearance.
     pub(crate) fn scaled_model(&self, model: &ReducedModel) -> ScaledModel {
         let scaled = ScaledModel::new(model, &self.metric, &self.center);
         match self.clearance {
@@ -66,7 +67,7 @@ impl Scope {
         Ok((filter, rings))
     }
 
-    /// `|S (q - center)|`, rounded up.
+    /// Returns `|S (q - center)|`, rounded up.
     pub(crate) fn norm(&self, q: &[f64]) -> f64 {
         if self.center.iter().all(|x| *x == 0.0) {
             return self.metric.length(q);
@@ -74,7 +75,7 @@ impl Scope {
         self.metric.norm_from(q, &self.center, &mut vec![0.0; q.len()])
     }
 
-    /// The q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
+    /// Returns the q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
     pub(crate) fn at(&self, z: &[f64], size: f64) -> Vec<f64> {
         let offset = self.metric.unscale(z);
         self.center.iter().zip(offset).map(|(c, d)| c + size * d).collect()

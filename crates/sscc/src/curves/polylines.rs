@@ -9,7 +9,7 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// The node at the other end.
+    /// Returns the node at the other end.
     fn opposite(&self, node: u32) -> u32 {
         if self.nodes[0] == node { self.nodes[1] } else { self.nodes[0] }
     }
@@ -52,7 +52,7 @@ fn unique(mut segments: Vec<Segment>) -> Vec<Segment> {
     segments
 }
 
-/// The polyline from a node along a segment, up to a node that does not have two segments or back to the first.
+/// Returns the polyline from a node along a segment, up to a node that does not have two segments or back to the first.
 fn follow(segments: &[Segment], joints: &Joints, first: u32, start: u32, is_joined: &mut [bool]) -> Polyline {
     let mut polyline = Polyline { nodes: vec![start], contacts: Vec::new() };
     let (mut segment, mut node) = (first, start);

@@ -13,8 +13,8 @@ pub(super) struct ClassedCorners<'a> {
 }
 
 impl ClassedCorners<'_> {
-    /// Which corners are common: a corner of the other triangle has the same class, and is at the same position. Welded corners
-    /// that have moved apart are no common point.
+    /// Returns which corners are common: a corner of the other triangle has the same class, and is at the same position. Welded
+    /// corners that have moved apart are no common point.
     fn common_with(&self, other: &Self) -> [bool; 3] {
         std::array::from_fn(|i| {
             let is_same =
@@ -23,7 +23,7 @@ impl ClassedCorners<'_> {
         })
     }
 
-    /// The positions of the corners that are common, or of those that are not.
+    /// Returns the positions of the corners that are common, or of those that are not.
     fn corners_where(&self, is_wanted: [bool; 3]) -> impl Iterator<Item = DVec3> + use<> {
         let positions = *self.positions;
         (0..3).filter(move |i| is_wanted[*i]).map(move |i| positions[i])

@@ -67,13 +67,13 @@ pub struct ContactFilter {
 }
 
 impl ContactFilter {
-    /// The default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes from a
-    /// format that splits them ([`TriMesh::has_split_vertices`]).
+    /// Returns the default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes
+    /// from a format that splits them ([`TriMesh::has_split_vertices`]).
     pub fn of(mesh: &TriMesh) -> Self {
         Self::default().weld(mesh.has_split_vertices())
     }
 
-    /// A filter that welds nothing, ignores no pair and has no groups.
+    /// Creates a filter that welds nothing, ignores no pair and has no groups.
     pub fn new(neighbours: Neighbours) -> Self {
         Self { neighbours, ..Self::default() }
     }
@@ -101,7 +101,7 @@ impl ContactFilter {
         self
     }
 
-    /// The pairs that never count, sorted.
+    /// Returns the pairs that never count, sorted.
     pub fn ignored(&self) -> &[Pair] {
         &self.ignored
     }

@@ -80,7 +80,7 @@ impl PairFilter {
         self
     }
 
-    /// The faces of the mesh.
+    /// Returns the faces of the mesh.
     #[inline]
     pub(crate) fn faces(&self) -> &[[u32; 3]] {
         &self.faces
@@ -91,7 +91,7 @@ impl PairFilter {
         self.groups.as_deref()
     }
 
-    /// The groups of this mesh and of another one, if they hold between both.
+    /// Returns the groups of this mesh and of another one, if they hold between both.
     pub(crate) fn groups_against<'f>(&'f self, other: &'f Self) -> Option<GroupsBetween<'f>> {
         let groups = GroupsBetween([self.groups()?, other.groups()?]);
         groups.0[0].is_common_with(groups.0[1]).then_some(groups)
@@ -107,7 +107,7 @@ impl PairFilter {
         self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
     }
 
-    /// The vertex classes of a triangle's corners.
+    /// Returns the vertex classes of a triangle's corners.
     #[inline]
     pub(crate) fn vertex_classes(&self, triangle: u32) -> [u32; 3] {
         self.classes[triangle as usize]
@@ -119,7 +119,7 @@ impl PairFilter {
         self.neighbours == Neighbours::Exclude && self.groups.is_none()
     }
 
-    /// The relation of two triangles, whether or not their pair is excluded.
+    /// Returns the relation of two triangles, whether or not their pair is excluded.
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
         if let Some(groups) = &self.groups
@@ -135,8 +135,8 @@ impl PairFilter {
         }
     }
 
-    /// The relation of two triangles that share a vertex class. It depends on numbers and classes alone: positions that are
-    /// given later never change it.
+    /// Returns the relation of two triangles that share a vertex class. It depends on numbers and classes alone: positions that
+    /// are given later never change it.
     fn relation_of_neighbours(&self, a: u32, b: u32) -> Relation {
         match self.neighbours {
             Neighbours::Exclude => Relation::Adjacent,

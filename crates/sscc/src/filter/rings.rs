@@ -115,7 +115,7 @@ impl RingPairs {
     /// No pairs.
     pub(crate) const NONE: Self = Self { starts: Vec::new(), later: Vec::new() };
 
-    /// The pairs of a mesh.
+    /// Creates the pairs of a mesh.
     ///
     /// # Errors
     /// If there are more than 2^26.

@@ -19,7 +19,7 @@ const TRIANGLE: [usize; 3] = [0, 1, 2];
 const TRIANGLES: [Option<SimplexPair<usize>>; 2] = [Some(SimplexPair { a: TRIANGLE, b: TRIANGLE }), None];
 
 impl PairFilter {
-    /// The simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
+    /// Returns the simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
     /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
     /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
     /// two.
@@ -46,9 +46,9 @@ impl PairFilter {
         pairs.into_iter().flatten()
     }
 
-    /// The simplex pairs of a shared-vertex pair that moves on straight lines between these corners. Welded vertices may have
-    /// moved apart: then the pair has a common vertex only if two corners of the class are at one position at the start and at
-    /// the end of the motion, and so at all times.
+    /// Returns the simplex pairs of a shared-vertex pair that moves on straight lines between these corners. Welded vertices may
+    /// have moved apart: then the pair has a common vertex only if two corners of the class are at one position at the start and
+    /// at the end of the motion, and so at all times.
     pub(crate) fn moving_simplex_pairs(
         &self,
         class: u32,
@@ -94,7 +94,7 @@ impl PairFilter {
         }
     }
 
-    /// The corners (0 to 2) of a face that are not of the class: two, or one twice.
+    /// Returns the corners (0 to 2) of a face that are not of the class: two, or one twice.
     pub(super) fn opposite_edge(&self, face: u32, class: u32) -> Option<[usize; 2]> {
         let classes = self.classes[face as usize];
         let mut others = (0..3).filter(|&i| classes[i] != class);

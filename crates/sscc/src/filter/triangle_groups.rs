@@ -170,12 +170,12 @@ impl TriangleGroups {
         self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(is_same)
     }
 
-    /// The group of each triangle.
+    /// Returns the group of each triangle.
     pub(crate) fn of_triangles(&self) -> &[u16] {
         &self.of_triangle
     }
 
-    /// The number of groups: one more than the largest group of a triangle.
+    /// Returns the number of groups: one more than the largest group of a triangle.
     pub(crate) fn group_count(&self) -> usize {
         self.starts.len() - 1
     }
@@ -185,7 +185,7 @@ impl TriangleGroups {
         self.others_count
     }
 
-    /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
+    /// Returns the listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
     pub(crate) fn listed(&self) -> impl Iterator<Item = (u16, u16)> {
         let row = |g: usize| &self.partners[self.starts[g]..self.starts[g + 1]];
         (0..self.group_count())

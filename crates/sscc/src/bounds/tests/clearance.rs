@@ -10,7 +10,7 @@ use super::random::Random;
 use super::true_minimum::{gram, length};
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh, distance_triangle_triangle};
 
-/// Two triangles with these corners, and the displacements of each corner by each mode.
+/// Returns two triangles with these corners, and the displacements of each corner by each mode.
 fn model(p: [DVec3; 6], modes: Vec<[DVec3; 6]>) -> ReducedModel {
     let displacements = (0..6).flat_map(|v| modes.iter().map(move |u| u[v])).collect();
     let mesh = TriMesh::new(p.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();

@@ -9,7 +9,7 @@ use super::random::Random;
 use super::true_minimum::OraclePair;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
-/// A pair by its corners and, for each corner, its modes.
+/// Returns a pair by its corners and, for each corner, its modes.
 fn pair(p: [[f64; 3]; 6], a: [&[[f64; 3]]; 6]) -> OraclePair {
     OraclePair {
         p: p.map(DVec3::from_array),

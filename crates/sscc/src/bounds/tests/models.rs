@@ -127,7 +127,7 @@ pub(super) fn reference(model: &ReducedModel, faces: [u32; 2]) -> OraclePair {
     }
 }
 
-/// The first two triangles of a model.
+/// Returns the first two triangles of a model.
 pub(super) fn pair_corners(scaled: &ScaledModel) -> PairCorners<'_> {
     PairCorners::of(scaled, [0, 1, 2], [3, 4, 5])
 }
@@ -157,7 +157,7 @@ pub(super) fn scaled_keeping(model: &ReducedModel, clearance: f64) -> ScaledMode
     if clearance > 0.0 { scaled.keeping(clearance, DISTANCE_ERROR) } else { scaled }
 }
 
-/// All bounds of one pair of triangles, by name.
+/// Returns all bounds of one pair of triangles, by name.
 pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
     all_bounds_keeping(model, 0.0, random)
 }
@@ -223,7 +223,7 @@ pub(super) fn all_bounds_keeping(
     bounds
 }
 
-/// A hierarchy of two leaves: the first `split` triangles and the others.
+/// Returns a hierarchy of two leaves: the first `split` triangles and the others.
 fn two_leaves(split: u32, count: u32) -> Hierarchy {
     let leaf = |first_triangle, triangle_count| Node {
         first_triangle,
@@ -236,7 +236,7 @@ fn two_leaves(split: u32, count: u32) -> Hierarchy {
     Hierarchy::from_parts(nodes, (0..count).collect(), count as usize).unwrap()
 }
 
-/// The bound of two nodes: the first `split` triangles and the others.
+/// Returns the bound of two nodes: the first `split` triangles and the others.
 pub(super) fn node_pair_bound(model: &ReducedModel, split: u32) -> f64 {
     node_pair_bound_keeping(model, 0.0, split)
 }

@@ -10,7 +10,7 @@ use crate::model::mode_rows::{dot, padded_rank};
 use crate::model::rounding::{norm_up, quotient_down};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
-/// A number in exact arithmetic.
+/// Returns a number in exact arithmetic.
 pub(crate) fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
 }

@@ -12,7 +12,7 @@ pub(super) struct OraclePair {
     pub(super) a: [Vec<DVec3>; 6],
 }
 
-/// The Gram matrix `B B'` of modes given by columns.
+/// Returns the Gram matrix `B B'` of modes given by columns.
 pub(super) fn gram(b: &[DVec3]) -> DMat3 {
     b.iter().fold(DMat3::ZERO, |g, b| g + DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z))
 }
@@ -29,7 +29,7 @@ pub(super) fn difference(a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
     a.iter().zip(b).map(|(a, b)| *a - *b).collect()
 }
 
-/// The singular values of a 3 x r matrix given by columns, greatest first: always three (Jacobi rotations of
+/// Returns the singular values of a 3 x r matrix given by columns, greatest first: always three (Jacobi rotations of
 /// its rows, which keep small values exact to their own size).
 pub(super) fn singular_values(b: &[DVec3]) -> [f64; 3] {
     let mut rows: [Vec<f64>; 3] = std::array::from_fn(|c| b.iter().map(|b| b[c]).collect());
@@ -65,7 +65,7 @@ impl OraclePair {
         [self.p[3 * side], self.p[3 * side + 1], self.p[3 * side + 2]]
     }
 
-    /// `d` and the columns of `B` for two points given by barycentric weights.
+    /// Returns `d` and the columns of `B` for two points given by barycentric weights.
     pub(super) fn relative(&self, [wx, wy]: [DVec3; 2]) -> (DVec3, Vec<DVec3>) {
         let w = [-wx.x, -wx.y, -wx.z, wy.x, wy.y, wy.z];
         let d = self.p.iter().zip(w).map(|(p, w)| *p * w).sum();

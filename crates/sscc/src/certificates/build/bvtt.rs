@@ -89,7 +89,7 @@ impl Bvtt {
         Some(*self.starts.get(n)? as usize..*self.starts.get(n + 1)? as usize)
     }
 
-    /// The indices of the pairs that a pair is split into.
+    /// Returns the indices of the pairs that a pair is split into.
     pub(super) fn children(&self, hierarchy: &Hierarchy, pair: &BvttPair) -> Range<usize> {
         let PairState::Split(first) = pair.state() else { return 0..0 };
         let (n, m) = pair.nodes;

@@ -61,7 +61,7 @@ impl LimitSchedule {
         self.limit
     }
 
-    /// The largest limit for which there was room; 0 if there was none.
+    /// Returns the largest limit for which there was room; 0 if there was none.
     pub(super) fn complete_below(&self) -> f64 {
         self.complete_below
     }

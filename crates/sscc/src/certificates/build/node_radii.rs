@@ -147,7 +147,7 @@ impl Passes<'_> {
         Ok(bounds.into_iter().map(|bound| bound.upper).fold(f64::INFINITY, f64::min))
     }
 
-    /// The smallest radius of a node's children, at most the cap.
+    /// Returns the smallest radius of a node's children, at most the cap.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
         radii.fold(self.radii.cap, f64::min)

@@ -175,7 +175,7 @@ impl PairTreeBuilder {
     }
 }
 
-/// The indices of the open pairs that may collide below a limit.
+/// Returns the indices of the open pairs that may collide below a limit.
 fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
     indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
 }

@@ -69,7 +69,7 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 
-    /// The triangle pair for which the last search found its smallest upper bound.
+    /// Returns the triangle pair for which the last search found its smallest upper bound.
     pub(crate) fn closest(&self) -> Option<Pair> {
         self.closest
     }

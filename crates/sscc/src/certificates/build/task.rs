@@ -87,7 +87,7 @@ impl TaskResult {
         }
     }
 
-    /// The result of splitting a pair.
+    /// Returns the result of splitting a pair.
     pub(crate) fn into_subtree(self) -> Result<Vec<BvttPair>, Error> {
         match self {
             Self::Split(subtree) => Ok(subtree),
@@ -95,7 +95,7 @@ impl TaskResult {
         }
     }
 
-    /// The result of searching a radius.
+    /// Returns the result of searching a radius.
     pub(crate) fn into_bound(self) -> Result<RadiusBound, Error> {
         match self {
             Self::NodeRadius(bound) => Ok(bound),

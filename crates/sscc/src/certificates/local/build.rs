@@ -311,7 +311,7 @@ fn infinite_for_nan(ratio: f32) -> f32 {
     if ratio.is_nan() { f32::INFINITY } else { ratio }
 }
 
-/// The gradients in the layout of [`LocalCertificates::gradients`].
+/// Returns the gradients in the layout of [`LocalCertificates::gradients`].
 fn gradients(patch: &Patch) -> Vec<f32> {
     let count = patch.modes.len();
     // The rows are `G_cj` at 3 c + j; entry e of a column is `G_cj` with c = e % 3, j = e / 3.

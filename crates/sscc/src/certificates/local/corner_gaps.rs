@@ -112,7 +112,7 @@ impl<'g> CornerGaps<'g> {
         gaps
     }
 
-    /// The vertices of a leaf, ascending.
+    /// Returns the vertices of a leaf, ascending.
     #[inline]
     pub(super) fn vertices(&self, leaf: u32) -> &[u32] {
         let [start, end] = [leaf, leaf + 1].map(|n| self.starts[n as usize] as usize);
@@ -125,7 +125,7 @@ impl<'g> CornerGaps<'g> {
         &self.tight[start..end]
     }
 
-    /// The tightest pair of a table.
+    /// Returns the tightest pair of a table.
     fn tightest(&self, (n, m): NodePair, table: &GapTable) -> Option<TightPair> {
         let [x, y] = [n, m].map(|n| self.vertices(n));
         let pairs = x.iter().flat_map(|i| y.iter().map(|j| (*i, *j))).zip(&table.gaps);
@@ -136,7 +136,7 @@ impl<'g> CornerGaps<'g> {
         tight.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, pair)| pair)
     }
 
-    /// The table of two leaves, the smaller number first, if they are near.
+    /// Returns the table of two leaves, the smaller number first, if they are near.
     #[inline]
     pub(super) fn near(&self, (n, m): NodePair) -> Option<&Option<GapTable>> {
         let [start, end] = [n, n + 1].map(|n| self.table_starts[n as usize] as usize);

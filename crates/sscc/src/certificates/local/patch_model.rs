@@ -58,17 +58,17 @@ impl<'m> PatchModel<'m> {
         Some(Self { model, positions, scales })
     }
 
-    /// The number of modes.
+    /// Returns the number of modes.
     pub(crate) fn rank(&self) -> usize {
         self.scales.sizes.len()
     }
 
-    /// The vertices that faces use.
+    /// Returns the vertices that faces use.
     pub(crate) fn used_vertices(&self) -> Vec<u32> {
         self.model.mesh().used_vertices()
     }
 
-    /// The position of a vertex: within a cube with sides of length 2, up to rounding.
+    /// Returns the position of a vertex: within a cube with sides of length 2, up to rounding.
     pub(crate) fn position(&self, vertex: u32) -> DVec3 {
         self.positions[vertex as usize]
     }

@@ -66,7 +66,7 @@ impl Kernel for FitEllipsoid<'_> {
 }
 
 impl ResidualEllipsoid {
-    /// The Cholesky factor of the weighted sum of Gram matrices.
+    /// Returns the Cholesky factor of the weighted sum of Gram matrices.
     #[inline(always)]
     fn of_weighted(blocks: &[f64], weights: &[f64], rank: usize, row_len: usize) -> Option<Self> {
         let mut rows = vec![0.0; rank * row_len];
@@ -165,8 +165,8 @@ impl ResidualEllipsoid {
         }
     }
 
-    /// An upper bound of `|(Y Z)_computed W - Y| / |Y|` in Frobenius norms: that of `Z W - I`, as computed, and the rounding of both products,
-    /// each at most `gamma_r |Z||W|`.
+    /// Returns an upper bound of `|(Y Z)_computed W - Y| / |Y|` in Frobenius norms: that of `Z W - I`, as computed, and the
+    /// rounding of both products, each at most `gamma_r |Z||W|`.
     pub(super) fn defect(&self) -> f64 {
         let Self { rank, row_len, rows, inverse } = self;
         let mut square = 0.0;
@@ -184,7 +184,7 @@ impl ResidualEllipsoid {
         square.sqrt() * (1.0 + 1e-9) + right_or!(rounding, LocalImagesExact, 0.0)
     }
 
-    /// The largest norm of a column, rounded up.
+    /// Returns the largest norm of a column, rounded up.
     pub(super) fn largest_column(&self) -> f64 {
         let square = |k: usize| (0..=k).map(|i| self.entry(i, k) * self.entry(i, k)).sum::<f64>();
         (0..self.rank).map(square).fold(0.0, f64::max).sqrt() * (1.0 + 1e-12)
@@ -203,7 +203,7 @@ impl ResidualEllipsoid {
     }
 }
 
-/// The upper half of a finite number, rounded to nearest.
+/// Returns the upper half of a finite number, rounded to nearest.
 fn upper_half(x: f32) -> u16 {
     let bits = x.to_bits();
     ((bits + 0x7fff + (bits >> 16 & 1)) >> 16) as u16

@@ -99,7 +99,7 @@ impl StrainSearch {
         instructions.run(Means(self));
     }
 
-    /// The largest ratio of some pairs of vertices, by their numbers in the patch.
+    /// Returns the largest ratio of some pairs of vertices, by their numbers in the patch.
     pub(super) fn largest_ratio(&self, pairs: &[TightPair]) -> f32 {
         let mut largest = 0.0;
         for TightPair { i, j, gap } in pairs {
@@ -325,7 +325,7 @@ fn add_scaled(out: &mut [f32], weight: f32, x: &[f32]) {
     out.iter_mut().zip(x).for_each(|(out, x)| *out += weight * x);
 }
 
-/// `|x - y|^2`, in eight sums, so that it has the same bits in any instruction set.
+/// Returns `|x - y|^2`, in eight sums, so that it has the same bits in any instruction set.
 #[inline(always)]
 fn squared_distance(x: &[f32], y: &[f32]) -> f32 {
     let mut sums = [0.0_f32; LANES];
@@ -338,8 +338,8 @@ fn squared_distance(x: &[f32], y: &[f32]) -> f32 {
     ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
 }
 
-/// An upper bound of the largest singular value of the difference of three rows, up to the rounding of sums and at most 7% above it: by
-/// the sum of the 16th powers of the eigenvalues of the Gram matrix.
+/// Returns an upper bound of the largest singular value of the difference of three rows, up to the rounding of sums and at most
+/// 7% above it: by the sum of the 16th powers of the eigenvalues of the Gram matrix.
 #[inline(always)]
 fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
     let row_len = x.len() / 3;

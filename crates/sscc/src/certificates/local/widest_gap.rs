@@ -13,8 +13,8 @@ pub(super) fn parents(hierarchy: &Hierarchy) -> Vec<u32> {
     parents
 }
 
-/// The widest gap that a search may have used for two vertices of two leaves: along the direction of a table, of the centres of the
-/// leaves, or of the centres of two nodes around them.
+/// Returns the widest gap that a search may have used for two vertices of two leaves: along the direction of a table, of the
+/// centres of the leaves, or of the centres of two nodes around them.
 pub(super) fn widest_gap(
     gaps: &CornerGaps<'_>,
     parents: &[u32],

@@ -11,7 +11,7 @@ pub(super) struct ProofEntry {
     pub(super) radius: f64,
 }
 
-/// All entries, in the order of their numbers.
+/// Returns all entries, in the order of their numbers.
 pub(super) fn proof_entries(parts: &CertificateParts) -> Vec<ProofEntry> {
     let mut traversal = Traversal { parts, hierarchy: &parts.hierarchy, entries: Vec::new() };
     traversal.within(0, 0.0);

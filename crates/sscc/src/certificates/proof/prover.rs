@@ -55,7 +55,7 @@ impl Prover {
         })
     }
 
-    /// The number of entries.
+    /// Returns the number of entries.
     pub fn entries(&self) -> usize {
         self.entries.len()
     }
