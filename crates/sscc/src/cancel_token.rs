@@ -24,13 +24,14 @@ struct Shared {
 }
 
 impl CancelToken {
-    /// A token that [`CancelToken::cancel`] cancels.
+    /// Creates a token that [`CancelToken::cancel`] cancels.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A token that is cancelled as soon as a condition holds, too: for example when a time is over. The condition is asked often,
-    /// by several threads, and must stay true while work has this token: work that it has cut short and then denies would seem whole.
+    /// Creates a token that is also cancelled as soon as a condition holds, for example after a time limit. Several threads
+    /// evaluate the condition often. It must stay true while work has this token: otherwise work that it ended early would seem
+    /// complete.
     pub fn when(condition: impl Fn() -> bool + Send + Sync + 'static) -> Self {
         Self(Arc::new(Shared { condition: Some(Box::new(condition)), ..Shared::default() }))
     }

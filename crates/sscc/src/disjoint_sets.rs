@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn united_numbers_have_the_smallest_of_their_set() {
+    fn find_returns_the_smallest_number_of_each_set() {
         let mut sets = DisjointSets::new(2);
         sets.reset(7);
         for (a, b) in [(5, 3), (6, 1), (3, 6), (2, 4)] {

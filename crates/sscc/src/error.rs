@@ -12,18 +12,18 @@ pub enum Error {
         "the floating-point mode of this thread is not that of the proofs: {what}; set round to nearest and gradual underflow"
     )]
     Arithmetic {
-        /// What the thread does.
+        /// How the mode differs, as a clause.
         what: &'static str,
     },
     /// A mesh without faces.
     #[error("the mesh has no triangles")]
     NoFaces,
-    /// More than 32-bit numbers can count.
+    /// More items than 32-bit numbers can count.
     #[error("{count} {what}: at most {} are supported", u32::MAX)]
     TooMany {
-        /// What was counted.
+        /// The kind of the items.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
     /// A rest position out of range.
@@ -64,7 +64,7 @@ pub enum Error {
         /// How many triangles there are.
         triangles: usize,
     },
-    /// A mesh without an inside, the `first` or the `second`, where the volume of bodies is asked for.
+    /// A mesh without an inside, the `first` or the `second` one, where the volume of bodies is needed.
     #[error(
         "the {0} mesh has no inside, because it is open or parts of it face inward: close its holes, and make its triangles \
          face outward"
@@ -73,7 +73,7 @@ pub enum Error {
     /// Folded neighbours where only distances can be bounded.
     #[error(
         "include-folded is for discrete queries of meshes without modes: triangles with a common edge have distance 0 in \
-         every shape, so that {queries} cannot tell when they fold; use include-one-vertex"
+         every shape, so that {queries} cannot decide when they fold; use include-one-vertex"
     )]
     FoldedNeighbours {
         /// The queries that cannot decide them.
@@ -138,7 +138,7 @@ pub enum Error {
     /// A dense metric that is not symmetric positive definite, too large or nearly singular.
     #[error("the metric's matrix cannot be used: {what}")]
     MetricMatrix {
-        /// What is wrong with it.
+        /// The reason.
         what: &'static str,
     },
     /// q of another length.
@@ -181,7 +181,7 @@ pub enum Error {
     /// A text that names no value.
     #[error("'{name}' is no {what}: use one of {names}")]
     Name {
-        /// What it should name.
+        /// The kind of value that it should name.
         what: &'static str,
         /// The text.
         name: String,
@@ -193,7 +193,7 @@ pub enum Error {
         "more than {most} pairs of triangles collide at rest or at the centre: repair the mesh, or choose another centre"
     )]
     TooManyCollisions {
-        /// How many would be accepted.
+        /// Maximum number of accepted pairs.
         most: usize,
     },
     /// More pairs around given ones than can be ignored.
@@ -203,7 +203,7 @@ pub enum Error {
     TooManyIgnored {
         /// Maximum number of ignored pairs.
         most: usize,
-        /// The rings asked for.
+        /// The given number of rings.
         rings: u32,
     },
     /// More colliding pairs than fit in an answer.
@@ -218,14 +218,14 @@ pub enum Error {
         /// Maximum number of pairs of an answer.
         most: usize,
     },
-    /// A clearance beyond so many rings that the pairs within them cannot be listed.
+    /// A clearance whose rings have more pairs than can be listed.
     #[error(
         "within {rings} rings of each other there are more than {most} pairs of triangles: choose fewer rings"
     )]
     TooManyRings {
         /// Maximum number of pairs.
         most: usize,
-        /// The rings asked for.
+        /// The given number of rings.
         rings: u32,
     },
     /// An option out of range.
@@ -235,13 +235,13 @@ pub enum Error {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// The values that it may have.
         wanted: &'static str,
     },
     /// Groups of triangles that cannot be used.
     #[error("groups: {what}")]
     Groups {
-        /// What is wrong with them.
+        /// The reason.
         what: String,
     },
     /// Certificates of another model.
@@ -256,19 +256,19 @@ pub enum Error {
     },
     /// Certificates with a clearance, where collisions must be proven.
     #[error(
-        "the certificates have a clearance, so they prove nothing about collisions: certify anew without"
+        "the certificates have a clearance, so they prove nothing about collisions: certify anew without one"
     )]
     ClearanceCertificates,
     /// Certificates of another contact filter than that of the query.
     #[error("the certificates are of another contact filter: {what}; certify anew")]
     OtherPairs {
-        /// What differs.
+        /// The difference.
         what: String,
     },
     /// Parts of certificates that do not fit together.
     #[error("the certificates are damaged: {0}; certify the model anew")]
     Certificates(String),
-    /// An entry of certificates without a proof: they are wrong, or the program is.
+    /// An entry of certificates that could not be proven: the certificates or the program are wrong.
     #[error("{0}")]
     Unproven(String),
     /// A job or a result of certificates computed by several processes that is damaged, foreign or could not be computed.

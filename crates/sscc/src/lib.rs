@@ -35,9 +35,9 @@
 //!
 //! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`parts::Hierarchy`] and
 //! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and no query, detector or
-//! body has a lifetime: keep them where they are used. This crate reads no files, knows no clock and prints nothing. It needs `std`;
-//! without the feature `parallel` (on by default) it starts no thread and does not need rayon, and gives the same bits. Positions are
-//! vectors of [`glam`], which it re-exports.
+//! body has a lifetime: keep them where they are used. This crate reads no files and no clock and prints nothing. It needs `std`;
+//! without the feature `parallel` (on by default) it starts no thread and does not need rayon, and gives the same bits. Positions
+//! are vectors of [`glam`], which it re-exports.
 //!
 //! # Any mesh
 //!
@@ -108,8 +108,8 @@
 //!   one vertex count if they have another point in common; of meshes without modes also those that share an edge or all
 //!   vertices, if they are folded onto each other.
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
-//!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide. Readers of
-//!   such files say so ([`TriMesh::with_split_vertices`]), and then it is the default.
+//!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide. Readers of such
+//!   files mark the mesh ([`TriMesh::with_split_vertices`]), and then welding is the default.
 //! - *Ignored* pairs never count.
 //! - *Groups* ([`TriangleGroups`]): pairs of triangles within or between groups count or not by a table.
 //!
@@ -149,9 +149,9 @@
 //! # Contacts at rest
 //!
 //! Closed lips touch, and many meshes intersect themselves somewhere. One such pair would make the radius of every node
-//! that contains it 0. So the pairs that collide at rest (at the centre, where another is given) become *exceptions*: no
-//! radius covers them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). Certified by the
-//! root then means: apart from the exceptions. Their number is limited to half that of the triangles, or to
+//! that contains it 0. So the pairs that collide at rest (or at the centre, if one is given) become *exceptions*: no radius
+//! covers them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). The root's certificate then proves
+//! all pairs free but the exceptions. Their number is limited to half that of the triangles, or to
 //! [`CertifyOptions::max_exceptions`].
 //!
 //! [`CertifyOptions::ignore_rest`] excludes such pairs for good.
@@ -223,9 +223,9 @@
 //! # Batches, threads, cancelling
 //!
 //! A query owns its memory and serves one thread; clone it for another, or use [`Query::batch`]. Certificates and batches
-//! take a number of threads (none: all cores), and are the same for any number; without the feature `parallel`, which is on by default,
-//! they run on the calling thread. Long work reports to a [`Progress`]. A
-//! [`CancelToken`] cancels it, or with [`Query::cancelled_by`] a single query. The `Progress` `()` does neither.
+//! take a number of threads (`None` for all cores), and are the same for any number; without the feature `parallel`, which is on
+//! by default, they run on the calling thread. Long work reports to a [`Progress`]. A [`CancelToken`] cancels it, or a single
+//! query ([`Query::cancelled_by`]). The `Progress` `()` ignores reports and never cancels.
 //!
 //! ```
 //! # use glam::DVec3;

@@ -16,7 +16,7 @@ pub(crate) struct MinHeapEntry<T, I = ()> {
 }
 
 impl<T> MinHeapEntry<T> {
-    /// An entry without an item.
+    /// Creates an entry without an item.
     pub(crate) fn new(key: f64, order: T) -> Self {
         Self { key, order, item: () }
     }

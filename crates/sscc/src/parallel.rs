@@ -1,7 +1,7 @@
 //! Work on several threads, with the feature `parallel`; without it, and in WebAssembly, everything runs on the calling thread.
 //! Results are the same.
 
-/// Runs `work` with a number of threads (none: all cores).
+/// Runs `work` with a number of threads, `None` for all cores.
 pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
     #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
     if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
@@ -20,7 +20,7 @@ pub(crate) fn map<I: Send, R: Send>(
     map_with(items, usize::MAX, || (), |(), item| f(item))
 }
 
-/// The same with scratch. Each piece of at most `grain` items has its own, as far as there are threads.
+/// Maps items like [`map`], with scratch. Where there are threads, each piece of at most `grain` items has scratch of its own.
 pub(crate) fn map_with<I: Send, S, R: Send>(
     items: impl IntoIterator<Item = I>,
     grain: usize,
@@ -40,7 +40,7 @@ pub(crate) fn map_with<I: Send, S, R: Send>(
     }
 }
 
-/// Does two things, at the same time where there are threads.
+/// Runs two functions, at the same time where there are threads.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
     return rayon::join(a, b);

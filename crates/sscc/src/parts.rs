@@ -1,12 +1,12 @@
-//! What the other crates of this project need of the core, beside what users need: **a user need not read this module.**
+//! Items that only the other crates of this project need: **a user need not read this module.**
 //!
 //! - Readers and writers of files: the contents of [`Certificates`](crate::Certificates) and of groups of triangles.
 //! - Clusters: certificates computed by many processes, as jobs and results ([`compute_in_shards`]).
-//! - The command, the page and benches: the hierarchy, defaults and checks of options, which share of a shape is proven how
-//!   ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
-//! - Dynamics: shapes in the world, one against another ([`PosedShape`], [`SweptShape`]).
-//! - Several: AABBs, areas, disjoint sets, pseudo-random numbers, vertices at equal positions, and exact tests of simplices that share
-//!   vertices or move.
+//! - The command, the page and benches: the hierarchy, defaults and checks of options, the shares of a shape that each kind of
+//!   certificate proves ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
+//! - Dynamics: queries between shapes in the world ([`PosedShape`], [`SweptShape`]).
+//! - Several crates: AABBs, areas, disjoint sets, pseudo-random numbers, vertices at equal positions, and exact tests of
+//!   simplices that share vertices or move.
 //!
 //! These items change more often than those at the root.
 

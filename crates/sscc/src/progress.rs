@@ -2,18 +2,18 @@
 
 use crate::CancelToken;
 
-/// Receives the progress of a long computation, and may name the token that cancels it. Several threads call it.
+/// Receives the progress of a long computation, and may give the token that cancels it. Several threads call it.
 pub trait Progress: Sync {
-    /// Receives that `done` of `total` steps are finished. Threads may report out of order.
+    /// Receives the report that `done` of `total` steps are finished. Threads may report out of order.
     fn report(&self, done: usize, total: usize);
 
-    /// The token that cancels the computation, which then ends soon with [`Error::Cancelled`](crate::Error::Cancelled). None by
-    /// default.
+    /// Returns the token that cancels the computation, which then ends soon with [`Error::Cancelled`](crate::Error::Cancelled).
+    /// None by default.
     fn cancel_token(&self) -> Option<&CancelToken> {
         None
     }
 
-    /// Whether the computation should end: as its token says.
+    /// Whether the computation should end, because its token is cancelled.
     fn is_cancelled(&self) -> bool {
         self.cancel_token().is_some_and(CancelToken::is_cancelled)
     }

@@ -5,8 +5,8 @@ pub(crate) use sscc_testing::Numbers as Random;
 
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
-/// Two strips of so many triangles beside each other, or one strip's halves, with smooth modes and some noise, and a
-/// metric that is not diagonal.
+/// Returns two strips of triangles beside each other, or two halves of one strip, with smooth modes, some noise and a metric that
+/// is not diagonal; and the number of triangles of a strip or half.
 pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
     let half = 2 + case as u32 % 4;
     let gap = 0.05 + 0.5 * random.signed().abs();
@@ -17,7 +17,7 @@ pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
         })
         .collect();
     let strip = |first: u32| (0..half).map(move |i| [first + i, first + i + 1, first + i + 2]);
-    // In one piece every third time.
+    // Every third case is one strip.
     let second = if case.is_multiple_of(3) { half } else { half + 2 };
     let faces: Vec<[u32; 3]> = strip(0).chain(strip(second)).collect();
     let rank = 1 + case % 4;
@@ -39,7 +39,7 @@ pub(crate) fn strips(random: &mut Random, case: usize) -> (ReducedModel, u32) {
     (ReducedModel::with_metric(mesh, modes, metric).unwrap(), half)
 }
 
-/// A flat square of so many cells of length 1 along each side, two triangles each.
+/// Returns a flat square of `side` cells of length 1 along each side, two triangles each.
 pub(crate) fn square(side: u32) -> TriMesh {
     let row = side + 1;
     let at = |i: u32| DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);

@@ -7,7 +7,7 @@
 
 use glam::{BVec4A, Mat4, Vec4};
 
-/// Numbers in a vector.
+/// The number of numbers in a vector.
 pub(crate) const LANES: usize = 8;
 
 /// The operations on vectors of eight numbers that kernels use.
@@ -17,37 +17,37 @@ pub(crate) trait Vectors: Copy {
     /// Eight truth values.
     type Mask: Copy;
 
-    /// The same number in all lanes.
+    /// Returns the same number in all lanes.
     fn splat(self, x: f32) -> Self::F32s;
 
-    /// The numbers of an array.
+    /// Returns the numbers of an array.
     fn load(self, x: &[f32; LANES]) -> Self::F32s;
 
-    /// Eight integers as numbers.
+    /// Returns eight integers as numbers.
     fn convert(self, x: &[i16; LANES]) -> Self::F32s;
 
-    /// Eight numbers of which the upper halves are given; the lower ones are 0.
+    /// Returns eight numbers of which the upper halves are given; the lower ones are 0.
     fn load_upper_halves(self, x: &[u16; LANES]) -> Self::F32s;
 
-    /// `a * b + c`, rounded twice.
+    /// Returns `a * b + c`, rounded twice.
     fn multiply_add(self, a: Self::F32s, b: Self::F32s, c: Self::F32s) -> Self::F32s;
 
-    /// The larger numbers. None may be NaN.
+    /// Returns the larger numbers. None may be NaN.
     fn max(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
 
-    /// The lanes in which the first number is greater.
+    /// Returns the lanes in which the first number is greater.
     fn greater(self, a: Self::F32s, b: Self::F32s) -> Self::Mask;
 
-    /// The lanes of either mask.
+    /// Returns the lanes of either mask.
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
-    /// Bit i for lane i.
+    /// Returns bit i for lane i.
     fn bits(self, mask: Self::Mask) -> u32;
 
-    /// The lanes as an array.
+    /// Returns the lanes as an array.
     fn array(self, x: Self::F32s) -> [f32; LANES];
 
-    /// The points that have these coordinates along each axis, one for each lane; their fourth components are 0.
+    /// Returns the points that have these coordinates along each axis, one for each lane; their fourth components are 0.
     fn points(self, coordinates: [Self::F32s; 3]) -> [Vec4; LANES];
 }
 
@@ -69,7 +69,7 @@ pub(crate) enum InstructionSet {
 }
 
 impl Default for InstructionSet {
-    /// The best one that the processor has.
+    /// Returns the best one that the processor has.
     fn default() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = pulp::x86::V3::try_new() {
@@ -90,7 +90,7 @@ impl InstructionSet {
         }
     }
 
-    /// Asks the processor to fetch all of a slice into its caches, where it has AVX2. Loads that depend on each other then
+    /// Requests that the processor fetch all of a slice into its caches, where it has AVX2. Loads that depend on each other then
     /// wait for memory once, not one after the other (docs/notes/traversal.md#growth-with-triangles).
     #[inline(always)]
     pub(crate) fn prefetch<T>(self, data: &[T]) {
@@ -187,7 +187,7 @@ mod avx2 {
     /// Bytes in a line of the caches.
     const LINE: usize = 64;
 
-    /// Asks for each line of a slice.
+    /// Requests each line of a slice.
     #[inline(always)]
     pub(super) fn prefetch<T>(simd: V3, data: &[T]) {
         let first = data.as_ptr().cast::<i8>();
@@ -292,7 +292,7 @@ mod tests {
     use super::*;
     use crate::test_models::Random;
 
-    /// All operations, on eight integers and eight numbers.
+    /// Applies all operations to eight integers and eight numbers.
     struct AllOperations([i16; LANES], [f32; LANES]);
 
     impl Kernel for AllOperations {

@@ -1,5 +1,5 @@
-//! Attacks single claims. Of radii it tests configurations inside the radius of a node or a node pair: a collision there of one of
-//! its triangle pairs refutes the radius. Half of the attacks are on local certificates, where there are any.
+//! Attacks single claims. An attack on a radius tests a configuration inside the radius of a node or a node pair: a collision
+//! there of one of its triangle pairs refutes the radius. Half of the attacks are on local certificates, if there are any.
 
 use super::claims::{Claim, Claims};
 use super::local_attack::{LocalAttack, LocalQueries};
@@ -9,12 +9,11 @@ use super::random::Random;
 use crate::parallel::map_with;
 use crate::{Certificates, Error, Method, Pair, Progress, Query, ReducedModel};
 
-/// One in this many attacks is on the root, another on a pair of its children: they cost as much as
-/// a traditional query of the whole model.
+/// One in this many attacks is on the root, and another one on a pair of its children: each costs as much as a traditional query
+/// of the whole model.
 const ROOT: usize = 25;
 
-/// One in this many is on a node pair, where there is a pair tree: in turn one that it contains and one that it
-/// lacks.
+/// One in this many attacks is on a node pair, if there is a pair tree: alternately an absent pair and an entry of the tree.
 const NODE_PAIR: usize = 3;
 
 /// Nodes of more triangles than this are attacked only as often as the root.
@@ -31,7 +30,7 @@ pub(super) struct Attack<'a> {
     pub(super) progress: &'a dyn Progress,
 }
 
-/// How many attacks were made, and every one that succeeded.
+/// The number of attacks made, and a line for each one that refuted a claim.
 #[derive(Default)]
 pub(super) struct Attacks {
     pub(super) samples: usize,
@@ -40,13 +39,13 @@ pub(super) struct Attacks {
     pub(super) violations: Vec<String>,
 }
 
-/// The queries that decide.
+/// The queries whose answers confirm or refute a claim.
 struct Queries {
     /// The traditional method, for attacks on the root.
     root: Query,
     /// BD-tree AABBs without certificates, for parts of the model.
     part: Query,
-    /// With local certificates, which it tells where they hold; none where there are none.
+    /// The certified method, which lists the local certificates that hold at q. None if there are no local certificates.
     local: Option<Query>,
 }
 
@@ -113,14 +112,14 @@ impl Attack<'_> {
             None => query.discrete_between(claim.nodes, &q).ok()?.to_vec(),
         };
         let norm = query.norm();
-        // Near pairs are those of all that share no vertex.
+        // `near_between` lists all near pairs that share no vertex: also pairs within the rings, and excluded ones.
         let MinimumSearch { filter, rings, .. } = self.minimum;
         let is_counted = |(a, b): &Pair| !rings.contain(*a, *b) && !filter.is_excluded(*a, *b);
         let mut pairs = pairs.into_iter().filter(is_counted);
         Some(pairs.find_map(|faces| self.claims.violation(faces, norm, &q)))
     }
 
-    /// The claim that a sample attacks.
+    /// Returns the claim that a sample attacks.
     fn draw_claim(&self, sample: usize, random: &mut Random) -> Claim {
         let hierarchy = &self.certificates.parts().hierarchy;
         let nodes = hierarchy.nodes();
@@ -159,7 +158,7 @@ impl Attack<'_> {
         self.claims.node(n as u32)
     }
 
-    /// A q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one; for two
+    /// Returns a q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one; for two
     /// nodes mostly where two of their triangles approach.
     fn draw_configuration(&self, claim: Claim, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
         let Claim { nodes: (n, m), radius } = claim;
@@ -176,7 +175,7 @@ impl Attack<'_> {
         } else {
             None
         };
-        // The offset from the centre.
+        // This is the offset from the centre.
         let mut offset: Vec<f64> = match (approach, sample % 4) {
             (Some(approach), _) => approach,
             (None, 0 | 1) if !self.collisions.is_empty() => {
@@ -198,7 +197,7 @@ impl Attack<'_> {
             }
         };
         let norm = scope.metric.length(&offset);
-        // Three in four as close as the rounding of norms allows, the others anywhere inside.
+        // Three in four configurations are as close to the radius as the rounding of norms allows, the others anywhere inside.
         let share = if random.below(4) > 0 { 1.0 - 1e-13 } else { random.uniform() };
         // An infinite radius is attacked at any size that keeps positions in range.
         let goal = if radius.is_finite() { radius } else { 1.0 + 1e6 * random.uniform() };

@@ -42,17 +42,17 @@ impl<'a> Claims<'a> {
         for (index, a) in parts.hierarchy.order().iter().enumerate() {
             index_in_order[*a as usize] = index as u32;
         }
-        // Certificates have checked that the pair tree is one over their hierarchy.
+        // Certificates are checked when they are made: their pair tree belongs to their hierarchy.
         let entries = parts.pair_tree.pairs(&parts.hierarchy).unwrap_or_default();
         Self { parts, index_in_order, entries }
     }
 
-    /// The claim of the pairs within a node.
+    /// Returns the claim of the pairs within a node.
     pub(super) fn node(&self, n: u32) -> Claim {
         Claim { nodes: (n, n), radius: self.parts.node_radii[n as usize] }
     }
 
-    /// The claims of the pairs of the root's children, outside the pair tree.
+    /// Returns the claims of the pairs of the root's children, outside the pair tree.
     pub(super) fn root_pairs(&self) -> impl Iterator<Item = Claim> {
         let radii = self.parts.root_pair_radii.iter();
         self.parts.hierarchy.nodes()[0]
@@ -61,17 +61,17 @@ impl<'a> Claims<'a> {
             .map(|(nodes, &radius)| Claim { nodes, radius })
     }
 
-    /// The number of entries of the pair tree.
+    /// Returns the number of entries of the pair tree.
     pub(super) fn stored_len(&self) -> usize {
         self.entries.len()
     }
 
-    /// The claim of an entry of the pair tree.
+    /// Returns the claim of an entry of the pair tree.
     pub(super) fn stored(&self, index: usize) -> Claim {
         Claim { nodes: self.entries[index], radius: f64::from(self.parts.pair_tree.entry(index).radius) }
     }
 
-    /// The number of nodes and node pairs below which pairs may be absent from the pair tree.
+    /// Returns the number of nodes and node pairs below which pairs may be absent from the pair tree.
     pub(super) fn parents_len(&self) -> usize {
         if self.parts.pair_tree.limit() > 0.0 {
             self.parts.hierarchy.nodes().len() + self.entries.len()
@@ -80,7 +80,7 @@ impl<'a> Claims<'a> {
         }
     }
 
-    /// The claims of the pairs below a node or an entry that the pair tree lacks: their radius is at least its limit.
+    /// Returns the claims of the pairs below a node or an entry that the pair tree lacks: their radius is at least its limit.
     pub(super) fn absent(&self, parent: usize) -> Vec<Claim> {
         let (tree, hierarchy) = (&self.parts.pair_tree, &self.parts.hierarchy);
         let nodes = self.parts.hierarchy.nodes().len();
@@ -97,7 +97,7 @@ impl<'a> Claims<'a> {
         missing.map(|which| Claim { nodes: all[which], radius: tree.limit() }).collect()
     }
 
-    /// A random claim of the pair tree, of an entry or of an absent pair; none where the tree is empty.
+    /// Returns a random claim of the pair tree, about an entry or an absent pair. None if the tree is empty.
     pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
         if self.entries.is_empty() {
             return None;
@@ -111,7 +111,7 @@ impl<'a> Claims<'a> {
         Some(self.stored(random.below(self.entries.len())))
     }
 
-    /// The claim that this triangle pair refutes, if any. The pair counts and collides at a q of this norm.
+    /// Returns the claim that this triangle pair refutes, if any. The pair counts and collides at a q of this norm.
     fn refuted_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
         let (hierarchy, tree) = (&self.parts.hierarchy, &self.parts.pair_tree);
         let nodes = hierarchy.nodes();
@@ -121,7 +121,7 @@ impl<'a> Claims<'a> {
             (node.first_triangle..node.first_triangle + node.triangle_count).contains(&index)
         };
         let is_refuted = |claim: &Claim| norm < claim.radius;
-        // Down to the smallest node that contains both.
+        // Descends to the smallest node that contains both.
         let mut n = 0;
         let (child_a, child_b) = loop {
             if let Some(claim) = Some(self.node(n)).filter(is_refuted) {
@@ -141,7 +141,7 @@ impl<'a> Claims<'a> {
         if tree.limit() <= 0.0 || hierarchy.is_bucket_below_root(n) {
             return None;
         }
-        // From there down the node pairs that contain one triangle each.
+        // From there, descends through the node pairs that contain one of the triangles in each node.
         let mut pair = (child_a, child_b);
         let mut siblings: Vec<_> = {
             let all: Vec<NodePair> = nodes[n as usize].child_pairs().collect();
@@ -163,7 +163,8 @@ impl<'a> Claims<'a> {
         }
     }
 
-    /// The violation by two triangles that count and collide at q, or are nearer than the clearance, if they refute a claim.
+    /// Returns the violation by two triangles that count and collide at q, or are nearer than the clearance, if they refute a
+    /// claim.
     pub(super) fn violation(&self, faces: Pair, norm: f64, q: &[f64]) -> Option<String> {
         let claim = self.refuted_by(faces, norm)?;
         let found = self.parts.scope.clearance.map_or_else(

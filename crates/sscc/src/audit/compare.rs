@@ -8,7 +8,8 @@ use super::random::Random;
 use crate::certificates::PairTree;
 use crate::{Certificates, Error, Impact, Method, Pair, Progress, Query, ReducedModel};
 
-/// Brute force is quadratic: up to this many triangles it runs for every sample, beyond for three of them.
+/// Brute force is quadratic: it runs for every sample of models with at most this many triangles, and for three samples of larger
+/// ones.
 pub(super) const BRUTE_FORCE_TRIANGLES: usize = 2000;
 
 /// One comparison is made for this many samples.
@@ -17,7 +18,7 @@ pub(super) const SAMPLES_PER_COMPARISON: usize = 50;
 /// At most this many comparisons are made.
 pub(super) const MAX_COMPARISONS: usize = 200;
 
-/// One in this many compares continuous queries, too.
+/// One in this many comparisons also compares continuous queries.
 const CONTINUOUS: usize = 2;
 
 /// The share of a radius at which configurations just inside it lie.
@@ -32,14 +33,15 @@ pub(super) struct Comparison<'a> {
     pub(super) progress: &'a dyn Progress,
 }
 
-/// The two ends of a continuous query.
+/// The start and the end of a continuous query.
 struct Motion {
     q_t0: Vec<f64>,
     q_t1: Vec<f64>,
 }
 
 impl Comparison<'_> {
-    /// Every q and every motion at which two methods differ, and every claim that a collision found there refutes.
+    /// Returns a line for every q and every motion at which two methods differ, and for every claim that a collision found there
+    /// refutes.
     pub(super) fn run(&self) -> Result<Vec<String>, Error> {
         let Self { model, certificates, claims, options, .. } = *self;
         let query = |method| Query::with_method(model, certificates, method);
@@ -98,9 +100,9 @@ impl Comparison<'_> {
         Ok(violations)
     }
 
-    /// A pair that only one answer lists although it collides at the start or the end of the motion. Methods may differ
-    /// in pairs that only come close; in between, rounding moves the computed shape off the straight line, so an exact
-    /// test proves nothing.
+    /// Returns a pair that only one answer lists although it collides at the start or the end of the motion. Methods may differ
+    /// in pairs that only come close; in between, rounding moves the computed shape off the straight line, so an exact test
+    /// proves nothing.
     fn missed(&self, a: &[Impact], b: &[Impact], motion: &Motion) -> Option<Pair> {
         let lacks = |all: &[Impact], impact: &Impact| {
             all.binary_search_by_key(&impact.pair, |other| other.pair).is_err()
@@ -111,7 +113,7 @@ impl Comparison<'_> {
         missed.map(|impact| impact.pair)
     }
 
-    /// A random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
+    /// Returns a random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
     /// five times it; for every third sample up to the limit of the pair tree.
     pub(super) fn draw_configuration(&self, random: &mut Random, sample: usize) -> Vec<f64> {
         let certificates = self.certificates;
@@ -128,7 +130,7 @@ impl Comparison<'_> {
         self.scale_to(&z, goal)
     }
 
-    /// Two random q; both just inside one radius for every other sample, else of any size.
+    /// Returns two random q: for every other sample both just inside one radius, else of any norm.
     fn draw_motion(&self, random: &mut Random, sample: usize) -> Motion {
         if sample.is_multiple_of(2 * CONTINUOUS) {
             let q_t0 = self.draw_configuration(random, sample);
@@ -148,14 +150,14 @@ impl Comparison<'_> {
         Motion { q_t0: draw(), q_t1: draw() }
     }
 
-    /// The q in the direction of z with a norm of about `goal`.
+    /// Returns the q in the direction of z with a norm of about `goal`.
     fn scale_to(&self, z: &[f64], goal: f64) -> Vec<f64> {
         let norm = z.iter().map(|z| z * z).sum::<f64>().sqrt();
         self.certificates.parts().scope.at(z, if norm > 0.0 { goal / norm } else { 0.0 })
     }
 }
 
-/// A random z whose entries decrease more or less, by the number of the sample.
+/// Returns a random z. The number of the sample decides how fast its entries decrease.
 fn draw_scaled(rank: usize, random: &mut Random, sample: usize) -> Vec<f64> {
     let weight = |k: usize| (1.0 + k as f64).powi(sample as i32 % 3);
     random.normals(rank).iter().enumerate().map(|(k, z)| z / weight(k)).collect()

@@ -7,7 +7,7 @@ use crate::filter::Relation;
 use crate::{Certificates, Clearance, Error, Method, NearPair, Pair, Query, distance_triangle_triangle};
 
 impl Comparison<'_> {
-    /// Every q at which two methods differ, and every claim that a near pair found there refutes.
+    /// Returns a line for every q at which two methods differ, and for every claim that a near pair found there refutes.
     pub(super) fn run_near(&self, certified: &Clearance) -> Result<Vec<String>, Error> {
         let Self { model, certificates, claims, options, minimum, .. } = *self;
         let query = |method| Query::with_method(model, certificates, method);
@@ -25,7 +25,7 @@ impl Comparison<'_> {
             }
             let mut random = Random::new(options.seed, 2_000_000 + sample as u64);
             let q = self.draw_configuration(&mut random, sample);
-            // The clearance itself, and smaller ones.
+            // Compares the clearance itself and smaller ones.
             let share = if sample.is_multiple_of(2) { 1.0 } else { random.uniform() };
             let clearance = Clearance::new(certified.distance() * share).unwrap_or(*certified);
             let clearance = clearance.beyond_rings(certified.rings());
@@ -52,7 +52,7 @@ impl Comparison<'_> {
         Ok(violations)
     }
 
-    /// All pairs of triangles, one by one.
+    /// Tests all pairs of triangles one by one, and returns the near ones.
     fn near_by_brute_force(&self, q: &[f64], clearance: &Clearance) -> Result<Vec<NearPair>, Error> {
         let positions = self.model.positions(q)?;
         let corners: Vec<_> =

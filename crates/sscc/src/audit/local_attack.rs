@@ -1,5 +1,5 @@
-//! Attacks local certificates: configurations far from the centre, where a certificate only just holds. A collision there of a pair that it
-//! proves free refutes it.
+//! Attacks local certificates at configurations far from the centre where a certificate only just holds. A collision there of a
+//! pair that it proves free refutes it.
 
 use super::minimum_search::{Collision, MinimumSearch};
 use super::random::Random;
@@ -9,16 +9,16 @@ use crate::{Certificates, Error, Query};
 /// Nodes of more triangles than this are attacked only in one of [`LARGE_SHARE`] samples.
 const LARGE: u32 = 2000;
 
-/// See [`LARGE`].
+/// One in this many samples attacks a node of any size.
 const LARGE_SHARE: usize = 25;
 
 /// One in this many attacks is on a motion.
 const MOTION: usize = 4;
 
-/// Doublings of a scale at most, and halvings of the interval where a certificate stops holding.
+/// Maximum number of doublings of a scale, in search of one at which a certificate does not hold.
 const DOUBLINGS: usize = 100;
 
-/// See [`DOUBLINGS`].
+/// Number of halvings of the interval in which a certificate stops holding.
 const HALVINGS: usize = 20;
 
 pub(super) struct LocalAttack<'a> {
@@ -30,14 +30,14 @@ pub(super) struct LocalAttack<'a> {
 
 /// The queries of an attack.
 pub(super) struct LocalQueries<'a> {
-    /// With local certificates.
+    /// The query that uses local certificates.
     pub(super) certified: &'a mut Query,
-    /// Without certificates.
+    /// The query that uses no certificates.
     pub(super) exact: &'a mut Query,
 }
 
 impl LocalAttack<'_> {
-    /// Whether there is anything to attack.
+    /// Whether there are local certificates.
     pub(super) fn is_possible(&self) -> bool {
         !self.certificates.parts().local.nodes.is_empty()
     }
@@ -66,7 +66,7 @@ impl LocalAttack<'_> {
         Some(None)
     }
 
-    /// The violation by a collision of a pair of these nodes at q.
+    /// Returns a violation if a pair of these nodes collides at q.
     fn test(&self, claim: NodePair, q: &[f64], exact: &mut Query) -> Result<Option<String>, Error> {
         let pairs = exact.discrete_between(claim, q)?;
         Ok(pairs.first().map(|(a, b)| {
@@ -78,7 +78,7 @@ impl LocalAttack<'_> {
         }))
     }
 
-    /// A certificate, and the pair of nodes of one of its claims.
+    /// Returns the index of a certificate, and the node pair of one of its claims.
     fn draw_claim(&self, sample: usize, random: &mut Random) -> Option<(usize, NodePair)> {
         let parts = self.certificates.parts();
         let (local, nodes) = (&parts.local, parts.hierarchy.nodes());
@@ -95,7 +95,7 @@ impl LocalAttack<'_> {
         Some((index, if is_own { (n, n) } else { (n, list[random.below(list.len())]) }))
     }
 
-    /// The farthest q found along a ray from the centre at which a claim holds; for one ray in four one anywhere before.
+    /// Returns the farthest q found along a ray from the centre at which a claim holds; for one ray in four a random q before it.
     fn draw_edge(
         &self,
         index: usize,
@@ -111,7 +111,7 @@ impl LocalAttack<'_> {
             certified.local_claims(index, [&at(scale)]).is_ok_and(|claims| claims.contains(&claim))
         };
         let norm = parts.scope.metric.length(&ray);
-        // From the cap of radii on, or closer to the centre where the certificate does not hold there.
+        // Begins at the cap of radii, or closer to the centre if the certificate does not hold there.
         let radius = if parts.global_radius.is_finite() { parts.global_radius } else { 1.0 };
         let first = radius / norm;
         let mut low = [1.0, 0.25, 0.05, 0.01, 1e-3].into_iter().map(|s| s * first).find(|s| holds(*s))?;
@@ -133,7 +133,8 @@ impl LocalAttack<'_> {
         Some(at(low))
     }
 
-    /// An offset from the centre: where two triangles of a claim approach, in the direction of a known collision, or a random one.
+    /// Returns an offset from the centre: where two triangles of a claim approach, in the direction of a known collision, or a
+    /// random one.
     fn draw_ray(&self, (n, m): NodePair, random: &mut Random) -> Option<Vec<f64>> {
         let scope = &self.certificates.parts().scope;
         let hierarchy = self.certificates.hierarchy();

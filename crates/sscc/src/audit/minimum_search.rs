@@ -11,9 +11,9 @@ use crate::{Clearance, Pair, ReducedModel, distance_triangle_triangle};
 
 /// A configuration at which two points of two triangles meet, up to rounding.
 ///
-/// Triangles that close up within their surface touch at that q alone and miss each other beyond it, so the exact
-/// test may not confirm it. Its norm is an upper bound of the true radius all the same. Only a collision that the
-/// exact test confirms at a smaller norm than a radius refutes that radius.
+/// Triangles that approach each other along one surface touch at that q alone and miss each other beyond it, so the exact test
+/// may not confirm it. Its norm is an upper bound of the true radius all the same. Only a collision that the exact test confirms
+/// at a smaller norm than a radius refutes that radius.
 #[derive(Clone, Debug)]
 pub(super) struct Collision {
     pub(super) faces: Pair,
@@ -38,7 +38,7 @@ const FACTORS: [f64; 5] = [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 + 1e-6, 1.001];
 /// The exact test is also repeated where other points meet: the points found, moved by these fractions towards the centroids.
 const INWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.01, 0.05, 0.2];
 
-/// Steps of the local search.
+/// Number of random steps of the local search.
 const STEPS: usize = 400;
 
 /// Searches closest collisions of the model of certificates.
@@ -48,9 +48,9 @@ pub(super) struct MinimumSearch<'a> {
     pub(super) scope: &'a Scope,
     pub(super) scaled: &'a ScaledModel,
     pub(super) filter: &'a PairFilter,
-    /// Pairs that need not keep the clearance; none without one.
+    /// Pairs that need not keep the clearance; empty without a clearance.
     pub(super) rings: &'a RingPairs,
-    /// Sought are triangles nearer than this; none: that collide.
+    /// The search is for triangles nearer than this. If None, it is for triangles that collide.
     pub(super) clearance: Option<Clearance>,
 }
 
@@ -73,8 +73,8 @@ impl MinimumSearch<'_> {
         found.reduce(|best, next| if next.norm < best.norm { next } else { best })
     }
 
-    /// The offset from the centre of a q at which random points of two triangles meet; none where they are adjacent, or
-    /// modes do not bring them together.
+    /// Returns the offset from the centre of a q at which random points of two triangles meet. None if the triangles are
+    /// adjacent, or the modes cannot bring the points together.
     pub(super) fn approach(&self, faces: Pair, random: &mut Random) -> Option<Vec<f64>> {
         let simplices = self.filter.simplex_pairs(faces.0, faces.1).next()?;
         let z = self.points(simplices).solution(Weights::random(random));
@@ -106,7 +106,7 @@ impl MinimumSearch<'_> {
         Some(Collision { faces, norm: self.scope.norm(&q), q, confirmed })
     }
 
-    /// The points of two simplices.
+    /// Returns the points of two simplices.
     fn points(&self, simplices: SimplexPair<u32>) -> PointPairs<'_> {
         let distance = self.clearance.map_or(0.0, |clearance| clearance.distance());
         PointPairs { scaled: self.scaled, simplices, distance }
@@ -171,7 +171,7 @@ impl MinimumSearch<'_> {
     }
 }
 
-/// The pair of points with the smallest radius, on a grid and then by random steps of decreasing width.
+/// Returns the pair of points with the smallest radius, on a grid and then by random steps of decreasing width.
 fn minimize(points: &PointPairs<'_>, random: &mut Random) -> Candidate {
     let mut best = Candidate { radius: f64::INFINITY, weights: Weights { a: DVec3::X, b: DVec3::X } };
     for a in grid() {

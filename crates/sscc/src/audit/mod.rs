@@ -27,21 +27,20 @@ use crate::{Certificates, Error, Progress, ReducedModel};
 
 pub use options::AuditOptions;
 
-/// What the attacks found.
+/// The results of an audit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of configurations really tried: 0 where nothing is claimed: every radius is 0, and there are no local
-    /// certificates.
+    /// Number of configurations tested. 0 if nothing is claimed: every radius is 0, and there are no local certificates.
     pub samples: usize,
-    /// How many of them attacked local certificates: about half, where there are any.
+    /// The number of these configurations that attacked local certificates: about half, if there are any.
     pub local_samples: usize,
     /// Every refuted claim, one line each. Empty for sound certificates.
     pub violations: Vec<String>,
-    /// The root's radius over the smallest `|z|` found at which the model really collides; none when the
-    /// radius is 0 or capped, or no collision was found.
+    /// The root's radius over the smallest `|z|` found at which the model collides. None if the radius is 0 or capped, or no
+    /// collision was found.
     pub root_tightness: Option<f64>,
-    /// The median of the same quotient over the root, its pairs of children, and samples of nodes and of the pair
-    /// tree, without those of radius 0 or capped.
+    /// The median of the same quotient over the root, its pairs of children, and samples of nodes and of the pair tree. Radii
+    /// that are 0 or capped are left out.
     pub tightness_median: Option<f64>,
     /// The smallest of these quotients.
     pub tightness_min: Option<f64>,
@@ -67,7 +66,7 @@ pub struct AuditReport {
 /// ```
 ///
 /// # Errors
-/// When the certificates are of another model, or `progress` cancels.
+/// If the certificates are of another model, or `progress` cancels.
 pub fn audit(
     model: &ReducedModel,
     certificates: &Certificates,

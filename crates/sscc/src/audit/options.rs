@@ -1,6 +1,7 @@
 //! The options of an audit.
 
-/// How many attacks an audit makes, and which. Each method sets one option: `AuditOptions::default().samples(100)`.
+/// The number of attacks of an audit, the seed and the number of threads. Each method sets one option:
+/// `AuditOptions::default().samples(100)`.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct AuditOptions {
@@ -21,7 +22,7 @@ impl AuditOptions {
         samples: usize,
         /// Seed of the pseudo-random numbers: the same seed gives the same attacks. 1 by default.
         seed: u64,
-        /// Number of threads; none: all cores. The report is the same for any number.
+        /// Number of threads, `None` for all cores. The report is the same for any number.
         threads: impl Into<Option<usize>>,
     }
 }

@@ -1,4 +1,5 @@
-//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form, or as near as a distance.
+//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form, or that brings them as near as
+//! a distance.
 
 use glam::{DMat3, DVec3};
 
@@ -9,7 +10,7 @@ use crate::model::ScaledModel;
 /// Steps of the barycentric grid along each edge.
 pub(super) const GRID: usize = 6;
 
-/// Steps to the direction in which two points are a distance apart.
+/// Number of iterations that find the direction in which two points are a given distance apart.
 const STEPS_TO_DISTANCE: usize = 8;
 
 /// Points of two simplices, given by barycentric weights.
@@ -39,7 +40,7 @@ impl Weights {
     /// The centroids.
     pub(super) const CENTROIDS: Self = Self { a: DVec3::splat(1.0 / 3.0), b: DVec3::splat(1.0 / 3.0) };
 
-    /// Random points.
+    /// Returns random points.
     pub(super) fn random(random: &mut Random) -> Self {
         let mut point = || {
             let w = DVec3::new(random.uniform(), random.uniform(), random.uniform());
@@ -48,14 +49,14 @@ impl Weights {
         Self { a: point(), b: point() }
     }
 
-    /// The weights of both points, changed alike.
+    /// Returns the weights of both points, changed alike.
     pub(super) fn map(self, mut f: impl FnMut(DVec3) -> DVec3) -> Self {
         Self { a: f(self.a), b: f(self.b) }
     }
 }
 
 impl PointPairs<'_> {
-    /// The difference d and the relative modes B of two points.
+    /// Returns the difference d and the relative modes B of two points.
     pub(super) fn relative(&self, weights: Weights) -> Relative {
         let row_len = self.scaled.row_len;
         let mut difference = DVec3::ZERO;
@@ -74,14 +75,14 @@ impl PointPairs<'_> {
         Relative { difference, modes: relative }
     }
 
-    /// The smallest `|z|` that brings the two points together; infinite where modes do not reach.
+    /// Returns the smallest `|z|` that brings the two points together; infinite if the modes cannot.
     pub(super) fn radius(&self, weights: Weights) -> f64 {
         let relative = self.relative(weights);
         let solved = relative.multiplier(self.distance);
         solved.map_or(f64::INFINITY, |(y, left)| left.dot(y).max(0.0).sqrt())
     }
 
-    /// That z; 0 where modes do not reach.
+    /// Returns that z; 0 if the modes cannot bring the points together.
     pub(super) fn solution(&self, weights: Weights) -> Vec<f64> {
         let relative = self.relative(weights);
         let (y, _) = relative.multiplier(self.distance).unwrap_or_default();
@@ -90,8 +91,9 @@ impl PointPairs<'_> {
 }
 
 impl Relative {
-    /// `y = (B B')^-1 d`, where B has full rank, and d. For a distance D less D along y, the direction in which the points
-    /// then are that far apart: the fixed point of a few steps. No z is smaller, and any D of that length brings points as near.
+    /// Returns `y = (B B')^-1 d` and d, if B has full rank. For a distance D, a vector of length D along y is first subtracted
+    /// from d: then the points are D apart in that direction, and no smaller z brings them as near. A few fixed-point iterations
+    /// find the direction; the points come as near with any direction.
     fn multiplier(&self, distance: f64) -> Option<(DVec3, DVec3)> {
         let mut gram = DMat3::ZERO;
         for b in &self.modes {
@@ -114,7 +116,7 @@ impl Relative {
     }
 }
 
-/// Barycentric weights on a regular grid.
+/// Returns barycentric weights on a regular grid.
 pub(super) fn grid() -> impl Iterator<Item = DVec3> {
     (0..=GRID).flat_map(|i| {
         (0..=GRID - i).map(move |j| DVec3::new(i as f64, j as f64, (GRID - i - j) as f64) / GRID as f64)

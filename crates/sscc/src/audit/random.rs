@@ -7,30 +7,30 @@ use crate::random;
 pub(super) struct Random(u64);
 
 impl Random {
-    /// The stream number `stream` of a seed.
+    /// Creates the stream number `stream` of a seed.
     pub(super) fn new(seed: u64, stream: u64) -> Self {
         let mut this = Self(seed ^ stream.wrapping_mul(0xd1b5_4a32_d192_ed03));
         random::next_bits(&mut this.0);
         this
     }
 
-    /// Uniform in [0, 1).
+    /// Returns a number uniform in [0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
         random::next_uniform(&mut self.0)
     }
 
-    /// Uniform in 0 .. n.
+    /// Returns a number uniform in 0 .. n.
     pub(super) fn below(&mut self, n: usize) -> usize {
         ((self.uniform() * n as f64) as usize).min(n.saturating_sub(1))
     }
 
-    /// `count` numbers of [`Random::normal`].
+    /// Returns `count` numbers of [`Random::normal`].
     pub(super) fn normals(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| self.normal()).collect()
     }
 
-    /// Approximately normal, mean 0 and variance 1: a sum of twelve uniform numbers, which needs no library functions and
-    /// so has the same bits on every machine.
+    /// Returns an approximately normal number of mean 0 and variance 1: a sum of twelve uniform numbers, which needs no library
+    /// functions and so has the same bits on every machine.
     pub(super) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

@@ -17,13 +17,13 @@ const NODES: usize = 200;
 /// Entries of the pair tree measured.
 const STORED: usize = 100;
 
-/// How many absent pairs are measured: those with the smallest bounds.
+/// Number of absent pairs measured: those with the smallest bounds.
 const ABSENT: usize = 50;
 
-/// Absent pairs are looked for below this many nodes and pairs.
+/// Absent pairs are searched below this many nodes and pairs.
 const PARENTS: usize = 4096;
 
-/// The closest collisions found, and what follows from them.
+/// The closest collisions found, and the quotients and violations that follow from them.
 pub(super) struct Tightness {
     /// The quotient of the root.
     pub(super) root: Option<f64>,
@@ -103,12 +103,12 @@ pub(super) fn measure(
     result
 }
 
-/// At most `most` numbers below `count`, spread evenly.
+/// Returns at most `most` numbers below `count`, spread evenly.
 fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     (0..count).step_by(count.div_ceil(most).max(1))
 }
 
-/// The claims of the root and of the pairs of its children, and claims of nodes and stored node pairs spread evenly.
+/// Returns the claims of the root and of the pairs of its children, and claims of nodes and stored node pairs spread evenly.
 fn spread_claims(certificates: &Certificates, claims: &Claims<'_>) -> Vec<Claim> {
     let hierarchy = &certificates.parts().hierarchy;
     let mut measured = vec![claims.node(0)];
@@ -121,14 +121,14 @@ fn spread_claims(certificates: &Certificates, claims: &Claims<'_>) -> Vec<Claim>
     measured
 }
 
-/// The triangle pair whose bound is the smallest below a claim's node or node pair.
+/// Returns the triangle pair whose bound is the smallest below a claim's node or node pair.
 fn find_critical_pair(
     search: &mut RadiusSearch<'_>,
     certificates: &Certificates,
     claim: &Claim,
 ) -> Option<Pair> {
     let parts = certificates.parts();
-    // Beyond the radius: a search up to it alone could refute no claim.
+    // The search goes beyond the radius: one that ended there could refute no claim.
     let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
     let (n, m) = claim.nodes;
     if n != m {

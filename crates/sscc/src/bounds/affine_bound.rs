@@ -26,7 +26,7 @@ use super::strain::{StrainGram, bound_rate, strain_gram};
 use crate::model::ScaledModel;
 use crate::model::rounding::{ROUND_UP, larger_or_nan, radius_down};
 
-/// An affine map of some points' modes and how fast it moves points apart. Owns its memory.
+/// An affine map of some points' modes, and a bound of the rate at which it moves points apart. Owns its memory.
 pub(super) struct AffineBound {
     row_len: usize,
     fit: AffineFit,
@@ -61,7 +61,7 @@ impl AffineTerms {
         radius_down(delta - at_rest, ((rate * ROUND_UP + rate_rounding) * delta + slack) * ROUND_UP)
     }
 
-    /// A rate with a sufficient bound, hardly smaller than the largest one.
+    /// Returns a rate with a sufficient bound, slightly smaller than the largest such rate.
     fn slower_than(&self, sufficient: f64) -> Option<f64> {
         let Self { delta, at_rest, slack, rate_rounding } = *self;
         let wanted = ((delta - at_rest) / sufficient - slack) / delta - rate_rounding;
@@ -74,7 +74,7 @@ impl AffineBound {
         Self { row_len, fit: AffineFit::new(row_len), gram: [[0.0; 6]; 6], rate: 0.0 }
     }
 
-    /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
+    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide.
     pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let is_fitted = self.fit.fit(offsets, modes);
         if is_fitted {
@@ -84,12 +84,12 @@ impl AffineBound {
         is_fitted
     }
 
-    /// The squared difference of the residuals of two points, rounded to nearest.
+    /// Returns the squared difference of the residuals of two points, rounded to nearest.
     pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
         self.fit.squared_residual(i, j)
     }
 
-    /// The bound of two triangles among the points.
+    /// Returns the bound of two triangles among the points.
     pub(super) fn bound(&self, pair: AffinePair<'_>, sufficient: f64, model: &ScaledModel) -> f64 {
         let terms = self.terms(&pair, model);
         let over_all_directions = terms.bound(self.rate);
@@ -106,8 +106,8 @@ impl AffineBound {
         }
     }
 
-    /// The rate over a pyramid of directions that proves two triangles apart below a radius, and the pyramid; none if that
-    /// fails.
+    /// Returns the rate over a pyramid of directions that proves two triangles apart below a radius, and the pyramid. None if
+    /// that fails.
     pub(super) fn witness(
         &self,
         pair: AffinePair<'_>,
@@ -140,12 +140,12 @@ impl AffineBound {
         }
     }
 
-    /// Nine rows of the map: `G_cj` at `3 c + j`.
+    /// Returns the gradient of the map: nine rows, `G_cj` at `3 c + j`.
     pub(super) fn gradient(&self) -> &[f64] {
         self.fit.gradient()
     }
 
-    /// The bound of two triangles by an affine map of their own six corners.
+    /// Returns the bound of two triangles by an affine map of their own six corners.
     pub(super) fn fit_and_bound(
         &mut self,
         pair: &PairCorners<'_>,

@@ -11,9 +11,9 @@ use crate::vectors::{InstructionSet, Kernel, Vectors};
 pub(crate) struct AffineFit {
     instructions: InstructionSet,
     row_len: usize,
-    /// Nine rows: `G_cj` at `3 c + j`.
+    /// The gradient: nine rows, `G_cj` at `3 c + j`.
     gradient: Vec<f64>,
-    /// For each point three rows.
+    /// The residuals: three rows for each point.
     residuals: Vec<f64>,
     weights: Vec<DVec3>,
     /// An upper bound of the Frobenius norm of the gradient.
@@ -36,7 +36,7 @@ impl AffineFit {
         }
     }
 
-    /// Fits points with these offsets from the first of them, and these modes. False where all points coincide.
+    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide.
     pub(crate) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
         self.instructions.run(FitModes { fit: self, plane, offsets, modes });
@@ -87,23 +87,23 @@ impl AffineFit {
         self.frobenius = norm_up(dot(&self.gradient, &self.gradient), 9 * row_len);
     }
 
-    /// Nine rows: `G_cj` at `3 c + j`.
+    /// Returns the gradient: nine rows, `G_cj` at `3 c + j`.
     pub(crate) fn gradient(&self) -> &[f64] {
         &self.gradient
     }
 
-    /// An upper bound of the Frobenius norm of the gradient.
+    /// Returns an upper bound of the Frobenius norm of the gradient.
     pub(super) fn frobenius(&self) -> f64 {
         self.frobenius
     }
 
-    /// `|E_j - E_i|^2`, rounded to nearest.
+    /// Returns `|E_j - E_i|^2`, rounded to nearest.
     pub(super) fn squared_residual(&self, i: usize, j: usize) -> f64 {
         let width = 3 * self.row_len;
         squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
     }
 
-    /// An upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
+    /// Returns an upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
     /// is not included; the affine bound adds that of both.
     ///
     /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to
@@ -137,13 +137,13 @@ impl<'m, F: Fn(usize) -> &'m [f64]> Kernel for FitModes<'_, F> {
 #[derive(Clone, Copy)]
 struct Plane {
     normal: DVec3,
-    /// The share of the gradient across the plane that the points leave undetermined: 1 in a plane, 0 where they fill
+    /// The share of the gradient across the plane that the points do not determine: 1 if they lie in a plane, 0 if they fill
     /// space.
     undetermined: f64,
 }
 
-/// The weights of a regularised least-squares fit of a gradient to values at points, `G = sum_i value_i weights_i'`. None
-/// where all points coincide.
+/// Computes the weights of a regularised least-squares fit of a gradient to values at points, `G = sum_i value_i weights_i'`.
+/// None if all points coincide.
 fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
     let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
     let mut moment = DMat3::ZERO;
@@ -158,7 +158,7 @@ fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
     let inverse = (moment + DMat3::from_diagonal(DVec3::splat(ridge))).inverse();
     weights.clear();
     weights.extend(offsets.iter().map(|d| inverse * (*d - mean)));
-    // The inverse is largest across the plane; in its fourth power little else is left.
+    // The inverse is largest across the plane; its other parts nearly vanish in its fourth power.
     let power = inverse * inverse * (1.0 / (inverse.x_axis.length_squared() + f64::MIN_POSITIVE));
     let power = power * power;
     let columns = [power.x_axis, power.y_axis, power.z_axis];
@@ -173,7 +173,7 @@ fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
 
 /// Sets the undetermined part of the gradient, across the plane of the points, so that the whole is as close to a
 /// rotation as possible: `t' G n = -n' G t` for all t in the plane. If it were zero, every rotation of the plane
-/// would look like a shear, and the bound for triangles that turn together would be hundreds of times too small.
+/// would look like a shear, and the bound for triangles that rotate together would be hundreds of times too small.
 #[inline(always)]
 fn complete_as_rotation(gradient: &mut [f64], row_len: usize, Plane { normal: n, undetermined }: Plane) {
     for k in 0..row_len {

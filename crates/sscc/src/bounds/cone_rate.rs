@@ -15,10 +15,10 @@ use glam::DVec3;
 
 use super::strain::StrainGram;
 
-/// Cones of one triangle pair, at most (docs/notes/bounds.md#affine-bounds-and-directions).
+/// Maximum number of bisections for one triangle pair (docs/notes/bounds.md#affine-bounds-and-directions).
 const MAX_CONES: usize = 48;
 
-/// How much wider than the directions their pyramid is on each side, at height 1: for its own rounding.
+/// The distance by which a pyramid is wider than its directions on each side, at height 1. It covers rounding of the pyramid.
 pub(super) const PYRAMID_MARGIN: f64 = 1e-12;
 
 struct Cone {
@@ -26,8 +26,8 @@ struct Cone {
     directions: [DVec3; 3],
 }
 
-/// An upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
-/// refinement helps; infinite where the directions do not fit into a narrow cone.
+/// Returns an upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
+/// refinement helps; infinite if the directions do not fit into a narrow cone.
 pub(super) fn bound_rate_in_cone(
     d: &[DVec3; 9],
     gram: &StrainGram,
@@ -61,7 +61,7 @@ pub(super) fn bound_rate_in_cone(
             .into_iter()
             .fold(edges[0], |l, e| if e.0.distance_squared(e.1) > l.0.distance_squared(l.1) { e } else { l });
         let middle = (u0 + u1).normalize();
-        // A direction of the cone that is itself too fast limits what halving can reach.
+        // Halving cannot reach a rate below that at a direction of the cone.
         wanted = wanted.max(forms.evaluate(middle) * 1.05);
         let halves = [[u0, middle, u2], [middle, u1, u2]];
         let rates = halves.map(|half| forms.bound(&half));
@@ -71,8 +71,8 @@ pub(super) fn bound_rate_in_cone(
     cones.iter().map(|cone| cone.rate).fold(0.0, f64::max)
 }
 
-/// Four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
-/// their widest extent. None where they do not lie well within a half-space.
+/// Returns four unit directions whose cone contains all of `d`: a pyramid around their mean, its sides aligned with
+/// their widest extent. None if they do not lie well within a half-space.
 pub(super) fn enclose_in_pyramid(d: &[DVec3; 9], margin: f64) -> Option<[DVec3; 4]> {
     let axis = d.iter().map(|d| d.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
     let mut flat = [DVec3::ZERO; 9];
@@ -91,7 +91,7 @@ pub(super) fn enclose_in_pyramid(d: &[DVec3; 9], margin: f64) -> Option<[DVec3; 
         let values = flat.map(|f| f.dot(t));
         let (lower, upper) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(*v), u.max(*v)));
-        // The frame is orthonormal, and the points lie in its plane, up to a few roundings (at most 20 long).
+        // Up to a few roundings the frame is orthonormal, and the points, of length at most 20, lie in its plane.
         (lower - margin, upper + margin)
     };
     let ((s0, s1), (t0, t1)) = (range(along), range(across));
@@ -125,12 +125,12 @@ impl Forms<'_> {
         square.max(0.0)
     }
 
-    /// `f(u)`, rounded to nearest: only to decide whether refinement can help.
+    /// Returns `f(u)`, rounded to nearest. It only decides whether refinement can help.
     fn evaluate(&self, u: DVec3) -> f64 {
         self.square(u, u).sqrt()
     }
 
-    /// An upper bound of `f` on the cone of three unit directions.
+    /// Returns an upper bound of `f` on the cone of three unit directions.
     fn bound(&self, u: &[DVec3; 3]) -> f64 {
         let mut largest = 0.0_f64;
         for i in 0..3 {

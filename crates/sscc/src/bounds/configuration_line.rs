@@ -16,15 +16,16 @@ use crate::model::scale_direction;
 /// A step that gains less than this share of t is the last one: t is then close to the contact.
 const MIN_GAIN: f64 = 1e-4;
 
-/// Steps, at most. The t reached by then is certified, but may be smaller than the contact.
+/// Maximum number of steps. The t reached after them is certified, but may be smaller than the contact.
 const MAX_STEPS: usize = 1000;
 
 /// The vertices of a model along the line from `center` (t = 0) through q (t = 1): at `x + t w`.
 pub(crate) struct ConfigurationLine {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) velocities: Vec<DVec3>,
-    /// The rounding bound of a gap along a direction with components up to 1: `at_rest + per_step t`.
+    /// The rounding bound of a gap along a direction with components up to 1 is `at_rest + per_step t`.
     at_rest: f64,
+    /// The growth of this rounding bound with t.
     per_step: f64,
     /// Up to this t positions stay in the range of [`limits`].
     pub(crate) farthest: f64,
@@ -39,8 +40,8 @@ impl ConfigurationLine {
             modes.iter().zip(&offset).fold(DVec3::ZERO, |w, (u, x)| w + *u * *x)
         };
         let (reach, moved) = (model.reach(center), model.displacement_bound(&offset));
-        // Positions, velocities, q itself, gaps and sums of t are rounded at most 4 (r + 16) times, two vertices,
-        // three components each; and once more as much as room.
+        // Positions, velocities, q itself, gaps and sums of t are rounded at most 4 (r + 16) times, for two vertices and three
+        // components each. A factor of 2 is a reserve.
         let gamma = 12.0 * (4 * q.len() + 64) as f64 * f64::EPSILON;
         Self {
             positions: vertices.clone().map(|i| model.position(i, center)).collect(),
@@ -51,8 +52,8 @@ impl ConfigurationLine {
         }
     }
 
-    /// The t until which a gap stays positive. At `t` the gap is at least `gap`, and its rate is at least `opening`. 0
-    /// if it is not positive at `t`.
+    /// Returns the t until which a gap stays positive. At `t` the gap is at least `gap`, and its rate is at least `opening`.
+    /// Returns 0 if the gap is not positive at `t`.
     #[inline]
     pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
         let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
@@ -94,7 +95,7 @@ impl ConfigurationLine {
         t
     }
 
-    /// A t before which some axis separates all points with positions and velocities in two pairs of boxes.
+    /// Returns a t before which some axis separates all points whose positions and velocities lie in two pairs of AABBs.
     #[inline]
     pub(crate) fn aabbs_separated_until(&self, a: &MovingAabb, b: &MovingAabb) -> f64 {
         let mut bound = 0.0_f64;
@@ -111,7 +112,7 @@ impl ConfigurationLine {
     }
 }
 
-/// The nine differences of the vectors of two triangles' vertices.
+/// Returns the nine differences of the vectors of two triangles' vertices.
 #[inline]
 fn differences(of: &[DVec3], a: [u32; 3], b: [u32; 3]) -> [DVec3; 9] {
     let (a, b) = (a.map(|i| of[i as usize]), b.map(|j| of[j as usize]));
@@ -128,7 +129,7 @@ pub(crate) struct MovingAabb {
 impl MovingAabb {
     pub(crate) const EMPTY: Self = Self { positions: Aabb::EMPTY, velocities: Aabb::EMPTY };
 
-    /// The AABBs of both sets of points.
+    /// Returns the AABBs of both sets of points.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self {
             positions: self.positions.union(&other.positions),

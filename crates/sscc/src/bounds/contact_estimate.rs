@@ -5,13 +5,13 @@ use glam::DVec3;
 
 use crate::geometry::{TwoTriangles, nearest_to_origin};
 
-/// Samples of each determinant along the way; roots closer together than this are missed.
+/// Number of samples of each determinant over t in [0, 1]. Roots between the same two samples are missed.
 const SAMPLES: usize = 24;
 
-/// How far outside a feature a contact may seem to lie, in barycentric units.
+/// Largest distance outside a feature at which a contact counts, in barycentric units.
 const TOLERANCE: f64 = 1e-7;
 
-/// The smallest t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
+/// Returns the smallest t in (0, 1] at which a corner of one triangle meets the other, or two edges meet, if one is found.
 pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -> Option<f64> {
     let mut first = f64::INFINITY;
     let mut consider = |feature: &dyn Fn(f64) -> [DVec3; 4], is_contact: fn(&[DVec3; 4]) -> bool| {
@@ -64,7 +64,7 @@ pub(super) fn estimate_first_contact(corners_at: impl Fn(f64) -> TwoTriangles) -
     first.is_finite().then_some(first)
 }
 
-/// The smallest t in (0, 1] at which two triangles are as near as a distance, if one is found.
+/// Returns the smallest t in (0, 1] at which two triangles are as near as a distance, if one is found.
 pub(super) fn estimate_first_nearness(
     corners_at: impl Fn(f64) -> TwoTriangles,
     distance: f64,
@@ -75,7 +75,7 @@ pub(super) fn estimate_first_nearness(
     Some(bisect(before, near, false, &excess))
 }
 
-/// The root between two ends of different sign.
+/// Returns a root between two numbers at which f has different signs.
 fn bisect(mut lower: f64, mut upper: f64, is_negative_at_lower: bool, f: &dyn Fn(f64) -> f64) -> f64 {
     for _ in 0..48 {
         let middle = 0.5 * (lower + upper);

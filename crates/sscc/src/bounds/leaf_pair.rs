@@ -72,7 +72,7 @@ impl<'m> LeafPair<'m> {
         }
     }
 
-    /// Takes the triangles of two leaves.
+    /// Loads the triangles of two leaves.
     pub(crate) fn load(&mut self, leaf_a: &[u32], leaf_b: &[u32]) {
         for (vertices, triangles) in [(&mut self.vertices_a, leaf_a), (&mut self.vertices_b, leaf_b)] {
             vertices.clear();
@@ -88,7 +88,7 @@ impl<'m> LeafPair<'m> {
         self.instructions.run(BoundVertices { pair: self, dir });
     }
 
-    /// The bound of two triangles (or simplices with these vertices) along the direction.
+    /// Returns the bound of two triangles (or simplices with these vertices) along the direction.
     pub(crate) fn bound_along_direction(&self, a: [u32; 3], b: [u32; 3]) -> f64 {
         // No bound is NaN.
         let smaller = |x: f64, y: f64| if y < x { y } else { x };
@@ -96,7 +96,7 @@ impl<'m> LeafPair<'m> {
         bounds.into_iter().fold(f64::INFINITY, smaller)
     }
 
-    /// The bound of two triangles by one affine map of all vertices. Its rate is bounded over a cone of directions, which
+    /// Returns the bound of two triangles by one affine map of all vertices. Its rate is bounded over a cone of directions, which
     /// costs more, only for triangles so close that a fixed direction is weak.
     pub(crate) fn bound_by_affine_map(&mut self, a: [u32; 3], b: [u32; 3], sufficient: f64) -> f64 {
         let at = |i: u32| self.model.positions[i as usize];
@@ -132,7 +132,7 @@ impl<'m> LeafPair<'m> {
         is_fitted
     }
 
-    /// The indices of the nine pairs of corners in the tables of vertex pairs.
+    /// Returns the indices of the nine pairs of corners in the tables of vertex pairs.
     fn vertex_pairs(&self, a: [u32; 3], b: [u32; 3]) -> [usize; 9] {
         let index = |vertices: &[u32], i: u32| vertices.partition_point(|other| *other < i);
         let (a, b) = (a.map(|i| index(&self.vertices_a, i)), b.map(|j| index(&self.vertices_b, j)));

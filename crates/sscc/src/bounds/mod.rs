@@ -1,8 +1,9 @@
 //! Lower bounds of `|z|`, the distance in q-space from the centre, at which two parts of a model can first meet (paper,
 //! section 5).
 //!
-//! Files that bound: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
-//! `node_pair`, `configuration_line`, `upper_bound`. `pair_witness` tells why the bound of a triangle pair holds. The other files are their parts.
+//! These files compute bounds: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
+//! `node_pair`, `configuration_line`, `upper_bound`. `pair_witness` proves the bound of a triangle pair to others. The other
+//! files contain parts of the bounds.
 //!
 //! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
 //! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any

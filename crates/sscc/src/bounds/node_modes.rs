@@ -67,15 +67,15 @@ impl NodeModes {
             };
             residual = residual.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
-        // Rounding of residuals and corners: relative to the modes the rounding bound covers it, relative
-        // to `|G| |h|` this does.
+        // The rounding bound covers rounding of residuals and corners relative to the modes. This term covers rounding relative
+        // to `|G| |h|`.
         let frobenius = norm_up(dot(&gradient, &gradient), 9 * row_len);
         let lost = right_or!(64.0 * f64::EPSILON * frobenius * half.length(), NodeFitExact, 0.0);
         residual += DVec3::splat(lost);
         Self { center, half, residual, modes, gradient }
     }
 
-    /// The vector between the closest points of the AABBs of two nodes, from this one to the other; 0 where they touch.
+    /// Returns the vector between the closest points of the AABBs of two nodes, from this one to the other; 0 where they touch.
     pub(super) fn gap(&self, other: &Self) -> DVec3 {
         let (between, half) = (other.center - self.center, self.half + other.half);
         (between - half).max(DVec3::ZERO) + (between + half).min(DVec3::ZERO)

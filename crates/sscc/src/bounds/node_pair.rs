@@ -10,7 +10,8 @@
 //! R_nm >= min over corners (i, j) of  (dir.d_ij - e0) / (|B_ij' dir| + rho_n(dir) + rho_m(dir) + e1)
 //! ```
 //!
-//! A clearance adds `D |dir|` to e0, and its rate to e1, as in `separating_direction.rs`: gaps of all points of the two hulls exceed it.
+//! A clearance D adds `D |dir|` to e0, and its rate to e1, as in `separating_direction.rs`: the gaps of all points of the two
+//! hulls exceed it.
 //!
 //! Mean modes alone (`G = 0`) give much weaker bounds for nodes that are close: docs/notes/bounds.md#affine-bounds-and-directions.
 
@@ -37,11 +38,11 @@ pub(crate) struct NodePairScratch {
     projections: Vec<f64>,
 }
 
-/// Where the first direction gives less than this share of a sufficient bound, no other direction is tried
+/// If the first direction gives less than this share of a sufficient bound, no other direction is tried
 /// (docs/notes/bounds.md#affine-bounds-and-directions).
 const LEAST_FIRST_SHARE: f64 = 0.8;
 
-/// Corners of a box.
+/// The number of corners of a box.
 const CORNERS: usize = 8;
 
 /// For each corner the side of the centre on which it lies along each axis.
@@ -57,7 +58,7 @@ const SIGNS: [[f64; 3]; CORNERS] = {
     signs
 };
 
-/// The same by axes.
+/// For each axis the side of the centre on which each corner lies.
 const SIDES: [[f64; CORNERS]; 3] = {
     let mut sides = [[1.0; CORNERS]; 3];
     let mut at = 0;
@@ -84,7 +85,7 @@ impl NodePairBounds {
         Self { nodes: parallel::map(hierarchy.nodes(), fit) }
     }
 
-    /// The squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.
+    /// Returns the squared half diagonal of a node's AABB at rest: the measure by which one of two nodes is larger.
     pub(crate) fn size(&self, n: u32) -> f64 {
         self.nodes[n as usize].half.length_squared()
     }
@@ -94,7 +95,7 @@ impl NodePairBounds {
         self.nodes[n as usize].gap(&self.nodes[m as usize]) == DVec3::ZERO
     }
 
-    /// The best direction to separate two points whose difference is the gap vector of the AABBs; none if the AABBs
+    /// Returns the best direction to separate two points whose difference is the gap vector of the AABBs. None if the AABBs
     /// touch.
     pub(crate) fn direction(&self, n: u32, m: u32, scratch: &mut NodePairScratch) -> Option<DVec3> {
         let (n, m) = (&self.nodes[n as usize], &self.nodes[m as usize]);
@@ -103,12 +104,12 @@ impl NodePairBounds {
         if gap == DVec3::ZERO { None } else { scale_direction(inverse * gap) }
     }
 
-    /// The modes of a node.
+    /// Returns the modes of a node.
     pub(crate) fn of_node(&self, n: u32) -> &NodeModes {
         &self.nodes[n as usize]
     }
 
-    /// A direction that proves two nodes apart below a radius, if one of those that are tried does.
+    /// Returns a direction that proves two nodes apart below a radius, if one of the candidates does.
     pub(crate) fn witness(
         &self,
         model: &ScaledModel,
@@ -120,7 +121,7 @@ impl NodePairBounds {
         scratch.instructions.run(NodeWitness { n, m, radius, model, scratch })
     }
 
-    /// A certified lower bound for two nodes. The search for a larger one ends at `sufficient`.
+    /// Returns a certified lower bound for two nodes. The search for a larger bound ends at `sufficient`.
     pub(crate) fn bound(
         &self,
         model: &ScaledModel,
@@ -181,7 +182,7 @@ impl Kernel for NodeWitness<'_> {
     }
 }
 
-/// The directions that are tried, as far as they separate the AABBs; none where these touch.
+/// Returns the candidate directions that separate the AABBs; none if the AABBs touch.
 #[inline(always)]
 fn candidates(
     n: &NodeModes,
@@ -192,13 +193,13 @@ fn candidates(
     let half = n.half + m.half;
     let gap = n.gap(m);
     let inverse = if gap == DVec3::ZERO { DMat3::ZERO } else { inverse_gram(n, m, scratch) };
-    // Half extents are larger than the boxes, so this gap is smaller than theirs.
+    // Half extents are larger than those of the boxes, so this gap is smaller than that of the boxes.
     let is_separating = move |dir: &DVec3| dir.dot(between) - dir.abs().dot(half) > 0.0;
     let tried = [inverse * between, inverse * gap, between, gap].into_iter();
     tried.filter(move |_| gap != DVec3::ZERO).filter_map(scale_direction).filter(is_separating)
 }
 
-/// The inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for
+/// Returns the inverse of the regularised Gram matrix of the relative modes at the centres: in that metric the best direction for
 /// points with the difference d is `gram^-1 d`.
 #[inline(always)]
 fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> DMat3 {
@@ -214,7 +215,7 @@ fn inverse_gram(n: &NodeModes, m: &NodeModes, scratch: &mut NodePairScratch) -> 
     metric.inverse()
 }
 
-/// The bound along one direction: the smallest of the 64 pairs of corners.
+/// Returns the bound along one direction: the smallest of the 64 pairs of corners.
 #[inline(always)]
 fn bound_corners_along(
     n: &NodeModes,
@@ -245,7 +246,7 @@ fn bound_corners_along(
     }
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
     // The terms of a square add up to at most (the sum of all |row|)^2; the products err by row eps of that, and
-    // at most 16 sums follow one another: 2,000 leaves room.
+    // at most 16 sums follow one another: 2,000 is more than needed.
     let lost = right_or!((row_len as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
     let required = right_or!(model.required.along(dir), NodePairWithoutClearance, Default::default());
     let per_norm =

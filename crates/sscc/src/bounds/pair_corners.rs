@@ -14,7 +14,7 @@ pub(crate) struct PairCorners<'m> {
 }
 
 impl<'m> PairCorners<'m> {
-    /// Two triangles of a model (or simplices with these vertices), by their vertices.
+    /// Looks up two triangles of a model (or simplices), given by their vertices.
     pub(super) fn of(model: &'m ScaledModel, a: [u32; 3], b: [u32; 3]) -> Self {
         let positions = |face: [u32; 3]| face.map(|i| model.positions[i as usize]);
         let modes = |face: [u32; 3]| face.map(|i| model.modes(i));
@@ -25,7 +25,7 @@ impl<'m> PairCorners<'m> {
         }
     }
 
-    /// The nine differences `b_j - a_i` of corners, at index `3 i + j`.
+    /// Returns the nine differences `b_j - a_i` of corners, at index `3 i + j`.
     pub(crate) fn differences(&self) -> [DVec3; 9] {
         self.corners.differences()
     }

@@ -1,6 +1,6 @@
 //! The certified bound of a triangle pair: cheap bounds first, subdivision only as far as necessary.
 //!
-//! Replaces the constant-mode bound of the paper's section 5.1 and keeps its scheme: a lower and an upper bound, and
+//! This bound replaces the constant-mode bound of the paper's section 5.1 and keeps its scheme: a lower and an upper bound, and
 //! midpoint subdivision until they are within the tolerance.
 
 use std::collections::BinaryHeap;
@@ -23,15 +23,15 @@ pub(crate) struct RefinementTarget {
     pub(crate) cap: f64,
     /// The smallest upper bound found so far.
     pub(crate) upper: f64,
-    /// Relative error allowed.
+    /// The allowed relative error.
     pub(crate) epsilon: f64,
-    /// Subdivisions of one triangle pair, at most. The best lower bound after them is the result: certified, but smaller
+    /// Maximum number of subdivisions of one triangle pair. The best lower bound after them is the result: certified, but smaller
     /// than it could be.
     pub(crate) subdivisions: usize,
 }
 
 impl RefinementTarget {
-    /// A lower bound of at least this needs no refinement.
+    /// Returns the lower bound from which on no refinement is needed.
     pub(crate) fn sufficient(&self) -> f64 {
         self.cap.min(self.upper * (1.0 - self.epsilon))
     }
@@ -71,13 +71,13 @@ impl<'m> PairRefiner<'m> {
         }
     }
 
-    /// The direction that gave the largest bound of the last pair.
+    /// Returns the direction that gave the largest bound of the last pair.
     pub(crate) fn best_direction(&self) -> Option<DVec3> {
         self.best_direction
     }
 
-    /// A certified lower bound for two triangles, given by their vertices, refined as far as `target` needs. Smaller upper
-    /// bounds found on the way go to `target.upper`.
+    /// Returns a certified lower bound for two triangles, given by their vertices, refined as far as `target` needs. A smaller
+    /// upper bound that it finds is stored in `target.upper`.
     pub(crate) fn refine(&mut self, a: [u32; 3], b: [u32; 3], target: &mut RefinementTarget) -> f64 {
         let pair = PairCorners::of(self.model, a, b);
         let lower = self.bound_corners(&pair, target);
@@ -87,12 +87,12 @@ impl<'m> PairRefiner<'m> {
         self.subdivide(&pair, lower, target)
     }
 
-    /// The same without subdivision.
+    /// Returns a certified lower bound without subdivision.
     pub(crate) fn bound(&mut self, a: [u32; 3], b: [u32; 3], target: &mut RefinementTarget) -> f64 {
         self.bound_corners(&PairCorners::of(self.model, a, b), target)
     }
 
-    /// Best-first subdivision. The result is the smallest lower bound of the sub-triangles that remain.
+    /// Subdivides best-first. Returns the smallest lower bound of the sub-triangles that remain.
     fn subdivide(&mut self, pair: &PairCorners<'_>, lower: f64, target: &mut RefinementTarget) -> f64 {
         let mut open = std::mem::take(&mut self.open);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
@@ -110,7 +110,7 @@ impl<'m> PairRefiner<'m> {
             let MinHeapEntry { key: lower, item: part, .. } = entry;
             // Where the modes reach all directions, the bounds themselves find better upper bounds.
             if step.is_power_of_two() && !self.relative.can_reach_everywhere(pair) {
-                // As far as the triangles may move: to the cap, or well beyond the lower bound.
+                // The ray ends at the cap, or well beyond the lower bound.
                 let farthest = if target.cap.is_finite() { target.cap } else { 4.0 * lower };
                 let part = part.corners(pair, &mut corner_modes);
                 let z = &mut self.projections.rows[..self.model.row_len];
@@ -138,7 +138,7 @@ impl<'m> PairRefiner<'m> {
         lower
     }
 
-    /// The largest of the cheap bounds of two (sub-)triangles.
+    /// Returns the largest of the cheap bounds of two (sub-)triangles.
     pub(super) fn bound_corners(&mut self, pair: &PairCorners<'_>, target: &mut RefinementTarget) -> f64 {
         self.best_direction = None;
         let model = self.model;
@@ -155,7 +155,7 @@ impl<'m> PairRefiner<'m> {
         if lower >= target.sufficient() {
             return lower;
         }
-        // The affine bound is for near triangles; for others it comes last, which is seldom reached.
+        // The affine bound is for near triangles; for others it is computed last, which is seldom necessary.
         let is_near = is_near(&differences, rest_distance);
         if is_near {
             lower = lower.max(self.affine.fit_and_bound(
@@ -176,7 +176,7 @@ impl<'m> PairRefiner<'m> {
             let ridge = 1e-6 * (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z);
             let metric = gram + DMat3::from_diagonal(DVec3::splat(ridge));
             let Some(factor) = inverse_factor(metric) else { break };
-            // With a clearance the other triangle comes nearer by it, along the last direction.
+            // A clearance moves the other triangle nearer by its distance, along the last direction.
             let kept = dir.normalize_or_zero() * model.required.at_rest();
             let shifted = differences.map(|d| d - kept);
             let nearest = nearest_to_origin(&shifted.map(|d| factor * d));
@@ -207,7 +207,7 @@ impl<'m> PairRefiner<'m> {
     }
 }
 
-/// `L^-1` of the Cholesky factor of a 3 x 3 matrix, or none when it is not positive definite.
+/// Returns `L^-1` of the Cholesky factor L of a 3 x 3 matrix. None if the matrix is not positive definite.
 fn inverse_factor(m: DMat3) -> Option<DMat3> {
     let l00 = m.x_axis.x.sqrt();
     let l10 = m.x_axis.y / l00;

@@ -1,4 +1,5 @@
-//! Witnesses: why the bound of a triangle pair is at least a radius. A program that trusts none of these bounds checks them.
+//! Witnesses prove that the bound of a triangle pair is at least a radius. A program that does not trust the bounds checks the
+//! witnesses.
 
 use glam::DVec3;
 
@@ -11,15 +12,15 @@ use crate::geometry::nearest_to_origin;
 use crate::model::rounding::larger_or_nan;
 use crate::model::scale_direction;
 
-/// Why two (sub-)triangles stay apart below a radius.
+/// A proof that two (sub-)triangles stay apart below a radius.
 #[derive(Clone, Debug)]
 pub(crate) enum PairWitness {
     /// A direction of the list separates all corners.
     Known(usize),
     /// A direction, which is added to the list.
     Direction(DVec3),
-    /// An affine map (nine rows, `G_cj` at `3 c + j`), a direction along which the triangles have a gap, the rate of the map over
-    /// all directions of a pyramid.
+    /// An affine map (nine rows, `G_cj` at `3 c + j`), a direction along which the triangles have a gap, and the rate of the map
+    /// over all directions of a pyramid.
     Affine { gradient: Vec<f64>, dir: DVec3, rate: f64, pyramid: [DVec3; 4] },
     /// The first triangle is quartered, or the second one; the witnesses of the four parts follow.
     Quarters { is_first: bool },
@@ -32,13 +33,13 @@ pub(crate) struct WitnessList {
     directions: Vec<DVec3>,
 }
 
-/// Directions of the list that are tried for a pair: the last ones.
+/// Number of directions of the list that are tried for a pair: the last ones.
 const DIRECTIONS_TRIED: usize = 6;
-/// Directions that a list names by their numbers.
+/// Maximum number of directions to which witnesses refer by their numbers.
 const MAX_DIRECTIONS: usize = 251;
 
 impl PairRefiner<'_> {
-    /// Appends witnesses for two triangles (or simplices), given by their vertices. False if there are none.
+    /// Appends witnesses for two triangles (or simplices), given by their vertices. Returns false if there are none.
     pub(crate) fn prove(&mut self, a: [u32; 3], b: [u32; 3], radius: f64, list: &mut WitnessList) -> bool {
         let pair = PairCorners::of(self.model, a, b);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
@@ -73,7 +74,7 @@ impl PairRefiner<'_> {
         parts.all(|part| self.prove_part(pair, part, radius, list, corner_modes))
     }
 
-    /// A witness for these corners without subdivision.
+    /// Returns a witness for these corners without subdivision.
     fn witness(&mut self, pair: &PairCorners<'_>, radius: f64, known: &[DVec3]) -> Option<PairWitness> {
         let model = self.model;
         let differences = pair.differences();

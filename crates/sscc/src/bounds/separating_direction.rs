@@ -11,7 +11,7 @@
 //! `(dir.d_ij - e0) / (|B_ij' dir| + e1)` with the two parts of the [`RoundingBound`]. A clearance needs a gap of more than
 //! `D |dir|` in place of 0 (`required_gap.rs`), which adds `D |dir|` to e0: any two points of the triangles are convex combinations of
 //! corners, so their gap along dir is at least the smallest of the nine, and their distance at least that over |dir|.
-//! `LeastGap` has both.
+//! [`LeastGap`] contains e0 and e1 with both terms.
 
 use glam::DVec3;
 
@@ -34,7 +34,8 @@ impl CornerProjections {
     }
 }
 
-/// The bound along a direction (from [`scale_direction`](crate::model::scale_direction)), given the gap that proves points apart.
+/// Returns the bound along a direction (from [`scale_direction`](crate::model::scale_direction)), given the gap that proves
+/// points apart.
 pub(crate) fn bound_along(
     pair: &PairCorners<'_>,
     differences: &[DVec3; 9],
@@ -78,7 +79,7 @@ impl Kernel for CornerBound<'_, '_> {
     }
 }
 
-/// The bound of two points along a direction, from their gap and their modes projected on the direction.
+/// Returns the bound of two points along a direction, from their gap and their modes projected on the direction.
 #[inline(always)]
 pub(super) fn bound_points_along(gap: f64, projected_i: &[f64], projected_j: &[f64], least: LeastGap) -> f64 {
     let gap = gap - right_or!(least.at_rest, DirectionWithoutRestError, 0.0);
@@ -86,7 +87,7 @@ pub(super) fn bound_points_along(gap: f64, projected_i: &[f64], projected_j: &[f
     radius_down(gap, rate + right_or!(least.per_norm, DirectionWithoutRateError, 0.0))
 }
 
-/// A lower bound of the rest distance of two triangles: the smallest gap along a direction over its length.
+/// Returns a lower bound of the rest distance of two triangles: the smallest gap along a direction over its length.
 pub(super) fn bound_rest_distance(differences: &[DVec3; 9], dir: DVec3, rounding: &RoundingBound) -> f64 {
     let gap = differences.iter().map(|d| dir.dot(*d)).fold(f64::INFINITY, f64::min);
     radius_down(gap - rounding.at_rest(dir), dir.length() * ROUND_UP)

@@ -6,7 +6,7 @@ use crate::model::mode_rows::LANES;
 /// k's gradient (scaled so that `|u u'|` has norm 1 for a unit vector u).
 pub(super) type StrainGram = [[f64; 6]; 6];
 
-/// The Gram matrix of a gradient of nine rows: `G_cj` at `3 c + j`.
+/// Returns the Gram matrix of a gradient of nine rows: `G_cj` at `3 c + j`.
 pub(super) fn strain_gram(gradient: &[f64], row_len: usize) -> StrainGram {
     let g = |c: usize, j: usize| &gradient[(3 * c + j) * row_len..][..row_len];
     let half_root = std::f64::consts::FRAC_1_SQRT_2;
@@ -36,14 +36,14 @@ pub(super) fn strain_gram(gradient: &[f64], row_len: usize) -> StrainGram {
     gram
 }
 
-/// An upper bound of `max over unit u of |G(u)'u|`: the root of the largest eigenvalue, bounded from above by
+/// Returns an upper bound of `max over unit u of |G(u)'u|`: the root of the largest eigenvalue, bounded from above by
 /// `(sum of eigenvalues^8)^(1/8)` through two squarings; power iteration would approach from below.
 pub(super) fn bound_rate(gram: &StrainGram, row_len: usize) -> f64 {
     let trace: f64 = (0..6).map(|i| gram[i][i]).sum();
     if trace == 0.0 {
         return UNDERFLOW; // infinite and NaN traces continue: the bound that uses them becomes 0
     }
-    // In units of the trace: eigenvalues at most 1, the largest at least 1/6.
+    // In units of the trace, all eigenvalues are at most 1, and the largest is at least 1/6.
     let unit = gram.map(|r| r.map(|x| x / trace));
     let square = |m: &[[f64; 6]; 6]| -> [[f64; 6]; 6] {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| m[i][k] * m[k][j]).sum()))

@@ -27,7 +27,7 @@ pub(super) struct SubPair {
 impl SubPair {
     pub(super) const UNDIVIDED: Self = Self { a: UNDIVIDED, b: UNDIVIDED, depth_a: 0, depth_b: 0 };
 
-    /// The corners of the sub-triangles. Their modes are written to `modes` (18 rows).
+    /// Returns the corners of the sub-triangles. Their modes are written to `modes` (18 rows).
     pub(super) fn corners<'m>(&self, pair: &PairCorners<'_>, modes: &'m mut [f64]) -> PairCorners<'m> {
         let (modes_a, modes_b) = modes.split_at_mut(modes.len() / 2);
         PairCorners {
@@ -40,7 +40,7 @@ impl SubPair {
         }
     }
 
-    /// Which of the two to divide: that whose modes vary more, so that both shrink alike.
+    /// Whether to divide the first triangle. The one whose modes vary more is divided, so that both shrink alike.
     pub(super) fn is_first_divided(&self, pair: &PairCorners<'_>) -> bool {
         let variation = |corners: &[&[f64]; 3], depth: u8| {
             let d = |i: usize, j: usize| squared_distance(corners[i], corners[j]);
@@ -49,7 +49,7 @@ impl SubPair {
         variation(&pair.modes_a, self.depth_a) >= variation(&pair.modes_b, self.depth_b)
     }
 
-    /// The four pairs with the quarters of the sub-triangle of a, or of b.
+    /// Returns the four pairs with the quarters of the sub-triangle of a, or of b.
     pub(super) fn subdivide(&self, is_a_divided: bool) -> [Self; 4] {
         if is_a_divided {
             quarter(&self.a).map(|a| Self { a, depth_a: self.depth_a + 1, ..*self })
@@ -59,7 +59,7 @@ impl SubPair {
     }
 }
 
-/// The four quarters of a triangle by edge midpoints.
+/// Returns the four quarters of a triangle by edge midpoints.
 pub(super) fn quarter(weights: &Weights) -> [Weights; 4] {
     let [p, q, r] = *weights;
     let (pq, qr, rp) = ((p + q) * 0.5, (q + r) * 0.5, (r + p) * 0.5);
@@ -70,7 +70,7 @@ fn combine(corners: &[DVec3; 3], w: DVec3) -> DVec3 {
     corners[0] * w.x + corners[1] * w.y + corners[2] * w.z
 }
 
-/// The modes at three points of a triangle, written to `out` (nine rows).
+/// Returns the modes at three points of a triangle, written to `out` (nine rows).
 fn combine_modes<'m>(corners: &[&[f64]; 3], weights: &Weights, out: &'m mut [f64]) -> [&'m [f64]; 3] {
     let (first, rest) = out.split_at_mut(out.len() / 3);
     let (second, third) = rest.split_at_mut(first.len());

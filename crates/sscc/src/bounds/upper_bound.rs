@@ -21,7 +21,7 @@ pub(super) struct Ray<'z> {
 
 /// The relative modes of two points, one of each triangle. Owns its memory.
 pub(super) struct RelativeModes {
-    /// Three rows.
+    /// The relative modes: three rows.
     rows: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ impl RelativeModes {
         Self { rows: vec![0.0; 3 * row_len] }
     }
 
-    /// The Gram matrix of the relative modes of two points, which weights of the nine differences of corners define.
+    /// Returns the Gram matrix of the relative modes of two points, which weights of the nine differences of corners define.
     pub(super) fn gram_at(&mut self, pair: &PairCorners<'_>, weights: &[f64; 9]) -> DMat3 {
         self.rows.fill(0.0);
         for i in 0..3 {
@@ -46,8 +46,8 @@ impl RelativeModes {
         gram(&self.rows)
     }
 
-    /// The smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite where the
-    /// modes cannot move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
+    /// Returns the smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite if the modes
+    /// cannot move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
     pub(super) fn bound_at(
         &mut self,
         pair: &PairCorners<'_>,
@@ -69,7 +69,7 @@ impl RelativeModes {
         self.bound_at(pair, &pair.differences(), &[1.0 / 9.0; 9]).is_finite()
     }
 
-    /// The norm of a z along which the closest points of the sub-triangles approach and at which the triangles first
+    /// Returns the norm of a z along which the closest points of the sub-triangles approach and at which the triangles first
     /// touch, or come as near as a distance: for rank 1 or 2, or modes that do not reach all directions.
     pub(super) fn bound_along_ray(
         &mut self,

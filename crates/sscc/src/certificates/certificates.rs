@@ -1,4 +1,4 @@
-//! The certificates of a model: their contents, and the type whose contents are known to fit together.
+//! The certificates of a model: their contents, and the type whose contents are checked to fit together.
 //!
 //! `build/` and `remote/` compute them. `validation.rs` checks that parts fit together. `compatibility.rs` checks that
 //! they belong to a model.
@@ -29,63 +29,64 @@ pub struct CertificateParts {
     pub hierarchy: Arc<Hierarchy>,
     /// Metric, centre, contact filter and exceptions for which the certificates hold.
     pub scope: Arc<Scope>,
-    /// Relative error allowed of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
+    /// The allowed relative error of the root's radius; see [`CertifyOptions::epsilon`](crate::CertifyOptions::epsilon).
     pub epsilon: f64,
     /// The radius at which radii are capped: the paper's `R_global` (section 5.2), or the radius up to which the pair tree
-    /// was built where that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)); infinite if no mode moves
-    /// anything.
+    /// was built, if that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)); infinite if no mode moves a
+    /// vertex.
     pub global_radius: f64,
-    /// `R_n` of each node: below it no two triangles of the node collide. At most that of any child. A node inside a
-    /// bucket ([`Node::fits_in_bucket`](crate::parts::Node::fits_in_bucket)) has the bucket's radius.
+    /// `R_n` of each node: below it no two triangles of the node collide. It is at most that of any child. A node inside a bucket
+    /// ([`Node::fits_in_bucket`](crate::parts::Node::fits_in_bucket)) has the bucket's radius.
     pub node_radii: Vec<f64>,
     /// `R_nm` of each pair of children of the root, in the order (0,1), (0,2), ..., (2,3).
     pub root_pair_radii: Vec<f64>,
     /// Radii of node pairs, all below the tree's limit.
     pub pair_tree: PairTree,
-    /// Certificates of the strain of nodes, which hold far from the centre, too.
+    /// Certificates that follow from the strain of nodes, and hold far from the centre, too.
     pub local: Arc<LocalCertificates>,
     /// Number of colliding pairs at rest (q = 0), ignored ones included.
     pub rest_collisions: u64,
 }
 
 impl Certificates {
-    /// Certificates from parts that fit together.
+    /// Creates certificates from parts that fit together.
     pub(super) fn new(parts: CertificateParts) -> Self {
         Self(Arc::new(parts))
     }
 
-    /// The contents, for writing.
+    /// Returns the contents, for writing.
     pub fn parts(&self) -> &CertificateParts {
         &self.0
     }
 
-    /// The hierarchy over the triangles.
+    /// Returns the hierarchy over the triangles.
     pub(crate) fn hierarchy(&self) -> &Hierarchy {
         &self.0.hierarchy
     }
 
-    /// The metric in which radii are measured.
+    /// Returns the metric in which radii are measured.
     pub fn metric(&self) -> &Metric {
         &self.0.scope.metric
     }
 
-    /// The configuration from which radii are measured (r entries).
+    /// Returns the configuration from which radii are measured (r entries).
     pub fn center(&self) -> &[f64] {
         &self.0.scope.center
     }
 
-    /// Which pairs of triangles count.
+    /// Returns the contact filter: which pairs of triangles count.
     pub fn filter(&self) -> &ContactFilter {
         &self.0.scope.filter
     }
 
-    /// The clearance that triangles keep below the radii ([`CertifyOptions::clearance`](crate::CertifyOptions::clearance)); none:
-    /// they do not collide.
+    /// Returns the clearance that triangles keep below the radii
+    /// ([`CertifyOptions::clearance`](crate::CertifyOptions::clearance)). None if the radii only prove that they do not collide.
     pub fn clearance(&self) -> Option<Clearance> {
         self.0.scope.clearance
     }
 
-    /// Whether they prove triangles farther apart than a clearance: theirs is at least as large, beyond no more rings.
+    /// Whether the certificates prove that triangles keep a clearance: that of the certificates is at least as large, beyond no
+    /// more rings.
     pub(crate) fn is_within_clearance(&self, clearance: &Clearance) -> bool {
         self.clearance().is_some_and(|certified| {
             let is_as_far = certified.distance() >= clearance.distance();
@@ -94,37 +95,38 @@ impl Certificates {
         })
     }
 
-    /// Pairs that no radius covers and every query tests, sorted.
+    /// Returns the pairs that no radius covers and every query tests, sorted.
     pub fn exceptions(&self) -> &[Pair] {
         &self.0.scope.exceptions
     }
 
-    /// The radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
-    /// exceptions; of certificates with a [`clearance`](Self::clearance) no triangles that count come nearer than it, but others may collide.
+    /// Returns the radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
+    /// exceptions. If the certificates have a [`clearance`](Self::clearance), no triangles that count are nearer than it, but
+    /// others may collide.
     pub fn root_radius(&self) -> f64 {
         self.0.node_radii[0]
     }
 
-    /// The radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built where
-    /// that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
+    /// Returns the radius at which radii are capped: the paper's `R_global`, or the radius up to which the pair tree was built,
+    /// if that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)).
     pub fn global_radius(&self) -> f64 {
         self.0.global_radius
     }
 
-    /// `R_n` of a node.
+    /// Returns `R_n` of a node.
     pub(crate) fn node_radius(&self, node: u32) -> f64 {
         self.0.node_radii[node as usize]
     }
 
-    /// Number of colliding pairs at rest.
+    /// Returns the number of colliding pairs at rest.
     pub fn rest_collisions(&self) -> u64 {
         self.0.rest_collisions
     }
 
-    /// `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
+    /// Returns `|z| = |S (q - center)|`, rounded up: the number that is compared with radii.
     ///
     /// # Errors
-    /// When the length of q is not the number of modes.
+    /// If the length of q is not the number of modes.
     pub fn norm(&self, q: &[f64]) -> Result<f64, Error> {
         self.0.scope.metric.check_len(q)?;
         Ok(self.0.scope.norm(q))

@@ -10,7 +10,7 @@ use crate::{Neighbours, ReducedModel};
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// The digest of a model with a scope.
+    /// Returns the digest of a model with a scope.
     pub fn of(model: &ReducedModel, scope: &Scope) -> Self {
         let mut sections = Sections(blake3::Hasher::new());
         let (mesh, modes) = (model.mesh(), model.modes());
@@ -61,7 +61,7 @@ impl Digest {
         Self(*sections.0.finalize().as_bytes())
     }
 
-    /// The first eight hexadecimal digits, for messages.
+    /// Returns the first eight hexadecimal digits, for messages.
     pub fn short(&self) -> String {
         self.0[..4].iter().map(|b| format!("{b:02x}")).collect()
     }

@@ -2,17 +2,17 @@
 //!
 //! With radii of nodes alone, a query opens every two neighbouring siblings that are not certified together, because
 //! their AABBs always overlap. The pair tree stores the radius of every node pair below a limit, so a query ends at a
-//! pair whose radius it has not reached. The splitting rule ([`Hierarchy::split_above_buckets`]) alone decides which
-//! pairs there are, never AABBs: AABBs that are disjoint at rest may overlap later. Below the limit a pair that is not
+//! pair whose radius it has not reached. The way in which pairs are split ([`Hierarchy::split_above_buckets`]) alone decides
+//! which pairs there are, never AABBs: AABBs that are disjoint at rest may overlap later. Below the limit a pair that is not
 //! stored is certified. At the limit and beyond, a missing pair proves nothing. The tree has no pairs within buckets.
 
 use crate::hierarchy::{Hierarchy, Node, NodePair};
 
 /// A link's flag: no sibling follows.
 const LAST: u32 = 1 << 31;
-/// A link's first bit of the index among the siblings.
+/// The first bit of a link's index among the siblings.
 const WHICH: u32 = 28;
-/// A link's bits that say where the children start.
+/// The bits of a link that contain the start of the children.
 const START: u32 = (1 << WHICH) - 1;
 
 /// The start of the children of a node without stored pairs.
@@ -36,13 +36,13 @@ impl PairEntry {
         Self { radius, link }
     }
 
-    /// Where its children start; 0: it has none, both nodes are buckets.
+    /// Returns where its children start; 0 if it has none, because both nodes are buckets.
     pub(crate) fn start(self) -> u32 {
         self.link & START
     }
 
-    /// Its index among all siblings, stored or not: the child of the node that is split, or the pair of children of one
-    /// node.
+    /// Returns its index among all siblings, stored or not: that of the child of the node that is split, or of the pair of
+    /// children of one node.
     pub(crate) fn which(self) -> u32 {
         (self.link & !LAST) >> WHICH
     }
@@ -59,7 +59,7 @@ pub(crate) struct StoredPair {
     pub(crate) entry: PairEntry,
 }
 
-/// The pairs of a node's children with which the tree begins: none within a bucket, where traversals end.
+/// Returns the pairs of a node's children with which the tree begins; there are none within a bucket, where traversals end.
 pub(crate) fn sibling_pairs(hierarchy: &Hierarchy, n: u32) -> impl Iterator<Item = NodePair> {
     let node = (!hierarchy.is_bucket_below_root(n)).then(|| &hierarchy.nodes()[n as usize]);
     node.into_iter().flat_map(Node::child_pairs)
@@ -75,17 +75,17 @@ pub struct PairTree {
 }
 
 impl PairTree {
-    /// The limit. Below it, a node pair that is not stored is certified, except within buckets. 0: the tree is empty.
+    /// Returns the limit. Below it, a node pair that is not stored is certified, except within buckets. 0 if the tree is empty.
     pub fn limit(&self) -> f64 {
         self.limit
     }
 
-    /// Number of node pairs stored.
+    /// Returns the number of node pairs stored.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Memory of the node pairs in bytes, 8 for each, as bounded by
+    /// Returns the memory of the node pairs in bytes, 8 for each, as bounded by
     /// [`CertifyOptions::budget`](crate::CertifyOptions::budget).
     pub fn bytes(&self) -> usize {
         size_of_val(self.entries.as_slice())
@@ -96,18 +96,19 @@ impl PairTree {
         self.entries.is_empty()
     }
 
-    /// For each node where its pairs of children start; `u32::MAX` if none is stored, as within buckets.
+    /// Returns for each node where its pairs of children start; `u32::MAX` if none is stored, as within buckets.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
 
-    /// For each node pair its radius, rounded down, and its link: bits 0 to 27 say where its children start (0: none,
-    /// both nodes are buckets), bits 28 to 30 which child of its parent it is, bit 31 that no sibling follows.
+    /// Returns for each node pair its radius, rounded down, and its link: bits 0 to 27 are the start of its children (0 if it has
+    /// none, because both nodes are buckets), bits 28 to 30 its index among the children of its parent, and bit 31 is set if no
+    /// sibling follows.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = (f32, u32)> {
         self.entries.iter().map(|entry| (entry.radius, entry.link))
     }
 
-    /// The entry of an index.
+    /// Returns the entry of an index.
     pub(crate) fn entry(&self, index: usize) -> PairEntry {
         self.entries[index]
     }
@@ -116,14 +117,14 @@ impl PairTree {
         Self { limit, starts, entries }
     }
 
-    /// A tree from its parts, as read from a file: radii and links as [`PairTree::entries`] gives them. Whether they are
+    /// Creates a tree from its parts, as read from a file: radii and links as [`PairTree::entries`] gives them. Whether they are
     /// a tree over the hierarchy is checked by [`CertificateParts`](crate::parts::CertificateParts).
     pub fn from_parts(limit: f64, starts: Vec<u32>, entries: impl IntoIterator<Item = (f32, u32)>) -> Self {
         let entries = entries.into_iter().map(|(radius, link)| PairEntry { radius, link }).collect();
         Self { limit, starts, entries }
     }
 
-    /// The stored siblings from a start on.
+    /// Returns the stored siblings from a start on.
     #[inline]
     fn siblings(&self, start: u32) -> impl Iterator<Item = StoredPair> {
         let mut next = if start == NO_PAIRS { None } else { Some(start) };
@@ -135,13 +136,13 @@ impl PairTree {
         })
     }
 
-    /// The stored pairs of a node's children; none within buckets.
+    /// Returns the stored pairs of a node's children; there are none within buckets.
     #[inline]
     pub(crate) fn of_node(&self, node: u32) -> impl Iterator<Item = StoredPair> {
         self.siblings(self.starts[node as usize])
     }
 
-    /// The stored children of a pair that has some.
+    /// Returns the stored children of a pair that has some.
     #[inline]
     pub(crate) fn below(&self, index: u32) -> impl Iterator<Item = StoredPair> {
         self.siblings(self.entries[index as usize].start())

@@ -14,10 +14,10 @@ struct Siblings<F> {
 }
 
 impl PairTree {
-    /// The nodes of each entry, in order.
+    /// Returns the nodes of each entry, in order.
     ///
     /// # Errors
-    /// When the tree is not one over this hierarchy.
+    /// If the tree does not fit this hierarchy.
     pub(crate) fn pairs(&self, hierarchy: &Hierarchy) -> Result<Vec<NodePair>, &'static str> {
         let limit = self.limit();
         if limit.is_nan() || limit < 0.0 || limit.is_infinite() {

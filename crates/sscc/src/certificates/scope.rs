@@ -19,12 +19,14 @@ pub struct Scope {
     pub filter: ContactFilter,
     /// Pairs that collide at the centre, or are nearer than the clearance: no radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
-    /// The clearance that triangles keep below the radii, and beyond how many rings; none: they do not collide.
+    /// The clearance that triangles keep below the radii, and beyond how many rings. None if the radii only prove that they do
+    /// not collide.
     pub clearance: Option<Clearance>,
 }
 
 impl Scope {
-    /// The default scope of a model: its own metric, centre q = 0, the contact filter of its mesh ([`ContactFilter::of`]).
+    /// Returns the default scope of a model: its own metric, centre q = 0, the contact filter of its mesh
+    /// ([`ContactFilter::of`]).
     pub fn of(model: &ReducedModel) -> Self {
         Self {
             metric: model.metric().clone(),
@@ -35,7 +37,7 @@ impl Scope {
         }
     }
 
-    /// The model in scaled coordinates about the centre, whose parts keep the clearance.
+    /// Returns the model in scaled coordinates about the centre, whose parts keep the clearance.
     pub(crate) fn scaled_model(&self, model: &ReducedModel) -> ScaledModel {
         let scaled = ScaledModel::new(model, &self.metric, &self.center);
         match self.clearance {
@@ -44,11 +46,11 @@ impl Scope {
         }
     }
 
-    /// The pairs that radii cover: those that count and are no exceptions; with a clearance they share no vertex, and are not within the
-    /// rings, which are the second part of the result.
+    /// Returns the pairs that radii cover: those that count and are no exceptions; with a clearance they share no vertex, and are
+    /// not within the rings, which are the second part of the result.
     ///
     /// # Errors
-    /// When too many pairs are within the rings.
+    /// If too many pairs are within the rings.
     pub(crate) fn counted_pairs(&self, model: &ReducedModel) -> Result<(PairFilter, RingPairs), Error> {
         let Some(clearance) = self.clearance else {
             let filter = PairFilter::new(model, &self.filter).excluding(&self.exceptions);
@@ -65,7 +67,7 @@ impl Scope {
         Ok((filter, rings))
     }
 
-    /// `|S (q - center)|`, rounded up.
+    /// Returns `|S (q - center)|`, rounded up.
     pub(crate) fn norm(&self, q: &[f64]) -> f64 {
         if self.center.iter().all(|x| *x == 0.0) {
             return self.metric.length(q);
@@ -73,7 +75,7 @@ impl Scope {
         self.metric.norm_from(q, &self.center, &mut vec![0.0; q.len()])
     }
 
-    /// The q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
+    /// Returns the q with scaled coordinates `size z`: `center + S^-1 size z`, up to rounding.
     pub(crate) fn at(&self, z: &[f64], size: f64) -> Vec<f64> {
         let offset = self.metric.unscale(z);
         self.center.iter().zip(offset).map(|(c, d)| c + size * d).collect()

@@ -15,8 +15,8 @@ fn certify(model: &ReducedModel, budget: usize) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default().budget(budget), &()).unwrap()
 }
 
-/// All triangle pairs that the tree does not certify at this norm: those within a bucket, and those between two nodes with
-/// an entry whose radius has been reached, as have the radii of its parents.
+/// Returns all triangle pairs that the tree does not certify at this norm: those within a bucket, and those between two nodes
+/// with an entry whose radius has been reached, like the radii of its parents.
 fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
     let mut open = Vec::new();
     let mut add = |n: u32, m: u32| {
@@ -50,7 +50,7 @@ fn open_pairs(hierarchy: &Hierarchy, tree: &PairTree, norm: f64) -> Vec<Pair> {
 #[test]
 fn below_the_limit_whatever_collides_is_open() {
     let (mut collided, mut lowered) = (0, 0);
-    // These have no room for some rounds that are tried, the last two not for the outer one.
+    // These budgets have no room for some rounds that are tried, and the last two have none for the outer round.
     let large = [(8, 2, 600), (9, 3, 450), (1, 4, 500), (3, 6, 700)];
     let small = [(0, 4), (1, 8), (2, 2), (3, 512), (4, 4096), (5, 4), (6, 512), (7, 2)];
     for (case, budget, quads) in
@@ -65,7 +65,7 @@ fn below_the_limit_whatever_collides_is_open() {
         for i in 0..cases(if quads < 300 { 120 } else { 10 }) {
             let z: Vec<f64> = (0..model.rank()).map(|k| ((i * (2 * k + 3) + k) as f64 * 0.7).sin()).collect();
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
-            // Just below the limit, and well below.
+            // z is just below the limit, or well below it.
             let share = if i % 2 == 0 { 0.999_999 } else { 0.3 + 0.1 * (i % 7) as f64 };
             let z: Vec<f64> = z.iter().map(|z| z / length * tree.limit() * share).collect();
             let q = model.metric().unscale(&z);
@@ -85,8 +85,8 @@ fn below_the_limit_whatever_collides_is_open() {
     assert!(lowered >= 2, "{lowered}");
 }
 
-/// Would fail for radii of nodes above the truth, wherever they come from: below the limit of the tree from building it,
-/// above from a search among the pairs that it has left open.
+/// Would fail for radii of nodes above the truth, whatever their origin: below the limit of the tree they come from its
+/// construction, above the limit from a search among the pairs that are still open.
 #[test]
 fn no_node_is_free_where_two_of_its_triangles_collide() {
     let (mut below, mut above) = (0, 0);
@@ -120,12 +120,12 @@ fn no_node_is_free_where_two_of_its_triangles_collide() {
     assert!(below > threshold(50) && above > threshold(50), "{below} {above}");
 }
 
-/// The radius is 1 wherever it comes from: a search of all pairs, the pairs that building the tree has left open, the pairs
-/// of its outer round, those that an earlier round has bounded.
+/// The radius is 1 whatever its origin: a search of all pairs, the pairs that are open after the construction of the tree, the
+/// pairs of its outer round, or those that an earlier round has bounded.
 #[test]
-fn the_root_radius_is_as_close_as_asked_for() {
+fn the_root_radius_is_within_the_tolerance() {
     let limits = [(200, 0), (280, 1), (200, 1), (200, 64)].map(|(quads, budget)| {
-        // Two parallel strips at a distance of 1, which the mode takes away.
+        // Two parallel strips at a distance of 1, which the mode closes.
         let positions: Vec<DVec3> = (0..4 * quads)
             .map(|i| DVec3::new((i / 2 % quads) as f64, (i % 2) as f64, (i / (2 * quads)) as f64))
             .collect();
@@ -147,7 +147,7 @@ fn the_root_radius_is_as_close_as_asked_for() {
     assert!(1.0 < outer && outer < 1.5 * 0.9 && 1.5 < larger, "{limits:?}");
 }
 
-/// Would fail where a parent is bounded better than its children and its bound is not pushed down.
+/// Would fail if a parent had a larger bound than its children and the bound were not pushed down.
 #[test]
 fn radii_never_fall_towards_the_leaves() {
     let mut checked = 0;
@@ -187,7 +187,7 @@ fn any_number_of_threads_builds_the_same_tree() {
 }
 
 /// Two strips whose distance grows along them; one mode closes it. The tree has no room for all radii, and its limit is that
-/// of the outer round: whatever collides below it is open.
+/// of the outer round: each pair that collides below it is open.
 #[test]
 fn outer_pairs_are_bounded() {
     let (mut outer, mut collided) = (0, 0);

@@ -1,8 +1,8 @@
 //! The curves in which a mesh intersects itself or another one: the intersection segments of all colliding pairs, joined.
 //!
-//! An end of a segment lies on one feature of each triangle (vertex, edge or face), and it is the only common point of the
-//! two. So the two features of the mesh name the point, and segments are joined where their ends have the same name.
-//! There is no tolerance: curves are joined correctly however close they pass each other.
+//! An end of a segment lies on one feature of each triangle (vertex, edge or face), and it is the only common point of these two
+//! features. So the two features of the mesh name the point, and segments are joined where their ends have the same name. There
+//! is no tolerance: curves are joined correctly however close they pass each other.
 
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ use crate::{Error, Pair};
 /// The contacts of colliding pairs, and the curves that their intersection segments form.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactCurves {
-    /// One for each given pair that has a common point, in the order given.
+    /// One contact for each given pair that has a common point, in the order given.
     pub contacts: Vec<PairContact>,
     /// The segments of all contacts, joined to polylines, in the order of their first contacts. A segment that several
     /// pairs share (an edge that lies on a face belongs to two triangles) occurs once, by the first of these pairs.
@@ -33,7 +33,7 @@ pub struct ContactCurve {
     /// Whether the last point is joined to the first, by the last contact. Otherwise the curve ends where no segment
     /// follows (at a border, at a pair that was not given, at a polygon) or where more than two meet.
     pub is_closed: bool,
-    /// The points. Two at least; none is repeated at the end of a closed curve.
+    /// At least two points. A closed curve does not repeat its first point at its end.
     pub points: Vec<CurvePoint>,
     /// For each segment, from a point to the next, the number of its contact.
     pub contacts: Vec<u32>,
@@ -45,24 +45,24 @@ pub struct CurvePoint {
     /// The position (model unit), rounded; see
     /// [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub position: DVec3,
-    /// The two features on which the exact point lies. Of two meshes, the first one's first; of one mesh, in ascending
-    /// order.
+    /// The two features on which the exact point lies. For two meshes, that of the first mesh comes first; for one mesh, they are
+    /// in ascending order.
     pub features: [MeshFeature; 2],
 }
 
-/// The contacts of the colliding pairs of one mesh, and the curves in which it intersects itself.
+/// Returns the contacts of the colliding pairs of one mesh, and the curves in which it intersects itself.
 ///
-/// `faces` (N, three vertex numbers each), `positions` (V, model unit), `pairs` as a query or a detector lists them. Pairs
-/// without a common point are left out. Pairs that share a vertex may be given, and have it in common.
+/// Takes `faces` (N, three vertex numbers each), `positions` (V, model unit), and `pairs` as a query or a detector lists them.
+/// Pairs without a common point are left out. Pairs that share a vertex may be given: the vertex is a common point.
 ///
 /// Curves are joined by vertex numbers. Where a file splits vertices along seams, give one number to all vertices of a
 /// weld, or curves end at the seams. They end at degenerate triangles, too, and at pairs that are not given.
 ///
-/// The result depends on the input alone. Costs about four microseconds and 300 bytes for each pair; time O(n log n) in the
-/// number n of pairs, beside checking the mesh.
+/// The result depends on the input alone. Each pair costs about four microseconds and 300 bytes. The time is O(n log n) in the
+/// number n of pairs, and that of checking the mesh.
 ///
 /// # Errors
-/// When a pair names a triangle, or a face a vertex, that does not exist, or a position is not finite or beyond
+/// If a pair names a triangle, or a face a vertex, that does not exist, or a position is not finite or beyond
 /// [`limits::LARGEST`](crate::limits::LARGEST).
 ///
 /// ```
@@ -93,8 +93,8 @@ pub fn contact_curves(
     })
 }
 
-/// The contacts of the colliding pairs of two meshes (first a triangle of x, then one of y), and the curves in which the
-/// meshes intersect; as [`contact_curves`].
+/// Returns the contacts of the colliding pairs of two meshes (first a triangle of x, then one of y), and the curves in which the
+/// meshes intersect, like [`contact_curves`].
 ///
 /// # Errors
 /// As [`contact_curves`].
@@ -109,7 +109,7 @@ pub fn contact_curves_between(
 }
 
 impl ContactCurves {
-    /// `name` makes the two features of a point its name.
+    /// Computes the contacts and joins their segments. `name` returns the name of a point from its two features.
     fn of(
         surfaces: [Surface<'_>; 2],
         pairs: &[Pair],
@@ -160,7 +160,7 @@ fn join(ends: &[[CurvePoint; 2]], contacts: &[u32]) -> Vec<ContactCurve> {
         .iter()
         .zip(contacts)
         .map(|(ends, &contact)| Segment { nodes: ends.each_ref().map(node), contact });
-    // Two copies of one triangle can have their common vertices in one name.
+    // Where two copies of one triangle intersect, both ends of a segment can have one name.
     let segments = segments.filter(|segment| segment.nodes[0] != segment.nodes[1]).collect();
     let polylines = join_segments(segments, nodes.len());
     let curve = |Polyline { nodes: along, contacts }: Polyline| ContactCurve {

@@ -14,7 +14,7 @@ pub enum MeshFeature {
 }
 
 impl MeshFeature {
-    /// The feature of a triangle as one of the mesh.
+    /// Returns the feature of a triangle as one of the mesh.
     pub(super) fn of(feature: Feature, triangle: u32, corners: [u32; 3]) -> Self {
         match feature {
             Feature::Vertex(i) => Self::Vertex(corners[usize::from(i)]),

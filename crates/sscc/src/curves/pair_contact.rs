@@ -10,7 +10,7 @@ use crate::geometry::{Intersection, TriangleContact};
 pub struct PairContact {
     /// The numbers of the two triangles, in the order given.
     pub pair: Pair,
-    /// The common points, as by [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
+    /// The common points, as computed by [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub intersection: Intersection,
     /// Unit normals of both triangles, to which their corners turn counterclockwise; 0 for a degenerate one.
     pub normals: [DVec3; 2],
@@ -22,7 +22,7 @@ pub struct PairContact {
 }
 
 impl PairContact {
-    /// None if the triangles, with these corners, are disjoint.
+    /// Returns the contact of two triangles with these corners. None if they are disjoint.
     pub(super) fn of(pair: Pair, a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Self> {
         let TriangleContact { intersection, normals, penetration } = TriangleContact::of(a, b)?;
         Some(Self { pair, intersection, normals, depth: penetration.depth, direction: penetration.direction })

@@ -9,7 +9,7 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// The node at the other end.
+    /// Returns the node at the other end.
     fn opposite(&self, node: u32) -> u32 {
         if self.nodes[0] == node { self.nodes[1] } else { self.nodes[0] }
     }
@@ -43,7 +43,7 @@ pub(super) fn join_segments(segments: Vec<Segment>, node_count: usize) -> Vec<Po
     polylines
 }
 
-/// Each segment once, in the order of contacts.
+/// Returns each segment once, in the order of contacts.
 fn unique(mut segments: Vec<Segment>) -> Vec<Segment> {
     segments.iter_mut().for_each(|segment| segment.nodes.sort_unstable());
     segments.sort_unstable_by_key(|segment| (segment.nodes, segment.contact));
@@ -52,7 +52,7 @@ fn unique(mut segments: Vec<Segment>) -> Vec<Segment> {
     segments
 }
 
-/// The polyline from a node along a segment, up to a node that does not have two segments or back to the first.
+/// Returns the polyline from a node along a segment, up to a node that does not have two segments or back to the first.
 fn follow(segments: &[Segment], joints: &Joints, first: u32, start: u32, is_joined: &mut [bool]) -> Polyline {
     let mut polyline = Polyline { nodes: vec![start], contacts: Vec::new() };
     let (mut segment, mut node) = (first, start);
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn loops_chains_and_junctions() {
+    fn segments_join_to_loops_and_to_chains_that_end_at_junctions() {
         assert_eq!(join(&[]), []);
         assert_eq!(join(&[[2, 1], [3, 2], [1, 3]]), [(vec![1, 2, 3], vec![0, 1, 2])]);
         assert_eq!(join(&[[5, 4], [6, 5], [7, 6]]), [(vec![4, 5, 6, 7], vec![0, 1, 2])]);

@@ -14,7 +14,7 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.faces[triangle as usize].map(|i| self.positions[i as usize])
     }

@@ -1,4 +1,4 @@
-//! Triangles with common corners: whether they have another point in common than these corners and the edges between them.
+//! Decides whether triangles with common corners have a point in common beyond these corners and the edges between them.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ pub(super) struct ClassedCorners<'a> {
 }
 
 impl ClassedCorners<'_> {
-    /// Which corners are common: a corner of the other triangle has the same class, and is at the same position. Welded corners
-    /// that have moved apart are no common point.
+    /// Returns which corners are common: a corner of the other triangle has the same class, and is at the same position. Welded
+    /// corners that have moved apart are no common point.
     fn common_with(&self, other: &Self) -> [bool; 3] {
         std::array::from_fn(|i| {
             let is_same =
@@ -23,16 +23,17 @@ impl ClassedCorners<'_> {
         })
     }
 
-    /// The positions of the corners that are common, or of those that are not.
+    /// Returns the positions of the corners that are common, or of those that are not.
     fn corners_where(&self, is_wanted: [bool; 3]) -> impl Iterator<Item = DVec3> + use<> {
         let positions = *self.positions;
         (0..3).filter(move |i| is_wanted[*i]).map(move |i| positions[i])
     }
 }
 
-/// Whether two closed triangles have a point in common beyond their common corners, exactly; with `edges_are_common` beyond the
-/// edges between these, too. Triangles all of whose corners are common have: they are one face twice.
-#[cold] // By default no pair comes here, and the test of pairs without common vertices stays small.
+/// Whether two closed triangles have a point in common beyond their common corners, exactly. If `edges_are_common`, points on the
+/// edges between these corners do not count either. The answer is yes for triangles all of whose corners are common: they are one
+/// face twice.
+#[cold] // By default no pair needs this; out of line, it keeps the test of pairs without common vertices small.
 #[inline(never)]
 pub(super) fn intersect_beyond_common_corners(
     a: ClassedCorners<'_>,

@@ -57,8 +57,9 @@ fn check_not_folded(neighbours: Neighbours, queries: &'static str) -> Result<(),
 pub struct ContactFilter {
     /// Whether triangles that share a vertex count.
     pub neighbours: Neighbours,
-    /// Whether vertices of exactly equal rest position and modes (of a [`Detector`](crate::Detector): rest position) are
-    /// welded, for adjacency only: vertex numbers and positions stay the file's. For meshes whose vertices are split along seams.
+    /// Whether vertices of exactly equal rest position and modes (for a [`Detector`](crate::Detector): of equal rest position)
+    /// are welded, for adjacency only: vertex numbers and positions do not change. Use it for meshes whose vertices are split
+    /// along seams.
     pub weld: bool,
     ignored: Vec<Pair>,
     /// None if all pairs of groups count.
@@ -66,13 +67,13 @@ pub struct ContactFilter {
 }
 
 impl ContactFilter {
-    /// The default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes from a
-    /// format that splits them ([`TriMesh::has_split_vertices`]).
+    /// Returns the default filter of a mesh: no pair with a common vertex counts, and equal vertices are welded if the mesh comes
+    /// from a format that splits them ([`TriMesh::has_split_vertices`]).
     pub fn of(mesh: &TriMesh) -> Self {
         Self::default().weld(mesh.has_split_vertices())
     }
 
-    /// A filter that welds nothing, ignores no pair and has no groups.
+    /// Creates a filter that welds nothing, ignores no pair and has no groups.
     pub fn new(neighbours: Neighbours) -> Self {
         Self { neighbours, ..Self::default() }
     }
@@ -82,7 +83,7 @@ impl ContactFilter {
         weld: bool,
     }
 
-    /// The same filter, which also ignores these pairs (in any order).
+    /// Returns the same filter, which also ignores these pairs (in any order).
     #[must_use]
     pub fn ignoring(mut self, pairs: impl IntoIterator<Item = Pair>) -> Self {
         let pairs = pairs.into_iter().filter(|(a, b)| a != b);
@@ -92,20 +93,20 @@ impl ContactFilter {
         self
     }
 
-    /// The same filter, under which two triangles count only if the pair of their groups does. Groups whose pairs all
-    /// count are no groups.
+    /// Returns the same filter, under which two triangles count only if the pair of their groups does. Groups whose pairs all
+    /// count are dropped.
     #[must_use]
     pub fn with_groups(mut self, groups: impl Into<Arc<TriangleGroups>>) -> Self {
         self.groups = Some(groups.into()).filter(|groups| !groups.is_all_counted());
         self
     }
 
-    /// The pairs that never count, sorted.
+    /// Returns the pairs that never count, sorted.
     pub fn ignored(&self) -> &[Pair] {
         &self.ignored
     }
 
-    /// The groups of triangles; none if all pairs of groups count.
+    /// Returns the groups of triangles. None if all pairs of groups count.
     pub fn groups(&self) -> Option<&Arc<TriangleGroups>> {
         self.groups.as_ref()
     }

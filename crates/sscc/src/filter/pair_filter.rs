@@ -19,9 +19,9 @@ pub(crate) enum Relation {
     /// They share the vertex of this class alone, and such pairs count when they have another point in common.
     SharedVertex(u32),
     /// They share one, two or three vertices, and such pairs count when they have a point in common beyond these and the edges
-    /// between them. Of meshes without modes, in discrete queries alone.
+    /// between them. Only discrete queries of meshes without modes have them.
     Foldable,
-    /// They never count: they are adjacent, or of two groups that do not count.
+    /// They never count, because they are adjacent or the pair of their groups does not count.
     Adjacent,
 }
 
@@ -48,19 +48,20 @@ pub(crate) struct PairFilter {
     neighbours: Neighbours,
     /// Sorted.
     excluded: Vec<Pair>,
-    /// Group numbers, one for each face; none if all pairs of groups count.
+    /// Group numbers, one for each face. None if all pairs of groups count.
     groups: Option<Arc<TriangleGroups>>,
 }
 
 impl PairFilter {
-    /// The filter on a model. Callers check that its groups, if any, are those of the model
+    /// Applies the filter to a model. Callers check that its groups, if any, are those of the model
     /// ([`ContactFilter::check_groups`]).
     pub(crate) fn new(model: &ReducedModel, filter: &ContactFilter) -> Self {
         let classes = filter.weld.then(|| weld_classes(model));
         Self::with_classes(model.mesh().faces(), classes.as_deref(), filter)
     }
 
-    /// The filter on a mesh whose vertices are welded by these classes (none: by none), whether or not the filter welds vertices.
+    /// Applies the filter to a mesh whose vertices are welded by these classes (`None`: not at all), whether or not the filter
+    /// welds vertices.
     pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
         let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
         Self {
@@ -72,53 +73,53 @@ impl PairFilter {
         }
     }
 
-    /// The same filter, which also excludes these pairs: exceptions, which radii of certificates do not cover.
+    /// Returns the same filter, which also excludes these pairs: exceptions, which radii of certificates do not cover.
     pub(crate) fn excluding(mut self, pairs: &[Pair]) -> Self {
         self.excluded.extend_from_slice(pairs);
         self.excluded.sort_unstable();
         self
     }
 
-    /// The faces of the mesh.
+    /// Returns the faces of the mesh.
     #[inline]
     pub(crate) fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// The groups of triangles; none if all pairs of groups count.
+    /// Returns the groups of triangles. None if all pairs of groups count.
     pub(crate) fn groups(&self) -> Option<&TriangleGroups> {
         self.groups.as_deref()
     }
 
-    /// The groups of this mesh and of another one, if they hold between both.
+    /// Returns the groups of this mesh and of another one, if they hold between both.
     pub(crate) fn groups_against<'f>(&'f self, other: &'f Self) -> Option<GroupsBetween<'f>> {
         let groups = GroupsBetween([self.groups()?, other.groups()?]);
         groups.0[0].is_common_with(groups.0[1]).then_some(groups)
     }
 
-    /// Which triangles that share vertices count.
+    /// Returns which triangles that share vertices count.
     pub(crate) fn neighbours(&self) -> Neighbours {
         self.neighbours
     }
 
-    /// Vertex classes are numbers below this.
+    /// Returns the number below which all vertex classes lie.
     pub(crate) fn class_count(&self) -> usize {
         self.classes.iter().flatten().max().map_or(0, |class| *class as usize + 1)
     }
 
-    /// The vertex classes of a triangle's corners.
+    /// Returns the vertex classes of a triangle's corners.
     #[inline]
     pub(crate) fn vertex_classes(&self, triangle: u32) -> [u32; 3] {
         self.classes[triangle as usize]
     }
 
-    /// Whether triangles never count exactly if they share a vertex class.
+    /// Whether all pairs count but those that share a vertex class.
     #[inline]
     pub(crate) fn is_adjacency_alone(&self) -> bool {
         self.neighbours == Neighbours::Exclude && self.groups.is_none()
     }
 
-    /// The relation of two triangles, whether or not their pair is excluded.
+    /// Returns the relation of two triangles, whether or not their pair is excluded.
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
         if let Some(groups) = &self.groups
@@ -134,8 +135,8 @@ impl PairFilter {
         }
     }
 
-    /// The relation of two triangles that share a vertex class. It depends on numbers and classes alone: positions that are
-    /// given later never change it.
+    /// Returns the relation of two triangles that share a vertex class. It depends on numbers and classes alone: positions that
+    /// are given later never change it.
     fn relation_of_neighbours(&self, a: u32, b: u32) -> Relation {
         match self.neighbours {
             Neighbours::Exclude => Relation::Adjacent,
@@ -164,7 +165,7 @@ impl PairFilter {
         self.collide_as(self.relation(pair.0, pair.1), pair, corners_a, corners_b)
     }
 
-    /// The same where their relation is known.
+    /// Whether two triangles of this relation collide, as [`Self::collide`].
     #[inline]
     pub(crate) fn collide_as(
         &self,
@@ -184,7 +185,7 @@ impl PairFilter {
                     positions,
                     classes: self.classes[triangle as usize],
                 };
-                // One common vertex may be at two positions. The points between them are no points of it.
+                // One common vertex may be at two positions. The points between these positions do not belong to the vertex.
                 let edges_are_common = relation == Relation::Foldable;
                 let [a, b] = [classed(pair.0, corners_a), classed(pair.1, corners_b)];
                 intersect_beyond_common_corners(a, b, edges_are_common)
@@ -224,13 +225,13 @@ impl PairFilter {
                     edge_b.map(|i| corners_b[i]),
                 )
             }
-            // A face that is the vertex alone.
+            // All corners of one face are of the class.
             _ => false,
         }
     }
 }
 
-/// The first value that two lists have in common, and the first other one.
+/// Returns the first value that two lists have in common, and the first other common value.
 fn first_common(a: [u32; 3], b: [u32; 3]) -> [Option<u32>; 2] {
     let mut common = a.into_iter().filter(|x| b.contains(x));
     let first = common.next();

@@ -3,8 +3,8 @@
 use super::pair_filter::PairFilter;
 use crate::Error;
 
-/// Which triangles lie within a number of rings of another one. Triangles with a common vertex are one ring apart, those with a common
-/// neighbour of this kind two, and so on; welded vertices are one.
+/// Finds the triangles that lie within a number of rings of another one. Triangles with a common vertex are one ring apart, those
+/// with a common neighbour of this kind are two rings apart, and so on; welded vertices count as one.
 #[derive(Clone)]
 pub(crate) struct Rings {
     rings: u32,
@@ -13,11 +13,13 @@ pub(crate) struct Rings {
     triangles: Vec<u32>,
     /// The triangle whose rings are marked.
     center: Option<u32>,
-    /// The triangles that are marked: that one first, then ring by ring.
+    /// The marked triangles: the centre first, then ring by ring.
     marked: Vec<u32>,
-    /// For each triangle and each class the number of the last search that reached it.
+    /// For each triangle the number of the last search that reached it.
     reached: Vec<u32>,
+    /// For each vertex class the number of the last search that reached it.
     reached_classes: Vec<u32>,
+    /// The number of the last search.
     search: u32,
 }
 
@@ -48,7 +50,7 @@ impl Rings {
         }
     }
 
-    /// Whether two triangles are at most that many rings apart. Fast where the first one is the last call's.
+    /// Whether two triangles are at most that many rings apart. A call with the same `a` as the last one is fast.
     pub(crate) fn contain(&mut self, filter: &PairFilter, a: u32, b: u32) -> bool {
         if self.center != Some(a) {
             self.mark(filter, a);
@@ -56,7 +58,7 @@ impl Rings {
         self.reached[b as usize] == self.search
     }
 
-    /// The triangles within the rings around one: itself first, then ring by ring.
+    /// Returns the triangles within the rings around one: itself first, then ring by ring.
     pub(super) fn around(&mut self, filter: &PairFilter, center: u32) -> &[u32] {
         if self.center != Some(center) {
             self.mark(filter, center);
@@ -64,7 +66,7 @@ impl Rings {
         &self.marked
     }
 
-    /// Marks the triangles around one.
+    /// Marks the triangles within the rings around one.
     fn mark(&mut self, filter: &PairFilter, center: u32) {
         if self.search == u32::MAX {
             self.reached.fill(0);
@@ -106,17 +108,17 @@ pub(crate) struct RingPairs {
     later: Vec<u32>,
 }
 
-/// Listed pairs of a mesh, at most: 256 MiB of them.
+/// Maximum number of listed pairs of a mesh; these take 256 MiB.
 const MAX_LISTED: usize = 1 << 26;
 
 impl RingPairs {
     /// No pairs.
     pub(crate) const NONE: Self = Self { starts: Vec::new(), later: Vec::new() };
 
-    /// The pairs of a mesh.
+    /// Creates the pairs of a mesh.
     ///
     /// # Errors
-    /// When they are more than 2^26.
+    /// If there are more than 2^26.
     pub(crate) fn new(filter: &PairFilter, rings: u32) -> Result<Self, Error> {
         let mut search = Rings::new(filter, rings);
         let (mut starts, mut later) = (vec![0], Vec::new());

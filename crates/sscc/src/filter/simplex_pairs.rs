@@ -19,7 +19,7 @@ const TRIANGLE: [usize; 3] = [0, 1, 2];
 const TRIANGLES: [Option<SimplexPair<usize>>; 2] = [Some(SimplexPair { a: TRIANGLE, b: TRIANGLE }), None];
 
 impl PairFilter {
-    /// The simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
+    /// Returns the simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
     /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
     /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
     /// two.
@@ -31,7 +31,7 @@ impl PairFilter {
         })
     }
 
-    /// The same, by the corners (0 to 2) of each triangle.
+    /// Returns the same pairs by the corners (0 to 2) of each triangle.
     pub(crate) fn simplex_pairs_of_corners(
         &self,
         a: u32,
@@ -46,9 +46,9 @@ impl PairFilter {
         pairs.into_iter().flatten()
     }
 
-    /// The simplex pairs of a shared-vertex pair that moves on straight lines between these corners. Welded vertices may have
-    /// moved apart: then the pair has a common vertex where two corners of the class are at one position at both ends, thus
-    /// always.
+    /// Returns the simplex pairs of a shared-vertex pair that moves on straight lines between these corners. Welded vertices may
+    /// have moved apart: then the pair has a common vertex only if two corners of the class are at one position at the start and
+    /// at the end of the motion, and so at all times.
     pub(crate) fn moving_simplex_pairs(
         &self,
         class: u32,
@@ -78,14 +78,15 @@ impl PairFilter {
             };
             match (edge(i, classes_a, [a_t0, a_t1]), edge(j, classes_b, [b_t0, b_t1])) {
                 (Some(edge_a), Some(edge_b)) => edges_and_triangles(edge_a, edge_b),
-                // One face is the vertex alone.
+                // All corners of one face are at the vertex.
                 _ => [None, None],
             }
         };
         pairs.into_iter().flatten()
     }
 
-    /// The edges opposite to a vertex class, each with the other triangle; none for a face that is the vertex alone.
+    /// Returns the edges opposite to a vertex class, each with the other triangle. None if all corners of a face are of the
+    /// class.
     fn opposite_to_class(&self, class: u32, (a, b): Pair) -> [Option<SimplexPair<usize>>; 2] {
         match (self.opposite_edge(a, class), self.opposite_edge(b, class)) {
             (Some(edge_a), Some(edge_b)) => edges_and_triangles(edge_a, edge_b),
@@ -93,7 +94,7 @@ impl PairFilter {
         }
     }
 
-    /// The corners (0 to 2) of a face that are not of the class: two, or one twice.
+    /// Returns the corners (0 to 2) of a face that are not of the class: two, or one twice.
     pub(super) fn opposite_edge(&self, face: u32, class: u32) -> Option<[usize; 2]> {
         let classes = self.classes[face as usize];
         let mut others = (0..3).filter(|&i| classes[i] != class);
@@ -102,7 +103,7 @@ impl PairFilter {
     }
 }
 
-/// An edge of each triangle with the whole other one.
+/// Returns the pairs of an edge of each triangle and the whole other triangle.
 fn edges_and_triangles(edge_a: [usize; 2], edge_b: [usize; 2]) -> [Option<SimplexPair<usize>>; 2] {
     let edge = |[i, j]: [usize; 2]| [i, j, j];
     [

@@ -1,24 +1,24 @@
-//! The surroundings of pairs of triangles: what touches next where two parts of a surface rest on each other.
+//! The surroundings of pairs of triangles: the pairs that touch next where two parts of a surface rest on each other.
 
 use super::contact_filter::Pair;
 use super::pair_filter::{PairFilter, Relation};
 use super::rings::Rings;
 use crate::{CancelToken, Error};
 
-/// Pairs of the surroundings, at most.
+/// Maximum number of pairs of the surroundings.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// Pairs that are looked at, at most: a few seconds of work. Surroundings of neighbouring pairs overlap, so these are many
-/// more.
+/// Maximum number of pairs that are examined: a few seconds of work. Surroundings of neighbouring pairs overlap, so many more
+/// pairs are examined than found.
 const MAX_WORK: usize = 1 << 28;
 
-/// All pairs of which one triangle lies within that many rings of the first triangle of one of `pairs`, and the other one within as
-/// many of its second. Triangles with a common vertex are one ring apart: around a triangle whose vertices have six edges each there
-/// are 13 within one ring and 37 within two. With rings,
-/// pairs that never count are left out. Sorted.
+/// Returns all pairs of which one triangle lies within that many rings of the first triangle of one of `pairs`, and the other one
+/// within as many rings of its second triangle. Triangles with a common vertex are one ring apart: around a triangle whose
+/// vertices have six edges each there are 13 within one ring and 37 within two. With rings, pairs that never count are left out.
+/// Sorted.
 ///
 /// # Errors
-/// When they are more than 2^22, or more than 2^28 must be looked at; when it is cancelled.
+/// If there are more than 2^22, or more than 2^28 must be examined; if the search is cancelled.
 pub(crate) fn surroundings(
     filter: &PairFilter,
     pairs: &[Pair],
@@ -38,7 +38,8 @@ pub(crate) fn surroundings(
     })
 }
 
-/// As [`surroundings`], of pairs between two meshes: (triangle of the first, triangle of the second). All of them count.
+/// Returns the surroundings of pairs between two meshes: (triangle of the first, triangle of the second). All of these pairs
+/// count.
 pub(crate) fn surroundings_between(
     filters: [&PairFilter; 2],
     pairs: &[Pair],

@@ -20,11 +20,12 @@ use crate::Error;
 #[derive(Clone, Debug)]
 pub struct TriangleGroups {
     of_triangle: Vec<u16>,
-    /// Whether a pair of groups that is not listed counts. A listed one is the opposite.
+    /// Whether pairs of groups that are not listed count. Listed pairs count if the others do not.
     others_count: bool,
-    /// The groups g, and for each those that it is listed with: `partners[starts[g]..starts[g + 1]]`, ascending. At
-    /// most half of all pairs are listed.
+    /// For each group g the start of its groups in `partners`, and the end.
     starts: Vec<usize>,
+    /// For each group g, the groups that it is listed with: `partners[starts[g]..starts[g + 1]]`, ascending. At most half of
+    /// all pairs are listed.
     partners: Vec<u16>,
     /// Shared by the meshes between which the table also holds.
     scene: Option<Arc<()>>,
@@ -70,10 +71,10 @@ impl TriangleGroups {
     /// The maximum number of groups: a triangle stores its group in 16 bits.
     pub const MAX_GROUPS: usize = 1 << 16;
 
-    /// The groups of triangles, from 0. All pairs count.
+    /// Creates groups from the group number of each triangle, from 0. All pairs count.
     ///
     /// # Errors
-    /// When a number is 65,536 or larger.
+    /// If a number is 65,536 or larger.
     pub fn new(of_triangle: &[u32]) -> Result<Self, Error> {
         if let Some(triangle) = of_triangle.iter().position(|group| *group as usize >= Self::MAX_GROUPS) {
             let group = of_triangle[triangle];
@@ -94,34 +95,35 @@ impl TriangleGroups {
         })
     }
 
-    /// The same groups, whose pairs of triangles within one group do not count either.
+    /// Returns the same groups, with a table in which pairs of triangles within one group do not count either.
     #[must_use]
     pub fn between_only(self) -> Self {
         let within: Vec<(u16, u16)> = (0..self.group_count()).map(|g| (g as u16, g as u16)).collect();
         self.without(&within)
     }
 
-    /// The same groups, of which these pairs do not count either (in any order; `[a, a]`: triangles within group a).
+    /// Returns the same groups, with a table in which these pairs do not count either (in any order; `[a, a]` is the pairs within
+    /// group a).
     ///
     /// # Errors
-    /// When a group has a larger number than those of all triangles.
+    /// If a group number is larger than those of all triangles.
     pub fn ignoring(self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Self, Error> {
         let pairs = self.check(pairs)?;
         Ok(self.without(&pairs))
     }
 
-    /// The same groups, of which these pairs alone count.
+    /// Returns the same groups, with a table in which only these pairs count.
     ///
     /// # Errors
-    /// As [`TriangleGroups::ignoring`].
+    /// Those of [`TriangleGroups::ignoring`].
     pub fn only(self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Self, Error> {
         let pairs = self.check(pairs)?;
         Ok(self.with_table(false, pairs))
     }
 
-    /// The groups of several meshes, from those of all their triangles, one mesh after the other: `counts` are the numbers of
-    /// triangles. Between two of these meshes, too, only triangles count whose groups do ([`Detector::against`] and the other
-    /// questions about two detectors).
+    /// Splits the groups of the triangles of several meshes, one mesh after the other, into the groups of each mesh: `counts` are
+    /// the numbers of triangles. Between two of these meshes, too, triangles count only if the pair of their groups does
+    /// ([`Detector::against`] and the other queries of two detectors).
     ///
     /// ```
     /// use sscc::glam::DVec3;
@@ -141,7 +143,7 @@ impl TriangleGroups {
     /// ```
     ///
     /// # Errors
-    /// When the meshes together have another number of triangles.
+    /// If the meshes together have another number of triangles.
     ///
     /// [`Detector::against`]: crate::Detector::against
     pub fn of_meshes(&self, counts: &[usize]) -> Result<Vec<Self>, Error> {
@@ -168,12 +170,12 @@ impl TriangleGroups {
         self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(is_same)
     }
 
-    /// The group of each triangle.
+    /// Returns the group of each triangle.
     pub(crate) fn of_triangles(&self) -> &[u16] {
         &self.of_triangle
     }
 
-    /// The number of groups: one more than the largest group of a triangle.
+    /// Returns the number of groups: one more than the largest group of a triangle.
     pub(crate) fn group_count(&self) -> usize {
         self.starts.len() - 1
     }
@@ -183,7 +185,7 @@ impl TriangleGroups {
         self.others_count
     }
 
-    /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
+    /// Returns the listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
     pub(crate) fn listed(&self) -> impl Iterator<Item = (u16, u16)> {
         let row = |g: usize| &self.partners[self.starts[g]..self.starts[g + 1]];
         (0..self.group_count())
@@ -208,7 +210,7 @@ impl TriangleGroups {
         self.others_count && self.partners.is_empty()
     }
 
-    /// The pairs in 16 bits, the lower number first.
+    /// Checks that the groups exist, and returns the pairs in 16 bits, the lower number first.
     fn check(&self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Result<Vec<(u16, u16)>, Error> {
         let count = self.group_count();
         let checked = pairs.into_iter().map(|[a, b]| match a.max(b) {
@@ -224,7 +226,7 @@ impl TriangleGroups {
         checked.collect()
     }
 
-    /// The same table without these pairs.
+    /// Returns the same groups, with a table in which these pairs do not count either.
     fn without(self, pairs: &[(u16, u16)]) -> Self {
         let mut listed: Vec<(u16, u16)> = self.listed().collect();
         if self.others_count {
@@ -238,8 +240,8 @@ impl TriangleGroups {
         self.with_table(others_count, listed)
     }
 
-    /// The same groups with the table of these listed pairs; where they are more than half of all, the others are
-    /// listed.
+    /// Returns the same groups with the table of these listed pairs. If they are more than half of all, the others are listed
+    /// instead.
     fn with_table(self, others_count: bool, mut listed: Vec<(u16, u16)>) -> Self {
         let count = self.group_count();
         listed.sort_unstable();

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::ReducedModel;
 
-/// For each vertex its weld class: the lowest vertex with exactly the same position and modes (+0 and -0 are equal).
+/// Returns for each vertex its weld class: the lowest vertex with exactly the same position and modes (+0 and -0 are equal).
 pub(crate) fn weld_classes(model: &ReducedModel) -> Vec<u32> {
     let (rest, modes) = (model.mesh().rest_positions(), model.modes());
     classes(rest.len(), |i| std::iter::once(&rest[i as usize]).chain(modes.of_vertex(i)))
@@ -17,7 +17,7 @@ pub fn weld_classes_of_positions(positions: &[DVec3]) -> Vec<u32> {
     classes(positions.len(), |i| std::iter::once(&positions[i as usize]))
 }
 
-/// For each vertex the lowest one with the same vectors, none of which is NaN.
+/// Returns for each vertex the lowest one with the same vectors, none of which is NaN.
 fn classes<'v, I: Iterator<Item = &'v DVec3>>(count: usize, vectors: impl Fn(u32) -> I) -> Vec<u32> {
     let compare = |i: &u32, j: &u32| -> Ordering {
         let numbers = |i: u32| vectors(i).flat_map(|x| x.to_array());

@@ -15,26 +15,26 @@ impl Aabb {
     /// The empty box; its union with another box is that box.
     pub const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
 
-    /// The smallest box that contains the points; [`Aabb::EMPTY`] for none.
+    /// Returns the smallest box that contains the points; [`Aabb::EMPTY`] for no points.
     pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         points
             .into_iter()
             .fold(Self::EMPTY, |all, p| Self { lower: all.lower.min(p), upper: all.upper.max(p) })
     }
 
-    /// The AABB of a triangle.
+    /// Returns the AABB of a triangle.
     #[inline]
     pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
         Self { lower: a.min(b).min(c), upper: a.max(b).max(c) }
     }
 
-    /// The swept AABB of a triangle: the AABB of its corners at all `E` configurations of a motion.
+    /// Returns the swept AABB of a triangle: the AABB of its corners at all `E` configurations of a motion.
     #[inline]
     pub(crate) fn of_swept_triangle<const E: usize>(corners: &[[DVec3; 3]; E]) -> Self {
         corners.map(Self::of_triangle).into_iter().reduce(|a, b| a.union(&b)).unwrap_or_default()
     }
 
-    /// The smallest box that contains both.
+    /// Returns the smallest box that contains both.
     #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
@@ -51,7 +51,7 @@ impl Aabb {
         (self.lower - other.upper).max(other.lower - self.upper).max_element() > distance
     }
 
-    /// The middle of the box.
+    /// Returns the middle of the box.
     #[inline]
     pub fn center(&self) -> DVec3 {
         self.lower * 0.5 + self.upper * 0.5

@@ -1,10 +1,11 @@
-//! Crossings of a vertical ray with a triangle, exactly. Their sum over a closed surface is its winding number.
+//! Decides exactly how a vertical ray crosses a triangle. The sum of crossings over a closed surface is its winding number.
 
 use glam::{DVec3, Vec3Swizzles};
 
 use super::orientation::{orient2d, orient3d};
 
-/// How the ray from a point towards +z crosses a triangle: 1 from the back to the front, -1 from the front to the back, 0 not at all.
+/// Returns how the ray from a point towards +z crosses a triangle: 1 from the back to the front, -1 from the front to the back, 0
+/// not at all.
 ///
 /// The sum over a closed, consistently oriented surface that does not contain the point is the winding number of the surface about it:
 /// the ray is moved by less than any number, towards +x and by far less towards +y, so that it meets no edge and no vertical triangle.
@@ -19,7 +20,7 @@ pub(crate) fn crossing(point: DVec3, corners: &[DVec3; 3]) -> i32 {
         }
     }
     let [a, b, c] = *corners;
-    // A triangle that turns left as seen from above lies above the point where the point is behind it.
+    // A triangle whose corners turn left as seen from above is above the point if the point is behind it.
     if turns != 0 && i32::from(orient3d(a, b, c, point)) * turns < 0 { turns } else { 0 }
 }
 
@@ -28,7 +29,7 @@ mod tests {
     use super::*;
     use crate::test_models::Random;
 
-    /// The corners of a cube of edge 2 about the origin, and its triangles, which turn left as seen from outside.
+    /// Returns a cube of edge 2 about the origin, as triangles whose corners turn left as seen from outside.
     fn cube() -> Vec<[DVec3; 3]> {
         let corner = |i: usize| {
             DVec3::new(f64::from(i as u8 & 1), f64::from(i as u8 >> 1 & 1), f64::from(i as u8 >> 2))

@@ -14,25 +14,25 @@ pub(super) struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// `a - b`, exactly.
+    /// Returns `a - b`, exactly.
     #[inline]
     pub(super) fn difference(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
-    /// The nearest double.
+    /// Returns the nearest double.
     #[inline]
     pub(super) fn to_f64(self) -> f64 {
         self.hi
     }
 
-    /// The magnitude.
+    /// Returns the magnitude.
     #[inline]
     pub(super) fn abs(self) -> Self {
         if self.hi < 0.0 { -self } else { self }
     }
 
-    /// The number times `2^exponent`, for exponents within 2000: exact unless it overflows or underflows.
+    /// Returns the number times `2^exponent`, for exponents within 2000: exact unless it overflows or underflows.
     #[inline]
     pub(super) fn times_power_of_two(self, exponent: i32) -> Self {
         let times = |x| times_power_of_two(x, exponent);
@@ -40,9 +40,9 @@ impl DoubleDouble {
     }
 }
 
-/// `x 2^exponent` for exponents within 2000: exact unless it overflows or underflows.
+/// Returns `x 2^exponent` for exponents within 2000: exact unless it overflows or underflows.
 ///
-/// Two factors, since a power of two can be outside the range of f64 where the product is not.
+/// It multiplies by two factors, since a power of two can be outside the range of f64 although the product is not.
 #[inline]
 pub(super) fn times_power_of_two(x: f64, exponent: i32) -> f64 {
     let power = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
@@ -61,7 +61,7 @@ impl Neg for DoubleDouble {
 impl Add for DoubleDouble {
     type Output = Self;
 
-    /// Relative error at most `3 u^2 / (1 - 4 u)` (algorithm 6).
+    /// Has a relative error of at most `3 u^2 / (1 - 4 u)` (algorithm 6).
     #[inline]
     fn add(self, other: Self) -> Self {
         let (s, t) = (two_sum(self.hi, other.hi), two_sum(self.lo, other.lo));
@@ -82,7 +82,7 @@ impl Sub for DoubleDouble {
 impl Mul for DoubleDouble {
     type Output = Self;
 
-    /// Relative error at most `7 u^2` (algorithm 10).
+    /// Has a relative error of at most `7 u^2` (algorithm 10).
     #[inline]
     fn mul(self, other: Self) -> Self {
         let c = two_product(self.hi, other.hi);
@@ -90,7 +90,7 @@ impl Mul for DoubleDouble {
     }
 }
 
-/// `a + b`, exactly.
+/// Returns `a + b`, exactly.
 #[inline]
 fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
@@ -98,14 +98,14 @@ fn two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: (a - (hi - part)) + (b - part) }
 }
 
-/// `a + b`, exactly where a has the larger exponent, or is 0.
+/// Returns `a + b`, exactly if a has the larger exponent, or is 0.
 #[inline]
 fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
     DoubleDouble { hi, lo: b - (hi - a) }
 }
 
-/// `a b`, exactly.
+/// Returns `a b`, exactly.
 #[inline]
 fn two_product(a: f64, b: f64) -> DoubleDouble {
     let ((a_hi, a_lo), (b_hi, b_lo)) = (halves(a), halves(b));
@@ -113,7 +113,7 @@ fn two_product(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: a_lo * b_lo - (((hi - a_hi * b_hi) - a_lo * b_hi) - a_hi * b_lo) }
 }
 
-/// Two numbers of at most 26 bits with this sum (Veltkamp).
+/// Returns two numbers of at most 26 bits with this sum (Veltkamp).
 #[inline]
 fn halves(x: f64) -> (f64, f64) {
     const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;

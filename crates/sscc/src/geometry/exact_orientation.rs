@@ -1,6 +1,6 @@
-//! Exact signs of orientation determinants, where the floating-point filter does not decide: by the adaptive expansions of
-//! Shewchuk (1997, *Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates*; the crate
-//! `robust`), or by integers where these would underflow.
+//! Computes exact signs of orientation determinants if the floating-point filter does not decide: by the adaptive expansions of
+//! Shewchuk (1997, *Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates*; the crate `robust`), or
+//! by integers where these would underflow.
 
 use glam::{DVec2, DVec3};
 use num_bigint::{BigInt, Sign};
@@ -18,7 +18,7 @@ use super::binary64::Binary64;
 /// in the rounding unit), which gives 0 or at least 2^-980: normal numbers as well.
 const ROBUST_MIN: f64 = f64::from_bits((1023 - 240) << 52);
 
-/// The exact sign of `det(b - a, c - a, d - a)`.
+/// Returns the exact sign of `det(b - a, c - a, d - a)`.
 #[cold]
 #[inline(never)]
 pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
@@ -28,13 +28,13 @@ pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     }
     if [a, b, c, d].iter().flat_map(DVec3::as_ref).all(|x| is_robust_exact(*x)) {
         let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-        // Of the opposite sign convention: positive if the last point is below the plane.
+        // `robust` has the opposite sign convention: positive if the last point is below the plane.
         return -sign(robust::orient3d(coord(a), coord(b), coord(c), coord(d)));
     }
     orient3d_integer(a, b, c, d)
 }
 
-/// The exact sign of `det(b - a, c - a)`.
+/// Returns the exact sign of `det(b - a, c - a)`.
 #[cold]
 #[inline(never)]
 pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
@@ -48,7 +48,7 @@ pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     orient2d_integer(a, b, c)
 }
 
-/// [`orient3d`] in integers: exact for all finite coordinates, but allocates.
+/// Computes [`orient3d`] in integers: exact for all finite coordinates, but allocates.
 fn orient3d_integer(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     let [a, b, c, d] = integers([a, b, c, d].map(|p| p.to_array()));
     let [q, r, s] = [b, c, d].map(|p| [&p[0] - &a[0], &p[1] - &a[1], &p[2] - &a[2]]);
@@ -56,7 +56,7 @@ fn orient3d_integer(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     integer_sign(&(minor(1, 2) * &s[0] + minor(2, 0) * &s[1] + minor(0, 1) * &s[2]))
 }
 
-/// [`orient2d`] in integers: exact for all finite coordinates, but allocates.
+/// Computes [`orient2d`] in integers: exact for all finite coordinates, but allocates.
 fn orient2d_integer(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     let [a, b, c] = integers([a, b, c].map(|p| p.to_array()));
     let [q, r] = [b, c].map(|p| [&p[0] - &a[0], &p[1] - &a[1]]);
@@ -68,7 +68,7 @@ pub(super) fn is_robust_exact(x: f64) -> bool {
     x == 0.0 || x.abs() >= ROBUST_MIN
 }
 
-/// The points multiplied by one power of two (which changes no sign) that makes all coordinates integers.
+/// Returns the points multiplied by one power of two (which changes no sign) that makes all coordinates integers.
 pub(super) fn integers<const DIM: usize, const COUNT: usize>(
     points: [[f64; DIM]; COUNT],
 ) -> [[BigInt; DIM]; COUNT] {
@@ -79,12 +79,12 @@ pub(super) fn integers<const DIM: usize, const COUNT: usize>(
     numbers.map(|p| p.map(|x| BigInt::from(x.mantissa) << x.exponent.saturating_sub(smallest)))
 }
 
-/// -1, 0 or 1; 0 for NaN, which valid input never gives.
+/// Returns -1, 0 or 1; 0 for NaN, which valid input never gives.
 fn sign(x: f64) -> i8 {
     i8::from(x > 0.0) - i8::from(x < 0.0)
 }
 
-/// -1, 0 or 1.
+/// Returns -1, 0 or 1.
 fn integer_sign(x: &BigInt) -> i8 {
     match x.sign() {
         Sign::Minus => -1,
@@ -107,7 +107,7 @@ mod tests {
             d.z = d.z.next_up();
             [a, b, c, d].map(|p| p * g)
         };
-        // Equal points, without arithmetic.
+        // Equal points need no arithmetic.
         let [a, b, c, d] = corners(1.0);
         for [a, b, c, d] in
             [[a, b, c, a], [a, b, c, b], [a, b, c, c], [a, a, c, d], [a, b, a, d], [a, b, b, d]]

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-/// The nearest point of a hull to the origin, as weights over the points given.
+/// The nearest point of a hull to the origin, and its weights over the given points.
 pub(crate) struct Nearest<const N: usize> {
     pub(crate) weights: [f64; N],
     pub(crate) point: DVec3,
@@ -17,7 +17,7 @@ pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
     nearest_within(d, 0.0)
 }
 
-/// The same, but any point of the hull will do whose norm is at most `enough`.
+/// Minimises like [`nearest_to_origin`], but may return any point of the hull whose norm is at most `enough`.
 pub(crate) fn nearest_within<const N: usize>(d: &[DVec3; N], enough: f64) -> Nearest<N> {
     let start = index_of_smallest(&d.map(|d| d.length_squared()));
     let mut corners = [start, 0, 0, 0];
@@ -78,7 +78,7 @@ fn index_of_smallest<const N: usize>(values: &[f64; N]) -> usize {
     (0..N).fold(0, |best, i| if values[i] < values[best] { i } else { best })
 }
 
-/// The weights (their sum is 1) of the smallest point in the affine hull of the corners, by least squares over the edges
+/// Returns the weights (their sum is 1) of the smallest point in the affine hull of the corners, by least squares over the edges
 /// from the first corner. None when the corners are affinely dependent.
 fn affine_minimum<const N: usize>(corners: &[usize; 4], count: usize, d: &[DVec3; N]) -> Option<[f64; 4]> {
     let first = d[corners[0]];
@@ -116,7 +116,7 @@ fn affine_minimum<const N: usize>(corners: &[usize; 4], count: usize, d: &[DVec3
 mod tests {
     use super::*;
 
-    /// The smallest distance over all corners, edges and faces of the hull.
+    /// Returns the smallest distance over all corners, edges and faces of the hull.
     fn naive(d: &[DVec3; 9]) -> f64 {
         let mut best = f64::INFINITY;
         let mut seen = vec![vec![]];
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn nearest_point_of_triangle_differences() {
+    fn the_nearest_point_of_triangle_differences_is_that_of_all_features() {
         let mut state = 7_u64;
         let mut random = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -150,7 +150,7 @@ mod tests {
         for case in 0..3000 {
             let mut corner = |shift: f64| {
                 let p = DVec3::new(random(), random(), random());
-                // Every other case on a grid: parallel edges, equal differences.
+                // Every other case is on a grid, and has parallel edges and equal differences.
                 (if case % 2 == 0 { (p * 3.0).round() } else { p }) + DVec3::X * shift
             };
             let (x, y) = ([(); 3].map(|()| corner(0.0)), [(); 3].map(|()| corner(4.5)));

@@ -1,8 +1,8 @@
 //! Exact signs of orientation determinants: on which side of a plane or a line a point lies.
 //!
-//! A filter in the sense of Shewchuk (1997): it evaluates a determinant in f64 and takes its sign only where the
-//! magnitude exceeds an error bound; otherwise [`exact_orientation`] decides. The error bounds, with `u = 2^-53`,
-//! follow from three facts of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
+//! This is a filter in the sense of Shewchuk (1997): it evaluates a determinant in f64 and takes its sign only if the magnitude
+//! exceeds an error bound; otherwise [`exact_orientation`] decides. The error bounds, with `u = 2^-53`, follow from three facts
+//! of IEEE 754 arithmetic that rounds to nearest, without fused multiply-add:
 //! - `fl(x + y) = (x + y)(1 + d)` with `|d| <= u`; a sum that underflows is exact;
 //! - `fl(x y) = x y (1 + d) + h` with `|d| <= u`, and `h` is 0 unless the product underflows; `|h| <= 2^-1075`;
 //! - nothing overflows: coordinates are at most 2^202 (2^200, or differences of such ones, rounded), so differences are
@@ -42,7 +42,7 @@ const ABSOLUTE_2D: f64 = f64::MIN_POSITIVE;
 
 /// The plane through three corners, with the terms of the filter that do not depend on the point.
 ///
-/// Where the corners are collinear, every point is on side 0.
+/// If the corners are collinear, every point is on side 0.
 pub(super) struct Plane<'a> {
     /// The corners `a, b, c`.
     corners: &'a [DVec3; 3],
@@ -60,7 +60,7 @@ struct Estimate {
 }
 
 impl<'a> Plane<'a> {
-    /// The plane through the corners. Seen from its upper side they turn counterclockwise.
+    /// Returns the plane through the corners. Seen from its upper side they turn counterclockwise.
     #[inline(always)]
     pub(super) fn through(corners: &'a [DVec3; 3]) -> Self {
         let [a, b, c] = corners;
@@ -79,13 +79,13 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// 1 for a point strictly above the plane, -1 strictly below, 0 on it: the exact sign.
+    /// Returns 1 for a point strictly above the plane, -1 strictly below, 0 on it: the exact sign.
     #[inline(always)]
     pub(super) fn side(&self, point: DVec3) -> i8 {
         self.decide(self.estimate(&point), &point)
     }
 
-    /// [`Plane::side`] of three points; none if the plane separates them, all strictly on one side.
+    /// Returns [`Plane::side`] of three points. None if all are strictly on one side of the plane.
     #[inline(always)]
     pub(super) fn sides_unless_separated(&self, points: &[DVec3; 3]) -> Option<[i8; 3]> {
         let [p, q, r] = points;
@@ -101,7 +101,7 @@ impl<'a> Plane<'a> {
         if is_strictly_one_side(&sides) { None } else { Some(sides) }
     }
 
-    /// The determinant for a point.
+    /// Returns the determinant for a point.
     #[inline(always)]
     fn estimate(&self, point: &DVec3) -> Estimate {
         let origin = &self.corners[0];
@@ -112,7 +112,7 @@ impl<'a> Plane<'a> {
         Estimate { det, error: RELATIVE_3D * permanent + ABSOLUTE_3D }
     }
 
-    /// The side of a point, given its estimate.
+    /// Returns the side of a point, given its estimate.
     #[inline(always)]
     fn decide(&self, Estimate { det, error }: Estimate, point: &DVec3) -> i8 {
         if det > error {
@@ -124,7 +124,7 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// The side of a point where the filter does not decide.
+    /// Returns the side of a point if the filter does not decide it.
     #[cold]
     #[inline(never)]
     fn exact_side(&self, point: &DVec3) -> i8 {
@@ -133,14 +133,14 @@ impl<'a> Plane<'a> {
     }
 }
 
-/// The exact sign of `det(b - a, c - a, d - a)`: 1 if d is above the plane through a, b, c.
+/// Returns the exact sign of `det(b - a, c - a, d - a)`: 1 if d is above the plane through a, b, c.
 #[inline]
 pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     Plane::through(&[a, b, c]).side(d)
 }
 
-/// The exact sign of `det(b - a, c - a)`: 1 if a, b, c turn left, -1 if they turn right, 0 if collinear. Coordinates are at
-/// most [`limits::LARGEST`](crate::limits::LARGEST).
+/// Returns the exact sign of `det(b - a, c - a)`: 1 if a, b, c turn left, -1 if they turn right, 0 if collinear. Coordinates are
+/// at most [`limits::LARGEST`](crate::limits::LARGEST).
 #[inline]
 pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     let (q, r) = (b - a, c - a);

@@ -3,8 +3,8 @@
 //! A line along z meets a body between its surfaces, so the body is a sum of prisms: below each triangle, with the sign of the
 //! triangle's direction. The product of two such sums has the volume that both bodies share: the sum over pairs of triangles of
 //! `sign_a sign_b` times the integral of `min(z_a, z_b)` over the common part of their projections. Prisms below z = 0 cancel, because
-//! the bodies are closed. Each term depends continuously on the corners, so no case is delicate: an error of rounding
-//! moves the sum by about as much.
+//! the bodies are closed. Each term depends continuously on the corners, so no case needs special care: a rounding error changes
+//! the sum by about as much.
 
 use glam::{DVec2, DVec3};
 
@@ -53,7 +53,7 @@ pub(crate) fn overlap_integral(a: &[DVec3; 3], b: &[DVec3; 3]) -> OverlapIntegra
 }
 
 /// Bounds the rounding error of a term whose projections have an area in common. A clip moves the border of the polygon by a few
-/// rounding errors of its coordinates. The height of a plane is off by the share by which its projected area may be.
+/// rounding errors of its coordinates. The height of a plane may be off by the same share as its projected area.
 fn error(planes: [&Plane; 2], area: f64) -> f64 {
     let reach = planes.iter().map(|plane| plane.reach).fold(0.0, f64::max);
     let width = planes.iter().map(|plane| plane.width).fold(f64::INFINITY, f64::min);
@@ -75,7 +75,7 @@ struct Plane {
     area: f64,
     from: DVec3,
     slope: DVec2,
-    /// Whether the slope is beyond the range of numbers, and 0 in place of it.
+    /// Whether the slope is beyond the range of numbers and was replaced by 0.
     is_vague: bool,
     /// The lowest and the highest corner.
     z: (f64, f64),
@@ -99,7 +99,7 @@ impl Plane {
         Self { area: 0.5 * normal.z, from: p, slope, is_vague, z, width, reach }
     }
 
-    /// The height at a point of the projection. It is between the corners, whatever the slope.
+    /// Returns the height at a point of the projection. It is between the corners, whatever the slope.
     fn height(&self, p: DVec2) -> f64 {
         (self.from.z + self.slope.dot(p - self.from.truncate())).clamp(self.z.0, self.z.1)
     }
@@ -123,7 +123,7 @@ impl Polygon {
     fn clip(&self, side: impl Fn(DVec2) -> f64) -> Self {
         let mut clipped = Self { points: [DVec2::ZERO; 8], len: 0 };
         let mut push = |p: DVec2| {
-            // A clip adds at most one corner; of rounding there is room for one more.
+            // A clip adds at most one corner; there is room for one more, which rounding may add.
             if let Some(place) = clipped.points.get_mut(clipped.len) {
                 *place = p;
                 clipped.len += 1;
@@ -143,7 +143,7 @@ impl Polygon {
         clipped
     }
 
-    /// The integral of a linear function.
+    /// Returns the integral of a linear function.
     fn integral(&self, value: impl Fn(DVec2) -> f64) -> f64 {
         let mut sum = 0.0;
         for k in 2..self.len {

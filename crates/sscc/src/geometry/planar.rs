@@ -10,7 +10,7 @@ use super::orientation::{is_strictly_one_side, orient2d};
 /// The coordinate projections, by the axis of the dropped coordinate.
 pub(super) const AXES: [usize; 3] = [0, 1, 2];
 
-/// The point without the coordinate of that axis.
+/// Returns the point without the coordinate of that axis.
 #[inline]
 pub(super) fn project(point: DVec3, axis: usize) -> DVec2 {
     match axis {
@@ -20,7 +20,7 @@ pub(super) fn project(point: DVec3, axis: usize) -> DVec2 {
     }
 }
 
-/// An axis whose projection is injective on the triangle's plane; none if the triangle is degenerate.
+/// Returns an axis whose projection is injective on the triangle's plane. None if the triangle is degenerate.
 ///
 /// The orientation in the projection along an axis is that component of the triangle's normal. The
 /// corners are collinear exactly if all three are 0; a projection is injective on the plane exactly if
@@ -45,7 +45,7 @@ pub(super) fn intersect_triangle_triangle_2d(a: [DVec2; 3], b: [DVec2; 3]) -> bo
 /// Whether a closed segment, which may be a point, and a closed triangle that is not degenerate have a
 /// point in common.
 ///
-/// As for two triangles; the segment is an edge with two normals, and a point has no edge at all.
+/// The proof is that for two triangles; the segment is an edge with two normals, and a point has no edge at all.
 pub(super) fn intersect_segment_triangle_2d(segment: [DVec2; 2], triangle: [DVec2; 3]) -> bool {
     let [p, q] = segment;
     !is_beyond_an_edge(triangle, &segment) && !is_strictly_one_side(&triangle.map(|c| orient2d(p, q, c)))
@@ -53,11 +53,10 @@ pub(super) fn intersect_segment_triangle_2d(segment: [DVec2; 2], triangle: [DVec
 
 /// Whether two closed segments, each of which may be a point, have a point in common.
 ///
-/// They do exactly if their boxes meet and neither is strictly on one side of the other's line. Clearly
-/// they must. Conversely, if the lines are two that cross, then the crossing point is on both segments. If
-/// the lines are parallel, they are the same, and on a line segments meet exactly if their boxes do. If
-/// one or both are points, the first is on the other's line (or both are points), and again the boxes
-/// decide.
+/// They do exactly if their boxes meet and neither is strictly on one side of the other's line. These conditions are clearly
+/// necessary. Conversely, if the lines are two that cross, then the crossing point is on both segments. If the lines are
+/// parallel, they are the same, and on a line segments meet exactly if their boxes do. If one or both are points, the first is on
+/// the other's line (or both are points), and again the boxes decide.
 pub(super) fn intersect_segment_segment_2d(a: [DVec2; 2], b: [DVec2; 2]) -> bool {
     let boxes_meet = a[0].min(a[1]).cmple(b[0].max(b[1])).all() && b[0].min(b[1]).cmple(a[0].max(a[1])).all();
     boxes_meet

@@ -8,7 +8,7 @@ pub(crate) fn distance_point_triangle(point: DVec3, [a, b, c]: &[DVec3; 3]) -> f
     let from_segment = |p: DVec3, q: DVec3| {
         let (along, offset) = (q - p, point - p);
         let share = offset.dot(along) / along.length_squared();
-        // NaN of a segment without length is its end.
+        // The share is NaN for a segment without length: then its end is taken.
         let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
         (offset - along * share).length_squared()
     };

@@ -35,7 +35,7 @@ mod tests {
 
     /// A segment that ends strictly on one side of the plane is disjoint from the triangle.
     #[test]
-    fn segment_that_ends_before_the_plane() {
+    fn a_segment_that_ends_before_the_plane_is_disjoint() {
         let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let from = DVec3::new(0.25, 0.25, 1.0);
         for (z, expected) in

@@ -12,12 +12,12 @@ use super::planar::{injective_projection, project};
 ///
 /// Let L be the line of the edge.
 /// - If neither triangle is degenerate, each meets L in the edge alone. In different planes they have no other common
-///   point, as their planes meet in L. In one plane they have exactly if a and b are on the same side of L: then both
-///   contain a neighbourhood, on that side, of each inner point of the edge.
+///   point, as their planes meet in L. In one plane they have one exactly if a and b are on the same side of L: then both contain
+///   a neighbourhood, on that side, of each inner point of the edge.
 /// - If one of them is degenerate, it is a part of L, or the edge is a point and both are degenerate. The part meets the
 ///   other triangle in a part of the edge.
-/// - If both are, they are segments that contain the edge. They have another common point exactly if they are on one line
-///   and both reach beyond the same end of the edge. On a line, points are ordered by the first coordinate that differs.
+/// - If both are degenerate, they are segments that contain the edge. They have another common point exactly if they are on one
+///   line and both reach beyond the same end of the edge. On a line, points are ordered by the first coordinate that differs.
 pub fn intersect_shared_edge_pair([u, w]: [DVec3; 2], a: DVec3, b: DVec3) -> bool {
     let triangles = [[u, w, a], [u, w, b]];
     // Most edges are folded less than all the way. (Through collinear corners there is no plane: the side is 0.)

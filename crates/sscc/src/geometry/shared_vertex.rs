@@ -34,8 +34,8 @@ pub fn intersect_shared_vertex_pair(v: DVec3, a: [DVec3; 2], b: [DVec3; 2]) -> b
     parts(v, a).any(|e| parts(v, b).any(|f| meet(e, f)))
 }
 
-/// The opposite edges of triangles with the corner v that together are the triangle `v, p, q`. None of these edges
-/// contains v. Empty where the triangle is v alone.
+/// Returns the opposite edges of triangles with the corner v that together are the triangle `v, p, q`. None of these edges
+/// contains v. Empty if the triangle is v alone.
 fn parts(v: DVec3, [p, q]: [DVec3; 2]) -> impl Iterator<Item = [DVec3; 2]> {
     let contains_v = intersect_edge_triangle([p, q], &[v; 3]);
     let parts = if contains_v { [[p, p], [q, q]] } else { [[p, q], [v, v]] };

@@ -1,24 +1,25 @@
 //! The distance of two triangles.
 //!
-//! It is 0 exactly where they have a point in common. Otherwise the nearest points are a corner and a point of the other triangle's
-//! inside, or points of two edges. Each candidate below is the distance of two points of the triangles, as computed, so that it is not too
-//! small. The smallest one is not too large by more than a few units of the size, although formulas lose digits:
+//! It is 0 exactly if they have a point in common. Otherwise the nearest points are a corner and a point of the other triangle's
+//! interior, or points of two edges. Each candidate below is the distance of two computed points of the triangles, so that it is
+//! not too small. The smallest candidate is too large by at most a few rounding units of the size, although the formulas lose
+//! digits:
 //!
-//! - Between edges at an angle t and a distance h, the point where the lines are nearest is wrong along its edge by about
-//!   `u / t + h u / t^2`. The nearest point of the other edge is found from there, so that the distance errs by t times that, squared and
-//!   added to h: by at most u, and where the second term is large, an end is as near.
-//! - In a needle the formula for an inside point is applied to what it has left, until that is nothing. In one thinner than the
-//!   error, edges are as near.
+//! - For edges at an angle t and a distance h, the point at which the lines are nearest errs along its edge by about `e = u / t +
+//!   h u / t^2`. The nearest point of the other edge is computed from this point, so that the distance is about `sqrt(h^2 + (t
+//!   e)^2)`: too large by at most u. If the second term of e is large, an end of an edge is as near.
+//! - In a needle the formula for a point of the interior is applied again to the part of the vector that it has not removed,
+//!   until nothing of that remains. If a needle is thinner than the error, edges are as near.
 
 use glam::DVec3;
 
 use super::triangle_triangle::intersect_triangle_triangle;
 
-/// The error of [`distance_triangle_triangle`], as a share of the size of both triangles together.
+/// The error bound of [`distance_triangle_triangle`], as a share of the size of both triangles together.
 pub const DISTANCE_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The distance of two triangles: 0 exactly where they have a point in common, else within 2^-40 of the largest difference of two
-/// of their coordinates along an axis. Coordinates are within [`limits::LARGEST`](crate::limits::LARGEST).
+/// Returns the distance of two triangles: 0 exactly if they have a point in common, else within 2^-40 of the largest difference
+/// of two of their coordinates along an axis. Coordinates are within [`limits::LARGEST`](crate::limits::LARGEST).
 ///
 /// ```
 /// use glam::DVec3;
@@ -30,7 +31,7 @@ pub fn distance_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
     if right_or!(intersect_triangle_triangle(a, b), TouchingApart, false) {
         return 0.0;
     }
-    // In units of the size, so that no product overflows or vanishes.
+    // Computes in units of the size, so that no product overflows or vanishes.
     let origin = a[0];
     let differences = [a, b].map(|x| x.map(|x| x - origin));
     let size = differences.as_flattened().iter().fold(0.0_f64, |most, d| most.max(d.abs().max_element()));
@@ -43,21 +44,21 @@ pub fn distance_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
         }
         [(a[i], &b), (b[i], &a)].into_iter().filter_map(|(p, t)| to_inside(p, t)).for_each(&mut take);
     }
-    // Triangles that have no point in common are some distance apart.
+    // The distance of triangles that have no point in common is above 0.
     (square.sqrt() * size).max(f64::from_bits(1))
 }
 
-/// Hands differences of points of two segments to `take`, one of which is nearly the smallest.
+/// Passes differences of points of two segments to `take`. One of them is nearly the smallest.
 #[inline]
 fn segment_to_segment([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2], take: &mut impl FnMut(DVec3)) {
     let (d, e) = (p1 - p, q1 - q);
-    // From an end to the other segment.
+    // The differences between an end and the other segment.
     for (end, start, along) in [(p, q, e), (p1, q, e), (q, p, d), (q1, p, d)] {
         let offset = end - start;
         let share = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
         take(if share.is_nan() { offset } else { offset - along * share });
     }
-    // Between the insides: where the lines are nearest.
+    // The difference between inner points, where the lines are nearest.
     let (normal, between) = (d.cross(e), q - p);
     let nearest = |other: DVec3| between.cross(other).dot(normal) / normal.length_squared();
     let s = nearest(e);
@@ -69,10 +70,10 @@ fn segment_to_segment([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2], take: &mut impl 
     }
 }
 
-/// The difference of a point and the nearest one of a triangle's plane, if that is in the triangle.
+/// Returns the difference of a point and the nearest point of a triangle's plane, if that is in the triangle.
 #[inline]
 fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
-    // The longest edge first, and the way from it to the third corner.
+    // Takes the longest edge, and the vector from it to the third corner.
     let length = |i: usize| (triangle[(i + 1) % 3] - triangle[i]).length_squared();
     let first = if length(0) >= length(1) && length(0) >= length(2) {
         0
@@ -84,7 +85,7 @@ fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
     let along = third.dot(edge) / edge.length_squared();
     let across = third - edge * along;
     let (mut beta, mut gamma, mut left) = (0.0, 0.0, offset);
-    // Each time only what the one before has left is wrong by a share.
+    // Each iteration removes the rest that the one before has left, with an error that is a share of this rest.
     for _ in 0..right_or!(3, NeedlesOnce, 1) {
         let more = left.dot(across) / across.length_squared();
         gamma += more;
@@ -103,13 +104,13 @@ mod tests {
 
     use super::*;
 
-    /// In integer multiples of a common unit.
+    /// A point in integer multiples of a common unit.
     type Point = [BigInt; 3];
 
     /// A numerator and a positive denominator. Unlike a rational number it is not reduced, which would take most of the time.
     type Fraction = (BigInt, BigInt);
 
-    /// The points in multiples of one over a power of two, and that power.
+    /// Returns the points in multiples of one over a power of two, and that power.
     fn exact(points: &[DVec3]) -> (Vec<Point>, BigInt) {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
         let all = points.iter().flat_map(|p| p.to_array()).map(exact);
@@ -126,7 +127,8 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// The square of the distance of the origin from the hull of points, by all corners, edges and faces of it: exact.
+    /// Returns the exact square of the distance of the origin from the hull of points, from all corners, edges and faces of the
+    /// hull.
     fn exact_square(points: &[Point]) -> Fraction {
         let mut best = (points.iter().map(|p| dot(p, p)).min().unwrap(), BigInt::one());
         let mut take = |numerator: BigInt, denominator: &BigInt| {
@@ -167,7 +169,8 @@ mod tests {
         best
     }
 
-    /// Checks a distance against exact arithmetic. Returns which power of two of its error is used, or nothing where they collide.
+    /// Checks a distance against exact arithmetic. Returns the share of its error bound that is used, up to a factor of 2. None
+    /// if the triangles collide.
     fn check(a: &[DVec3; 3], b: &[DVec3; 3], case: usize) -> Option<f64> {
         let found = distance_triangle_triangle(a, b);
         if intersect_triangle_triangle(a, b) {
@@ -184,7 +187,7 @@ mod tests {
             of.clone().fold(f64::NEG_INFINITY, f64::max) - of.fold(f64::INFINITY, f64::min)
         });
         let error = size.fold(0.0, f64::max) * DISTANCE_ERROR;
-        // How the square of a number compares with that of the distance.
+        // Compares the square of a number with that of the distance.
         let scaled = &unit * &unit * &denominator;
         let compare = |x: f64| {
             let x = BigRational::from_float(x).unwrap();
@@ -219,7 +222,7 @@ mod tests {
         assert!(apart > count / 2, "{apart}");
     }
 
-    /// Edges that cross at small angles and small distances, in any direction, the triangles on both sides.
+    /// Edges cross at small angles and small distances, in any direction, with the triangles on both sides.
     #[test]
     fn distances_of_nearly_parallel_edges_are_within_their_error() {
         check_many(5, |random, case| {
@@ -234,7 +237,7 @@ mod tests {
         });
     }
 
-    /// Corners closely above the inside of needles.
+    /// Corners are slightly above the interior of needles.
     #[test]
     fn distances_to_the_inside_of_needles_are_within_their_error() {
         check_many(7, |random, case| {
@@ -252,8 +255,8 @@ mod tests {
         });
     }
 
-    /// Triangles of every kind against exact arithmetic: needles, points, parallel and nearly parallel edges, grids, far from the origin,
-    /// huge and tiny.
+    /// Tests triangles of every kind against exact arithmetic: needles, points, parallel and nearly parallel edges, grids, far
+    /// from the origin, huge and tiny.
     #[test]
     fn distances_are_within_their_error() {
         let random = &mut Numbers(3);

@@ -22,8 +22,8 @@ use crate::limits;
 /// Coordinates must be finite and at most [`limits::LARGEST`] in magnitude (checked in debug builds only;
 /// beyond, the answer may be wrong). They may be arbitrarily small, denormal numbers included.
 ///
-/// Fast where one triangle is clearly on one side of the other's plane. The test does not compare AABBs: compare them
-/// first where many pairs are far apart, or in one plane (the slow case: signs that are 0 need exact arithmetic).
+/// The test is fast if one triangle is clearly on one side of the other's plane. The test does not compare AABBs: compare them
+/// first if many pairs are far apart, or in one plane (the slow case: signs that are 0 need exact arithmetic).
 ///
 /// ```
 /// use glam::DVec3;
@@ -40,7 +40,7 @@ pub fn intersect_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     intersect_beyond_limits(a, b)
 }
 
-/// [`intersect_triangle_triangle`] for coordinates up to four times [`limits::LARGEST`]: corners relative to one of
+/// Decides [`intersect_triangle_triangle`] for coordinates up to four times [`limits::LARGEST`]: corners relative to one of
 /// them are up to twice as large as the corners.
 pub(super) fn intersect_beyond_limits(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     let Some(sides_of_b) = Plane::through(a).sides_unless_separated(b) else {
@@ -55,8 +55,8 @@ pub(super) fn intersect_beyond_limits(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     intersect_crossing(a, sides_of_a, b, sides_of_b)
 }
 
-/// The case of two crossing planes: both triangles have a corner off the other's plane (so neither is
-/// degenerate), and neither is strictly on one side.
+/// Decides the case of two crossing planes: both triangles have a corner off the other's plane (so neither is degenerate), and
+/// neither is strictly on one side.
 ///
 /// The planes meet in a line L, and each triangle meets the other's plane in an interval of L: the triangles
 /// meet exactly if the intervals overlap. Let `a0` be the corner of a whose side is the only greatest, or
@@ -100,13 +100,13 @@ fn find_apex(sides: [i8; 3]) -> Apex {
     } else if s0 == s1 {
         2
     } else {
-        // -1, 0, 1 in some order: the greatest and the least are both alone. The greatest.
+        // -1, 0, 1 in some order: the greatest and the least are both alone. This takes the greatest.
         usize::from(s1 > 0) + 2 * usize::from(s2 > 0)
     };
     Apex { corner, is_above: sides[corner] > sides[(corner + 1) % 3] }
 }
 
-/// The corners, beginning with the given one, in the same orientation or the opposite one.
+/// Returns the corners, beginning with the given one, in the same orientation or the opposite one.
 #[inline]
 fn reorder(corners: &[DVec3; 3], first: usize, same_orientation: bool) -> [DVec3; 3] {
     let (second, third) = ((first + 1) % 3, (first + 2) % 3);
@@ -114,7 +114,7 @@ fn reorder(corners: &[DVec3; 3], first: usize, same_orientation: bool) -> [DVec3
     [corners[first], corners[second], corners[third]]
 }
 
-/// The case of a degenerate triangle, or of two in one plane.
+/// Decides the case of a degenerate triangle, or of two triangles in one plane.
 #[cold]
 #[inline(never)]
 fn intersect_flat(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
@@ -129,7 +129,7 @@ fn intersect_flat(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     }
 }
 
-/// The ends of the segment that three collinear corners span.
+/// Returns the ends of the segment that three collinear corners span.
 ///
 /// Points on a line are ordered by the first coordinate that differs; hence the lexicographically least and greatest
 /// corners are the ends.

@@ -10,7 +10,7 @@ pub(crate) struct TwoTriangles {
 }
 
 impl TwoTriangles {
-    /// The nine differences `b_j - a_i` of corners, at index `3 i + j`. Their hull contains all differences of points of
+    /// Returns the nine differences `b_j - a_i` of corners, at index `3 i + j`. Their hull contains all differences of points of
     /// the triangles.
     #[inline]
     pub(crate) fn differences(&self) -> [DVec3; 9] {

@@ -10,8 +10,8 @@ use crate::bounds::tests::rounding::exact;
 use crate::model::ScaledModel;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
-/// Corners of small sub-triangles far from the origin are rounded by more than the modes. Where the triangles turn about
-/// a point nearby, residuals are this rounding alone.
+/// Corners of small sub-triangles far from the origin are rounded by more than the modes. If the triangles rotate about a point
+/// nearby, residuals are this rounding alone.
 #[test]
 fn residuals_hold_what_rounding_moves_corners_by() {
     let mut positive = 0;
@@ -47,7 +47,7 @@ fn residuals_hold_what_rounding_moves_corners_by() {
         affine.instructions = InstructionSet::default();
         assert!(affine.fit(&offsets, |i| modes[i]));
         assert_eq!(in_baseline, bits(&affine));
-        // Both sides exactly: sums over the corners of the triangles, whose weights are exact.
+        // Computes both sides exactly, as sums over the corners of the triangles, whose weights are exact.
         let sum = |weights: DVec3, of: &dyn Fn(usize) -> f64| -> Dyadic {
             (0..3).map(|corner| exact(weights[corner]) * exact(of(corner))).sum()
         };

@@ -1,4 +1,4 @@
-//! Rates that nearly vanish along the only direction of a cone.
+//! Tests of rates that nearly vanish along the only direction of a cone.
 
 use super::*;
 use crate::bounds::tests::random::Random;
@@ -13,7 +13,7 @@ fn rates_that_cancel_are_not_too_small() {
         let u = random.vector().normalize();
         let m = [u.x * u.x, u.y * u.y, u.z * u.z, u.y * u.z * root, u.x * u.z * root, u.x * u.y * root];
         let form = |s: &[f64; 6]| s.iter().zip(m).map(|(s, m)| s * m).sum::<f64>();
-        // The rest: about the root of the rounding error of the form.
+        // The share that remains: about the root of the rounding error of the form.
         let left = random.power(-9.5, -7.5);
         let strains: Vec<[f64; 6]> = (0..rank)
             .map(|_| {

@@ -1,4 +1,4 @@
-//! Pairs of corners whose relative motion cancels, against exact arithmetic.
+//! Tests bounds of pairs of corners whose relative motion cancels against exact arithmetic.
 
 use super::*;
 use crate::bounds::tests::random::Random;
@@ -19,7 +19,7 @@ fn corners_that_cancel_keep_their_rate() {
         let model = ReducedModel::with_metric(mesh.clone(), modes, Metric::identity(rank)).unwrap();
         let scaled = ScaledModel::new(&model, model.metric(), &vec![0.0; rank]);
         let row_len = scaled.row_len;
-        // Along z alone: boxes of half extent 1, `gap` apart, which expand away from each other.
+        // All motion is along z: boxes of half extent 1, `gap` apart, move away from each other while they expand.
         let (gap, left) = (random.power(-9.0, -7.0), random.power(-10.0, -8.0));
         let rates: Vec<f64> = (0..rank).map(|_| 2.0 * random.uniform() - 1.0).collect();
         let node = |side: f64| {
@@ -35,7 +35,7 @@ fn corners_that_cancel_keep_their_rate() {
         let mut scratch = NodePairScratch::new(row_len);
         inverse_gram(&n, &m, &mut scratch);
         let bound = bound_corners_along(&n, &m, DVec3::Z, &scaled, &mut scratch);
-        // The corners that face each other, exactly.
+        // The distance and the rate of the corners that face each other, computed exactly.
         let distance = exact(m.center.z) - exact(1.0) - (exact(n.center.z) + exact(1.0));
         let square: sscc_testing::Dyadic = (0..rank)
             .map(|k| {

@@ -1,4 +1,4 @@
-//! Bounds with a clearance: where the smallest `|z|` is known, and against points that come nearer.
+//! Tests bounds with a clearance where the smallest `|z|` is known, and against a z at which points are nearer.
 
 use glam::DVec3;
 use sscc_testing::cases;
@@ -10,7 +10,7 @@ use super::random::Random;
 use super::true_minimum::{gram, length};
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh, distance_triangle_triangle};
 
-/// Two triangles with these corners, and the displacements of each corner by each mode.
+/// Returns two triangles with these corners, and the displacements of each corner by each mode.
 fn model(p: [DVec3; 6], modes: Vec<[DVec3; 6]>) -> ReducedModel {
     let displacements = (0..6).flat_map(|v| modes.iter().map(move |u| u[v])).collect();
     let mesh = TriMesh::new(p.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -18,8 +18,8 @@ fn model(p: [DVec3; 6], modes: Vec<[DVec3; 6]>) -> ReducedModel {
     ReducedModel::with_metric(mesh, Modes::new(modes.len(), displacements).unwrap(), metric).unwrap()
 }
 
-/// Where modes move one triangle along each axis, they come as near as D at the distance less D. Other modes move both
-/// alike. Some are far from the origin, some tiny or huge.
+/// Three modes move one triangle along the axes: the triangles are as near as D where `|z|` is their distance less D. Other modes
+/// move both triangles alike. Some models are far from the origin, some tiny or huge.
 #[test]
 fn bounds_of_translations_are_the_distance_less_the_clearance() {
     let mut tight = 0;
@@ -46,7 +46,7 @@ fn bounds_of_translations_are_the_distance_less_the_clearance() {
         }
         let bound = node_pair_bound_keeping(&model, clearance, 1);
         assert!(bound <= truth + room, "case {case}: node pair {bound:e} above {truth:e}");
-        // A clearance of the distance, or more, leaves nothing.
+        // Bounds are 0, up to rounding, if the clearance is at least the distance.
         for factor in [1.0, 1.0 + 1e-9, 3.0] {
             let bounds = all_bounds_keeping(&model, distance * factor, random);
             assert!(bounds.iter().all(|(_, bound)| *bound <= distance * 1e-11), "case {case}: {bounds:?}");
@@ -55,7 +55,7 @@ fn bounds_of_translations_are_the_distance_less_the_clearance() {
     assert!(tight > cases(800) as u32 / 2, "{tight}");
 }
 
-/// Where one mode presses two parallel plates together, gaps shrink alike, and an affine map has all of the motion.
+/// One mode presses two parallel plates together: all gaps shrink alike, and an affine map describes the whole motion.
 #[test]
 fn bounds_of_a_contraction_are_those_of_its_distances() {
     for case in 0..cases(400_u64) {
@@ -91,7 +91,8 @@ fn clearances_are_measured_along_unit_directions() {
     assert!((best - 0.75).abs() < 1e-9 && best <= 0.75, "{best}");
 }
 
-/// No bound is larger than the `|z|` at which two points come nearer than the clearance: points of difficult pairs, of all kinds.
+/// No bound is larger than the `|z|` at which two points of the triangles come nearer than the clearance, for all kinds of
+/// difficult pairs.
 #[test]
 fn no_bound_exceeds_a_z_at_which_points_are_near() {
     let mut attacked = [0; KINDS];
@@ -109,7 +110,7 @@ fn no_bound_exceeds_a_z_at_which_points_are_near() {
         for _ in 0..200 {
             let (d, b) = pair.relative([random.weights(), random.weights()]);
             let inverse = gram(&b).inverse();
-            // Somewhat nearer, so that rounding does not matter.
+            // The points come a little nearer than the clearance, so that rounding does not matter.
             let mut left = d;
             for _ in 0..8 {
                 left = d - (inverse * left).normalize_or_zero() * (clearance * (1.0 - 1e-6));
@@ -138,7 +139,7 @@ fn no_bound_exceeds_a_z_at_which_points_are_near() {
 
 /// Without a clearance the least gap is the rounding bound, bit for bit.
 #[test]
-fn no_clearance_needs_no_gap() {
+fn without_a_clearance_the_least_gap_is_the_rounding_bound() {
     let random = &mut Random::new(5);
     for kind in 0..KINDS {
         let scaled = scaled_keeping(&random_pair(kind, random), 0.0);

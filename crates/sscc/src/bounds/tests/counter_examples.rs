@@ -9,7 +9,7 @@ use super::random::Random;
 use super::true_minimum::OraclePair;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
-/// A pair by its corners and, for each corner, its modes.
+/// Returns a pair by its corners and, for each corner, its modes.
 fn pair(p: [[f64; 3]; 6], a: [&[[f64; 3]]; 6]) -> OraclePair {
     OraclePair {
         p: p.map(DVec3::from_array),
@@ -23,7 +23,7 @@ fn model_of(pair: &OraclePair) -> ReducedModel {
     ReducedModel::with_metric(mesh, modes, Metric::identity(pair.rank())).unwrap()
 }
 
-/// Our bounds and the paper's conservative ones are at most a minimum that the printed form exceeds.
+/// Checks that our bounds and the paper's conservative ones are at most a minimum that the printed form exceeds.
 fn check_counter_example(pair: &OraclePair, truth: f64, printed: f64, safe: f64) {
     assert!(printed > truth * 1.01, "printed {printed} is no counter-example: {truth}");
     assert!(safe <= truth * ROOM, "safe {safe} above {truth}");
@@ -37,7 +37,7 @@ const LOW: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 /// Triangles one above the other, the upper one 1 higher.
 const STACKED: [[f64; 3]; 6] = [LOW[0], LOW[1], LOW[2], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
 
-/// Eq. 10 with the squared `R_c`: kept seeds of random pairs with strongly varying modes.
+/// Tests Eq. 10 with the squared `R_c` on random pairs with strongly varying modes.
 #[test]
 fn eq10_with_squares_is_not_conservative() {
     let mut found = 0;
@@ -76,7 +76,7 @@ fn single_modes_are_not_conservative() {
 
 /// An edge pierces a face at rest: no feature contact at 0, but the truth is 0.
 #[test]
-fn piercing_at_rest_needs_its_own_test() {
+fn feature_contacts_miss_a_piercing_at_rest() {
     let axes: &[[f64; 3]] = &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let still: &[[f64; 3]] = &[[0.0; 3]; 3];
     let through = [[0.3, 0.3, -1.0], [0.3, 0.3, 1.0], [3.0, 3.0, 0.0]];
@@ -88,8 +88,8 @@ fn piercing_at_rest_needs_its_own_test() {
     println!("feature contacts alone: {}", pair.eq10_without_rest_test());
 }
 
-/// One mode: the mean modes only slide, the corners come down. The last of `min(3, r)` singular values
-/// certifies (nearly) infinity.
+/// There is one mode: the mean modes only slide, but the corners come down. The last of `min(3, r)` singular values certifies
+/// (nearly) infinity.
 #[test]
 fn the_last_of_too_few_singular_values_is_not_conservative() {
     let still: &[[f64; 3]] = &[[0.0; 3]];

@@ -1,4 +1,4 @@
-//! Every bound against the true minimum, as far as a slow search finds it.
+//! Tests every bound against the true minimum, as far as a slow search finds it.
 
 #![allow(clippy::print_stdout)] // statistics for those who tune the bounds
 
@@ -32,7 +32,7 @@ fn no_bound_exceeds_the_true_minimum() {
             }
         }
         let safe = [pair.eq10_safe(), pair.line_estimate_safe(), pair.box_estimate_safe()];
-        // The reference is not rounded with care: kinds that cancel are left out.
+        // The rounding of the reference is not bounded: kinds of pairs in which numbers cancel are left out.
         if ![2, 3, 4, 5, 6, 10, 12].contains(&kind) {
             for (i, bound) in safe.into_iter().enumerate() {
                 assert!(
@@ -101,7 +101,7 @@ fn rest_distance_is_never_too_large() {
     }
 }
 
-/// The rate on a cone against the rate at sampled directions of it.
+/// Compares the rate on a cone with the rate at sampled directions of it.
 #[test]
 fn cone_rate_is_never_too_small() {
     for case in 0..3000_u64 {
@@ -202,8 +202,8 @@ fn node_pair_bounds_hold_for_all_their_pairs() {
     assert!(positive > 400, "{positive}");
 }
 
-/// Along n = (1, -1, 0) the relative modes nearly cancel: from their Gram matrix the closing rate is exactly 0,
-/// an infinite radius. The bound must see the mode of 1e-9 that is left.
+/// Along n = (1, -1, 0) the relative modes nearly cancel: computed from their Gram matrix, the closing rate is exactly 0, which
+/// would give an infinite radius. The bound must include the mode of 1e-9 that remains.
 #[test]
 fn cancelling_modes_keep_node_pair_bounds_finite() {
     let (a, b) = (DVec3::new(1.0, 1.0, 0.0), DVec3::new(1e-9, 0.0, 0.0));

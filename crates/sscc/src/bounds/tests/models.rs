@@ -14,13 +14,13 @@ use crate::model::{ScaledModel, scale_direction};
 use crate::vectors::InstructionSet;
 use crate::{DISTANCE_ERROR, Metric, MetricKind, Modes, ReducedModel, TriMesh};
 
-/// Room for the rounding of the search for the true minimum.
+/// A factor that covers the rounding of the search for the true minimum.
 pub(super) const ROOM: f64 = 1.0 + 1e-9;
 
-/// Kinds of random pairs, see [`random_pair`].
+/// The number of kinds of random pairs, see [`random_pair`].
 pub(super) const KINDS: usize = 13;
 
-/// Two triangles and their modes, of one of [`KINDS`] difficult kinds.
+/// Returns two triangles and their modes, of one of [`KINDS`] difficult kinds.
 pub(super) fn random_pair(kind: usize, random: &mut Random) -> ReducedModel {
     let rank = match random.below(4) {
         0 => 1 + random.below(3),
@@ -31,7 +31,7 @@ pub(super) fn random_pair(kind: usize, random: &mut Random) -> ReducedModel {
     let apart = DVec3::new(random.power(-1.0, 0.7) + 1.0, 0.0, 0.0);
     p[3..].iter_mut().for_each(|p| *p += apart);
     let mut u: Vec<[DVec3; 6]> = (0..rank).map(|_| std::array::from_fn(|_| random.vector())).collect();
-    // Constant over each triangle up to a part of the given size.
+    // Modes are constant over each triangle up to a part of this size.
     let calm = random.power(-4.0, 0.0);
     for u in &mut u {
         let means = [u[0], u[3]];
@@ -127,12 +127,12 @@ pub(super) fn reference(model: &ReducedModel, faces: [u32; 2]) -> OraclePair {
     }
 }
 
-/// The first two triangles of a model.
+/// Returns the first two triangles of a model.
 pub(super) fn pair_corners(scaled: &ScaledModel) -> PairCorners<'_> {
     PairCorners::of(scaled, [0, 1, 2], [3, 4, 5])
 }
 
-/// The model with two more triangles, of which each is like one of its own.
+/// Returns the model with two more triangles, each of which resembles one of its own.
 fn with_others(model: &ReducedModel, random: &mut Random) -> ReducedModel {
     let mut positions = model.mesh().rest_positions().to_vec();
     let mut displacements = model.modes().displacements().to_vec();
@@ -151,18 +151,18 @@ fn far_target() -> RefinementTarget {
     RefinementTarget { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1, subdivisions: 500 }
 }
 
-/// The model in scaled coordinates about the rest pose, whose parts keep a clearance; none for 0.
+/// Returns the model in scaled coordinates about the rest pose, with a clearance unless that is 0.
 pub(super) fn scaled_keeping(model: &ReducedModel, clearance: f64) -> ScaledModel {
     let scaled = ScaledModel::new(model, model.metric(), &vec![0.0; model.rank()]);
     if clearance > 0.0 { scaled.keeping(clearance, DISTANCE_ERROR) } else { scaled }
 }
 
-/// All bounds of one pair of triangles, by name.
+/// Returns all bounds of one pair of triangles, by name.
 pub(super) fn all_bounds(model: &ReducedModel, random: &mut Random) -> Vec<(&'static str, f64)> {
     all_bounds_keeping(model, 0.0, random)
 }
 
-/// The same for triangles that keep a clearance.
+/// Returns all bounds of one pair of triangles that keep a clearance, by name.
 pub(super) fn all_bounds_keeping(
     model: &ReducedModel,
     clearance: f64,
@@ -223,7 +223,7 @@ pub(super) fn all_bounds_keeping(
     bounds
 }
 
-/// A hierarchy of two leaves: the first `split` triangles and the others.
+/// Returns a hierarchy of two leaves: the first `split` triangles and the others.
 fn two_leaves(split: u32, count: u32) -> Hierarchy {
     let leaf = |first_triangle, triangle_count| Node {
         first_triangle,
@@ -236,12 +236,12 @@ fn two_leaves(split: u32, count: u32) -> Hierarchy {
     Hierarchy::from_parts(nodes, (0..count).collect(), count as usize).unwrap()
 }
 
-/// The bound of two nodes: the first `split` triangles and the others.
+/// Returns the bound of two nodes: the first `split` triangles and the others.
 pub(super) fn node_pair_bound(model: &ReducedModel, split: u32) -> f64 {
     node_pair_bound_keeping(model, 0.0, split)
 }
 
-/// The same for nodes that keep a clearance.
+/// Returns this bound for nodes that keep a clearance.
 pub(super) fn node_pair_bound_keeping(model: &ReducedModel, clearance: f64, split: u32) -> f64 {
     let scaled = scaled_keeping(model, clearance);
     let hierarchy = two_leaves(split, model.mesh().faces().len() as u32);

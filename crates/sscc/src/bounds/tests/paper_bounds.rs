@@ -5,13 +5,13 @@ use glam::{DMat3, DVec3};
 use super::true_minimum::{OraclePair, difference, gram, length, singular_values, trace};
 
 impl OraclePair {
-    /// The mean modes `U^c` of one triangle (Eq. 7).
+    /// Returns the mean modes `U^c` of one triangle (Eq. 7).
     fn mean(&self, side: usize) -> Vec<DVec3> {
         let [a, b, c] = [&self.a[3 * side], &self.a[3 * side + 1], &self.a[3 * side + 2]];
         (0..self.rank()).map(|k| (a[k] + b[k] + c[k]) / 3.0).collect()
     }
 
-    /// The differences "point of Y minus point of X" at which vertex-face and edge-edge contacts can take
+    /// Returns the differences "point of Y minus point of X" at which vertex-face and edge-edge contacts can take
     /// place, as triangles.
     fn contact_facets(&self) -> Vec<[DVec3; 3]> {
         let [x, y] = [self.triangle(0), self.triangle(1)];
@@ -28,7 +28,7 @@ impl OraclePair {
         facets
     }
 
-    /// The minimum `r_c` of the constant-mode problem, a norm (the paper's `R_c` is its square): the least of
+    /// Returns the minimum `r_c` of the constant-mode problem, a norm (the paper's `R_c` is its square): the least of
     /// `Q` over all vertex-face and edge-edge pairs (Eqs. 7 to 9).
     ///
     /// A small multiple of the identity is added to the Gram matrix of Eq. 9: modes that do not reach all
@@ -45,7 +45,7 @@ impl OraclePair {
         squares.fold(f64::INFINITY, f64::min).max(0.0).sqrt()
     }
 
-    /// The bound of Eq. 11 for one triangle: how far its modes stray from their mean, as a 2-norm.
+    /// Returns the bound of Eq. 11 for one triangle: the distance of its modes from their mean, as a 2-norm.
     fn stray(&self, side: usize) -> f64 {
         let mean = self.mean(side);
         let k: [f64; 3] =
@@ -53,7 +53,7 @@ impl OraclePair {
         (k.iter().copied().fold(0.0, f64::max) + k.iter().sum::<f64>()) / 3.0
     }
 
-    /// The quotient x of Eq. 10, for a given singular value.
+    /// Returns the quotient x of Eq. 10, for a given singular value.
     fn perturbation(&self, sigma: f64) -> f64 {
         (self.stray(0) + self.stray(1)) / sigma
     }
@@ -62,7 +62,7 @@ impl OraclePair {
         singular_values(&difference(&self.mean(1), &self.mean(0)))
     }
 
-    /// Eq. 10 as Appendix A proves it: **norms**, the third singular value, the rest pose tested first.
+    /// Returns Eq. 10 as Appendix A proves it: with **norms** and the third singular value, after a test of the rest pose.
     pub(super) fn eq10_safe(&self) -> f64 {
         let sigma = self.mean_singular_values()[2];
         if self.rank() < 3 || sigma <= 0.0 || self.collides(&vec![0.0; self.rank()]) {
@@ -71,24 +71,24 @@ impl OraclePair {
         self.constant_mode_minimum() / (1.0 + self.perturbation(sigma))
     }
 
-    /// Eq. 10 as printed, with the squared `R_c` of the paper's section 5; the result is its root.
+    /// Returns Eq. 10 as printed, with the squared `R_c` of the paper's section 5; the result is its root.
     pub(super) fn eq10_printed(&self) -> f64 {
         let r_c = self.constant_mode_minimum();
         (r_c * r_c / (1.0 + self.perturbation(self.mean_singular_values()[2]))).sqrt()
     }
 
-    /// Eq. 10 with norms but without the test of the rest pose.
+    /// Returns Eq. 10 with norms but without the test of the rest pose.
     pub(super) fn eq10_without_rest_test(&self) -> f64 {
         self.constant_mode_minimum() / (1.0 + self.perturbation(self.mean_singular_values()[2]))
     }
 
-    /// Eq. 10 with norms and the last of the `min(3, r)` singular values that a usual decomposition returns.
+    /// Returns Eq. 10 with norms and the last of the `min(3, r)` singular values that a usual decomposition returns.
     pub(super) fn eq10_last_singular_value(&self) -> f64 {
         let sigma = self.mean_singular_values()[self.rank().min(3) - 1];
         self.constant_mode_minimum() / (1.0 + self.perturbation(sigma))
     }
 
-    /// The gap of the 1D estimate of section 5.2 (balls on the line between their centres) and the largest
+    /// Returns the gap of the 1D estimate of section 5.2 (balls on the line between their centres) and the largest
     /// relative motion of each mode along that line.
     fn line_estimate(&self) -> (f64, Vec<f64>) {
         let [(cx, rx), (cy, ry)] = [enclosing_ball(self.triangle(0)), enclosing_ball(self.triangle(1))];
@@ -100,20 +100,20 @@ impl OraclePair {
         ((cy - cx).length() - rx - ry, (0..self.rank()).map(rate).collect())
     }
 
-    /// The 1D triangle estimate of section 5.2, one maximum per mode, combined.
+    /// Returns the 1D triangle estimate of section 5.2, in which the largest rates of all modes are combined.
     pub(super) fn line_estimate_safe(&self) -> f64 {
         let (gap, rates) = self.line_estimate();
         if gap > 0.0 { gap / length(&rates) } else { 0.0 }
     }
 
-    /// The same as printed: the largest of all rates.
+    /// Returns the 1D triangle estimate as printed, which uses the largest of all rates alone.
     pub(super) fn line_estimate_printed(&self) -> f64 {
         let (gap, rates) = self.line_estimate();
         if gap > 0.0 { gap / rates.into_iter().fold(0.0, f64::max) } else { 0.0 }
     }
 }
 
-/// The least of `d' metric d` over a triangle of differences d.
+/// Returns the least of `d' metric d` over a triangle of differences d.
 fn least_square(metric: &DMat3, [a, b, c]: &[DVec3; 3]) -> f64 {
     let form = |x: DVec3, y: DVec3| x.dot(*metric * y);
     let mut least = f64::INFINITY;
@@ -135,7 +135,7 @@ fn least_square(metric: &DMat3, [a, b, c]: &[DVec3; 3]) -> f64 {
     least
 }
 
-/// The smallest ball around a triangle, as centre and radius.
+/// Returns the smallest ball around a triangle, as centre and radius.
 fn enclosing_ball(p: [DVec3; 3]) -> (DVec3, f64) {
     let radius = |c: DVec3| p.iter().map(|p| p.distance(c)).fold(0.0, f64::max);
     let mut centers = vec![(p[0] + p[1]) / 2.0, (p[1] + p[2]) / 2.0, (p[2] + p[0]) / 2.0];
@@ -150,7 +150,8 @@ fn enclosing_ball(p: [DVec3; 3]) -> (DVec3, f64) {
     (best, radius(best) * (1.0 + 1e-14))
 }
 
-/// A BD-tree box (James and Pai 2004): rest interval and, for each mode, how its centre moves and it grows.
+/// A BD-tree box (James and Pai 2004): its rest interval and, for each mode, the rates at which its centre moves and its half
+/// extents grow.
 struct MovingBox {
     center: DVec3,
     half: DVec3,
@@ -168,7 +169,7 @@ fn moving_box(p: &[DVec3], a: &[&[DVec3]]) -> MovingBox {
     MovingBox { center, half, rates }
 }
 
-/// For each axis the gap of two BD-tree boxes and the rate at which each mode can close it.
+/// Returns for each axis the gap of two BD-tree boxes and the rate at which each mode can close it.
 fn box_gaps(x: &MovingBox, y: &MovingBox) -> [(f64, Vec<f64>); 3] {
     std::array::from_fn(|c| {
         let gap = (y.center - x.center)[c].abs() - x.half[c] - y.half[c];
@@ -186,13 +187,13 @@ impl OraclePair {
         box_gaps(&side(0), &side(1))
     }
 
-    /// The AABB-AABB estimate of section 5.2 with all modes together: the best of the three axes.
+    /// Returns the AABB-AABB estimate of section 5.2 with all modes together: the best of the three axes.
     pub(super) fn box_estimate_safe(&self) -> f64 {
         let bound = |(gap, rates): (f64, Vec<f64>)| if gap > 0.0 { gap / length(&rates) } else { 0.0 };
         self.boxes().map(bound).into_iter().fold(0.0, f64::max)
     }
 
-    /// The same as printed: on each axis the mode that closes the gap soonest, alone.
+    /// Returns the AABB-AABB estimate as printed, which uses on each axis only the mode that closes the gap soonest.
     pub(super) fn box_estimate_printed(&self) -> f64 {
         let bound = |(gap, rates): (f64, Vec<f64>)| {
             if gap > 0.0 { gap / rates.into_iter().fold(0.0, f64::max) } else { 0.0 }

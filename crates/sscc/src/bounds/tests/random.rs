@@ -18,33 +18,33 @@ impl Random {
         random::next_bits(&mut self.0)
     }
 
-    /// In [0, 1).
+    /// Returns a number in [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
         random::next_uniform(&mut self.0)
     }
 
-    /// In 0 .. n.
+    /// Returns a number in 0 .. n.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
 
-    /// Each component in [-1, 1).
+    /// Returns a vector whose components are in [-1, 1).
     pub(crate) fn vector(&mut self) -> DVec3 {
         DVec3::new(self.uniform(), self.uniform(), self.uniform()) * 2.0 - 1.0
     }
 
-    /// `10^x` for x between the two exponents.
+    /// Returns `10^x` for a random x between the two exponents.
     pub(crate) fn power(&mut self, from: f64, to: f64) -> f64 {
         10.0_f64.powf(from + (to - from) * self.uniform())
     }
 
-    /// Barycentric weights.
+    /// Returns random barycentric weights.
     pub(crate) fn weights(&mut self) -> DVec3 {
         normalize(DVec3::new(self.uniform(), self.uniform(), self.uniform()))
     }
 }
 
-/// Barycentric weights from any vector: negative ones become 0.
+/// Returns barycentric weights from any vector: negative components become 0.
 pub(super) fn normalize(w: DVec3) -> DVec3 {
     let w = w.max(DVec3::ZERO);
     let sum = w.x + w.y + w.z;

@@ -1,5 +1,5 @@
-//! Bounds where rounding decides: against exact arithmetic, and against computed positions that meet although those in
-//! exact arithmetic do not.
+//! Tests bounds where rounding decides: against exact arithmetic, and against computed positions that meet although exact
+//! positions do not.
 
 use glam::DVec3;
 use sscc_testing::Dyadic;
@@ -10,12 +10,12 @@ use crate::model::mode_rows::{dot, padded_rank};
 use crate::model::rounding::{norm_up, quotient_down};
 use crate::{Metric, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
-/// A number in exact arithmetic.
+/// Returns a number in exact arithmetic.
 pub(crate) fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
 }
 
-/// Two equal horizontal faces of these corners, at two heights; modes move each up or down as a whole.
+/// Returns two copies of horizontal faces at two heights; modes move each copy up or down as a whole.
 fn stacked(corners: &[DVec3], faces: &[[u32; 3]], heights: [f64; 2], modes: &[[f64; 2]]) -> ReducedModel {
     let p = heights.iter().flat_map(|z| corners.iter().map(move |p| *p + DVec3::Z * z)).collect();
     let above = |face: &[u32; 3]| face.map(|v| v + corners.len() as u32);
@@ -27,8 +27,8 @@ fn stacked(corners: &[DVec3], faces: &[[u32; 3]], heights: [f64; 2], modes: &[[f
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
 
-/// No bound is larger than the norm of a q at which the computed positions touch: at two heights, two triangles, and
-/// two squares as nodes (so even that nothing of their affine fit is rounded).
+/// Checks that no bound is larger than the norm of a q at which the computed positions touch, for two triangles at two heights
+/// and for two squares as nodes (whose affine fit is free of rounding).
 fn check(heights: [f64; 2], modes: &[[f64; 2]], q: &[f64]) {
     let norm = Metric::identity(q.len()).length(q);
     let triangle = stacked(&[DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]], heights, modes);
@@ -55,7 +55,7 @@ fn bounds_include_rounding_of_rest_positions() {
     }
 }
 
-/// A large common motion swallows the gap, while the relative one is next to nothing.
+/// Rounding of a large common motion closes the gap, while the relative motion is nearly 0.
 #[test]
 fn bounds_include_rounding_of_motion() {
     let random = &mut Random::new(2);
@@ -66,7 +66,7 @@ fn bounds_include_rounding_of_motion() {
     }
 }
 
-/// Roots and quotients are on the safe side of the exact ones, and hardly farther than they must be.
+/// Roots and quotients are on the safe side of the exact numbers, and close to them.
 #[test]
 fn roots_are_rounded_up_and_quotients_down() {
     let random = &mut Random::new(3);

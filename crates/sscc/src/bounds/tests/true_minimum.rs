@@ -12,7 +12,7 @@ pub(super) struct OraclePair {
     pub(super) a: [Vec<DVec3>; 6],
 }
 
-/// The Gram matrix `B B'` of modes given by columns.
+/// Returns the Gram matrix `B B'` of modes given by columns.
 pub(super) fn gram(b: &[DVec3]) -> DMat3 {
     b.iter().fold(DMat3::ZERO, |g, b| g + DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z))
 }
@@ -29,7 +29,7 @@ pub(super) fn difference(a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
     a.iter().zip(b).map(|(a, b)| *a - *b).collect()
 }
 
-/// The singular values of a 3 x r matrix given by columns, greatest first: always three (Jacobi rotations of
+/// Returns the singular values of a 3 x r matrix given by columns, greatest first: always three (Jacobi rotations of
 /// its rows, which keep small values exact to their own size).
 pub(super) fn singular_values(b: &[DVec3]) -> [f64; 3] {
     let mut rows: [Vec<f64>; 3] = std::array::from_fn(|c| b.iter().map(|b| b[c]).collect());
@@ -65,7 +65,7 @@ impl OraclePair {
         [self.p[3 * side], self.p[3 * side + 1], self.p[3 * side + 2]]
     }
 
-    /// `d` and the columns of `B` for two points given by barycentric weights.
+    /// Returns `d` and the columns of `B` for two points given by barycentric weights.
     pub(super) fn relative(&self, [wx, wy]: [DVec3; 2]) -> (DVec3, Vec<DVec3>) {
         let w = [-wx.x, -wx.y, -wx.z, wy.x, wy.y, wy.z];
         let d = self.p.iter().zip(w).map(|(p, w)| *p * w).sum();
@@ -121,7 +121,8 @@ impl OraclePair {
         self.meeting_point(best.1)
     }
 
-    /// The least z that brings two points together, solved until it no longer changes; none where it does.
+    /// Returns the norm of the smallest z that brings two points together, found by iteration. None if the iteration does not
+    /// converge.
     fn meeting_point(&self, weights: [DVec3; 2]) -> Option<f64> {
         let (d, b) = self.relative(weights);
         let inverse = gram(&b).inverse();
@@ -132,14 +133,14 @@ impl OraclePair {
             z.iter_mut().zip(&b).for_each(|(z, b)| *z -= b.dot(y));
             apart = b.iter().zip(&z).fold(d, |x, (b, z)| x + *b * *z);
         }
-        // How much z may still change to bring them together exactly.
+        // Accepts z only if a small change of it brings the points together exactly.
         let sigma = singular_values(&b)[2];
         let reach = self.a.iter().flatten().map(|a| a.length()).fold(0.0, f64::max);
         let exact = sigma > 1e-13 * reach && apart.length() <= 1e-10 * sigma * length(&z);
         exact.then(|| length(&z))
     }
 
-    /// Collisions found by the exact test along rays.
+    /// Returns the smallest norm of a collision that the exact test finds along rays.
     fn along_rays(&self, effort: usize, random: &mut Random) -> Option<f64> {
         let rank = self.rank();
         let mut rays: Vec<Vec<f64>> = Vec::new();
@@ -186,7 +187,7 @@ impl OraclePair {
         best
     }
 
-    /// The least rest distance found between points of the two triangles.
+    /// Returns the smallest rest distance found between points of the two triangles.
     pub(super) fn rest_distance(&self, effort: usize, random: &mut Random) -> f64 {
         let steps = Self {
             p: self.p,

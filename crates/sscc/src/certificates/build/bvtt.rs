@@ -9,7 +9,7 @@ use crate::certificates::pair_tree::sibling_pairs;
 use crate::hierarchy::{Hierarchy, NodePair};
 use crate::model::rounding::to_f32_down;
 
-/// A node pair, in 16 bytes: a large model has millions.
+/// A node pair in 16 bytes, because a large model has millions of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BvttPair {
     pub(crate) nodes: NodePair,
@@ -27,10 +27,10 @@ const BOUNDED: u32 = u32::MAX;
 pub(crate) enum PairState {
     /// Not split; only the lower bound is known.
     Open,
-    /// A pair of buckets that needs no further task: its lower bound was searched, or, in the outer round, may be that of
-    /// the two nodes alone.
+    /// A pair of buckets that needs no further task: its lower bound was searched, or comes from the two nodes alone, which only
+    /// the outer round allows.
     Bounded,
-    /// Split into pairs; the index of the first of them.
+    /// Split into pairs, with the index of the first of them.
     Split(u32),
 }
 
@@ -69,12 +69,12 @@ pub(super) struct Bvtt {
 }
 
 impl Bvtt {
-    /// An empty BVTT: no lower bound is known.
+    /// Creates an empty BVTT, without any known lower bound.
     pub(super) fn empty() -> Self {
         Self { pairs: Vec::new(), starts: Vec::new() }
     }
 
-    /// The pairs of children of each node, all open.
+    /// Creates a BVTT of the pairs of children of each node, all open.
     pub(super) fn new(hierarchy: &Hierarchy) -> Self {
         let mut bvtt = Self { pairs: Vec::new(), starts: vec![0] };
         for n in 0..hierarchy.nodes().len() as u32 {
@@ -84,12 +84,12 @@ impl Bvtt {
         bvtt
     }
 
-    /// The indices of the pairs of a node's children; none if the BVTT is empty.
+    /// Returns the indices of the pairs of a node's children. None if the BVTT is empty.
     pub(super) fn of_node(&self, n: usize) -> Option<Range<usize>> {
         Some(*self.starts.get(n)? as usize..*self.starts.get(n + 1)? as usize)
     }
 
-    /// The indices of the pairs that a pair is split into.
+    /// Returns the indices of the pairs that a pair is split into.
     pub(super) fn children(&self, hierarchy: &Hierarchy, pair: &BvttPair) -> Range<usize> {
         let PairState::Split(first) = pair.state() else { return 0..0 };
         let (n, m) = pair.nodes;

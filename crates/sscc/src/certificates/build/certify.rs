@@ -41,7 +41,7 @@ pub(crate) struct CertifiedRadii {
 }
 
 impl CertifiedRadii {
-    /// Has all stages run. `budget`: bytes of the pair tree for each triangle.
+    /// Runs all stages. `budget` is the number of bytes of the pair tree for each triangle.
     pub(crate) fn compute(
         preparation: &Preparation,
         budget: usize,
@@ -56,15 +56,16 @@ impl CertifiedRadii {
         Ok(Self { radii, pair_tree })
     }
 
-    /// Bytes of the hierarchy, the radii of its nodes and the pair tree in a file: each node has a radius, a state of one byte
-    /// and a start in the pair tree.
+    /// Returns the bytes of the hierarchy, the radii of its nodes and the pair tree in a file: each node has a radius, a state of
+    /// one byte and a start in the pair tree.
     fn bytes(&self, hierarchy: &Hierarchy) -> usize {
         let node = size_of::<Node>() + size_of::<f64>() + size_of::<u8>() + size_of::<u32>();
         let order = size_of_val(hierarchy.order());
         hierarchy.nodes().len() * node + order + self.pair_tree.len() * size_of::<PairEntry>()
     }
 
-    /// The certificates of the model that was prepared, with local certificates, which are computed on the threads of the current pool.
+    /// Returns the certificates of the model that was prepared, with local certificates, which it computes on the threads of the
+    /// current pool.
     pub(crate) fn into_certificates(
         self,
         model: &ReducedModel,

@@ -11,22 +11,22 @@ use crate::{Error, Progress};
 
 /// Tasks that are independent of each other. The next stage depends on their results.
 pub(crate) struct Stage<'a> {
-    /// How many tasks there are.
+    /// The number of tasks.
     pub(crate) count: usize,
-    /// Makes the task with an index, when it is run: all at once would take too much memory.
+    /// Creates the task with an index when it is run: all tasks at once would take too much memory.
     pub(crate) task: &'a (dyn Fn(usize) -> Task + Sync),
     /// The maximum number of tasks that a thread takes at once. Costs differ, and other threads cannot take over these
     /// tasks.
     pub(crate) grain: usize,
     /// The maximum number of node pairs that all results together may add to the BVTT.
     pub(crate) max_added_pairs: usize,
-    /// Receives numbers of tasks that have finished.
+    /// Receives the number of tasks that have just finished.
     pub(crate) on_finished: &'a (dyn Fn(usize) + Sync),
 }
 
 /// Runs tasks, stage by stage.
 pub(crate) trait Executor {
-    /// The results of a stage, in the order of its tasks. None if they would add too many node pairs.
+    /// Returns the results of a stage, in the order of its tasks. None if they would add too many node pairs.
     ///
     /// # Errors
     /// When cancelled, or when other processes fail.

@@ -1,11 +1,11 @@
 //! Fine radii: those of the buckets and pairs of buckets that queries test most often, searched again with a smaller
 //! error ([`Precision::Fine`]).
 //!
-//! They are the smallest radii: these are reached first. Two buckets that touch at the centre come before others, as does
-//! a bucket with itself, because no AABB and no plane separates their triangles at any q: wherever the radius is reached,
-//! all of their triangles are moved and compared. Their closest triangles are two rings apart on the surface, where a
-//! radius without subdivision is too small by a fifth in the median. A fine search takes up to milliseconds, so their
-//! numbers are limited (docs/notes/bounds.md#fine-radii).
+//! The smallest radii are chosen, because queries reach them first. Two buckets that touch at the centre come before others, as
+//! does a bucket with itself, because no AABB and no plane separates their triangles at any q: wherever the radius is reached,
+//! all of their triangles are moved and compared. Their closest triangles are two rings apart on the surface, where a radius
+//! without subdivision is too small by a fifth in the median. A fine search takes up to milliseconds, so the number of searches
+//! is limited (docs/notes/bounds.md#fine-radii).
 
 use super::bvtt::{Bvtt, BvttPair, PairState};
 use super::executor::{Executor, Stage};
@@ -17,16 +17,16 @@ use crate::Error;
 use crate::hierarchy::Hierarchy;
 use crate::model::rounding::to_f32_down;
 
-/// One bucket is searched again for every so many triangles of the mesh. Tests have small models.
+/// One bucket is searched again for this many triangles of the mesh. Tests have small models.
 const TRIANGLES_PER_BUCKET: usize = if cfg!(test) { 64 } else { 1024 };
 
-/// One pair of buckets that touch is searched again for every so many triangles.
+/// One pair of buckets that touch is searched again for this many triangles.
 const TRIANGLES_PER_TOUCHING_PAIR: usize = if cfg!(test) { 32 } else { 128 };
 
-/// One other pair of buckets is searched again for every so many triangles: it takes a tenth of the time.
+/// One other pair of buckets is searched again for this many triangles: it takes a tenth of the time.
 const TRIANGLES_PER_PAIR: usize = 32;
 
-/// Pairs that a thread takes at once.
+/// The number of pairs that a thread takes at once.
 const GRAIN: usize = 1;
 
 /// Searches the radii of pairs of buckets below a limit again, then pulls the new bounds up to all pairs above them in the BVTT.
@@ -67,7 +67,7 @@ pub(super) fn refine_pairs(
     Ok(())
 }
 
-/// The buckets whose radii are searched again: those below a limit, the smallest first.
+/// Returns the buckets whose radii are searched again: those below a limit, the smallest first.
 pub(super) fn choose_buckets(
     limit: f64,
     buckets: &[usize],
@@ -78,13 +78,13 @@ pub(super) fn choose_buckets(
     smallest_below(limit, radii, at_most(hierarchy, TRIANGLES_PER_BUCKET))
 }
 
-/// How many fine searches a mesh gets, if one for so many triangles.
+/// Returns the number of fine searches of a mesh: one for this many triangles.
 fn at_most(hierarchy: &Hierarchy, triangles: usize) -> usize {
     hierarchy.order().len().div_ceil(triangles)
 }
 
-/// The indices of the `most` smallest radii below a limit, smallest first, equal ones by their indices. A radius of 0
-/// is not among them: triangles touch, so no search makes it larger.
+/// Returns the indices of the `most` smallest radii below a limit, smallest first, equal ones by their indices. A radius of 0 is
+/// not among them: triangles touch, so no search makes it larger.
 fn smallest_below(limit: f64, radii: impl Iterator<Item = (f64, usize)>, most: usize) -> Vec<usize> {
     let mut below: Vec<(f64, usize)> = radii.filter(|(radius, _)| 0.0 < *radius && *radius < limit).collect();
     below.sort_unstable_by(|(r, i), (s, j)| r.total_cmp(s).then(i.cmp(j)));

@@ -18,7 +18,7 @@ pub(super) struct Frontier {
 }
 
 impl Frontier {
-    /// The frontier below the pairs of some indices.
+    /// Collects the frontier below the pairs with these indices.
     pub(super) fn below(bvtt: &Bvtt, hierarchy: &Hierarchy, indices: Range<usize>, cap: f64) -> Self {
         let mut frontier = Self { radius: cap, open: Vec::new(), bounded: Vec::new() };
         let mut stack: Vec<usize> = indices.collect();

@@ -1,7 +1,7 @@
-//! `R_global`, the paper's largest radius of interest (section 5.2), and how far beyond it radii may reach.
+//! `R_global`, the paper's largest radius of interest (section 5.2), and the farthest radius beyond it.
 //!
 //! The paper caps all radii at `R_global`. Bodies move farther than that, and radii beyond it are proofs like the others: their
-//! bounds hold at any `|z|`. So the pair tree goes on up to [`CertifyOptions::reach`](crate::CertifyOptions::reach) times
+//! bounds hold at any `|z|`. So the pair tree is built up to [`CertifyOptions::reach`](crate::CertifyOptions::reach) times
 //! `R_global` while its budget lasts (docs/notes/pair-tree.md#reach).
 
 use crate::geometry::Aabb;
@@ -15,10 +15,10 @@ pub fn is_within_reach(certificates: &Certificates, model: &ReducedModel, reach:
     certificates.global_radius() <= farthest_radius(global_radius, reach)
 }
 
-/// `|z|` along the first mode that moves anything at which some vertex has moved half the diagonal of the box at the
-/// centre; infinite if no mode moves anything. Only vertices of faces count.
+/// Returns the `|z|` along the first mode that moves any vertex at which some vertex has moved by half the diagonal of the AABB
+/// at the centre; infinite if no mode moves a vertex. Only vertices of faces count.
 ///
-/// Rounded down to single precision, if it is in its range, so that the pair tree can store every radius up to it.
+/// It is rounded down to single precision, if it is in that range, so that the pair tree can store every radius up to it.
 pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {
     let used = model.mesh().used_vertices();
     let Aabb { lower, upper } = Aabb::of_points(used.iter().map(|&v| model.position(v, center)));
@@ -35,8 +35,8 @@ pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64
     f64::INFINITY
 }
 
-/// `reach` times the global radius, rounded down to single precision, so that the pair tree can store it. The global radius
-/// itself where that is out of this range.
+/// Returns `reach` times the global radius, rounded down to single precision, so that the pair tree can store it; or the global
+/// radius if that is out of the range of single precision.
 pub(super) fn farthest_radius(global_radius: f64, reach: f64) -> f64 {
     if is_in_range(global_radius) {
         f64::from(to_f32_down(global_radius * reach)).max(global_radius)

@@ -12,16 +12,16 @@ use crate::bounds::{LeafPair, PairRefiner, RefinementTarget};
 use crate::filter::SimplexPair;
 use crate::hierarchy::NodePair;
 
-/// Directions along which all pairs are bounded, beside the first one.
+/// Maximum number of directions along which all pairs are bounded, beside the first one.
 const MAX_SHARED_DIRECTIONS: usize = 3;
 
-/// A simplex pair of a triangle pair, and a lower bound. Where two triangles collide, at least one of their simplex pairs does.
+/// A simplex pair of a triangle pair, and a lower bound. If two triangles collide, at least one of their simplex pairs does.
 struct BoundedSimplexPair {
     triangles: Pair,
     x: [u32; 3],
     y: [u32; 3],
     lower: f64,
-    /// Only subdivision would make the bound better.
+    /// Whether only subdivision would make the bound larger.
     is_refined: bool,
 }
 
@@ -44,8 +44,8 @@ impl<'a> LeafBounds<'a> {
         Self { context, leaves: LeafPair::new(context.model), pairs: Vec::new() }
     }
 
-    /// Takes the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. `dir`: a
-    /// direction in which all are bounded.
+    /// Loads the pairs between leaves n and m, or within n = m, that may have a radius below `certified`. All are bounded along
+    /// `dir`, if it is given.
     pub(super) fn load(&mut self, (n, m): NodePair, dir: Option<DVec3>, certified: f64) {
         let RadiusSearchContext { hierarchy, filter, rings, .. } = self.context;
         let [x, y] = [n, m].map(|n| hierarchy.triangles(&hierarchy.nodes()[n as usize]));
@@ -114,7 +114,7 @@ impl<'a> LeafBounds<'a> {
         closest
     }
 
-    /// The triangle pairs with their bounds: the smallest of their simplex pairs'.
+    /// Returns the triangle pairs, each with the smallest bound of its simplex pairs.
     pub(super) fn triangle_pairs(&self) -> impl Iterator<Item = BoundedTriangles> {
         self.pairs.chunk_by(|a, b| a.triangles == b.triangles).map(|pairs| BoundedTriangles {
             triangles: pairs[0].triangles,

@@ -11,17 +11,17 @@ const FIRST_SHARE: f64 = 1.0 / 16.0;
 /// If there is no room even for the first limit, the next one is smaller by this factor.
 const RETRY_DIVISOR: f64 = 2.0;
 
-/// Then the last limit tried is this share of the global radius.
+/// In this case the last limit tried is this share of the global radius.
 const LAST_SHARE: f64 = FIRST_SHARE / 32.0;
 
 /// The next limit is at most the one before times this: farther away it is not known how the number of pairs grows.
 const MAX_STEP: f64 = 4.0;
 
-/// And at least times this; smaller steps are not worth another round.
+/// The next limit is at least the one before times this: smaller steps are not worth another round.
 const MIN_STEP: f64 = 1.2;
 
-/// The budget need not be used up to the last pair: room for one tenth more pairs is not worth another round. Limits
-/// are estimated for one tenth too many, which are dropped in the end.
+/// The budget need not be used up to the last pair: room for one tenth more pairs is not worth another round. Limits are
+/// estimated for one tenth too many pairs, which are dropped in the end.
 const BUDGET_MARGIN: f64 = 1.1;
 
 /// Limits beyond the global radius may use the budget divided by this (docs/notes/pair-tree.md#reach).
@@ -30,7 +30,7 @@ const REACH_DIVISOR: usize = 2;
 /// The outer limit is this many times the last one.
 const OUTER_FACTOR: f64 = 1.5;
 
-/// Which limit to try next.
+/// The limit to try next, and the results of the limits before.
 pub(super) struct LimitSchedule {
     global_radius: f64,
     farthest: f64,
@@ -41,7 +41,7 @@ pub(super) struct LimitSchedule {
 }
 
 impl LimitSchedule {
-    /// A schedule up to the farthest radius for a budget of so many pairs. None if radii are out of the range of single
+    /// Creates a schedule up to the farthest radius for a budget in pairs. None if radii are out of the range of single
     /// precision, in which the tree stores them.
     pub(super) fn new(global_radius: f64, farthest: f64, budget: usize) -> Option<Self> {
         let limit = f64::from(to_f32_down(global_radius * FIRST_SHARE));
@@ -56,18 +56,18 @@ impl LimitSchedule {
         })
     }
 
-    /// The limit to try.
+    /// Returns the limit to try.
     pub(super) fn limit(&self) -> f64 {
         self.limit
     }
 
-    /// The largest limit for which there was room; 0 if there was none.
+    /// Returns the largest limit for which there was room; 0 if there was none.
     pub(super) fn complete_below(&self) -> f64 {
         self.complete_below
     }
 
-    /// Goes on to the next limit; false if there is none. `has_room`: whether there was room for this one; `count_below`:
-    /// how many pairs have a lower bound below a radius.
+    /// Advances to the next limit. Returns false if there is none. `has_room` is whether there was room for this one;
+    /// `count_below` returns the number of pairs with a lower bound below a radius.
     pub(super) fn advance(&mut self, has_room: bool, count_below: impl Fn(f64) -> usize) -> bool {
         *(if has_room { &mut self.complete_below } else { &mut self.too_large }) = self.limit;
         let (next, smallest) = if self.complete_below == 0.0 {
@@ -81,8 +81,9 @@ impl LimitSchedule {
         next >= smallest
     }
 
-    /// The limit of the outer round, which follows the last limit for which there was room. `has_room`: whether the pairs below
-    /// that are no more than the whole budget; without room a limit beyond the global radius would be lowered again.
+    /// Returns the limit of the outer round, which follows the last limit for which there was room. `has_room` is whether the
+    /// whole budget has room for the pairs below that last limit; without room a limit beyond the global radius would be lowered
+    /// again.
     pub(super) fn outer_limit(&self, has_room: bool) -> f64 {
         let end = if has_room { self.end() } else { self.global_radius };
         let outer = (OUTER_FACTOR * self.complete_below).min(right_or!(
@@ -90,23 +91,23 @@ impl LimitSchedule {
             OuterRoundEndsAtGlobalRadius,
             self.global_radius
         ));
-        // A limit that single precision has: a bound that was cut off there is then not below it, and its pair not stored. With
-        // another limit it would be stored, with a radius that holds: a few more entries, and no other answer.
+        // The limit is a number of single precision: so a bound that was cut off there is not below it, and its pair is not
+        // stored. With another limit the pair would be stored, with a valid radius: a few more entries, and the same answers.
         right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
     }
 
-    /// The largest limit to try. The rounds up to the global radius are the same for any farthest radius.
+    /// Returns the largest limit to try. The rounds up to the global radius are the same for any farthest radius.
     fn end(&self) -> f64 {
         if self.complete_below < self.global_radius { self.global_radius } else { self.farthest }
     }
 
-    /// Half way, in logarithms, to the limit for which there was no room.
+    /// Returns the limit half way, in logarithms, to the limit for which there was no room.
     fn half_way(&self) -> f64 {
         f64::from(to_f32_down((self.complete_below * self.too_large).sqrt()))
     }
 
-    /// A limit that should just use up the budget, as if the number of pairs grew as a power of the limit; none if the
-    /// budget is used up.
+    /// Estimates the limit that just uses up the budget if the number of pairs grows as a power of the limit. None if the budget
+    /// is used up.
     fn estimate(&self, count_below: impl Fn(f64) -> usize) -> Option<f64> {
         let count_below = |radius: f64| count_below(radius).max(1) as f64;
         let (stored, at_half) = (count_below(self.complete_below), count_below(self.complete_below / 2.0));
@@ -127,14 +128,14 @@ impl LimitSchedule {
 mod tests {
     use super::*;
 
-    /// A schedule for a global radius of 1 and a farthest radius of 16, after one limit for which there was room.
+    /// Returns a schedule for a global radius of 1 and a farthest radius of 16, after one limit for which there was room.
     fn after(limit: f64) -> LimitSchedule {
         LimitSchedule { limit, complete_below: limit, ..LimitSchedule::new(1.0, 16.0, 1 << 20).unwrap() }
     }
 
     #[test]
-    fn limits_pass_the_global_radius_only_from_there() {
-        // As many pairs as the limit is large, of a budget without end.
+    fn limits_stop_at_the_global_radius_before_they_pass_it() {
+        // The number of pairs is proportional to the limit, and the budget is unlimited.
         let limits = |farthest: f64| {
             let mut schedule = LimitSchedule::new(1.0, farthest, usize::MAX).unwrap();
             let mut limits = vec![schedule.limit()];

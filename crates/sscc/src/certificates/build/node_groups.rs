@@ -1,13 +1,13 @@
-//! Which node pairs can count by the groups of their triangles: nodes of one group each are decided at once.
+//! Decides which node pairs can count by the groups of their triangles, if each node has only one group.
 
 use crate::filter::PairFilter;
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// For each node the group of its triangles, where they have one in common. Empty without groups.
+/// For each node the group of its triangles, if all have the same. Empty without groups.
 pub(crate) struct NodeGroups(Vec<Option<u16>>);
 
 impl NodeGroups {
-    /// The groups of all nodes.
+    /// Determines the groups of all nodes.
     pub(crate) fn new(filter: &PairFilter, hierarchy: &Hierarchy) -> Self {
         let Some(groups) = filter.groups() else { return Self(Vec::new()) };
         let mut of_nodes = vec![None; hierarchy.nodes().len()];

@@ -21,7 +21,7 @@ use super::task::{NodeRadiusTask, Task, TaskResult};
 use crate::hierarchy::Node;
 use crate::{Error, Progress};
 
-/// Radii that a thread takes at once: each takes long.
+/// The number of radii that a thread takes at once: each takes long.
 const RADIUS_GRAIN: usize = 1;
 
 /// An upper bound of the root's radius is searched up to this many times the coarse radius; farther away there is hardly
@@ -32,7 +32,7 @@ const UPPER_BOUND_REACH: f64 = 4.0;
 pub(super) struct NodeRadii {
     pub(super) nodes: Vec<f64>,
     pub(super) root_pairs: Vec<f64>,
-    /// The cap of all radii: the global radius, or that up to which the pair tree was built where it is larger.
+    /// The cap of all radii: the global radius, or the radius up to which the pair tree was built, if that is larger.
     pub(super) cap: f64,
 }
 
@@ -60,7 +60,7 @@ impl NodeRadii {
     }
 }
 
-/// The radii so far, and what they are computed from.
+/// The radii so far, and the input from which they are computed.
 struct Passes<'a> {
     preparation: &'a Preparation,
     builder: &'a PairTreeBuilder,
@@ -71,7 +71,7 @@ struct Passes<'a> {
 impl Passes<'_> {
     /// Computes all radii that are below a limit. Returns the smallest upper bound found of any radius.
     ///
-    /// A stage is the buckets, then the larger nodes of a level ([`node_stages`]), then the pairs of the root's children.
+    /// The stages are the buckets, then the larger nodes of each level ([`node_stages`]), then the pairs of the root's children.
     fn run(&mut self, precision: Precision, below: f64, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.preparation.hierarchy;
         let nodes = hierarchy.nodes();
@@ -120,7 +120,7 @@ impl Passes<'_> {
         Ok(upper)
     }
 
-    /// An upper bound of the root's radius, if that radius comes from pairs bounded while building the pair tree:
+    /// Returns an upper bound of the root's radius, if that radius comes from pairs bounded while building the pair tree:
     /// searching these pairs again usually finds one. Infinite otherwise; then the first pass has found one.
     fn root_upper_bound(&self, executor: &mut dyn Executor) -> Result<f64, Error> {
         let hierarchy = &self.preparation.hierarchy;
@@ -138,7 +138,7 @@ impl Passes<'_> {
         };
         let cap = self.radii.cap.min(UPPER_BOUND_REACH * radii.nodes[0]);
         let task = |_| {
-            // From the bounded pairs, too, but with the precision of the first pass.
+            // The task includes the bounded pairs, but has the precision of the first pass.
             let mut task = self.task(Precision::Full, n, siblings.clone(), cap);
             task.goal.precision = Precision::Coarse;
             task
@@ -147,13 +147,13 @@ impl Passes<'_> {
         Ok(bounds.into_iter().map(|bound| bound.upper).fold(f64::INFINITY, f64::min))
     }
 
-    /// The smallest radius of a node's children, at most the cap.
+    /// Returns the smallest radius of a node's children, at most the cap.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
         radii.fold(self.radii.cap, f64::min)
     }
 
-    /// The task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings`: their
+    /// Returns the task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings` are their
     /// indices among these pairs.
     fn task(&self, precision: Precision, n: usize, siblings: Range<usize>, cap: f64) -> NodeRadiusTask {
         let hierarchy = &self.preparation.hierarchy;
@@ -186,7 +186,7 @@ impl Passes<'_> {
     }
 }
 
-/// Has radii searched as one stage.
+/// Searches radii as one stage.
 fn search(
     executor: &mut dyn Executor,
     count: usize,

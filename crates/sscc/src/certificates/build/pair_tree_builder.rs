@@ -1,4 +1,4 @@
-//! Building of the pair tree: which node pairs it holds, and their radii (beyond the paper's section 5.2).
+//! Builds the pair tree: chooses its node pairs and computes their radii (beyond the paper's section 5.2).
 //!
 //! The BVTT is built in rounds with increasing limits. A pair with a lower bound below the limit is split; a pair of
 //! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
@@ -24,8 +24,8 @@ use crate::Error;
 use crate::certificates::pair_tree::{MAX_ENTRIES, PairTree};
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// The maximum number of node pairs of the BVTT for each entry that the inner budget allows: most turn out not to be needed.
-/// In tests the limit is small, so that they reach it.
+/// The maximum number of node pairs of the BVTT for each entry that the inner budget allows: most pairs are not needed in the
+/// end. Tests have a small maximum, so that they reach it.
 const PAIRS_PER_ENTRY: usize = if cfg!(test) { 4 } else { 32 };
 
 /// The maximum number of node pairs of the BVTT, whatever the budget: indices have 32 bits.
@@ -34,7 +34,7 @@ const MAX_PAIRS: usize = 1 << 31;
 /// The rounds before the outer one may use the budget divided by this: the outer round adds two to three times as many entries.
 const INNER_DIVISOR: usize = 4;
 
-/// Open pairs that a thread takes at once.
+/// The number of open pairs that a thread takes at once.
 const SPLIT_GRAIN: usize = 8;
 
 /// One round of the construction.
@@ -50,7 +50,7 @@ struct Round {
 /// Lower bounds of node pairs, from which the pair tree is made.
 pub(super) struct PairTreeBuilder {
     bvtt: Bvtt,
-    /// All pairs with smaller radii are known; 0: none is.
+    /// All pairs with smaller radii are known; 0 if no pair is known.
     pub(super) complete_below: f64,
     /// The maximum number of entries of the tree.
     budget: usize,
@@ -150,8 +150,8 @@ impl PairTreeBuilder {
         self.complete_below == 0.0
     }
 
-    /// The frontier below some pairs of a node's children, as far as it may have a radius below `cap`; `siblings`: their
-    /// indices among these pairs. None if there is no BVTT.
+    /// Returns the frontier below some pairs of a node's children, as far as it may have a radius below `cap`; `siblings` are
+    /// their indices among these pairs. None if there is no BVTT.
     pub(super) fn frontier(
         &self,
         hierarchy: &Hierarchy,
@@ -164,7 +164,7 @@ impl PairTreeBuilder {
         Some(Frontier::below(&self.bvtt, hierarchy, indices, cap))
     }
 
-    /// The pair tree: all pairs below the limit, as far as the budget allows. The radius of a node or a pair is a lower
+    /// Returns the pair tree: all pairs below the limit, as far as the budget allows. The radius of a node or a pair is a lower
     /// bound for all pairs below it.
     pub(super) fn finish(mut self, hierarchy: &Hierarchy, node_radii: &[f64]) -> PairTree {
         if self.is_empty() {
@@ -175,7 +175,7 @@ impl PairTreeBuilder {
     }
 }
 
-/// The indices of the open pairs that may collide below a limit.
+/// Returns the indices of the open pairs that may collide below a limit.
 fn open_pairs(bvtt: &Bvtt, indices: Range<usize>, limit: f64) -> Vec<u32> {
     indices.filter(|index| bvtt.pairs[*index].is_open_below(limit)).map(|index| index as u32).collect()
 }

@@ -6,7 +6,8 @@ use super::bvtt::{Bvtt, BvttPair, PairState};
 use crate::certificates::pair_tree::{NO_PAIRS, PairEntry, PairTree};
 use crate::hierarchy::Hierarchy;
 
-/// The tree of all pairs below a limit: that below which all pairs are known, lowered until at most `budget` pairs are left.
+/// Returns the tree of all pairs below a limit: the radius below which all pairs are known, lowered until at most `budget` pairs
+/// remain.
 pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, known_below: f64, budget: usize) -> PairTree {
     let limit = fitting_limit(&bvtt.pairs, known_below, budget);
     if limit <= 0.0 {
@@ -40,7 +41,7 @@ fn is_below(pair: &BvttPair, limit: f64) -> bool {
     f64::from(pair.lower) < limit
 }
 
-/// The largest limit, at most the given one, with at most `budget` pairs below it.
+/// Returns the largest limit, at most the given one, with at most `budget` pairs below it.
 fn fitting_limit(pairs: &[BvttPair], limit: f64, budget: usize) -> f64 {
     let mut radii: Vec<f32> = pairs.iter().filter(|p| is_below(p, limit)).map(|p| p.lower).collect();
     if radii.len() <= budget {
@@ -50,19 +51,19 @@ fn fitting_limit(pairs: &[BvttPair], limit: f64, budget: usize) -> f64 {
     f64::from(*cut)
 }
 
-/// The lists of siblings of which some are stored, in the order in which they are stored.
+/// The lists of siblings that are stored at least in part, in the order in which they are stored.
 struct SiblingLists<'a> {
     bvtt: &'a Bvtt,
     limit: f64,
     lists: Vec<Range<usize>>,
-    /// The number of entries of all of them.
+    /// The number of entries of all lists.
     total: usize,
 }
 
 /// A list of siblings in the tree.
 struct SiblingList {
     start: usize,
-    /// How many of the siblings are stored.
+    /// The number of siblings that are stored.
     stored: usize,
 }
 

@@ -1,5 +1,5 @@
 //! The input of all tasks: hierarchy, scope with exceptions, scaled model, bounds of nodes. It depends on the model and
-//! the options alone, so every process computes its own, and all are equal.
+//! the options alone, so every process computes it with the same result.
 
 use std::sync::Arc;
 
@@ -112,8 +112,9 @@ impl Preparation {
         })
     }
 
-    /// The largest radius of interest in a round of the pair tree up to a limit. Rounds up to the global radius do not look
-    /// beyond it: where the budget ends there, no time is spent on more, and the certificates are those without a reach.
+    /// Returns the largest radius of interest in a round of the pair tree up to a limit. Rounds up to the global radius do not
+    /// search beyond it: if the budget ends there, no time is spent on larger radii, and the certificates are the same as without
+    /// a reach.
     pub(crate) fn farthest_in_round(&self, limit: f64) -> f64 {
         if limit > self.global_radius { self.farthest } else { self.global_radius }
     }
@@ -123,12 +124,12 @@ impl Preparation {
         self.nodes.are_touching(nodes)
     }
 
-    /// The local certificates of the model, in at most so many bytes.
+    /// Computes the local certificates of the model, in at most `most_bytes` bytes.
     pub(crate) fn local_certificates(&self, model: &ReducedModel, most_bytes: usize) -> LocalCertificates {
         compute_local_certificates(model, &self.hierarchy, &self.filter, &self.scope.center, most_bytes)
     }
 
-    /// A search for one thread.
+    /// Creates a search for one thread.
     pub(crate) fn search<'a>(&'a self, progress: &'a dyn Progress) -> RadiusSearch<'a> {
         let Self { scaled, filter, rings, hierarchy, nodes, groups, .. } = self;
         RadiusSearch::new(
@@ -139,11 +140,11 @@ impl Preparation {
     }
 }
 
-/// Pairs farther apart than the clearance by less than this share of it are exceptions, too. Parts are often made as far apart as they
-/// must be, and their radius would be 0.
+/// Pairs farther apart than the clearance by less than this share of it are exceptions, too. Parts are often designed exactly as
+/// far apart as required, and their radius would be 0.
 const NEARLY: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
-/// The pairs that are nearer than a clearance at the centre, and those that are hardly farther apart, sorted.
+/// Returns the pairs that are nearer than a clearance at the centre, or only slightly farther apart, sorted.
 fn near_at_center(
     model: &ReducedModel,
     filter: &ContactFilter,
@@ -152,12 +153,12 @@ fn near_at_center(
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let distance = clearance.distance() * NEARLY;
-    // Where that is not finite, nothing is that far apart.
+    // If that is not finite, no two triangles are that far apart.
     let nearly = Clearance::new(distance).unwrap_or(*clearance).beyond_rings(clearance.rings());
     near_pairs_of_model(model, filter, center, &nearly, progress)
 }
 
-/// The pairs that collide at the centre, or are near there, and are not ignored; none if there are more than allowed.
+/// Returns the pairs that collide at the centre, or are near there, and are not ignored; no pair if there are more than allowed.
 fn exceptions(at_center: Vec<Pair>, filter: &ContactFilter, max_exceptions: usize) -> Vec<Pair> {
     let is_counted = |pair: &Pair| filter.ignored().binary_search(pair).is_err();
     let mut exceptions: Vec<Pair> = at_center.into_iter().filter(is_counted).collect();

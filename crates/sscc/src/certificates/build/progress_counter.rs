@@ -4,10 +4,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::{Error, Progress};
 
-/// Steps between two reports.
+/// The number of steps between two reports.
 const REPORT_INTERVAL: usize = 64;
 
-/// Counts finished steps and reports them now and then.
+/// Counts finished steps and reports them at intervals.
 pub(super) struct ProgressCounter<'a> {
     progress: &'a dyn Progress,
     done: AtomicUsize,

@@ -6,12 +6,12 @@ use crate::hierarchy::NodePair;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoundedNodePair {
     pub(crate) nodes: NodePair,
-    /// 0: the pair has not been bounded yet.
+    /// 0 if the pair has not been bounded yet.
     pub(crate) lower: f64,
 }
 
 impl BoundedNodePair {
-    /// A pair that has not been bounded yet.
+    /// Creates a pair that has not been bounded yet.
     pub(crate) fn unbounded(nodes: NodePair) -> Self {
         Self { nodes, lower: 0.0 }
     }
@@ -20,7 +20,7 @@ impl BoundedNodePair {
 /// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RadiusBound {
-    /// Certified: no triangle pair searched collides below this.
+    /// The certified radius: no triangle pair searched collides below it.
     pub(crate) radius: f64,
     /// The smallest upper bound found of any such pair's radius; infinite if none was found.
     pub(crate) upper: f64,

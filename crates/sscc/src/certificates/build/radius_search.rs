@@ -20,12 +20,12 @@ use crate::hierarchy::NodePair;
 use crate::min_heap::MinHeapEntry;
 use crate::{Pair, Progress};
 
-/// The maximum number of candidates in the queue, beside those of the pair at hand. Beyond it the search goes on depth
-/// first, in constant memory.
+/// The maximum number of candidates in the queue, beside those of the current pair. Beyond it the search continues depth first,
+/// in constant memory.
 const MAX_QUEUED: usize = 1 << 20;
 
-/// Two nodes whose triangle pairs have not been listed, or one triangle pair. Of two with the same lower bound a triangle
-/// pair is taken before nodes, then the one with the smaller index.
+/// Two nodes whose triangle pairs have not been listed, or one triangle pair. At equal lower bounds triangle pairs are taken
+/// before nodes, and smaller indices before larger ones.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Candidate {
     Triangles(u32, u32),
@@ -42,7 +42,7 @@ pub(crate) struct RadiusSearch<'a> {
     triangle_pairs: Vec<BoundedTriangles>,
     queue: BinaryHeap<MinHeapEntry<Candidate>>,
     target: RefinementTarget,
-    /// How many more triangle pairs may be subdivided.
+    /// The number of triangle pairs that may still be subdivided.
     triangle_pairs_left: usize,
     /// The smallest certified radius among the pairs that need no more refinement.
     certified: f64,
@@ -69,13 +69,13 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 
-    /// The triangle pair for which the last search found its smallest upper bound.
+    /// Returns the triangle pair for which the last search found its smallest upper bound.
     pub(crate) fn closest(&self) -> Option<Pair> {
         self.closest
     }
 
-    /// A certified lower bound for all triangle pairs between two nodes that count, by the nodes alone; a bound of at
-    /// least `refine_up_to` is not made better. Infinite if no pair counts by its groups.
+    /// Returns a certified lower bound for all triangle pairs between two nodes that count, from the nodes alone; a bound of at
+    /// least `refine_up_to` is not improved. Infinite if no pair counts by its groups.
     pub(crate) fn bound_nodes(&mut self, (n, m): NodePair, refine_up_to: f64) -> f64 {
         if !self.context.groups.can_count(self.context.filter, (n, m)) {
             return f64::INFINITY;
@@ -83,10 +83,10 @@ impl<'a> RadiusSearch<'a> {
         self.context.nodes.bound(self.context.model, n, m, refine_up_to, &mut self.scratch)
     }
 
-    /// The radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
+    /// Searches the radius of all triangle pairs between the two nodes of each given pair. None if cancelled.
     pub(crate) fn between(&mut self, pairs: Vec<BoundedNodePair>, goal: SearchGoal) -> Option<RadiusBound> {
         self.start(goal);
-        // All at once: building a heap of many takes linear time.
+        // All are added at once, because building a heap takes linear time.
         let mut queued = std::mem::take(&mut self.queue).into_vec();
         let bounded = pairs.iter().filter(|pair| pair.lower > 0.0);
         queued.extend(bounded.map(|pair| {
@@ -100,8 +100,8 @@ impl<'a> RadiusSearch<'a> {
         self.run()
     }
 
-    /// The radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is that of the pair
-    /// tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`]. None if cancelled.
+    /// Searches the radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is that of
+    /// the pair tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`]. None if cancelled.
     pub(crate) fn between_without_subdivision(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::new(cap, Precision::Full));
         self.target =
@@ -110,7 +110,7 @@ impl<'a> RadiusSearch<'a> {
         self.run()
     }
 
-    /// The radius of all triangle pairs within a node. None if cancelled.
+    /// Searches the radius of all triangle pairs within a node. None if cancelled.
     ///
     /// Each child is searched first: the radius of one is the cap of the next.
     pub(crate) fn within(&mut self, n: u32, goal: SearchGoal) -> Option<RadiusBound> {
@@ -172,18 +172,19 @@ impl<'a> RadiusSearch<'a> {
         Some(RadiusBound { radius, upper: self.target.upper })
     }
 
-    /// A candidate with a lower bound of at least this cannot lower the result by more than epsilon.
+    /// Returns the lower bound from which on a candidate cannot lower the result by more than epsilon.
     fn refine_up_to(&self) -> f64 {
         self.target.sufficient().min(self.certified)
     }
 
-    /// Bounds two nodes and queues them if they matter. `inherited`: a lower bound of a pair that contains this one.
+    /// Bounds two nodes and queues them if they can lower the result. `inherited` is a lower bound of a pair that contains this
+    /// one.
     fn add_nodes(&mut self, nodes: NodePair, inherited: f64) {
         let lower = self.bound_nodes(nodes, self.refine_up_to()).max(inherited);
         self.add(Candidate::Nodes(nodes.0, nodes.1), lower);
     }
 
-    /// Bounds the triangle pairs between two leaves, or within one, and queues those that matter.
+    /// Bounds the triangle pairs between two leaves, or within one, and queues those that can lower the result.
     fn add_triangles(&mut self, leaves: NodePair, inherited: f64) {
         let (n, m) = leaves;
         let dir = if n == m { None } else { self.context.nodes.direction(n, m, &mut self.scratch) };
@@ -219,7 +220,7 @@ impl<'a> RadiusSearch<'a> {
         }
     }
 
-    /// Refines a triangle pair by subdivision, as far as it matters.
+    /// Refines a triangle pair by subdivision, as far as it can lower the result.
     fn refine_triangles(&mut self, (a, b): Pair, lower: f64) {
         let upper = self.target.upper;
         self.triangle_pairs_left = self.triangle_pairs_left.saturating_sub(1);

@@ -12,7 +12,7 @@ pub(crate) struct RadiusSearchContext<'a> {
     pub(crate) model: &'a ScaledModel,
     /// The contact filter, which also excludes exceptions.
     pub(crate) filter: &'a PairFilter,
-    /// Pairs that need not keep a clearance; none without one.
+    /// Pairs that need not keep the clearance; empty without a clearance.
     pub(crate) rings: &'a RingPairs,
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) nodes: &'a NodePairBounds,

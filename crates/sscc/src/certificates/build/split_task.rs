@@ -10,15 +10,15 @@ use crate::model::rounding::to_f32_down;
 /// A pair of buckets is bounded up to this many times the limit, so that most need no further search in the next round.
 const BUCKET_LOOKAHEAD: f64 = 2.0;
 
-/// In the outer round a pair of buckets is searched where its bound by the nodes alone is below this share of the limit.
-/// Moving hulls separate most of the others until close to their radius (docs/notes/pair-tree.md#outer-round).
+/// In the outer round a pair of buckets is searched if its bound by the nodes alone is below this share of the limit. Moving
+/// hulls separate most of the others until close to their radius (docs/notes/pair-tree.md#outer-round).
 const OUTER_SEARCH_SHARE: f64 = 0.75;
 
 /// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
-/// finish together. Tests have small models, and should leave some open, too.
+/// finish together. Tests have small models and a small maximum, so that they leave some pairs open, too.
 const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
 
-/// Pairs between two tests for cancellation; searches test for themselves.
+/// The number of pairs between two checks for cancellation; searches check it themselves.
 const CANCEL_INTERVAL: usize = 64;
 
 /// An open node pair that may collide below a limit.
@@ -64,7 +64,7 @@ pub(super) fn split(
             None => {
                 let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.farthest_in_round(limit));
                 let radius = search.between_without_subdivision(nodes, cap)?.radius;
-                // One that ends at the global radius is searched again in rounds beyond it.
+                // A pair whose search ends at the global radius is searched again in rounds beyond it.
                 if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }

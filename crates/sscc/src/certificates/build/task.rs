@@ -23,9 +23,9 @@ pub(crate) enum Task {
 /// A radius to search.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NodeRadiusTask {
-    /// A leaf or a bucket is searched within.
+    /// The node whose radius is searched. A leaf or a bucket is searched as a whole.
     pub(crate) node: u32,
-    /// The pairs of nodes below any other node. They are searched, and the smallest of their radii is that of the node.
+    /// The pairs of nodes to search below any other node. The smallest of their radii is that of the node.
     pub(crate) pairs: Vec<BoundedNodePair>,
     pub(crate) goal: SearchGoal,
 }
@@ -38,7 +38,7 @@ pub(crate) enum TaskResult {
     NodeRadius(RadiusBound),
 }
 
-/// Runs a task; `search` lends its memory. None if cancelled.
+/// Runs a task in the memory of `search`. None if cancelled.
 pub(crate) fn run_task(
     task: Task,
     preparation: &Preparation,
@@ -57,14 +57,14 @@ pub(crate) fn run_task(
 }
 
 impl NodeRadiusTask {
-    /// Searches all of a leaf or a bucket.
+    /// Creates the task to search all of a leaf or a bucket.
     pub(crate) fn within(node: u32, precision: Precision, cap: f64) -> Self {
         Self { node, pairs: Vec::new(), goal: SearchGoal::new(cap, precision) }
     }
 
-    /// Searches the pairs between two nodes.
+    /// Creates the task to search the pairs between two nodes.
     pub(super) fn between(pair: BoundedNodePair, precision: Precision, cap: f64) -> Self {
-        // Both are within the root, whose pairs are searched: it is no leaf where there are pairs.
+        // Both nodes are below the root, which is then no leaf: so `run` searches the pairs.
         Self { node: 0, pairs: vec![pair], goal: SearchGoal::new(cap, precision) }
     }
 
@@ -79,7 +79,7 @@ impl NodeRadiusTask {
 }
 
 impl TaskResult {
-    /// How many node pairs the result adds to the BVTT.
+    /// Returns the number of node pairs that the result adds to the BVTT.
     pub(crate) fn added_pairs(&self) -> usize {
         match self {
             Self::Split(subtree) => subtree.len().saturating_sub(1),
@@ -87,7 +87,7 @@ impl TaskResult {
         }
     }
 
-    /// The result of splitting a pair.
+    /// Returns the result of splitting a pair.
     pub(crate) fn into_subtree(self) -> Result<Vec<BvttPair>, Error> {
         match self {
             Self::Split(subtree) => Ok(subtree),
@@ -95,7 +95,7 @@ impl TaskResult {
         }
     }
 
-    /// The result of searching a radius.
+    /// Returns the result of searching a radius.
     pub(crate) fn into_bound(self) -> Result<RadiusBound, Error> {
         match self {
             Self::NodeRadius(bound) => Ok(bound),
@@ -104,7 +104,7 @@ impl TaskResult {
     }
 }
 
-/// The error of an executor that gives results of another kind than its tasks: a defect of this crate.
+/// Returns the error for an executor that gives results of another kind than its tasks: a defect of this crate.
 fn other_kind() -> Error {
     Error::Certificates("a result is of another kind than its task".to_owned())
 }

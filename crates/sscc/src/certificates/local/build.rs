@@ -17,17 +17,19 @@ use crate::vectors::{InstructionSet, LANES};
 use crate::{Neighbours, ReducedModel};
 use glam::DVec3;
 
-/// Vertices that the ellipsoid is fitted to, and parts of the node of which it is fitted to the tightest pair.
+/// Maximum number of vertices to which the ellipsoid is fitted.
 const VERTEX_BLOCKS: usize = 16;
+
+/// Maximum number of parts of the node to whose tightest pairs the ellipsoid is fitted.
 const TIGHT_BLOCKS: usize = 48;
 
-/// Certificates beyond these numbers prove nothing.
+/// Certificates with numbers of at least this prove nothing.
 const LARGEST: f64 = 1e12;
 
-/// Ratios with other nodes are not told apart below this share of the ratio within the node.
+/// Ratios with other nodes that are below this share of the ratio within the node are not distinguished.
 const OWN_SHARE: f32 = 1.0;
 
-/// Smaller bounds of heights are not told apart: a turn costs a multiple of them.
+/// Smaller bounds of heights are not distinguished: a rotation costs a multiple of them.
 const LEAST_FLATNESS: f32 = 1e-3;
 
 /// The certificate of one node.
@@ -40,9 +42,9 @@ struct LocalCertificate {
     list: Vec<(u32, f32)>,
 }
 
-/// The certificates of all nodes down to buckets about the centre, those of fewest modes first as far as `most_bytes` go, on the threads of the
-/// current pool. `filter` leaves out exceptions. None where `most_bytes` is 0, the shape has no size, or the filter wants pairs that share
-/// an edge.
+/// Computes the certificates of nodes down to buckets about the centre, on the threads of the current pool. Those of fewest modes
+/// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes` is 0, the
+/// shape has no size, or pairs that share an edge count.
 pub(crate) fn compute_local_certificates(
     model: &ReducedModel,
     hierarchy: &Hierarchy,
@@ -83,8 +85,9 @@ pub(crate) fn compute_local_certificates(
     all
 }
 
-/// Keeps the certificates of fewest modes, and of as many modes those of the largest nodes, as far as memory goes; none where they
-/// cover less than [`LEAST_PROVEN_SHARE`] of all triangles. `found`: before, the largest nodes first; after, by node.
+/// Keeps the certificates of fewest modes, and at equal numbers of modes those of the largest nodes, while they fit into the
+/// memory. Keeps no certificate if they cover less than [`LEAST_PROVEN_SHARE`] of all triangles. `found` has the largest nodes
+/// first, and is sorted by node afterwards.
 fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, most_bytes: usize) {
     let mut bytes = 0;
     found.sort_by_key(|(_, certificate)| certificate.modes.len());
@@ -104,10 +107,11 @@ fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, 
     found.sort_unstable_by_key(|(n, _)| *n);
 }
 
-/// The nodes that get a certificate: buckets, the nodes above them, of the others those of every second height, and the root.
+/// Returns the nodes that get a certificate: buckets, the nodes directly above them, nodes at every second height beyond, and the
+/// root.
 fn certified_nodes(hierarchy: &Hierarchy) -> Vec<u32> {
     let (nodes, within) = (hierarchy.nodes(), hierarchy.nodes_within_buckets());
-    // How far buckets are below.
+    // The height of each node above the farthest bucket below it.
     let mut heights = vec![0_u32; nodes.len()];
     for n in (0..nodes.len()).rev().filter(|n| !nodes[*n].fits_in_bucket()) {
         heights[n] = 1 + nodes[n].children().map(|child| heights[child as usize]).max().unwrap_or(0);
@@ -122,7 +126,7 @@ struct Builder<'b> {
     touching: &'b TouchingNodes<'b>,
 }
 
-/// Memory of one thread.
+/// The memory of one thread.
 struct Scratch {
     instructions: InstructionSet,
     patch: Patch,
@@ -142,7 +146,7 @@ impl Scratch {
 }
 
 impl Builder<'_> {
-    /// The certificate of a node; none where it would prove nothing.
+    /// Computes the certificate of a node. None if it would prove nothing.
     fn certify(&self, n: u32, scratch: &mut Scratch) -> Option<LocalCertificate> {
         let Scratch { instructions, patch, search, images } = scratch;
         let around = self.touching.around(n);
@@ -196,8 +200,8 @@ impl Builder<'_> {
         })
     }
 
-    /// A direction across a patch that is nearly flat, and the largest height of one corner above another along it for each unit of their
-    /// gap. Zero and infinity for other patches.
+    /// Returns a direction across a patch that is nearly flat, and the largest height of one corner above another along it,
+    /// divided by their gap. Returns zero and infinity for other patches.
     fn flatness(&self, search: &mut StrainSearch, patch: &Patch, parts: &[u32]) -> (DVec3, f32) {
         let Some(across) = patch.across() else { return (DVec3::ZERO, f32::INFINITY) };
         let highest = patch.heights(across, &mut search.images);
@@ -243,8 +247,8 @@ impl Builder<'_> {
         ratio
     }
 
-    /// The blocks that the ellipsoid is fitted to: the residual of some vertices over their distance from the first one, and differences of
-    /// residuals over the gap, of the tight pairs within the patch where they are largest.
+    /// Returns the blocks to which the ellipsoid is fitted: residuals of some vertices over their distances from the first one,
+    /// and differences of residuals over the gap for the tight pairs within the patch for which they are largest.
     fn blocks(&self, n: u32, patch: &Patch) -> Vec<f64> {
         let width = 3 * patch.row_len;
         let residual = |i: u32| &patch.residuals[width * i as usize..][..width];
@@ -260,7 +264,7 @@ impl Builder<'_> {
             (ratio, pair)
         };
         let mut tight: Vec<(f64, TightPair)> = self.tight(n, patch).into_iter().map(with_ratio).collect();
-        // The largest of each part, so that no crease alone decides, and the largest of all.
+        // Chooses the largest of each part, so that no single crease decides, and the largest of all.
         let larger = |a: &(f64, TightPair), b: &(f64, TightPair)| b.0.total_cmp(&a.0);
         let mut chosen: Vec<_> = tight
             .chunks(tight.len().div_ceil(TIGHT_BLOCKS).max(1))
@@ -274,8 +278,8 @@ impl Builder<'_> {
         blocks
     }
 
-    /// The tight pairs of the node's leaves with later ones, of which both vertices are in the patch, by their numbers there, and the later
-    /// leaf.
+    /// Returns the tight pairs of the node's leaves with later leaves if both vertices are in the patch, by the numbers of the
+    /// vertices there, and the later leaf of each.
     fn tight(&self, n: u32, patch: &Patch) -> Vec<(u32, TightPair)> {
         let nodes = self.gaps.hierarchy.nodes();
         let (mut tight, mut stack) = (Vec::new(), vec![n]);
@@ -291,7 +295,7 @@ impl Builder<'_> {
         tight
     }
 
-    /// Those of two leaves of the node: the ratio of all pairs within it is at least theirs.
+    /// Returns the tight pairs of two leaves of the node: the ratio of all pairs within the node is at least that of these pairs.
     fn tight_within(&self, n: u32, patch: &Patch) -> Vec<TightPair> {
         let nodes = self.gaps.hierarchy.nodes();
         let node = &nodes[n as usize];
@@ -302,12 +306,12 @@ impl Builder<'_> {
     }
 }
 
-/// A ratio that is no number proves nothing, as an infinite one.
+/// Replaces NaN by infinity: neither ratio proves anything.
 fn infinite_for_nan(ratio: f32) -> f32 {
     if ratio.is_nan() { f32::INFINITY } else { ratio }
 }
 
-/// The gradients in the layout of [`LocalCertificates::gradients`].
+/// Returns the gradients in the layout of [`LocalCertificates::gradients`].
 fn gradients(patch: &Patch) -> Vec<f32> {
     let count = patch.modes.len();
     // The rows are `G_cj` at 3 c + j; entry e of a column is `G_cj` with c = e % 3, j = e / 3.

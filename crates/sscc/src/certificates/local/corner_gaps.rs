@@ -9,10 +9,10 @@ use crate::hierarchy::{Hierarchy, NodePair};
 use crate::parallel;
 use glam::DVec3;
 
-/// Leaves have a table where the gap of their spheres is at most this share of the sum of the radii.
+/// Leaves have a table if the gap of their spheres is at most this share of the sum of the radii.
 const NEAR: f64 = 0.3;
 
-/// A direction whose gap is this share of the distance of the centroids is wide enough.
+/// A direction is accepted without a search for a better one if its gap is this share of the distance of the centroids.
 const WIDE: f64 = 0.6;
 
 /// Covers the rounding of gaps in the unit of half the shape's size: coordinates are at most about 1.
@@ -23,7 +23,8 @@ const SMALLEST: f64 = 1e-9;
 
 /// The smallest gaps between the vertices of two near leaves.
 pub(super) struct GapTable {
-    /// For each vertex of the first leaf those of the second, rounded down; infinite where no pair of triangles counts.
+    /// For each vertex of the first leaf its gaps to the vertices of the second, rounded down; infinite where no pair of
+    /// triangles counts.
     pub(super) gaps: Vec<f32>,
     /// The smallest gap of each vertex of the first leaf.
     pub(super) of_rows: Vec<f32>,
@@ -42,7 +43,7 @@ pub(super) struct TightPair {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sphere {
     pub(super) center: DVec3,
-    /// Rounded up.
+    /// The radius, rounded up.
     pub(super) radius: f64,
 }
 
@@ -59,11 +60,11 @@ pub(super) struct CornerGaps<'g> {
     table_starts: Vec<u32>,
     /// The later leaf of each table, ascending for each first one.
     table_leaves: Vec<u32>,
-    /// None where two triangles that count have no gap.
+    /// The tables. None if two triangles that count have no gap.
     tables: Vec<Option<GapTable>>,
     /// For each node where the tight pairs of its tables with later leaves start if it is a leaf, and the end.
     tight_starts: Vec<u32>,
-    /// The later leaf, and the pair.
+    /// The later leaf of each tight pair, and the pair.
     tight: Vec<(u32, TightPair)>,
 }
 
@@ -111,20 +112,20 @@ impl<'g> CornerGaps<'g> {
         gaps
     }
 
-    /// The vertices of a leaf, ascending.
+    /// Returns the vertices of a leaf, ascending.
     #[inline]
     pub(super) fn vertices(&self, leaf: u32) -> &[u32] {
         let [start, end] = [leaf, leaf + 1].map(|n| self.starts[n as usize] as usize);
         &self.vertices[start..end]
     }
 
-    /// The tight pairs of a leaf and later ones, with these.
+    /// Returns the tight pairs of a leaf and later leaves, each with the later leaf.
     pub(super) fn tight(&self, leaf: u32) -> &[(u32, TightPair)] {
         let [start, end] = [leaf, leaf + 1].map(|n| self.tight_starts[n as usize] as usize);
         &self.tight[start..end]
     }
 
-    /// The tightest pair of a table.
+    /// Returns the tightest pair of a table.
     fn tightest(&self, (n, m): NodePair, table: &GapTable) -> Option<TightPair> {
         let [x, y] = [n, m].map(|n| self.vertices(n));
         let pairs = x.iter().flat_map(|i| y.iter().map(|j| (*i, *j))).zip(&table.gaps);
@@ -135,7 +136,7 @@ impl<'g> CornerGaps<'g> {
         tight.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, pair)| pair)
     }
 
-    /// The table of two leaves, the smaller number first, if they are near.
+    /// Returns the table of two leaves, the smaller number first, if they are near.
     #[inline]
     pub(super) fn near(&self, (n, m): NodePair) -> Option<&Option<GapTable>> {
         let [start, end] = [n, n + 1].map(|n| self.table_starts[n as usize] as usize);
@@ -143,8 +144,8 @@ impl<'g> CornerGaps<'g> {
         Some(&self.tables[start + at])
     }
 
-    /// For leaves that are not near: the components of all vertices of the first leaf along a direction, and those of the
-    /// second. None where the direction separates them by too little. Any two of them have the gap of their components.
+    /// Writes the components of all vertices of both leaves, which are not near, along a direction, and returns the smallest gap.
+    /// The gap of two vertices is that of their components. None if the direction separates the leaves by too little.
     pub(super) fn components(&self, (n, m): NodePair, out: &mut [Vec<f64>; 2]) -> Option<f64> {
         let [a, b] = [n, m].map(|n| self.spheres[n as usize].center);
         let dir = (b - a).try_normalize()?;
@@ -158,7 +159,7 @@ impl<'g> CornerGaps<'g> {
         (gap > SMALLEST).then_some(gap)
     }
 
-    /// The gap of two components, rounded down.
+    /// Returns the gap of two components, rounded down.
     #[inline]
     pub(super) fn gap_between(a: f64, b: f64) -> f64 {
         (b - a) * (1.0 - 1e-14) - GAP_ROUNDING
@@ -243,7 +244,7 @@ impl<'g> CornerGaps<'g> {
     }
 }
 
-/// The gap of each two corners along one unit direction, rounded down; none where no direction found separates all of them.
+/// Returns the gap of each two corners along one unit direction, rounded down. None if no direction found separates all of them.
 fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
     let along = |dir: DVec3| {
         let dir = dir.try_normalize()?;

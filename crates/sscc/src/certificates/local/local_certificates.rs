@@ -1,9 +1,9 @@
 //! The numbers of local certificates.
 //!
 //! A node N with nodes around it is a *patch*. About the centre `q_0` of the certificates, in the unit of half the size of
-//! the shape, its vertices are at `x_v = p_v + U_v f`. The factor `f_k = (q - q_0)_k s_k` counts the largest displacement `s_k`
-//! by mode k. Take any gradient G (a 3 x 3 matrix for each mode) and the residuals `E_v = U_v - U_0 - G (p_v - p_0)` that it
-//! leaves. Then for two vertices
+//! the shape, its vertices are at `x_v = p_v + U_v f`. The factor `f_k = (q - q_0)_k s_k` is the coordinate in units in which
+//! mode k moves a vertex by at most 1; `s_k` is the largest displacement by mode k. Take any gradient G (a 3 x 3 matrix for each
+//! mode) and its residuals `E_v = U_v - U_0 - G (p_v - p_0)`. Then for two vertices
 //!
 //! ```text
 //! x_j - x_i = F (p_j - p_i) + (E_j - E_i) f,    F = I + G f
@@ -21,18 +21,18 @@
 //!
 //! where s is the smallest `s_ij`, and eta bounds how far computed positions are from the exact ones.
 //!
-//! A patch that is nearly flat leaves the map across its plane open: the one of least norm does not turn with the patch, and F becomes
-//! singular where the patch turns by a right angle. Let a be the direction across, and `nu` any vector, best a unit vector across the
-//! image of the plane. With `F~ = F (I - a a') + nu a'` in place of F,
+//! A patch that is nearly flat does not determine the map across its plane: the map of least norm does not rotate with the patch,
+//! and F becomes singular where the patch rotates by a right angle. Let a be the direction across, and `nu` any vector, best a
+//! unit vector across the image of the plane. With `F~ = F (I - a a') + nu a'` in place of F,
 //!
 //! ```text
 //! x_j - x_i = F~ (p_j - p_i) + (E_j - E_i) f + (F a - nu) (a.(p_j - p_i))
 //! ```
 //!
-//! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` will do as well, if `|a.(p_j - p_i)| <= phi s_ij`. The searches for
-//! kappa and phi may accept one pair along different directions n and n', with gaps s and s'. For `A = kappa |W f|` and
-//! `B = phi |F a - nu|` the direction `(A n + B n') / (A + B)`, of length at most 1, serves for both: its gap is `(A s + B s') / (A + B)`,
-//! at least the smaller of both, which is why eta and rho are over the smallest gap of both searches.
+//! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` suffices, too, if `|a.(p_j - p_i)| <= phi s_ij`. The
+//! searches for kappa and phi may accept one pair along different directions n and n', with gaps s and s'. For `A = kappa |W f|`
+//! and `B = phi |F a - nu|` the direction `(A n + B n') / (A + B)`, of length at most 1, serves for both: its gap is `(A s + B
+//! s') / (A + B)`, at least the smaller of both, which is why eta and rho are over the smallest gap of both searches.
 //!
 //! A certificate has a ratio for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
@@ -43,47 +43,48 @@
 pub struct LocalCertificates {
     /// The node of each certificate, ascending.
     pub nodes: Vec<u32>,
-    /// Where the modes of each certificate start, and the end; of modes that do not move a patch nothing is stored.
+    /// Where the modes of each certificate start, and the end. Nothing is stored for modes that do not move a patch.
     pub mode_starts: Vec<u32>,
     /// The modes of each certificate, ascending.
     pub modes: Vec<u32>,
     /// The gradients of each certificate: for each of its modes eight entries of G column by column, then the ninth of all its
     /// modes, padded with zeros to a multiple of eight.
     pub gradients: Vec<f32>,
-    /// W of each certificate, upper triangular, each number the upper half of a single-precision one: for each eight rows
-    /// their parts of all columns from the first row's diagonal on.
+    /// W of each certificate, upper triangular; each number is the upper half of a single-precision one. For each eight rows it
+    /// has their parts of all columns from the diagonal of the first row on.
     pub ellipsoids: Vec<u16>,
-    /// Of each certificate the numbers of its comparison.
+    /// The numbers of the comparison of each certificate.
     pub bounds: Vec<LocalBounds>,
     /// Where the list of each certificate starts, and the end.
     pub list_starts: Vec<u32>,
     /// The nodes of each list, ascending.
     pub list_nodes: Vec<u32>,
-    /// The ratio of the pairs of the certificate's node with each node of its list; infinite where none was found.
+    /// The ratio of the pairs of the certificate's node with each node of its list; infinite if none was found.
     pub list_ratios: Vec<f32>,
 }
 
 /// The numbers of a certificate's comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalBounds {
-    /// The ratio `kappa` of the pairs within the node; infinite where none was found.
+    /// The ratio `kappa` of the pairs within the node; infinite if none was found.
     pub ratio: f64,
     /// `rho`: the error of residuals and of their images.
     pub per_factor: f64,
     /// `1 / s`
     pub per_error: f64,
-    /// The largest Frobenius norm of a mode's gradient, rounded up: F in single precision is within a multiple of it.
+    /// The largest Frobenius norm of a mode's gradient, rounded up: the error of F in single precision is within a multiple of
+    /// it.
     pub steepest: f64,
-    /// The largest norm of a column of W, rounded up: so is `W f`.
+    /// The largest norm of a column of W, rounded up: the error of `W f` is within a multiple of it.
     pub widest: f64,
-    /// `a`, a direction across a patch that is nearly flat; zero for others.
+    /// `a`, a direction across a patch that is nearly flat; zero for other patches.
     pub across: [f64; 3],
-    /// `phi`, which bounds `|a.(p_j - p_i)| / s_ij` of all pairs; infinite where a patch is not flat.
+    /// `phi`, which bounds `|a.(p_j - p_i)| / s_ij` of all pairs; infinite if a patch is not flat.
     pub flatness: f64,
 }
 
 impl Default for LocalBounds {
-    /// Zeros, of a patch that is not flat.
+    /// Returns zeros, for a patch that is not flat.
     fn default() -> Self {
         Self {
             ratio: 0.0,
@@ -97,16 +98,16 @@ impl Default for LocalBounds {
     }
 }
 
-/// A patch that more modes move has no certificate.
+/// A patch that more modes than this move has no certificate.
 pub(crate) const MOST_MODES: usize = 200;
 
 /// Certificates that cover less than this share of a shape take more time than they save (docs/notes/local-certificates.md).
 pub(crate) const LEAST_PROVEN_SHARE: f64 = 0.6;
 
-/// The entries of the gradient of one mode.
+/// The number of entries of the gradient of one mode.
 pub(crate) const GRADIENT: usize = 9;
 
-/// Numbers in a vector.
+/// The number of numbers in a vector.
 const LANES: usize = crate::vectors::LANES;
 
 /// The layout of an upper triangular matrix in blocks of eight rows and one column.
@@ -114,36 +115,36 @@ const LANES: usize = crate::vectors::LANES;
 pub(crate) struct EllipsoidBlocks(pub(crate) usize);
 
 impl EllipsoidBlocks {
-    /// For each eight rows the columns that have entries in them.
+    /// Returns for each eight rows the columns that have entries in them.
     pub(crate) fn columns(self) -> impl Iterator<Item = std::ops::Range<usize>> {
         (0..self.0).step_by(LANES).map(move |first| first..self.0)
     }
 
-    /// The numbers of a matrix.
+    /// Returns how many numbers a matrix has.
     pub(crate) fn len(self) -> usize {
         LANES * self.columns().map(|columns| columns.len()).sum::<usize>()
     }
 }
 
-/// The numbers of the gradients of so many modes.
+/// Returns how many numbers the gradients of this many modes have.
 pub(crate) fn gradient_len(modes: usize) -> usize {
     LANES * (modes + modes.div_ceil(LANES))
 }
 
 impl LocalCertificates {
-    /// Memory in bytes of a certificate of so many modes, apart from its list.
+    /// Returns the memory in bytes of a certificate of this many modes, apart from its list.
     pub(crate) fn bytes_of(modes: usize) -> usize {
         4 * gradient_len(modes) + 2 * EllipsoidBlocks(modes).len() + 4 * modes + size_of::<LocalBounds>() + 12
     }
 
-    /// The part of the memory that [`CertifyOptions::local_budget`](crate::CertifyOptions::local_budget) limits, in bytes: without the
-    /// ends of lists.
+    /// Returns the part of the memory that [`CertifyOptions::local_budget`](crate::CertifyOptions::local_budget) limits, in
+    /// bytes: it leaves out the ends of lists.
     pub fn budgeted_bytes(&self) -> usize {
         let ends = self.mode_starts.len() + self.list_starts.len() - 2 * self.nodes.len();
         self.bytes() - 4 * ends
     }
 
-    /// Memory in bytes.
+    /// Returns the memory in bytes.
     pub fn bytes(&self) -> usize {
         let words = self.nodes.len()
             + self.mode_starts.len()

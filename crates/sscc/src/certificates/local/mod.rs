@@ -1,9 +1,9 @@
-//! Local certificates: a node is proven free by its own strain, wherever the rest of the shape goes.
+//! Local certificates: a node is proven free by its own strain, whatever the motion of the rest of the shape.
 //!
 //! `local_certificates` has the inequality and the numbers. `build` computes them: `patch_model` has the positions and modes
 //! of the model in units of its size, `corner_gaps` the gaps between the corners of near leaves, `touching_nodes` the nodes that
-//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_inequality.rs` evaluates them. `validation`
-//! checks those of a file.
+//! share a vertex, `residual_ellipsoid` and `strain_search` the bound of one patch. `query/local_inequality.rs` evaluates them.
+//! `validation` checks local certificates that come from a file.
 
 mod build;
 mod corner_gaps;

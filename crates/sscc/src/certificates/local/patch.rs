@@ -1,4 +1,4 @@
-//! A patch: a node with the nodes around it, the affine map of its modes, and the residuals that this leaves.
+//! A patch: a node with the nodes around it, the affine map of its modes, and the residuals of this map.
 
 use glam::{DMat3, DVec3};
 
@@ -13,10 +13,10 @@ use crate::vectors::{InstructionSet, Kernel, Vectors};
 /// A patch is flat if its height is at most this share of its length.
 const FLAT: f64 = 0.05;
 
-/// Steps towards the direction across a patch.
+/// The number of steps of the inverse iteration towards the direction across a patch.
 const INVERSE_STEPS: usize = 8;
 
-/// The vertices of a patch, and what their modes leave beside an affine map. Owns its memory.
+/// The vertices of a patch, the affine map of their modes, and its residuals. Owns its memory.
 pub(super) struct Patch {
     instructions: InstructionSet,
     /// For each vertex of the mesh its number in the patch.
@@ -26,9 +26,9 @@ pub(super) struct Patch {
     pub(super) row_len: usize,
     pub(super) offsets: Vec<DVec3>,
     rows: Vec<f64>,
-    /// Nine rows, `G_cj` at 3 c + j, of numbers in single precision.
+    /// The gradient: nine rows, `G_cj` at 3 c + j, of numbers in single precision.
     pub(super) gradient: Vec<f64>,
-    /// For each vertex three rows.
+    /// The residuals: three rows for each vertex.
     pub(super) residuals: Vec<f64>,
 }
 
@@ -47,7 +47,7 @@ impl Patch {
         }
     }
 
-    /// Takes the triangles of these nodes. None where more than `most` modes move them.
+    /// Loads the triangles of these nodes. None if more than `most` modes move them.
     pub(super) fn load(
         &mut self,
         model: &PatchModel<'_>,
@@ -69,7 +69,7 @@ impl Patch {
             }
         }
         model.moving_modes(&self.vertices, most, &mut self.modes)?;
-        // Whole vectors of single precision, and one where no mode moves the patch.
+        // Rows consist of whole vectors of single precision; of one vector if no mode moves the patch.
         self.row_len = padded_rank(self.modes.len().max(1)).next_multiple_of(crate::vectors::LANES);
         let width = 3 * self.row_len;
         self.rows.clear();
@@ -84,7 +84,7 @@ impl Patch {
         Some(())
     }
 
-    /// Fits the affine map, and computes the residuals that its gradient in single precision leaves.
+    /// Fits the affine map, and computes the residuals of its gradient in single precision.
     fn fit(&mut self) {
         let (row_len, width) = (self.row_len, 3 * self.row_len);
         self.gradient.clear();
@@ -99,23 +99,23 @@ impl Patch {
         instructions.run(Residuals { row_len: *row_len, offsets, rows, gradient, residuals });
     }
 
-    /// The largest Frobenius norm of a mode's gradient, rounded up; NaN where one is.
+    /// Returns the largest Frobenius norm of a mode's gradient, rounded up; NaN if one is NaN.
     pub(super) fn steepest(&self) -> f64 {
         let square = |k: usize| (0..9).map(|e| self.gradient[e * self.row_len + k].powi(2)).sum::<f64>();
         (0..self.modes.len()).map(square).fold(0.0, larger_or_nan).sqrt() * (1.0 + 1e-12)
     }
 
-    /// The largest Frobenius norm of a vertex's residual, rounded up; NaN where one is.
+    /// Returns the largest Frobenius norm of a vertex's residual, rounded up; NaN if one is NaN.
     pub(super) fn largest_residual(&self) -> f64 {
         largest_norm(&self.residuals, 3 * self.row_len)
     }
 
-    /// The longest offset; NaN where one is.
+    /// Returns the length of the longest offset; NaN if one is NaN.
     pub(super) fn longest(&self) -> f64 {
         self.offsets.iter().map(|d| d.length()).fold(0.0, larger_or_nan)
     }
 
-    /// A unit vector across the patch, if it is nearly flat.
+    /// Returns a unit vector across the patch, if it is nearly flat.
     pub(super) fn across(&self) -> Option<DVec3> {
         let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
         let mean = self.offsets.iter().sum::<DVec3>() / self.offsets.len() as f64;
@@ -132,8 +132,8 @@ impl Patch {
         (high - low <= FLAT * self.longest()).then_some(across)
     }
 
-    /// The components of all vertices along a unit direction, as if they were images: the first number of the rows of each. Returns a
-    /// magnitude whose rounding to single precision is at least the error of the difference of two.
+    /// Writes the components of all vertices along a unit direction, as if they were images: each is the first number of the
+    /// vertex's rows. Returns a magnitude whose rounding to single precision is at least the error of the difference of two.
     pub(super) fn heights(&self, direction: DVec3, images: &mut Vec<f32>) -> f64 {
         images.clear();
         images.resize(self.residuals.len(), 0.0);
@@ -143,13 +143,13 @@ impl Patch {
             rows[0] = height as f32;
             largest = larger_or_nan(largest, height.abs());
         }
-        // Offsets and products in double precision err by at most 4 units of 2^-53 of the longest offset, two heights by 9e-16 of it. Of the
-        // number that is added, 1.2e-7 counts as error: 1.2e-15 of the longest offset.
+        // Offsets and products in double precision err by at most 4 units of 2^-53 of the longest offset, two heights by 9e-16 of
+        // it. 1.2e-7 of the number that is added here counts as error: 1.2e-15 of the longest offset.
         right_or!(largest + 1e-8 * self.longest(), LocalHeightsExact, largest)
     }
 
-    /// The images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of one before it
-    /// was rounded.
+    /// Computes the images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of an
+    /// image before it was rounded.
     pub(super) fn images(
         &self,
         ellipsoid: &ResidualEllipsoid,
@@ -164,13 +164,13 @@ impl Patch {
     }
 }
 
-/// The largest norm of so many numbers each, rounded up; NaN where one is: it proves nothing.
+/// Returns the largest norm of `width` numbers each, rounded up; NaN if one is NaN: it proves nothing.
 fn largest_norm(numbers: &[f64], width: usize) -> f64 {
     let squares = numbers.chunks_exact(width.max(1)).map(|rows| dot(rows, rows));
     squares.fold(0.0_f64, |l, x| if x <= l { l } else { x + 0.0 * l }).sqrt() * (1.0 + 1e-9)
 }
 
-/// The residuals of all vertices.
+/// Computes the residuals of all vertices.
 struct Residuals<'r> {
     row_len: usize,
     offsets: &'r [DVec3],
@@ -198,7 +198,7 @@ impl Kernel for Residuals<'_> {
     }
 }
 
-/// The images of all residuals under the ellipsoid.
+/// Computes the images of all residuals under the ellipsoid.
 struct Divide<'d> {
     ellipsoid: &'d ResidualEllipsoid,
     images: &'d mut [f64],

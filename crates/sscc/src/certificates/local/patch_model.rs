@@ -13,7 +13,7 @@ pub(crate) struct PatchModel<'m> {
     scales: FactorScales,
 }
 
-/// What factors are: displacements by each mode in the unit of half the shape's size.
+/// The scales of factors, which are displacements by each mode in the unit of half the shape's size.
 #[derive(Clone, Debug)]
 pub(crate) struct FactorScales {
     /// For each mode its largest displacement over half the size of the shape.
@@ -25,12 +25,13 @@ pub(crate) struct FactorScales {
 }
 
 impl FactorScales {
-    /// None where a number is out of the range of the inequality: no size, sizes that are not normal numbers.
+    /// Computes the scales. None if a number is out of the range of the inequality: the shape has no size, or a size is not a
+    /// normal number.
     pub(crate) fn new(model: &ReducedModel, center: &[f64]) -> Option<Self> {
         Self::with_middle(model, center).map(|(scales, _)| scales)
     }
 
-    /// The same, with the middle of the shape.
+    /// Returns the scales and the middle of the shape.
     fn with_middle(model: &ReducedModel, center: &[f64]) -> Option<(Self, DVec3)> {
         let reach = model.check_coordinates(center).ok()?;
         let points = model.mesh().used_vertices().into_iter().map(|v| model.position(v, center));
@@ -47,7 +48,7 @@ impl FactorScales {
 }
 
 impl<'m> PatchModel<'m> {
-    /// None where [`FactorScales::new`] gives none.
+    /// Scales the positions. None if [`FactorScales::new`] returns None.
     pub(crate) fn new(model: &'m ReducedModel, center: &[f64]) -> Option<Self> {
         let (scales, middle) = FactorScales::with_middle(model, center)?;
         let mut positions = vec![DVec3::ZERO; model.mesh().rest_positions().len()];
@@ -57,17 +58,17 @@ impl<'m> PatchModel<'m> {
         Some(Self { model, positions, scales })
     }
 
-    /// The number of modes.
+    /// Returns the number of modes.
     pub(crate) fn rank(&self) -> usize {
         self.scales.sizes.len()
     }
 
-    /// The vertices that faces use.
+    /// Returns the vertices that faces use.
     pub(crate) fn used_vertices(&self) -> Vec<u32> {
         self.model.mesh().used_vertices()
     }
 
-    /// The position of a vertex: within a cube with sides of length 2, up to rounding.
+    /// Returns the position of a vertex: within a cube with sides of length 2, up to rounding.
     pub(crate) fn position(&self, vertex: u32) -> DVec3 {
         self.positions[vertex as usize]
     }
@@ -81,7 +82,7 @@ impl<'m> PatchModel<'m> {
         }
     }
 
-    /// The modes that move one of these vertices, ascending; none where there are more than `most`.
+    /// Lists the modes that move one of these vertices, ascending. None if there are more than `most`.
     pub(super) fn moving_modes(&self, vertices: &[u32], most: usize, modes: &mut Vec<u32>) -> Option<()> {
         modes.clear();
         let rank = self.scales.sizes.len();
@@ -97,7 +98,7 @@ impl<'m> PatchModel<'m> {
         (modes.len() <= most).then_some(())
     }
 
-    /// The displacements of a vertex by these modes, each over its largest one: three rows of the length of a row.
+    /// Writes the displacements of a vertex by these modes, each divided by the mode's largest one, as three rows.
     pub(super) fn write_modes(&self, vertex: u32, modes: &[u32], rows: &mut [f64]) {
         let row_len = rows.len() / 3;
         let of_vertex = self.model.modes().of_vertex(vertex);

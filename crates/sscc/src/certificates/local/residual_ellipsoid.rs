@@ -1,23 +1,23 @@
 //! The ellipsoid of a patch's residuals: an upper triangular W such that `|(E_j - E_i) f| <= s_ij kappa |W f|`.
 //!
-//! Any W serves: `strain_search` finds its ratios. The one here is that of the smallest volume for some pairs (Khachiyan's
-//! iteration, which is multiplicative), with entries of the upper half of a single-precision number, as they are stored.
+//! Any W is valid, because `strain_search` finds its ratios. This W approximates the smallest volume for some pairs (Khachiyan's
+//! iteration, which is multiplicative). Its entries are upper halves of single-precision numbers, as they are stored.
 
 use super::local_certificates::EllipsoidBlocks;
 use crate::model::mode_rows::LANES;
 use crate::vectors::{Kernel, Vectors};
 
-/// Steps of the iteration.
+/// The number of steps of the iteration.
 const STEPS: usize = 2;
 
-/// What is added to the diagonal, relative to the trace: W is invertible, and a motion that leaves no residual still has a small
-/// `W f`.
+/// The number that is added to the diagonal, relative to the trace. It makes W invertible; a motion without residuals still has a
+/// small `W f`.
 const FLOOR: f64 = 1e-4;
 
-/// Columns whose sums are in registers. Rows are padded to whole blocks.
+/// The number of columns whose sums are in registers. Rows are padded to whole blocks.
 const BLOCK: usize = crate::vectors::LANES;
 
-/// The smallest trace: W is in the range of single precision.
+/// The smallest trace, so that W is in the range of single precision.
 const SMALLEST: f64 = 1e-20;
 
 /// An upper triangular matrix, by rows.
@@ -26,11 +26,11 @@ pub(super) struct ResidualEllipsoid {
     rank: usize,
     row_len: usize,
     rows: Vec<f64>,
-    /// Its inverse, up to rounding.
+    /// The inverse of the matrix, up to rounding.
     inverse: Vec<f64>,
 }
 
-/// The ellipsoid of blocks of three rows each; none where numbers are out of range.
+/// Fits the ellipsoid to blocks of three rows each. None if numbers are out of range.
 pub(super) struct FitEllipsoid<'b> {
     pub(super) blocks: &'b [f64],
     pub(super) rank: usize,
@@ -66,7 +66,7 @@ impl Kernel for FitEllipsoid<'_> {
 }
 
 impl ResidualEllipsoid {
-    /// The Cholesky factor of the weighted sum of Gram matrices.
+    /// Returns the Cholesky factor of the weighted sum of Gram matrices.
     #[inline(always)]
     fn of_weighted(blocks: &[f64], weights: &[f64], rank: usize, row_len: usize) -> Option<Self> {
         let mut rows = vec![0.0; rank * row_len];
@@ -107,7 +107,7 @@ impl ResidualEllipsoid {
         Some(Self { rank, row_len, rows, inverse: Vec::new() }.invert())
     }
 
-    /// The same with entries as they are stored.
+    /// Rounds the entries to numbers that can be stored. None if they are out of range.
     #[inline(always)]
     fn round(mut self) -> Option<Self> {
         self.rows.iter_mut().for_each(|x| *x = f64::from(upper_half_number(upper_half(*x as f32))));
@@ -141,12 +141,12 @@ impl ResidualEllipsoid {
         self
     }
 
-    /// `Y Z` for these rows Y, three of each vertex, in their place, which is close to the rows divided by W ([`Self::defect`]).
+    /// Replaces these rows Y, three for each vertex, by `Y Z`, which is close to the rows divided by W ([`Self::defect`]).
     #[inline(always)]
     pub(super) fn divide(&self, rows: &mut [f64]) {
         let row_len = self.row_len;
         for rows in rows.chunks_exact_mut(3 * row_len) {
-            // The last columns first: those before them do not need them.
+            // The last columns are computed first, because the columns before them do not depend on them.
             for first in (0..row_len).step_by(BLOCK).rev() {
                 let mut sums = [[0.0; BLOCK]; 3];
                 for i in 0..self.rank.min(first + BLOCK) {
@@ -165,8 +165,8 @@ impl ResidualEllipsoid {
         }
     }
 
-    /// An upper bound of `|(Y Z)_computed W - Y| / |Y|` in Frobenius norms: that of `Z W - I`, as computed, and the rounding of both products,
-    /// each at most `gamma_r |Z||W|`.
+    /// Returns an upper bound of `|(Y Z)_computed W - Y| / |Y|` in Frobenius norms: that of `Z W - I`, as computed, and the
+    /// rounding of both products, each at most `gamma_r |Z||W|`.
     pub(super) fn defect(&self) -> f64 {
         let Self { rank, row_len, rows, inverse } = self;
         let mut square = 0.0;
@@ -184,13 +184,13 @@ impl ResidualEllipsoid {
         square.sqrt() * (1.0 + 1e-9) + right_or!(rounding, LocalImagesExact, 0.0)
     }
 
-    /// The largest norm of a column, rounded up.
+    /// Returns the largest norm of a column, rounded up.
     pub(super) fn largest_column(&self) -> f64 {
         let square = |k: usize| (0..=k).map(|i| self.entry(i, k) * self.entry(i, k)).sum::<f64>();
         (0..self.rank).map(square).fold(0.0, f64::max).sqrt() * (1.0 + 1e-12)
     }
 
-    /// The numbers as they are stored, in the layout of [`EllipsoidBlocks`].
+    /// Returns the numbers as they are stored, in the layout of [`EllipsoidBlocks`].
     pub(super) fn numbers(&self) -> impl Iterator<Item = u16> {
         let lanes = crate::vectors::LANES;
         EllipsoidBlocks(self.rank).columns().flat_map(move |columns| {
@@ -203,7 +203,7 @@ impl ResidualEllipsoid {
     }
 }
 
-/// The upper half of a finite number, rounded to nearest.
+/// Returns the upper half of a finite number, rounded to nearest.
 fn upper_half(x: f32) -> u16 {
     let bits = x.to_bits();
     ((bits + 0x7fff + (bits >> 16 & 1)) >> 16) as u16

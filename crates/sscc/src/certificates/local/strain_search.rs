@@ -31,7 +31,7 @@ struct Part {
 #[derive(Default)]
 pub(super) struct StrainSearch {
     instructions: InstructionSet,
-    /// A node and all below it, breadth first; then the same of each other node that was added.
+    /// A node and all nodes below it, breadth first; then likewise each other node that was added.
     parts: Vec<Part>,
     /// For each leaf's part where the numbers of its vertices start.
     vertices: Vec<u32>,
@@ -40,7 +40,7 @@ pub(super) struct StrainSearch {
     pub(super) images: Vec<f32>,
     /// For each part the mean image.
     means: Vec<f32>,
-    /// What rounding to single precision may have changed in the difference of two images.
+    /// The largest change of the difference of two images by rounding to single precision.
     image_error: f32,
     stack: Vec<(u32, u32)>,
     components: [Vec<f64>; 2],
@@ -49,7 +49,7 @@ pub(super) struct StrainSearch {
 }
 
 impl StrainSearch {
-    /// Takes a patch of these nodes, which have no triangle in common. Returns the part of each node.
+    /// Loads a patch of these nodes, which have no triangle in common. Returns the part of each node.
     pub(super) fn load(
         &mut self,
         gaps: &CornerGaps<'_>,
@@ -91,7 +91,7 @@ impl StrainSearch {
         roots
     }
 
-    /// Takes images, of which the largest norm is known: computes their means and spreads.
+    /// Computes the means and spreads of the images, whose largest norm is given.
     pub(super) fn begin(&mut self, largest_image: f64) {
         // Squares below the range of single precision are lost, too.
         self.image_error = right_or!((largest_image * 1.2e-7 + 1e-18) as f32, LocalImagesUnrounded, 0.0);
@@ -99,7 +99,7 @@ impl StrainSearch {
         instructions.run(Means(self));
     }
 
-    /// The largest ratio of some pairs of vertices, by their numbers in the patch.
+    /// Returns the largest ratio of some pairs of vertices, by their numbers in the patch.
     pub(super) fn largest_ratio(&self, pairs: &[TightPair]) -> f32 {
         let mut largest = 0.0;
         for TightPair { i, j, gap } in pairs {
@@ -108,19 +108,19 @@ impl StrainSearch {
         largest
     }
 
-    /// The ratio of all pairs within a part, and infinity where none was found; not below `floor`.
+    /// Returns the ratio of all pairs within a part, or infinity if none was found; not below `floor`.
     pub(super) fn within(&mut self, gaps: &CornerGaps<'_>, part: u32, floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: (part, part), floor })
     }
 
-    /// A number that the ratio of two parts does not exceed, at most [`ACCEPTED`] times `floor` where the ratio is below that.
+    /// Returns an upper bound of the ratio of two parts, at most [`ACCEPTED`] times `floor` if the ratio is below `floor`.
     pub(super) fn between(&mut self, gaps: &CornerGaps<'_>, parts: (u32, u32), floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: parts, floor })
     }
 
-    /// The node of a part, and its children's parts; none for a bucket.
+    /// Returns the node of a part, and its children's parts, which are None for a bucket.
     pub(super) fn node(&self, part: u32) -> (u32, Option<std::ops::Range<u32>>) {
         let Part { node, first_child, child_count, triangle_count, .. } = self.parts[part as usize];
         let is_bucket = triangle_count as usize <= BUCKET_TRIANGLES;
@@ -155,7 +155,7 @@ impl StrainSearch {
         *largest = larger(*largest, ratio);
     }
 
-    /// Whether a distance of images, of which the square was computed, and more than that are surely at most a limit.
+    /// Whether the sum of `more` and a distance of images, given by its computed square, is surely at most a limit.
     #[inline(always)]
     fn is_at_most(&self, square: f32, more: f32, limit: f32) -> bool {
         let left = (limit - (more + self.image_error) * ROUND_UP) * (1.0 / ROUND_UP);
@@ -163,7 +163,7 @@ impl StrainSearch {
     }
 }
 
-/// Computes the mean image and the spread of each part, from below.
+/// Computes the mean image and the spread of each part, from the leaves up.
 struct Means<'s>(&'s mut StrainSearch);
 
 impl Kernel for Means<'_> {
@@ -314,7 +314,7 @@ impl Kernel for Search<'_, '_> {
     }
 }
 
-/// The larger of two numbers, and NaN where one is NaN.
+/// Returns the larger of two numbers, and NaN if one is NaN.
 #[inline(always)]
 pub(super) fn larger(a: f32, b: f32) -> f32 {
     right_or!(if b <= a { a } else { b + 0.0 * a }, LocalNanIgnored, a.max(b))
@@ -325,7 +325,7 @@ fn add_scaled(out: &mut [f32], weight: f32, x: &[f32]) {
     out.iter_mut().zip(x).for_each(|(out, x)| *out += weight * x);
 }
 
-/// `|x - y|^2`, in eight sums, so that it has the same bits in any instruction set.
+/// Returns `|x - y|^2`, in eight sums, so that it has the same bits in any instruction set.
 #[inline(always)]
 fn squared_distance(x: &[f32], y: &[f32]) -> f32 {
     let mut sums = [0.0_f32; LANES];
@@ -338,8 +338,8 @@ fn squared_distance(x: &[f32], y: &[f32]) -> f32 {
     ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
 }
 
-/// An upper bound of the largest singular value of the difference of three rows, up to the rounding of sums and at most 7% above it: by
-/// the sum of the 16th powers of the eigenvalues of the Gram matrix.
+/// Returns an upper bound of the largest singular value of the difference of three rows, up to the rounding of sums and at most
+/// 7% above it: by the sum of the 16th powers of the eigenvalues of the Gram matrix.
 #[inline(always)]
 fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
     let row_len = x.len() / 3;
@@ -358,7 +358,7 @@ fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
         }
     }
     let [xx, yy, zz, xy, xz, yz] = sums.map(|lanes| lanes.iter().map(|x| f64::from(*x)).sum::<f64>());
-    // The longest of three rows may be shorter by up to the root of three.
+    // The longest of three rows may be shorter than the singular value by a factor of up to the root of three.
     let trace = right_or!(xx + yy + zz, LocalRowsAlone, return (xx.max(yy).max(zz)).sqrt() as f32);
     if trace.is_nan() || trace <= 0.0 {
         return if trace == 0.0 { 0.0 } else { f32::INFINITY };

@@ -1,4 +1,4 @@
-//! Which nodes share a vertex with a node.
+//! Finds the nodes that share a vertex with a node.
 
 use crate::filter::PairFilter;
 use crate::hierarchy::Hierarchy;
@@ -7,7 +7,7 @@ use crate::hierarchy::Hierarchy;
 pub(super) struct TouchingNodes<'t> {
     hierarchy: &'t Hierarchy,
     filter: &'t PairFilter,
-    /// For each node its parent; the root's is itself.
+    /// For each node its parent; for the root itself.
     parents: Vec<u32>,
     /// For each vertex class where its buckets start, and the end.
     starts: Vec<u32>,
@@ -40,7 +40,7 @@ impl<'t> TouchingNodes<'t> {
         Self { hierarchy, filter, parents, starts, buckets }
     }
 
-    /// The nodes with at most as many triangles as this one that share a vertex with it, and no triangle: down to buckets,
+    /// Returns the nodes, down to buckets, that share a vertex with this one but no triangle, and have at most as many triangles;
     /// ascending.
     pub(super) fn around(&self, n: u32) -> Vec<u32> {
         let nodes = self.hierarchy.nodes();

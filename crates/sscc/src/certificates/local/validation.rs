@@ -1,7 +1,7 @@
 //! Validation of local certificates that were read from a file, against their hierarchy.
 //!
-//! Every index that a query takes from them is checked here, and that each number is one that a computation can have. Whether
-//! the numbers prove what they say is not checked: the file's hash shows that no byte was changed.
+//! This checks every index that a query takes from them, and that each number is one that a computation can have. It does not
+//! check whether the numbers are proofs: the file's hash shows that no byte was changed.
 
 use std::ops::Range;
 
@@ -10,8 +10,10 @@ use crate::hierarchy::Hierarchy;
 use crate::vectors::LANES;
 
 impl LocalCertificates {
+    /// Checks that the certificates fit a valid hierarchy and a number of modes.
+    ///
     /// # Errors
-    /// When they are none of nodes of this hierarchy, which is valid, and of so many modes.
+    /// If they do not fit.
     pub(crate) fn check(&self, hierarchy: &Hierarchy, rank: usize) -> Result<(), &'static str> {
         if self.nodes.is_empty() {
             let is_empty = *self == Self::default();
@@ -40,7 +42,7 @@ impl LocalCertificates {
         if (self.gradients.len(), self.ellipsoids.len()) != (gradients, ellipsoids) {
             return Err("gradients or ellipsoids are not those of their modes");
         }
-        // Queries have their starts as numbers of 32 bits.
+        // Queries store the starts in 32 bits.
         let is_addressed = |count: usize| u32::try_from(count / LANES).is_ok();
         if is_addressed(gradients) && is_addressed(ellipsoids) {
             Ok(())
@@ -77,7 +79,7 @@ impl LocalCertificates {
 
     fn check_nodes(&self, hierarchy: &Hierarchy) -> Result<(), &'static str> {
         let (nodes, within) = (hierarchy.nodes(), hierarchy.nodes_within_buckets());
-        // Ascending nodes: the last one is the largest.
+        // Nodes are ascending, so the last one is the largest.
         let are_nodes = |list: &[u32]| {
             list.is_sorted_by(|a, b| a < b)
                 && list.last().is_none_or(|n| (*n as usize) < nodes.len())
@@ -110,7 +112,7 @@ impl LocalCertificates {
     }
 }
 
-/// The ranges between so many starts and the end; none where they are not ascending from 0 to that end.
+/// Returns the ranges between `count` starts and the end. None if the starts do not ascend from 0 to that end.
 fn ranges(starts: &[u32], count: usize, end: usize) -> Option<impl Iterator<Item = Range<usize>>> {
     let is_whole = starts.len() == count + 1 && starts[0] == 0 && starts[count] as usize == end;
     let ranges = starts.windows(2).map(|pair| pair[0] as usize..pair[1] as usize);

@@ -1,9 +1,9 @@
-//! For tests: the gaps that a search for ratios may have used.
+//! Computes, for tests, the gaps that a search for ratios may have used.
 
 use super::corner_gaps::CornerGaps;
 use crate::hierarchy::Hierarchy;
 
-/// For each node its parent; the root's is itself.
+/// Returns for each node its parent; for the root itself.
 pub(super) fn parents(hierarchy: &Hierarchy) -> Vec<u32> {
     let nodes = hierarchy.nodes();
     let mut parents = vec![0; nodes.len()];
@@ -13,8 +13,8 @@ pub(super) fn parents(hierarchy: &Hierarchy) -> Vec<u32> {
     parents
 }
 
-/// The widest gap that a search may have used for two vertices of two leaves: along the direction of a table, of the centres of the
-/// leaves, or of the centres of two nodes around them.
+/// Returns the widest gap that a search may have used for two vertices of two leaves: along the direction of a table, of the
+/// centres of the leaves, or of the centres of two nodes around them.
 pub(super) fn widest_gap(
     gaps: &CornerGaps<'_>,
     parents: &[u32],

@@ -7,21 +7,21 @@ use crate::certificates::Digest;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 
-/// Witnesses of node pairs.
+// Tags of witnesses of node pairs.
 pub(super) const DIRECTION: u8 = b'd';
 pub(super) const NOTHING_COUNTS: u8 = b'n';
 pub(super) const SPLIT_FIRST: u8 = b'1';
 pub(super) const SPLIT_SECOND: u8 = b'2';
 pub(super) const TRIANGLES: u8 = b't';
 
-/// Witnesses of triangle pairs; smaller numbers are those of a direction that came before.
+// Tags of witnesses of triangle pairs. A smaller byte is the number of an earlier direction.
 const NEW_DIRECTION: u8 = 255;
 const NEW_MAP: u8 = 254;
 const LAST_MAP: u8 = 253;
 const QUARTER_FIRST: u8 = 252;
 const QUARTER_SECOND: u8 = 251;
 
-/// What comes before the entries.
+/// The header, which comes before the entries.
 pub(super) struct Header {
     pub(super) digest: Digest,
     pub(super) entries: usize,
@@ -37,21 +37,21 @@ pub(super) fn put_header(out: &mut Vec<u8>, header: &Header) {
     [header.rank, header.nodes].into_iter().for_each(|n| out.extend((n as u32).to_le_bytes()));
 }
 
-/// The affine map of a node.
+/// Writes the affine map of a node.
 pub(super) fn put_map(out: &mut Vec<u8>, node: &NodeModes, rank: usize) {
     put_vector(out, node.center);
     put_rows(out, &node.modes, 3, rank);
     put_rows(out, &node.gradient, 9, rank);
 }
 
-/// Rows without their padding.
+/// Writes rows without their padding.
 fn put_rows(out: &mut Vec<u8>, rows: &[f64], count: usize, rank: usize) {
     for row in rows.chunks_exact(rows.len() / count) {
         row[..rank].iter().for_each(|x| put_real(out, *x));
     }
 }
 
-/// A number; what is not finite is 0, which any witness may be.
+/// Writes a number, or 0 in place of one that is not finite: any witness may have a 0.
 fn put_real(out: &mut Vec<u8>, x: f64) {
     out.extend((if x.is_finite() { x } else { 0.0 }).to_le_bytes());
 }
@@ -60,7 +60,7 @@ pub(super) fn put_vector(out: &mut Vec<u8>, v: DVec3) {
     v.to_array().into_iter().for_each(|x| put_real(out, x));
 }
 
-/// The witnesses of triangle pairs.
+/// Writes the witnesses of triangle pairs.
 pub(super) fn put_witnesses(out: &mut Vec<u8>, witnesses: &[PairWitness], rank: usize) {
     let mut last: Option<&[f64]> = None;
     for witness in witnesses {

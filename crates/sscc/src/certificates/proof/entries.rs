@@ -1,4 +1,4 @@
-//! Entries: node pairs that together have all pairs of triangles, each with the largest radius that a query relies on.
+//! Entries: node pairs that together contain all pairs of triangles, each with the largest radius that a query relies on.
 
 use crate::certificates::CertificateParts;
 use crate::certificates::pair_tree::{StoredPair, sibling_pairs};
@@ -11,7 +11,7 @@ pub(super) struct ProofEntry {
     pub(super) radius: f64,
 }
 
-/// All entries, in the order of their numbers.
+/// Returns all entries, in the order of their numbers.
 pub(super) fn proof_entries(parts: &CertificateParts) -> Vec<ProofEntry> {
     let mut traversal = Traversal { parts, hierarchy: &parts.hierarchy, entries: Vec::new() };
     traversal.within(0, 0.0);
@@ -47,7 +47,7 @@ impl Traversal<'_> {
             .extend(pairs.map(|(which, nodes)| ProofEntry { nodes, radius: radius.max(of_root(which)) }));
     }
 
-    /// Siblings: those that are stored, and the others, which are certified below the limit.
+    /// Adds the entries of siblings: those that are stored, and the others, which are certified below the limit.
     fn siblings(&mut self, pairs: &[NodePair], stored: &[StoredPair], radius: &dyn Fn(usize) -> f64) {
         let tree = &self.parts.pair_tree;
         for (which, &nodes) in pairs.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Proofs of certificates: for each stored radius why it holds, for a checker that shares no code with this crate.
+//! Proofs of certificates: witnesses with which a checker that shares no code with this crate can verify each stored radius.
 //!
-//! `entries` divides all pairs of triangles into entries, `prover` finds witnesses, `encoding` has their bytes.
+//! `entries` divides all pairs of triangles into entries, `prover` finds witnesses, `encoding` writes their bytes.
 
 mod encoding;
 mod entries;

@@ -1,7 +1,7 @@
 //! Finds the witnesses of certificates.
 //!
-//! The bounds that gave a radius are computed again: nodes are split, and triangles subdivided, until each part has a bound of
-//! at least the radius. The direction or the affine map of that bound is the witness.
+//! The prover computes the bounds that gave a radius again: nodes are split, and triangles subdivided, until each part has a
+//! bound of at least the radius. The direction or the affine map of that bound is the witness.
 
 use super::encoding::{
     DIRECTION, Header, NOTHING_COUNTS, SPLIT_FIRST, SPLIT_SECOND, TRIANGLES, put_header, put_map, put_vector,
@@ -16,11 +16,11 @@ use crate::model::ScaledModel;
 use crate::random::next_uniform;
 use crate::{Error, Progress, ReducedModel, parallel};
 
-/// Entries that a thread takes at once.
+/// The number of entries that a thread takes at once.
 const GRAIN: usize = 4;
 
-/// Proves certificates: for each entry (a node pair and the radius below which queries skip it) why it is free. The entries
-/// together have all pairs of triangles.
+/// Proves certificates: finds witnesses that each entry (a node pair and the radius below which queries skip it) is free. The
+/// entries together contain all pairs of triangles.
 pub struct Prover {
     certificates: Certificates,
     scaled: ScaledModel,
@@ -55,12 +55,13 @@ impl Prover {
         })
     }
 
-    /// The number of entries.
+    /// Returns the number of entries.
     pub fn entries(&self) -> usize {
         self.entries.len()
     }
 
-    /// The numbers of so many entries, ascending, one from each of as many ranges of equal length; all if there are fewer.
+    /// Returns the numbers of `count` entries, ascending, one from each of `count` ranges of equal length; all numbers if there
+    /// are fewer.
     pub fn sample(&self, count: usize, seed: u64) -> Vec<usize> {
         let (all, mut state) = (self.entries.len(), seed);
         if count >= all {
@@ -72,7 +73,7 @@ impl Prover {
         (0..count).map(|i| within(start(i), start(i + 1))).collect()
     }
 
-    /// The bytes that come before those of `proven` entries.
+    /// Returns the bytes that come before those of `proven` entries.
     pub fn header(&self, proven: usize) -> Vec<u8> {
         let (parts, mut out) = (self.certificates.parts(), Vec::new());
         let nodes = parts.hierarchy.nodes().len();
@@ -83,10 +84,10 @@ impl Prover {
         out
     }
 
-    /// The bytes of some entries, by their ascending numbers.
+    /// Finds the witnesses of some entries, given by their ascending numbers, and returns the bytes.
     ///
     /// # Errors
-    /// When no witness is found for an entry, a number is that of no entry, or `progress` cancels.
+    /// If no witness is found for an entry, there is no entry of a number, or `progress` cancels.
     pub fn prove(
         &self,
         numbers: &[usize],
@@ -122,7 +123,7 @@ struct EntryProver<'a> {
 }
 
 impl EntryProver<'_> {
-    /// The number of an entry, the length of its witnesses, and these.
+    /// Returns the number of an entry, the length of its witnesses, and the witnesses, as bytes.
     fn prove(&mut self, number: usize) -> Result<Vec<u8>, Error> {
         let unproven = |what: String| Error::Unproven(format!("entry {number} has no proof: {what}"));
         let entry = self.prover.entries.get(number).ok_or_else(|| unproven("it does not exist".into()))?;
@@ -138,7 +139,7 @@ impl EntryProver<'_> {
         Ok([head, std::mem::take(&mut self.out)].concat())
     }
 
-    /// Appends the witnesses of two nodes, or of a leaf. The error is a pair of triangles without one.
+    /// Appends the witnesses of two nodes, or of a leaf. The error is a pair of triangles without a witness.
     fn nodes(&mut self, nodes: NodePair, radius: f64) -> Result<(), (u32, u32)> {
         let Prover { scaled, filter, nodes: bounds, groups, .. } = self.prover;
         let (n, m) = nodes;

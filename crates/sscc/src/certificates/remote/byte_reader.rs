@@ -1,6 +1,6 @@
 //! Reads numbers from untrusted bytes.
 
-/// Reads little-endian numbers one after the other; none if the bytes end, or the number is out of range.
+/// Reads little-endian numbers one after the other. Each method returns None if the bytes end, or the number is out of range.
 pub(super) struct ByteReader<'a>(&'a [u8]);
 
 impl<'a> ByteReader<'a> {
@@ -30,12 +30,12 @@ impl<'a> ByteReader<'a> {
         self.bytes().map(u64::from_le_bytes)
     }
 
-    /// A radius: not negative, and a number.
+    /// Reads a radius, which must not be negative or NaN.
     pub(super) fn radius(&mut self) -> Option<f64> {
         self.bytes().map(f64::from_le_bytes).filter(|x| *x >= 0.0)
     }
 
-    /// A radius in single precision.
+    /// Reads a radius in single precision, which must not be negative or NaN.
     pub(super) fn single_radius(&mut self) -> Option<f32> {
         self.bytes().map(f32::from_le_bytes).filter(|x| *x >= 0.0)
     }

@@ -8,15 +8,16 @@ use crate::certificates::{Certificates, CertifyOptions};
 use crate::parallel::on_threads;
 use crate::{Error, Progress, ReducedModel};
 
-/// Has jobs run, each by [`ShardWorker::run`](super::ShardWorker::run) in some process; gives the results in the order
-/// of the jobs.
+/// Runs jobs, each by [`ShardWorker::run`](super::ShardWorker::run) in some process, and returns the results in the order of the
+/// jobs.
 pub type RunJobs<'a> = dyn FnMut(Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Error> + 'a;
 
-/// As [`Certificates::compute`], by workers: `run` has the jobs of each stage run, at most `shards` of them. Every number of
-/// shards gives the same certificates. A few times as many shards as workers keep all of them busy to the end.
+/// Computes certificates like [`Certificates::compute`], but by workers: `run` runs the jobs of each stage, at most `shards` of
+/// them. Every number of shards gives the same certificates. With a few times as many shards as workers, all workers are busy to
+/// the end.
 ///
 /// # Errors
-/// As `compute`; what `run` returns; [`Error::Shard`] for a result that is not the job's.
+/// Those of `compute` and of `run`; [`Error::Shard`] for a result that does not belong to its job.
 pub fn compute_in_shards(
     model: &ReducedModel,
     options: &CertifyOptions,
@@ -34,7 +35,7 @@ pub fn compute_in_shards(
     Ok(on_threads(options.threads, || radii.into_certificates(model, options, preparation)))
 }
 
-/// Writes the tasks of a stage as jobs, has them run, and reads their results.
+/// Writes the tasks of a stage as jobs, runs these by a callback, and reads their results.
 struct RemoteExecutor<'a> {
     preparation: &'a Preparation,
     key: Key,
@@ -43,14 +44,14 @@ struct RemoteExecutor<'a> {
     progress: &'a dyn Progress,
 }
 
-/// A job that was sealed, and what is needed to read its result.
+/// A job that was sealed, and the layouts that are needed to read its result.
 struct SealedJob {
     bytes: Vec<u8>,
     layouts: Vec<ResultLayout>,
 }
 
 impl RemoteExecutor<'_> {
-    /// Job j of k has the tasks j, j + k, j + 2k, ..., because neighbours are often equally hard.
+    /// Seals a job. Job j of k has the tasks j, j + k, j + 2k, ..., because neighbours often take equally long.
     fn seal(&self, stage: &Stage<'_>, job: usize, jobs: usize) -> SealedJob {
         let (mut writer, mut layouts) = (JobWriter::new(stage.max_added_pairs), Vec::new());
         for index in (job..stage.count).step_by(jobs) {
@@ -61,7 +62,7 @@ impl RemoteExecutor<'_> {
         SealedJob { bytes: self.key.seal(&writer.into_bytes()), layouts }
     }
 
-    /// Reads the result of the job with that name.
+    /// Reads the result of the job with this name.
     fn open(&self, name: [u8; HASH], layouts: &[ResultLayout], result: &[u8]) -> Result<JobResult, Error> {
         let body = self.key.open("a result", result)?;
         let body =
@@ -99,7 +100,7 @@ impl Executor for RemoteExecutor<'_> {
     }
 }
 
-/// The results in the order of their tasks; none if they would add too many node pairs.
+/// Returns the results in the order of their tasks. None if they would add too many node pairs.
 fn in_order(stage: &Stage<'_>, jobs: Vec<JobResult>) -> Option<Vec<TaskResult>> {
     let complete = |job: JobResult| match job {
         JobResult::OutOfRoom => None,

@@ -1,8 +1,7 @@
 //! Jobs as bytes: some tasks of one stage, for a worker.
 //!
 //! The bytes are the stage's maximum number of added pairs, then the tasks in order. They carry lower bounds and caps
-//! from earlier stages, so a worker needs nothing but its model. Bytes that are no job on the hierarchy at hand are
-//! refused.
+//! from earlier stages, so a worker needs nothing but its model. Bytes that are no job on the worker's hierarchy are refused.
 
 use super::byte_reader::ByteReader;
 use crate::certificates::build::{BoundedNodePair, NodeRadiusTask, Precision, SearchGoal, SplitTask, Task};
@@ -72,7 +71,7 @@ impl JobWriter {
 }
 
 impl Job {
-    /// None if the bytes are no job on this hierarchy.
+    /// Reads a job. None if the bytes are no job on this hierarchy.
     pub(super) fn read(hierarchy: &Hierarchy, bytes: &[u8]) -> Option<Self> {
         let mut from = ByteReader::new(bytes);
         let max_added_pairs = usize::try_from(from.u64()?).ok()?;

@@ -1,12 +1,14 @@
 //! Job results as bytes: the results of the tasks, in order. For a split pair only states and lower bounds are written;
-//! the splitting rule gives the node pairs, so a reader needs the task.
+//! [`Hierarchy::split_above_buckets`] gives the node pairs, so a reader needs the task.
 
 use super::byte_reader::ByteReader;
 use crate::certificates::build::{BvttPair, PairState, RadiusBound, Task, TaskResult};
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// The first byte: whether the results are within the maximum number of added pairs.
+/// The first byte of results that exceed the maximum number of added pairs.
 const OUT_OF_ROOM: u8 = 0;
+
+/// The first byte of results within that maximum.
 const COMPLETE: u8 = 1;
 
 const OPEN: u8 = 0;
@@ -54,7 +56,7 @@ impl JobResult {
         bytes
     }
 
-    /// The results of some tasks; none if the bytes are no such results.
+    /// Reads the results of some tasks. None if the bytes are no such results.
     pub(super) fn read(hierarchy: &Hierarchy, layouts: &[ResultLayout], bytes: &[u8]) -> Option<Self> {
         let mut from = ByteReader::new(bytes);
         let result = match from.u8()? {

@@ -1,8 +1,8 @@
-//! Certificates of one large model computed by many processes, byte for byte as by one.
+//! Certificates of one large model computed by many processes, with the same bytes as by one.
 //!
-//! [`compute_in_shards`] writes the tasks of each stage as jobs; the caller has each run by a [`ShardWorker`]
-//! in any process that has the same model and options. Jobs and results are sealed: one that was damaged, or is of another
-//! model, other options or another build, is refused.
+//! [`compute_in_shards`] writes the tasks of each stage as jobs; the caller runs each by a [`ShardWorker`] in any process that
+//! has the same model and options. Jobs and results are sealed: one that was damaged, or is of another model, other options or
+//! another build, is refused.
 
 mod byte_reader;
 mod executor;

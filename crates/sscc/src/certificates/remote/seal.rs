@@ -19,8 +19,8 @@ pub const BUILD: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("SSCC_SOURC
 pub(super) struct Key([u8; HASH]);
 
 impl Key {
-    /// The key of a computation: build, digest (model and scope), epsilon, global radius, and the hierarchy, whose nodes
-    /// jobs name.
+    /// Computes the key of a computation from build, digest (model and scope), epsilon, global radius, and the hierarchy, whose
+    /// nodes jobs name.
     pub(super) fn of(preparation: &Preparation) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("sscc shards 2026-11-22");
         hasher.update(&(BUILD.len() as u64).to_le_bytes()).update(BUILD.as_bytes());
@@ -41,7 +41,7 @@ impl Key {
         Self(*hasher.finalize().as_bytes())
     }
 
-    /// The bytes between the key and a hash of everything.
+    /// Returns the bytes between the key and a hash of both.
     pub(super) fn seal(&self, body: &[u8]) -> Vec<u8> {
         let mut sealed = Vec::with_capacity(body.len() + 2 * HASH);
         sealed.extend_from_slice(&self.0);
@@ -51,7 +51,7 @@ impl Key {
         sealed
     }
 
-    /// The bytes that were sealed. `what` names them in errors: "a job" or "a result".
+    /// Returns the bytes that were sealed. `what` names them in errors: "a job" or "a result".
     pub(super) fn open<'a>(&self, what: &str, sealed: &'a [u8]) -> Result<&'a [u8], Error> {
         let damaged = || {
             Error::Shard(format!("{what} is damaged: it was truncated or changed in transfer; send it again"))
@@ -70,7 +70,7 @@ impl Key {
         Ok(body)
     }
 
-    /// The hash at the end of a sealed job: its name.
+    /// Returns the hash at the end of a sealed job, which is its name.
     pub(super) fn name(sealed: &[u8]) -> [u8; HASH] {
         sealed.last_chunk().copied().unwrap_or_default()
     }

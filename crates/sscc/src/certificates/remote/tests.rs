@@ -1,4 +1,4 @@
-//! Sharded certificates against those of one process.
+//! Tests sharded certificates against those of one process.
 
 use sscc_testing::cases;
 
@@ -18,7 +18,7 @@ fn sharded(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Res
     compute_in_shards(model, options, shards, &mut run, &())
 }
 
-/// All jobs of a model, and their results.
+/// Returns all jobs of a model, and their results.
 fn jobs(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Vec<(Vec<u8>, Vec<u8>)> {
     let worker = ShardWorker::new(model, options, &()).unwrap();
     let mut all = Vec::new();
@@ -88,7 +88,7 @@ fn results_of_other_models_options_and_jobs_are_refused() {
         let worker = ShardWorker::new(&model, &options, &()).unwrap();
         assert!(refusal(&worker).contains("a job belongs to another model"), "{}", refusal(&worker));
     }
-    // Results of the right model that are swapped.
+    // Results of the right model are refused if they are swapped.
     let worker = ShardWorker::new(&model, &options, &()).unwrap();
     let mut swapped = |jobs: Vec<Vec<u8>>| jobs.iter().rev().map(|job| worker.run(job, &())).collect();
     let error = compute_in_shards(&model, &options, 4, &mut swapped, &()).unwrap_err();
@@ -100,7 +100,8 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     assert_eq!(error.to_string(), "shards is 0: it must be at least 1");
 }
 
-/// Every flipped byte and every truncation of jobs and results; and bytes under a right seal that make no sense.
+/// Every flipped byte and every truncation of jobs and results is refused, and so are bytes under a valid seal that make no
+/// sense.
 #[test]
 fn damaged_bytes_are_answered_with_an_error() {
     let model = ring(100, 3, 0.9);
@@ -144,7 +145,7 @@ fn damaged_bytes_are_answered_with_an_error() {
         }
         assert!(read(&[result, &[0]].concat()).is_none());
         if let Task::NodeRadius(_) = job.tasks[0] {
-            // The sign of the first radius, behind the byte that says that the results are complete.
+            // Sets the sign of the first radius, which follows the first byte.
             let mut negative = result.to_vec();
             negative[8] |= 0x80;
             refused += usize::from(read(&negative).is_none());

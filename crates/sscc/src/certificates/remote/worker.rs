@@ -16,12 +16,11 @@ pub struct ShardWorker {
 }
 
 impl ShardWorker {
-    /// Prepares what all jobs need. Model and options are those given to
-    /// [`compute_in_shards`](super::compute_in_shards); budget and number of threads may
-    /// differ.
+    /// Prepares the input of all jobs. Model and options are those given to [`compute_in_shards`](super::compute_in_shards);
+    /// budget and number of threads may differ.
     ///
     /// # Errors
-    /// As [`Certificates::compute`](crate::Certificates::compute).
+    /// Those of [`Certificates::compute`](crate::Certificates::compute).
     pub fn new(
         model: &ReducedModel,
         options: &CertifyOptions,
@@ -32,7 +31,7 @@ impl ShardWorker {
         Ok(Self { preparation, key })
     }
 
-    /// Runs a job on the calling thread; gives the bytes of its result.
+    /// Runs a job on the calling thread, and returns the bytes of its result.
     ///
     /// # Errors
     /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; when `progress` cancels.
@@ -47,7 +46,7 @@ impl ShardWorker {
         Ok(self.key.seal(&body))
     }
 
-    /// None if cancelled.
+    /// Runs the tasks of a job. None if cancelled.
     fn run_tasks(&self, job: Job, progress: &dyn Progress) -> Option<JobResult> {
         let mut search = self.preparation.search(progress);
         let limit = AddedPairLimit::new(job.max_added_pairs);

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use super::*;
 
-/// A pseudo-random number below n.
+/// Returns a pseudo-random number below n.
 fn random(state: &mut u64, n: u64) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     ((*state >> 33) % n) as u32
 }
 
 #[test]
-fn tables_are_those_of_sets() {
+fn tables_exclude_the_same_pairs_as_sets() {
     let state = &mut 5;
     for case in 0..400 {
         let count = 1 + random(state, 7);

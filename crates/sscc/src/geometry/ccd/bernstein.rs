@@ -57,21 +57,21 @@ impl<T: Number> Polynomial<T> {
         product
     }
 
-    /// The polynomial times -1.
+    /// Returns the polynomial times -1.
     pub(super) fn reversed(&self) -> Self {
         let mut result = self.clone();
         result.coefficients.iter_mut().for_each(|x| *x = T::zero().minus(x));
         result
     }
 
-    /// The same polynomial with the coefficients of a degree, which is no lower than its own.
+    /// Returns the same polynomial with the coefficients of a given degree, which is no lower than its own.
     pub(super) fn elevated(&self, degree: usize) -> Self {
         // (1 - t) + t
         let one = Self::linear(T::from_f64(1.0), T::from_f64(1.0));
         (self.degree..degree).fold(self.clone(), |polynomial, _| polynomial.times(&one))
     }
 
-    /// An upper bound of the magnitude on the interval: a polynomial is a mean of its Bernstein coefficients, and their
+    /// Returns an upper bound of the magnitude on the interval: a polynomial is a mean of its Bernstein coefficients, and their
     /// binomials are at least 1.
     pub(super) fn magnitude(&self) -> T {
         let negative = |x: &T| T::zero().minus(x);
@@ -84,7 +84,7 @@ impl<T: Number> Polynomial<T> {
         self.degree
     }
 
-    /// The coefficients: degree + 1 of them. The first is the value at the beginning of the interval.
+    /// Returns the `degree + 1` coefficients. The first is the value at the beginning of the interval.
     pub(super) fn coefficients(&self) -> &[T] {
         &self.coefficients[..=self.degree]
     }

@@ -19,10 +19,10 @@ use glam::DVec3;
 use super::moving_triangle::MovingTriangle;
 use crate::geometry::TwoTriangles;
 
-/// Gaps along n separate when they exceed this many times `sum_c |n_c| M_c`.
+/// Gaps along n separate when they exceed this many times `sum_c |n_c| M_c` plus [`ABSOLUTE`].
 const RELATIVE: f64 = 40.0 * (f64::EPSILON / 2.0);
 
-/// ... plus this, for underflow: 2^-1022.
+/// The term of this limit that covers underflow: 2^-1022.
 const ABSOLUTE: f64 = f64::MIN_POSITIVE;
 
 /// Two moving triangles a and b, relative to the first corner of a, which moves linearly like all others.
@@ -31,7 +31,7 @@ pub(super) struct MovingPair {
     b: MovingTriangle,
     /// For each axis the largest magnitude of a corner.
     reach: DVec3,
-    /// How far, along each axis, the distance of two corners may be from that of corners that move linearly.
+    /// The largest difference, along each axis, of the distance of two corners from that of corners that move linearly.
     slack: f64,
 }
 
@@ -62,18 +62,18 @@ impl MovingPair {
         Self { a, b, reach, slack }
     }
 
-    /// The largest coordinate of a corner relative to that one: the unit of tolerances.
+    /// Returns the largest coordinate of a corner relative to the first corner of a: the unit of tolerances.
     #[inline]
     pub(super) fn size(&self) -> f64 {
         self.reach.max_element()
     }
 
-    /// How far, along each axis, the distance of two corners may be from the given one.
+    /// Returns the largest difference, along each axis, of the distance of two corners from the given one.
     pub(super) fn slack(&self) -> f64 {
         self.slack
     }
 
-    /// The corners of both at a time, rounded: for heuristics.
+    /// Returns the corners of both triangles at a time, rounded. Only heuristics use them.
     #[inline]
     pub(super) fn at(&self, t: f64) -> TwoTriangles {
         TwoTriangles { a: self.a.at(t), b: self.b.at(t) }
@@ -90,7 +90,7 @@ impl MovingPair {
         Some(CandidateDirection { a: project(&self.a), b: project(&self.b), rounding: self.rounding(dir) })
     }
 
-    /// The rounding bound of gaps along a direction.
+    /// Returns the rounding bound of gaps along a direction.
     #[inline]
     pub(super) fn rounding(&self, dir: DVec3) -> f64 {
         let slack = self.slack * dir.abs().element_sum();
@@ -100,14 +100,15 @@ impl MovingPair {
 }
 
 impl CandidateDirection {
-    /// The opposite direction.
+    /// Returns the opposite direction.
     #[inline]
     pub(super) fn reversed(&self) -> Self {
         let negate = |times: [[f64; 3]; 2]| times.map(|p| p.map(|p| -p));
         Self { a: negate(self.a), b: negate(self.b), rounding: self.rounding }
     }
 
-    /// A lower bound of how far a is below b along this direction at a time: where it is positive, they are disjoint.
+    /// Returns a lower bound of the distance by which a is below b along this direction at a time. If it is positive, they are
+    /// disjoint.
     #[inline]
     pub(super) fn gap(&self, t: f64) -> f64 {
         smallest(interpolate(&self.b, t)) - largest(interpolate(&self.a, t)) - self.rounding
@@ -119,8 +120,8 @@ impl CandidateDirection {
         (0..2).all(|time| smallest(self.b[time]) - largest(self.a[time]) > self.rounding)
     }
 
-    /// The time until which a stays below b along this direction, from `t` on: infinite when until t = 1, `t` when it is
-    /// not below b at `t`.
+    /// Returns the time until which a stays below b along this direction, from `t` on. Infinite if it does until t = 1; `t` if a
+    /// is not below b at `t`.
     #[inline]
     pub(super) fn separates_until(&self, t: f64) -> f64 {
         let mut until = f64::INFINITY;
@@ -157,7 +158,7 @@ impl CandidateDirection {
     }
 }
 
-/// Linear interpolation between the values at t = 0 and at t = 1.
+/// Interpolates linearly between the values at t = 0 and at t = 1.
 #[inline]
 fn interpolate(times: &[[f64; 3]; 2], t: f64) -> [f64; 3] {
     std::array::from_fn(|i| times[0][i] + t * (times[1][i] - times[0][i]))

@@ -10,7 +10,7 @@ use crate::geometry::{TwoTriangles, nearest_to_origin};
 
 /// The closest points of the two triangles at a time.
 pub(super) struct ClosestPoints {
-    /// The distance of two of their points, rounded: an upper bound of their distance. 0 where they meet.
+    /// The distance of two of their points, rounded: an upper bound of their distance. 0 if they meet.
     pub(super) distance: f64,
     /// A direction that separates them at that time, if one was found.
     pub(super) direction: Option<CandidateDirection>,
@@ -47,12 +47,12 @@ impl ClosestPoints {
     }
 }
 
-/// The direction between the closest points is good enough where its gap is this share of the distance.
+/// The direction between the closest points is accepted if its gap is this share of the distance.
 const WIDE: f64 = 0.75;
 
-/// The direction with the widest gap among all in which features of two triangles can be closest: two vertices, a
-/// vertex and an edge, two edges, a vertex and a face. They are computed from edges, which are long, so that they are as
-/// precise for narrow gaps as for wide ones.
+/// Returns the direction with the widest gap among all in which features of two triangles can be closest: two vertices, a vertex
+/// and an edge, two edges, a vertex and a face. They are computed from edges, which are long, so that they are as precise for
+/// narrow gaps as for wide ones.
 #[cold]
 fn find_widest_gap(pair: &MovingPair, t: f64, corners: &TwoTriangles) -> Option<CandidateDirection> {
     let TwoTriangles { a, b } = corners;
@@ -75,7 +75,7 @@ fn find_widest_gap(pair: &MovingPair, t: f64, corners: &TwoTriangles) -> Option<
         }
     };
     for [e, f, g] in [edges_a, edges_b] {
-        // Of a sliver, the normal between the edges that differ most.
+        // For a sliver, this takes the normal of the edges whose directions differ most.
         let normals = [e.cross(f), f.cross(g), g.cross(e)];
         let longer = |m: DVec3, n: DVec3| if m.length_squared() < n.length_squared() { n } else { m };
         consider(normals.into_iter().fold(DVec3::ZERO, longer));
@@ -94,7 +94,7 @@ fn find_widest_gap(pair: &MovingPair, t: f64, corners: &TwoTriangles) -> Option<
     pair.along(best.1).filter(|candidate| candidate.gap(t) > 0.0)
 }
 
-/// The unit vector of any vector but 0, however small.
+/// Returns the unit vector of any vector but 0, however small.
 fn normalize(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize_or_zero()
 }

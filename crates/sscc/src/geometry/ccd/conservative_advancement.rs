@@ -2,36 +2,35 @@
 //! 1996).
 //!
 //! Directions are tried from the cheapest to the most precise. A direction that is fixed, or turns linearly, evaluated
-//! with rounded numbers ([`candidate_direction`](super::candidate_direction)), settles nearly all pairs in a few steps.
-//! Thin sheets that turn together need more: a direction that follows two features is exact for as long as these two
-//! are closest, and exact numbers decide the signs of gaps along it where rounding does not
-//! ([`feature_direction`](super::feature_direction)). The number of steps then depends on how often the closest
-//! features change, and only by its logarithm on how narrow the gap is. Limits of steps:
-//! docs/notes/exact-tests.md#steps-of-conservative-advancement.
+//! with rounded numbers ([`candidate_direction`](super::candidate_direction)), decides nearly all pairs in a few steps. Thin
+//! sheets that rotate together need more: a direction that follows two features is exact for as long as these two are closest,
+//! and exact numbers decide the signs of gaps along it where rounding does not ([`feature_direction`](super::feature_direction)).
+//! The number of steps then depends on how often the closest features change, and only by its logarithm on how narrow the gap is.
+//! Limits of steps: docs/notes/exact-tests.md#steps-of-conservative-advancement.
 
 use super::candidate_direction::MovingPair;
 use super::closest_points::ClosestPoints;
 use super::feature_direction::find_gap_above;
 use super::moving_triangle::MovingTriangle;
 
-/// Steps by rounded directions, at most.
+/// Maximum number of steps by rounded directions.
 const MAX_STEPS: usize = 128;
 
-/// Steps along features of one continuous test, at most.
+/// Maximum number of steps along features in one continuous test.
 const MAX_FEATURE_STEPS: usize = 10_000;
 
 /// Smaller tolerances (2^-44, about 6e-14) count as this one: gaps along rounded directions have a rounding bound of up to
 /// 1.5e-14 of the size.
 const MIN_TOLERANCE: f64 = f64::from_bits((1023 - 44) << 52);
 
-/// Shorter steps cannot be represented near t = 1.
+/// The shortest step: shorter ones cannot be represented near t = 1.
 const MIN_STEP: f64 = f64::EPSILON / 16.0;
 
-/// Where a turning direction fails, the next step is at most this many times the step of the fixed direction.
+/// If a turning direction fails, the next step is at most this many times the step of the fixed direction.
 const AHEAD: f64 = 4.0;
 
-/// The fixed direction converges while each step leaves less than this share of the distance; only where it does not, a
-/// turning direction is tried.
+/// The fixed direction converges while each step reduces the distance to less than this share of it. A turning direction is tried
+/// only if the fixed one does not converge.
 const CONVERGES: f64 = 0.25;
 
 /// The result of the steps by rounded directions.
@@ -44,8 +43,8 @@ pub(super) enum Advance {
     Unknown(f64),
 }
 
-/// The time from which the distance of two triangles that do not meet at t = 0 is within `tolerance` times their size:
-/// never later than their first contact. None if they provably never meet.
+/// Returns the time from which the distance of two triangles that do not meet at t = 0 is within `tolerance` times their size: it
+/// is never later than their first contact. None if they provably never meet.
 pub(super) fn advance(
     a: &MovingTriangle,
     b: &MovingTriangle,
@@ -64,9 +63,9 @@ pub(super) fn advance(
     }
 }
 
-/// Near a contact, the fixed direction of the closest points converges like Newton's method. Along a narrow gap that
-/// turns, only a turning direction advances far; it is tried when the fixed one does not bring the triangles much
-/// closer.
+/// Advances by rounded directions. Near a contact, the fixed direction of the closest points converges like Newton's method.
+/// Along a narrow gap that turns, only a turning direction advances far; it is tried when the fixed one does not bring the
+/// triangles much closer.
 pub(super) fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -> Advance {
     let (mut t, mut step) = (0.0, 1.0);
     let mut here = ClosestPoints::at(pair, t);
@@ -118,8 +117,8 @@ pub(super) fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -
 /// even the shortest step fails, the fixed direction still advances by the time in which the fastest vertices could
 /// close the gap, up to its rounding bound.
 ///
-/// Every step is proven for corners within the slack of the pair, too. `steps` are left for this and other pairs: with
-/// none left the time reached is returned.
+/// Every step is proven for corners within the slack of the pair, too. `steps` is the number of steps left for this and other
+/// pairs: if none is left, the time reached is returned.
 #[cold]
 pub(super) fn advance_along_features(
     [a, b]: [&MovingTriangle; 2],

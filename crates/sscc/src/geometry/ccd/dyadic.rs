@@ -24,7 +24,7 @@ struct Leading {
 }
 
 impl Dyadic {
-    /// The mantissa's leading 60 bits, rounded to a double.
+    /// Returns the mantissa's leading 60 bits, rounded to a double.
     fn leading(&self) -> Leading {
         let excess = self.mantissa.bits().saturating_sub(60);
         let leading = i64::try_from(self.mantissa.magnitude() >> excess).unwrap_or(i64::MAX) as f64;
@@ -40,7 +40,7 @@ impl Number for Dyadic {
 
     fn from_f64(x: f64) -> Self {
         let Binary64 { mantissa, exponent } = Binary64::of(x);
-        // Without trailing zeros, which would lengthen all products.
+        // Removes trailing zeros, which would lengthen all products.
         let zeros = if mantissa == 0 { 0 } else { mantissa.trailing_zeros() };
         Self { mantissa: (mantissa >> zeros).into(), exponent: i64::from(exponent) - 1075 + i64::from(zeros) }
     }

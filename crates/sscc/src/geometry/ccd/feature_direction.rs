@@ -5,8 +5,8 @@
 //! an edge, the cross product of two edges, or the normal of a face. While vertices move linearly, such a direction
 //! (multiplied by the squared length of the edge, in the second case) is a polynomial in t of degree 1 to 3, and so
 //! are, one degree higher, the gaps of vertices along it. As long as the same two features are closest, the direction
-//! follows them and separates the two triangles, however narrow the gap between them and however fast both turn. The
-//! Bernstein coefficients of the gaps prove it ([`bernstein`](super::bernstein)).
+//! follows them and separates the two triangles, however narrow the gap between them and however fast both rotate. The Bernstein
+//! coefficients of the gaps prove it ([`bernstein`](super::bernstein)).
 
 use glam::DVec3;
 
@@ -20,8 +20,10 @@ use super::number::{Bounds, Number};
 /// those of b.
 struct Corners<T>([[Polynomial<T>; 3]; 6]);
 
-/// The index of the first corner of each triangle.
+/// The index of the first corner of a.
 const A: usize = 0;
+
+/// The index of the first corner of b.
 const B: usize = 3;
 
 /// A pair of features, one of a and one of b, by the numbers of vertices (0, 1, 2) and of edges (edge i begins at vertex
@@ -60,7 +62,7 @@ struct FeatureGap {
 }
 
 impl FeaturePair {
-    /// All pairs of features of two triangles.
+    /// Returns all pairs of features of two triangles.
     fn all() -> impl Iterator<Item = Self> {
         let pairs = (0..9).map(|ij| (ij / 3, ij % 3)).flat_map(|(i, j)| {
             [Self::Edges(i, j), Self::VertexEdge(i, j), Self::EdgeVertex(i, j), Self::Vertices(i, j)]
@@ -81,9 +83,9 @@ impl FeatureDirection {
     }
 }
 
-/// A direction between two features along which the gap of the two triangles at time `t` exceeds `tolerance`: of those
-/// for which rounded numbers prove this the one with the widest gap, else the one that exact numbers find. None when
-/// their distance is at most `tolerance`, up to 1e-14 of it: the distance is the widest gap of all pairs of features.
+/// Returns a direction between two features along which the gap of the two triangles at time `t` exceeds `tolerance`: the one
+/// with the widest gap of those for which rounded numbers prove this, else the one that exact numbers find. None if their
+/// distance is at most `tolerance`, up to 1e-14 of it: the distance is the widest gap of all pairs of features.
 pub(super) fn find_gap_above(
     tolerance: f64,
     a: &MovingTriangle,
@@ -107,17 +109,17 @@ pub(super) fn find_gap_above(
 }
 
 impl<T: Number> Corners<T> {
-    /// At one time: polynomials of degree 0.
+    /// Creates the corners at one time, as polynomials of degree 0.
     fn at(a: &MovingTriangle, b: &MovingTriangle, t: f64) -> Self {
         Self::map(a, b, |from, to| Polynomial::constant(interpolate(from, to, t)))
     }
 
-    /// From `t` to `s`.
+    /// Creates the corners on the interval from `t` to `s`.
     fn between(a: &MovingTriangle, b: &MovingTriangle, t: f64, s: f64) -> Self {
         Self::map(a, b, |from, to| Polynomial::linear(interpolate(from, to, t), interpolate(from, to, s)))
     }
 
-    /// Each coordinate, given its values at times 0 and 1.
+    /// Creates the corners, whose coordinates `f` returns from their values at times 0 and 1.
     fn map(a: &MovingTriangle, b: &MovingTriangle, f: impl Fn(&T, &T) -> Polynomial<T>) -> Self {
         Self(std::array::from_fn(|i| {
             let triangle = if i < B { a } else { b };
@@ -129,12 +131,12 @@ impl<T: Number> Corners<T> {
         }))
     }
 
-    /// Edge i of the triangle whose corners begin at `first`.
+    /// Returns edge i of the triangle whose corners begin at `first`.
     fn edge(&self, first: usize, i: usize) -> [Polynomial<T>; 3] {
         subtract(&self.0[first + (i + 1) % 3], &self.0[first + i])
     }
 
-    /// The direction of a pair of features. Where it contains a vertex and no face, the direction is that from a to b.
+    /// Returns the direction of a pair of features. Where it contains a vertex and no face, the direction is that from a to b.
     fn direction(&self, features: FeaturePair) -> [Polynomial<T>; 3] {
         let between = |i: usize, j: usize| subtract(&self.0[B + j], &self.0[A + i]);
         let perpendicular = |d: [Polynomial<T>; 3], e: [Polynomial<T>; 3]| {
@@ -151,13 +153,13 @@ impl<T: Number> Corners<T> {
         }
     }
 
-    /// The gaps of all nine pairs of a vertex of a and one of b along a direction.
+    /// Returns the gaps of all nine pairs of a vertex of a and one of b along a direction.
     fn gaps_of_vertices(&self, dir: &[Polynomial<T>; 3]) -> [Polynomial<T>; 9] {
         let projected: [Polynomial<T>; 6] = std::array::from_fn(|i| dot(dir, &self.0[i]));
         std::array::from_fn(|ij| projected[B + ij % 3].minus(&projected[A + ij / 3]))
     }
 
-    /// The gaps of the triangles along the direction of a pair of features and along its opposite, at the time of these
+    /// Returns the gaps of the triangles along the direction of a pair of features and along its opposite, at the time of these
     /// corners.
     fn gaps(&self, features: FeaturePair) -> [FeatureGap; 2] {
         let dir = self.direction(features);
@@ -173,7 +175,7 @@ impl<T: Number> Corners<T> {
         })
     }
 
-    /// The direction of the widest of some gaps, if that is certainly wider than the tolerance.
+    /// Returns the direction of the widest of some gaps, if that is certainly wider than the tolerance.
     fn find_gap_above(&self, tolerance: f64, gaps: &[FeatureGap]) -> Option<FeatureDirection> {
         let widest = gaps.iter().max_by(|a, b| a.gap.lower.total_cmp(&b.gap.lower))?;
         let FeatureGap { features, is_reversed, gap } = *widest;
@@ -183,8 +185,8 @@ impl<T: Number> Corners<T> {
         })
     }
 
-    /// Whether all gaps along a direction n exceed `slack sum_c |n_c|` during the interval, by their coefficients. None where
-    /// the error bounds do not decide it.
+    /// Whether all gaps along a direction n exceed `slack sum_c |n_c|` during the interval, by their coefficients. None if the
+    /// error bounds do not decide it.
     fn is_separated_along(&self, direction: &FeatureDirection, slack: f64) -> Option<bool> {
         let dir = self.direction(direction.features);
         let gaps = self.gaps_of_vertices(&dir);

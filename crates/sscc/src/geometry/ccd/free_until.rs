@@ -1,22 +1,22 @@
-//! How long two moving triangles provably stay apart where the motion of their corners is known up to a bound.
+//! Computes how long two moving triangles provably stay apart if the motion of their corners is known up to a bound.
 
 use super::candidate_direction::MovingPair;
 use super::conservative_advancement::{Advance, advance_along_features, advance_by_rounded_directions};
 use super::impact_triangle_triangle::is_separated_by_planes;
 use super::moving_triangle::MovingTriangle;
 
-/// Directions along features are followed only where the distance is more than this many times the slack: nearer, they gain
-/// little before the slack ends them.
+/// Directions along features are followed only where the distance is more than this many times the slack: at smaller distances
+/// they gain little before they fail by the slack.
 const FEATURE_GAP: f64 = 32.0;
 
-/// A time up to which, itself included, the triangles have no point in common, for all corners whose distances along each
-/// axis are within `slack` of those of the given ones. Infinite: until t = 1. 0: nothing is proven, not even at t = 0. Near a
-/// contact it is close to the largest such time.
+/// Returns a time up to which, itself included, the triangles have no point in common, for all corners whose distances along each
+/// axis are within `slack` of those of the given ones. Infinite if they have none until t = 1; 0 if nothing is proven, not even
+/// at t = 0. Near a contact it is close to the largest such time.
 ///
 /// Every step is proven by a direction that separates the triangles by more than the slack and the rounding bound. Unlike
-/// [`impact_triangle_triangle`](super::impact_triangle_triangle), it does not decide what is closer than that. Directions
-/// along features are far slower than rounded ones: `steps` of them are left for this and other pairs. With none left, the
-/// time may be far from the largest one.
+/// [`impact_triangle_triangle`](super::impact_triangle_triangle), it does not decide pairs that are closer than that. Directions
+/// along features are far slower than rounded ones: `steps` is the number of them left for this and other pairs. If none is left,
+/// the time may be far from the largest one.
 pub(crate) fn free_until(a: &MovingTriangle, b: &MovingTriangle, slack: f64, steps: &mut usize) -> f64 {
     let pair = MovingPair::with_slack(a, b, slack);
     if is_separated_by_planes(&pair) {
@@ -41,7 +41,7 @@ mod tests {
     use crate::geometry::triangle_triangle::intersect_triangle_triangle;
     use crate::test_models::Random;
 
-    /// Two copies of a triangle, one above the other, that turn together and come closer. Beyond a time, one of them could
+    /// Two copies of a triangle, one above the other, that rotate together and come closer. Beyond a time, one of them could
     /// reach the other within the slack.
     #[test]
     fn directions_along_features_leave_room_for_the_slack() {
@@ -108,7 +108,7 @@ mod tests {
                 continue;
             }
             bounded += usize::from(until < 1.0);
-            // Less by the rounding of interpolation.
+            // This is less than the slack by the rounding of interpolation.
             let off = slack * (1.0 - 1e-9);
             for share in [0.5, 0.9, 1.0] {
                 let t = until * share;

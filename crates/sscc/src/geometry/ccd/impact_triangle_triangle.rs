@@ -9,8 +9,8 @@ use super::number::power_of_two;
 use crate::geometry::{TwoTriangles, intersect_triangle_triangle};
 use crate::limits;
 
-/// The time of impact of two triangles whose corners move linearly. None proves that they have no point in common at
-/// any t in [0, 1]. Else a time t with two guarantees:
+/// Returns the time of impact of two triangles whose corners move linearly. None proves that they have no point in common at any
+/// t in [0, 1]. Otherwise the result is a time t with two guarantees:
 /// - t is never later than the true time of impact.
 /// - At t, their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding. Tolerances
 ///   below 6e-14 count as 6e-14. The size is the largest difference, at either end and in any coordinate, of a
@@ -59,25 +59,25 @@ pub fn impact_triangle_triangle(a: &MovingTriangle, b: &MovingTriangle, toleranc
 /// lengths must not underflow.
 const MIN_SIZE: f64 = f64::from_bits((1023 - 100) << 52);
 
-/// The power of two that scales a small size to about 1. At most 2^800: where all corners share a large coordinate (up to
-/// 2^200), it must not overflow.
+/// Returns the power of two that scales a small size to about 1. It is at most 2^800: if all corners share a large coordinate (up
+/// to 2^200), that must not overflow.
 fn enlargement(size: f64) -> f64 {
     let exponent = (size.to_bits() >> 52) as i64 - 1023;
     power_of_two((-exponent).min(800))
 }
 
-/// The time of impact of a moving vertex and a moving face: as [`impact_triangle_triangle`].
+/// Returns the time of impact of a moving vertex and a moving face, like [`impact_triangle_triangle`].
 pub fn impact_vertex_face(vertex: [DVec3; 2], face: &MovingTriangle, tolerance: f64) -> Option<f64> {
     impact_triangle_triangle(&MovingTriangle::vertex(vertex[0], vertex[1]), face, tolerance)
 }
 
-/// The time of impact of two moving edges, each given by its ends at times 0 and 1: as [`impact_triangle_triangle`].
+/// Returns the time of impact of two moving edges, each given by its ends at times 0 and 1, like [`impact_triangle_triangle`].
 pub fn impact_edge_edge(a: [[DVec3; 2]; 2], b: [[DVec3; 2]; 2], tolerance: f64) -> Option<f64> {
     let [a, b] = [a, b].map(|[e_t0, e_t1]| MovingTriangle::edge(e_t0, e_t1));
     impact_triangle_triangle(&a, &b, tolerance)
 }
 
-/// Whether the normal of one of the triangles at t = 0.5 separates the two from t = 0 to 1: settles most pairs.
+/// Whether the normal of one of the triangles at t = 0.5 separates the two from t = 0 to 1. This decides most pairs.
 pub(super) fn is_separated_by_planes(pair: &MovingPair) -> bool {
     let TwoTriangles { a, b } = pair.at(0.5);
     [a, b].into_iter().any(|[p, q, r]| {

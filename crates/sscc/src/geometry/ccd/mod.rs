@@ -15,7 +15,7 @@
 //! proves a whole interval of time free for all pairs of corners, hence for the hulls: faces, edges and vertices at
 //! once ([`candidate_direction`]). A direction perpendicular to two moving features is a polynomial in t of degree 1 to
 //! 3. It separates the shapes for as long as these two features are closest, however narrow the gap is
-//!   ([`feature_direction`]). What remains is to advance from t = 0 to 1 in as few intervals as possible
+//!   ([`feature_direction`]). The remaining task is to advance from t = 0 to 1 in as few intervals as possible
 //!   ([`conservative_advancement`]; Mirtich 1996, *Impulse-based Dynamic Simulation of Rigid Body Systems*).
 //!
 //! The usual tests are 6 of a vertex and a face and 9 of two edges, each by subdivision of (t, u, v) with inclusion

@@ -15,28 +15,28 @@ pub struct MovingTriangle {
 }
 
 impl MovingTriangle {
-    /// A moving vertex.
+    /// Creates a moving vertex.
     pub(crate) fn vertex(v_t0: DVec3, v_t1: DVec3) -> Self {
         Self { t0: [v_t0; 3], t1: [v_t1; 3] }
     }
 
-    /// A moving edge, by its two ends.
+    /// Creates a moving edge, given by its two ends.
     pub(crate) fn edge(e_t0: [DVec3; 2], e_t1: [DVec3; 2]) -> Self {
         let corners = |[p, q]: [DVec3; 2]| [p, q, q];
         Self { t0: corners(e_t0), t1: corners(e_t1) }
     }
 
-    /// The moving simplex of some of the corners.
+    /// Returns the moving simplex of some of the corners.
     pub(crate) fn simplex(&self, corners: [usize; 3]) -> Self {
         Self { t0: corners.map(|i| self.t0[i]), t1: corners.map(|i| self.t1[i]) }
     }
 
-    /// All coordinates times a factor.
+    /// Multiplies all coordinates by a factor.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         Self { t0: self.t0.map(|p| p * factor), t1: self.t1.map(|p| p * factor) }
     }
 
-    /// The corners at time t, rounded (exact at t = 0 and t = 1).
+    /// Returns the corners at time t, rounded (exact at t = 0 and t = 1).
     pub(super) fn at(&self, t: f64) -> [DVec3; 3] {
         std::array::from_fn(|i| self.t0[i] * (1.0 - t) + self.t1[i] * t)
     }

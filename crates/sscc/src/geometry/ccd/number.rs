@@ -9,36 +9,36 @@ use glam::DVec3;
 
 /// The arithmetic of polynomial predicates.
 pub(super) trait Number: Clone {
-    /// Zero.
+    /// Returns zero.
     fn zero() -> Self;
 
-    /// The number equal to a double.
+    /// Returns the number equal to a double.
     fn from_f64(x: f64) -> Self;
 
-    /// The difference of two doubles.
+    /// Returns the difference of two doubles.
     fn difference(a: f64, b: f64) -> Self;
 
-    /// The sum.
+    /// Returns the sum.
     fn plus(&self, other: &Self) -> Self;
 
-    /// The difference.
+    /// Returns the difference.
     fn minus(&self, other: &Self) -> Self;
 
-    /// The product.
+    /// Returns the product.
     fn times(&self, other: &Self) -> Self;
 
-    /// The smaller of two numbers.
+    /// Returns the smaller of two numbers.
     fn minimum(&self, other: &Self) -> Self;
 
-    /// Whether the number is above 0; none if the error bound does not decide it.
+    /// Whether the number is above 0. None if the error bound does not decide it.
     fn is_positive(&self) -> Option<bool>;
 
-    /// Bounds of `self / sqrt(square)`. They differ by the error bounds of both numbers and a few units in the last place.
-    /// The lower bound of a number that is not provably positive is 0; where the square may be 0 the bounds are 0 and
+    /// Returns bounds of `self / sqrt(square)`. They differ by the error bounds of both numbers and a few units in the last
+    /// place. The lower bound of a number that is not provably positive is 0; if the square may be 0, the bounds are 0 and
     /// infinity.
     fn over_root(&self, square: &Self) -> Bounds;
 
-    /// A vector of the same direction, rounded.
+    /// Returns a vector of the same direction, rounded.
     fn direction(n: &[Self; 3]) -> DVec3;
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Bounds {
     pub(super) upper: f64,
 }
 
-/// `2^exponent`; 0 below the normal numbers, and no more than 2^1023.
+/// Returns `2^exponent`; 0 below the normal numbers, and no more than 2^1023.
 pub(super) fn power_of_two(exponent: i64) -> f64 {
     match exponent {
         ..-1022 => 0.0,

@@ -1,4 +1,4 @@
-//! Both kinds of numbers of polynomial predicates against rational arithmetic.
+//! Tests both kinds of numbers of polynomial predicates against rational arithmetic.
 
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -11,7 +11,7 @@ fn rational(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
-/// The value of a [`Dyadic`].
+/// Returns the value of a [`Dyadic`].
 fn value(x: &Dyadic) -> BigRational {
     let two = BigRational::from_integer(2.into());
     BigRational::from_integer(x.mantissa.clone()) * num_traits::Pow::pow(two, x.exponent as i32)
@@ -45,7 +45,7 @@ fn both_kinds_agree_with_rational_arithmetic() {
                 0 => (numbers.0.plus(&x), numbers.1.plus(&y), numbers.2 + z),
                 1 => (numbers.0.minus(&x), numbers.1.minus(&y), numbers.2 - z),
                 2 => (numbers.0.times(&x), numbers.1.times(&y), numbers.2 * z),
-                // Only rounding errors are left.
+                // Only rounding errors remain.
                 _ => {
                     let again = numbers.0.times(&x).minus(&x.times(&numbers.0));
                     let exact = numbers.1.times(&y).minus(&y.times(&numbers.1));
@@ -70,13 +70,13 @@ fn both_kinds_agree_with_rational_arithmetic() {
     assert!(decided > 10_000 && open > 5, "{decided} {open}");
 }
 
-/// Of a number that lost its digits in a sum and one that lost none, whichever is smaller.
+/// The minimum of a number that lost its digits in a sum and one that lost none has the larger error, whichever is smaller.
 #[test]
 fn a_minimum_has_the_larger_error() {
     let (mut lost, mut open) = (0, 0);
     for i in 0..400 {
         let small = f64::from(i) / 64.0 + 1e-3;
-        // What is left of a sum with a large number: a multiple of 4.
+        // The rest of a sum with a large number, which is a multiple of 4.
         let large = 2.0_f64.powi(54);
         let sum = |one: f64| BoundedFloat::from_f64(large).plus(&BoundedFloat::from_f64(one));
         let rounded = sum(small).minus(&BoundedFloat::from_f64(large));
@@ -115,7 +115,7 @@ fn quotients_by_roots_are_rounded_down() {
             );
         }
     }
-    // Where squares of doubles underflow.
+    // Tests a number whose square underflows as a double.
     let small = Dyadic::from_f64(1e-290);
     let Bounds { lower: found, .. } = small.times(&small).over_root(&small.times(&small));
     assert!((found / 1e-290 - 1.0).abs() < 1e-14, "{found:e}");

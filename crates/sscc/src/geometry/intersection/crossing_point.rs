@@ -1,4 +1,4 @@
-//! Where an edge crosses a face or another edge, in double precision.
+//! Computes the point where an edge crosses a face or another edge, in double precision.
 //!
 //! The callers have decided exactly that they cross, within the relative interiors of both. For an edge from p to q and a
 //! plane with the signed distances `d_p` and `d_q` (times any factor), the point is `p + t (q - p)` with
@@ -34,7 +34,7 @@ const DETERMINANT_ERROR: f64 = 32.0 * U * U;
 /// Largest error of a distance, over the sum of both distances, with which t is accurate: 2^-58.
 const MAX_DISTANCE_ERROR: f64 = U / 32.0;
 
-/// The point where an edge crosses the interior of a face.
+/// Returns the point where an edge crosses the interior of a face.
 pub(super) fn cross_edge_face(edge: [DVec3; 2], face: &[DVec3; 3]) -> DVec3 {
     let (edge, face) = (sorted(edge), sorted(*face));
     let points = [face[0], edge[0], edge[1], face[1], face[2]];
@@ -42,7 +42,7 @@ pub(super) fn cross_edge_face(edge: [DVec3; 2], face: &[DVec3; 3]) -> DVec3 {
     interpolate(edge, weights.unwrap_or([0.5; 2]), &face)
 }
 
-/// The point where two edges in one plane cross. Computed along the shorter one, up to rounding of the lengths.
+/// Returns the point where two edges in one plane cross. It is computed along the shorter one, up to rounding of the lengths.
 pub(super) fn cross_edge_edge(e: [DVec3; 2], f: [DVec3; 2]) -> DVec3 {
     let (e, f) = (sorted(e), sorted(f));
     // Scaled, because squares of small numbers underflow.
@@ -62,9 +62,10 @@ pub(super) fn cross_edge_edge(e: [DVec3; 2], f: [DVec3; 2]) -> DVec3 {
     interpolate(e, weights.unwrap_or([0.5; 2]), &f)
 }
 
-/// `|d_p|` and `|d_q|` over their sum. None where [`DoubleDouble`] numbers may not be accurate enough.
+/// Returns `|d_p|` and `|d_q|` over their sum. None if [`DoubleDouble`] numbers may not be accurate enough.
 ///
-/// The points are `o, p, q, r, s`. The plane contains o, r, and s or (without its use) the direction of the axis.
+/// The points are `o, p, q, r, s`. The plane contains o, r, and s; if an axis is given, it contains the direction of the axis in
+/// place of s.
 fn weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
     if !points.iter().flat_map(DVec3::as_ref).all(|x| is_robust_exact(*x)) {
         return None;
@@ -80,7 +81,8 @@ fn weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
     right_or!(is_accurate, CrossingByDoubleDoubles, sum > 0.0).then(|| [d_p, d_q].map(|d| d.to_f64() / sum))
 }
 
-/// [`weights`] from integers, with an absolute error of 2^-64 and rounding. None where the axis is in the plane.
+/// Returns the numbers of [`weights`] from integers, with an absolute error of 2^-64 and rounding. None if the axis is in the
+/// plane.
 #[cold]
 #[inline(never)]
 fn exact_weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
@@ -97,12 +99,12 @@ fn exact_weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
     Some([d_p, d_q].map(|d| u128::try_from((d << BITS) / &sum).map_or(1.0, |t| t as f64 / unit)))
 }
 
-/// Numbers of the determinants.
+/// The numbers in which determinants are computed.
 trait Ring: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>> Ring for T {}
 
-/// The signed distances of p and q from the plane, times a common factor, given `p, q, r, s` relative to o.
+/// Returns the signed distances of p and q from the plane, times a common factor, given `p, q, r, s` relative to o.
 fn distances<T: Ring>([p, q, r, s]: &[[T; 3]; 4], axis: Option<usize>) -> [T; 2] {
     let minor = |u: &[T; 3], v: &[T; 3], axis: usize| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -118,7 +120,7 @@ fn distances<T: Ring>([p, q, r, s]: &[[T; 3]; 4], axis: Option<usize>) -> [T; 2]
     })
 }
 
-/// An upper bound of a magnitude: differences add.
+/// An upper bound of a magnitude. A difference has the sum of the bounds.
 #[derive(Clone, Copy)]
 struct Magnitude(f64);
 
@@ -146,7 +148,7 @@ impl Mul for Magnitude {
     }
 }
 
-/// The point of an edge, from its nearer end, in the AABBs of the edge and of the other feature.
+/// Returns the point of an edge, computed from its nearer end and clamped to the AABBs of the edge and of the other feature.
 fn interpolate([p, q]: [DVec3; 2], [from_p, from_q]: [f64; 2], other: &[DVec3]) -> DVec3 {
     let x = if from_p <= from_q { p + (q - p) * from_p } else { q + (p - q) * from_q };
     [Aabb::of_points([p, q]), Aabb::of_points(other.iter().copied())]
@@ -154,7 +156,7 @@ fn interpolate([p, q]: [DVec3; 2], [from_p, from_q]: [f64; 2], other: &[DVec3]) 
         .fold(x, |x, aabb| x.max(aabb.lower).min(aabb.upper))
 }
 
-/// The points in lexicographic order.
+/// Returns the points in lexicographic order.
 fn sorted<const N: usize>(mut points: [DVec3; N]) -> [DVec3; N] {
     points.sort_by(|p, q| lexicographic(*q, *p).cmp(&lexicographic(*p, *q)));
     points

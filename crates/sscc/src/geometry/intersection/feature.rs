@@ -29,7 +29,7 @@ impl Feature {
 pub struct IntersectionPoint {
     /// The point (model unit), rounded; see [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub position: DVec3,
-    /// The feature of each triangle on which the exact point lies. It is the only common point of the two.
+    /// The feature of each triangle on which the exact point lies. It is the only common point of these two features.
     pub features: [Feature; 2],
 }
 
@@ -45,7 +45,7 @@ pub enum Intersection {
 }
 
 impl Intersection {
-    /// The corners: one, two, or three to six.
+    /// Returns the corners: one, two, or three to six.
     pub fn points(&self) -> &[IntersectionPoint] {
         match self {
             Self::Point(point) => std::slice::from_ref(point),

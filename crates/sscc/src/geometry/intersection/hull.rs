@@ -12,7 +12,7 @@ pub(super) struct Hull<'a> {
     pub(super) shape: Shape,
 }
 
-/// What three corners span.
+/// The shape that three corners span.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
     /// All corners are equal: corner 0.
@@ -24,7 +24,7 @@ pub(super) enum Shape {
 }
 
 impl<'a> Hull<'a> {
-    /// Decides exactly what the corners span.
+    /// Decides exactly which shape the corners span.
     pub(super) fn of(corners: &'a [DVec3; 3]) -> Self {
         let shape = match injective_projection(corners) {
             Some(axis) => Shape::Triangle { axis },
@@ -38,7 +38,7 @@ impl<'a> Hull<'a> {
         matches!(self.shape, Shape::Triangle { .. })
     }
 
-    /// The corners of the hull, each point once.
+    /// Returns the corners of the hull, each point once.
     pub(super) fn vertices(&self) -> impl Iterator<Item = usize> + use<> {
         let (vertices, count) = match self.shape {
             Shape::Point => ([0; 3], 1),
@@ -48,7 +48,7 @@ impl<'a> Hull<'a> {
         vertices.into_iter().take(count)
     }
 
-    /// The edges of the hull, each segment once.
+    /// Returns the edges of the hull, each segment once.
     pub(super) fn edges(&self) -> std::ops::Range<usize> {
         match self.shape {
             Shape::Point => 0..0,
@@ -57,12 +57,12 @@ impl<'a> Hull<'a> {
         }
     }
 
-    /// The ends of edge i.
+    /// Returns the ends of edge i.
     pub(super) fn edge(&self, i: usize) -> [DVec3; 2] {
         [self.corners[i], self.corners[(i + 1) % 3]]
     }
 
-    /// The feature on which a point lies, decided exactly; none for a point off the hull. `side` is the point's side of
+    /// Returns the feature on which a point lies, decided exactly. None for a point off the hull. `side` is the point's side of
     /// the plane through the corners.
     pub(super) fn locate(&self, p: DVec3, side: i8) -> Option<Feature> {
         if side != 0 {
@@ -110,7 +110,7 @@ pub(super) fn lexicographic(p: DVec3, q: DVec3) -> bool {
     p.to_array() < q.to_array()
 }
 
-/// The edge that contains three collinear corners; none if all are equal.
+/// Returns the edge that contains three collinear corners. None if all are equal.
 ///
 /// Points of a line are in lexicographic order, so the edge joins the first and the last.
 fn longest_edge(corners: &[DVec3; 3]) -> Option<usize> {

@@ -1,5 +1,5 @@
-//! The common points of two triangles, with the features on which these lie, and the smallest translation that parts the
-//! two. All decisions are exact; only positions, normals and depths are rounded.
+//! The common points of two triangles, with the features on which these lie, and the smallest translation that separates the two
+//! triangles. All decisions are exact; only positions, normals and depths are rounded.
 
 mod corner_order;
 mod crossing_point;

@@ -11,43 +11,43 @@ use crate::geometry::exact_orientation::integers;
 /// A vector of [`DoubleDouble`] numbers.
 pub(super) type Vector = [DoubleDouble; 3];
 
-/// Components of a cross product of edges with components of at most 1 that may be rounding errors: 2^-95.
+/// The largest component of a cross product of edges that may be a rounding error, if components of edges are at most 1: 2^-95.
 const ROUNDING: f64 = f64::from_bits((1023 - 95) << 52);
 
-/// The difference `q - p`, exactly.
+/// Returns the difference `q - p`, exactly.
 pub(super) fn difference(q: DVec3, p: DVec3) -> Vector {
     std::array::from_fn(|k| DoubleDouble::difference(q[k], p[k]))
 }
 
-/// The scalar product.
+/// Returns the scalar product.
 pub(super) fn dot(u: &Vector, v: &Vector) -> DoubleDouble {
     u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
-/// A vector rounded to doubles.
+/// Returns a vector rounded to doubles.
 pub(super) fn to_dvec3(v: &Vector) -> DVec3 {
     DVec3::from_array(v.map(DoubleDouble::to_f64))
 }
 
-/// The vector times the power of two that brings its largest component into [1/2, 1); none for 0.
+/// Returns the vector times the power of two that brings its largest component into [1/2, 1). None for 0.
 pub(super) fn normalize(v: &Vector) -> Option<Vector> {
     let exponent = binary_exponent(to_dvec3(v).abs().max_element())?;
     Some(v.map(|x| x.times_power_of_two(-exponent)))
 }
 
-/// The e with `2^(e - 1) <= x < 2^e`; none for 0.
+/// Returns the e with `2^(e - 1) <= x < 2^e`. None for 0.
 pub(super) fn binary_exponent(x: f64) -> Option<i32> {
     let Binary64 { mantissa, exponent } = Binary64::of(x);
     (mantissa != 0).then(|| exponent as i32 - 1075 + 64 - mantissa.unsigned_abs().leading_zeros() as i32)
 }
 
-/// The edges of a triangle, each normalized; none where its ends are equal.
+/// Returns the edges of a triangle, each normalized. None for an edge whose ends are equal.
 pub(super) fn edges(corners: &[DVec3; 3]) -> [Option<Vector>; 3] {
     std::array::from_fn(|i| normalize(&difference(corners[(i + 1) % 3], corners[i])))
 }
 
-/// A normal of two normalized edges and its size before normalization, which is within a factor of 6 of the sine of the
-/// angle between them. None for parallel edges, and where all digits may be lost.
+/// Returns a normal of two normalized edges and its size before normalization, which is within a factor of 6 of the sine of the
+/// angle between them. None for parallel edges, and if all digits may be lost.
 pub(super) fn cross(e: &Vector, f: &Vector) -> Option<(f64, Vector)> {
     let minor = |i: usize, j: usize| e[i] * f[j] - e[j] * f[i];
     let normal = [minor(1, 2), minor(2, 0), minor(0, 1)];
@@ -58,7 +58,7 @@ pub(super) fn cross(e: &Vector, f: &Vector) -> Option<(f64, Vector)> {
     Some((size, normalize(&normal)?))
 }
 
-/// The normal of a triangle, normalized: by the two edges with the largest angle between them.
+/// Returns the normal of a triangle, normalized. It is computed from the two edges with the largest angle between them.
 pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
     let mut best: Option<(f64, Vector)> = None;
     for i in 0..3 {
@@ -72,7 +72,7 @@ pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
     best.map(|(_, normal)| normal)
 }
 
-/// The unit normal of a triangle, to which its corners turn counterclockwise; 0 if it is degenerate.
+/// Returns the unit normal of a triangle, to which its corners turn counterclockwise; 0 if it is degenerate.
 pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
     if !hull.is_triangle() {
         return DVec3::ZERO;
@@ -81,7 +81,7 @@ pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
     rounded.unwrap_or_else(|| exact_normal(hull.corners)).normalize()
 }
 
-/// A multiple of the normal of a triangle with angles below about 2^-95, from integers.
+/// Returns a multiple of the normal of a triangle with angles below about 2^-95, from integers.
 #[cold]
 #[inline(never)]
 fn exact_normal(corners: &[DVec3; 3]) -> DVec3 {

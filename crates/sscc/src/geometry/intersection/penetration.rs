@@ -9,8 +9,8 @@
 //! **Accuracy.** No unit vector has an h below the depth, so an error of a normal makes the depth larger, never smaller.
 //! Cross products are computed with about 106 bits: for edges at an angle of sine s, the direction errs by about
 //! `2^-100 / s`. The facet of such edges is a strip of relative width s, so leaving it out errs by s times the
-//! size of the pair at most. One of the two is below `2^-50`. If all are left out, D is so thin that any direction across
-//! it will do.
+//! size of the pair at most. One of the two is below `2^-50`. If all are left out, D is so thin that any direction across it
+//! suffices.
 
 use glam::DVec3;
 
@@ -23,29 +23,28 @@ use super::triangle_triangle::TrianglePair;
 use crate::geometry::double_double::{DoubleDouble, times_power_of_two};
 use crate::limits;
 
-/// Rounding errors of the first look at h, with differences of at most 1: 2^-47.
+/// The rounding error of the first, coarse value of h, with differences of at most 1: 2^-47.
 const FIRST_LOOK_ERROR: f64 = f64::EPSILON * 32.0;
 
 /// The smallest translation that parts two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
-    /// Its length (model unit).
+    /// The length of the translation (model unit).
     pub depth: f64,
-    /// Its direction, a unit vector. The second triangle, moved by the depth along it, touches the first one without
-    /// crossing it; so does the first one, moved the other way.
+    /// The direction of the translation, a unit vector. The second triangle, moved by the depth along it, touches the first one
+    /// without crossing it; so does the first one, moved the other way.
     pub direction: DVec3,
 }
 
-/// The penetration depth of two closed triangles: the length and direction of the smallest translation after which they
+/// Returns the penetration depth of two closed triangles: the length and direction of the smallest translation after which they
 /// only touch, so that any longer one parts them. None if they are disjoint.
 ///
-/// Conditions as for [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle). Exactly 0 where the
-/// triangles touch without crossing: where they are in one plane or on one line, and where all common points are on the
-/// boundary of one of them. Otherwise positive (at least the smallest denormal number), and too large by at most a few units in the last place and `2^-48` times
-/// the largest difference of coordinates of a corner of each. Where several directions are as good (up to rounding), the
-/// first in a fixed order.
-///
-/// Costs about three microseconds.
+/// The conditions are those of [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle). The depth is
+/// exactly 0 if the triangles touch without crossing: if they are in one plane or on one line, or if all common points are on the
+/// boundary of one of them. Otherwise it is positive (at least the smallest denormal number), and too large by at most a few
+/// units in the last place and `2^-48` times the largest difference of coordinates of a corner of each. If several directions are
+/// equally good (up to rounding), the result has the first in a fixed order.
+/// A call costs about three microseconds.
 ///
 /// ```
 /// use glam::DVec3;
@@ -65,7 +64,7 @@ pub fn penetration_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<P
 }
 
 impl TrianglePair<'_> {
-    /// The penetration depth, given the common points.
+    /// Returns the penetration depth, given the common points.
     pub(super) fn penetration(&self, intersection: &Intersection) -> Penetration {
         if let Some(direction) = self.normal_of_flat() {
             return Penetration { depth: 0.0, direction };
@@ -84,7 +83,7 @@ impl TrianglePair<'_> {
         penetration
     }
 
-    /// The normal of all differences if they are in one plane, else none.
+    /// Returns the normal of all differences if they are in one plane, else None.
     fn normal_of_flat(&self) -> Option<DVec3> {
         let (a, b) = (&self.a, &self.b);
         match (a.is_triangle(), b.is_triangle()) {
@@ -95,7 +94,7 @@ impl TrianglePair<'_> {
     }
 }
 
-/// A unit vector that is orthogonal to two segments or points.
+/// Returns a unit vector that is orthogonal to two segments or points.
 fn normal_of_segments(a: &Hull<'_>, b: &Hull<'_>) -> DVec3 {
     let edge = |hull: &Hull<'_>| match hull.shape {
         Shape::Segment(i) => edges(hull.corners)[i],
@@ -111,7 +110,7 @@ fn normal_of_segments(a: &Hull<'_>, b: &Hull<'_>) -> DVec3 {
 
 /// Whether the common points are all on one edge of a triangle, or on an end of a segment.
 ///
-/// Convex sets have a separating plane exactly if their relative interiors are disjoint. They are exactly if the common
+/// Convex sets have a separating plane exactly if their relative interiors are disjoint. These are disjoint exactly if the common
 /// points are in a proper face of one of the sets.
 fn is_on_boundary(hull: &Hull<'_>, intersection: &Intersection, side: usize) -> bool {
     let points = intersection.points();
@@ -124,7 +123,7 @@ fn is_on_boundary(hull: &Hull<'_>, intersection: &Intersection, side: usize) -> 
     }
 }
 
-/// The smallest h over all candidates, and its direction.
+/// Returns the smallest h over all candidates, and its direction.
 fn smallest_support(a: &[DVec3; 3], b: &[DVec3; 3]) -> Penetration {
     let differences: [Vector; 9] = std::array::from_fn(|ij| difference(a[ij / 3], b[ij % 3]));
     let largest = differences.iter().map(|d| to_dvec3(d).abs().max_element()).fold(0.0, f64::max);
@@ -163,7 +162,7 @@ fn smallest_support(a: &[DVec3; 3], b: &[DVec3; 3]) -> Penetration {
     Penetration { depth: times_power_of_two(best.depth.max(0.0), exponent), ..best }
 }
 
-/// A direction across the longest edge.
+/// Returns a direction across the longest edge.
 #[cold]
 fn across(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Vector> {
     let all = [a, b].map(|t| [0, 1, 2].map(|i| difference(t[(i + 1) % 3], t[i])));
@@ -173,7 +172,7 @@ fn across(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Vector> {
     Some(difference(along.any_orthonormal_vector(), DVec3::ZERO))
 }
 
-/// Normals of all possible facets of D, normalized: of a, of b, of each edge of a with each of b.
+/// Returns the normals of all possible facets of D, normalized: those of a, of b, and of each edge of a with each edge of b.
 fn candidates(a: &[DVec3; 3], b: &[DVec3; 3]) -> [Option<Vector>; 11] {
     let (e, f) = (edges(a), edges(b));
     std::array::from_fn(|i| match i {

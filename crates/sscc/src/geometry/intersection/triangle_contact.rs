@@ -11,13 +11,13 @@ use super::triangle_triangle::TrianglePair;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TriangleContact {
     pub(crate) intersection: Intersection,
-    /// Unit normals of both; 0 for a degenerate triangle.
+    /// Unit normals of both triangles; 0 for a degenerate one.
     pub(crate) normals: [DVec3; 2],
     pub(crate) penetration: Penetration,
 }
 
 impl TriangleContact {
-    /// None if the triangles are disjoint.
+    /// Computes the contact. None if the triangles are disjoint.
     pub(crate) fn of(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Self> {
         let pair = TrianglePair::of(a, b)?;
         let intersection = pair.intersection()?;

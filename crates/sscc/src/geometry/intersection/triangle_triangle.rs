@@ -5,7 +5,7 @@
 //! of a feature of a (vertex, edge, face) and that of a feature of b have a single point in common: vertices on any
 //! feature, edges that cross edges or faces. Each such pair of features is tested by signs of determinants, and
 //! no corner occurs twice, because a point is in the relative interior of one feature of each triangle only. A degenerate
-//! triangle is a segment or a point, with the features of that.
+//! triangle is a segment or a point, and has the features of that shape.
 
 use glam::DVec3;
 
@@ -17,23 +17,22 @@ use crate::geometry::orientation::{Plane, is_strictly_one_side, orient2d, orient
 use crate::geometry::planar::{injective_projection, project};
 use crate::limits;
 
-/// All common points of two closed triangles: none, a point, a segment, or a convex polygon for triangles in one plane.
+/// Returns all common points of two closed triangles: none, a point, a segment, or a convex polygon for triangles in one plane.
 ///
-/// Some exactly if [`intersect_triangle_triangle`](crate::intersect_triangle_triangle) is true, under the same
-/// conditions: coordinates (any unit) are finite and at most [`limits::LARGEST`] in magnitude; corners may be in any
-/// order; a degenerate triangle is the segment or point that its corners span.
+/// There are some exactly if [`intersect_triangle_triangle`](crate::intersect_triangle_triangle) is true, under the same
+/// conditions: coordinates (any unit) are finite and at most [`limits::LARGEST`] in magnitude; corners may be in any order; a
+/// degenerate triangle is the segment or point that its corners span.
 ///
-/// Exact are the kind of the result, the number of corners, their order, and on which feature of each triangle each
-/// corner lies. Positions are rounded. A corner on a vertex has the position of the vertex. One on an edge from p to q
-/// (where two edges cross: on the shorter one) errs in each coordinate x by at most `u |x| + 3 u |q - p|`, with
-/// `u = 2^-53` and the same coordinate of `q - p`, or by the smallest denormal number. It is in the AABBs of both
-/// features. The position depends on the two features alone: triangles that share them get the same bits (but for the sign
-/// of 0).
+/// The kind of the result, the number of corners, their order and the features on which they lie are exact. Positions are
+/// rounded. A corner on a vertex has the position of the vertex. A corner on an edge from p to q (on the shorter one where two
+/// edges cross) errs in each coordinate x by at most `u |x| + 3 u |q - p|`, with `u = 2^-53` and the same coordinate of `q - p`,
+/// or by the smallest denormal number. It is in the AABBs of both features. The position depends on the two features alone:
+/// triangles that share them get the same bits (but for the sign of 0).
 ///
-/// Of a degenerate triangle that is a segment, only the longest edge and its ends are features.
+/// If a degenerate triangle is a segment, only its longest edge and the ends of that edge are features.
 ///
-/// Costs about a microsecond, ten times the test alone; some microseconds in one plane, for coordinates below 2^-240, and
-/// for lines that are parallel up to 2^-40, which need integers.
+/// A call costs about a microsecond, ten times the test alone. It costs some microseconds for triangles in one plane, for
+/// coordinates below 2^-240, and for lines that are parallel up to 2^-40, which need integers.
 ///
 /// ```
 /// use glam::DVec3;
@@ -56,19 +55,19 @@ pub fn intersection_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<
 pub(super) struct TrianglePair<'a> {
     pub(super) a: Hull<'a>,
     pub(super) b: Hull<'a>,
-    /// The sides of a's corners of the plane of b, and of b's of that of a.
+    /// For each corner of a its side of the plane of b, and for each corner of b its side of the plane of a.
     pub(super) sides: [[i8; 3]; 2],
 }
 
 impl<'a> TrianglePair<'a> {
-    /// None if all corners of one triangle are strictly on one side of the other's plane.
+    /// Determines hulls and sides. None if all corners of one triangle are strictly on one side of the other's plane.
     pub(super) fn of(a: &'a [DVec3; 3], b: &'a [DVec3; 3]) -> Option<Self> {
         let sides_of_b = Plane::through(a).sides_unless_separated(b)?;
         let sides_of_a = Plane::through(b).sides_unless_separated(a)?;
         Some(Self { a: Hull::of(a), b: Hull::of(b), sides: [sides_of_a, sides_of_b] })
     }
 
-    /// The common points.
+    /// Returns the common points.
     pub(super) fn intersection(&self) -> Option<Intersection> {
         let mut corners = Corners::new();
         self.add_vertices(&mut corners);

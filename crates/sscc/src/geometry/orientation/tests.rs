@@ -1,14 +1,14 @@
-//! Signs of orientation determinants against exact arithmetic.
+//! Tests signs of orientation determinants against exact arithmetic.
 
 use super::*;
 use sscc_testing::Dyadic;
 
-/// The sign of an exact number.
+/// Returns the sign of an exact number.
 fn sign(x: &Dyadic) -> i8 {
     i8::from(x.is_positive()) - i8::from(x.is_negative())
 }
 
-/// The sign of the 3 x 3 determinant of differences, in exact arithmetic, by its six products.
+/// Returns the sign of the 3 x 3 determinant of differences, in exact arithmetic, by its six products.
 fn naive_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     let m = [b, c, d].map(|p| [0, 1, 2].map(|k| Dyadic::new(p[k]) - Dyadic::new(a[k])));
     let product = |i: usize, j: usize, k: usize| &m[0][i] * &m[1][j] * &m[2][k];
@@ -17,13 +17,13 @@ fn naive_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     sign(&(plus - minus))
 }
 
-/// The sign of the 2 x 2 determinant of differences, in exact arithmetic.
+/// Returns the sign of the 2 x 2 determinant of differences, in exact arithmetic.
 fn naive_2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     let m = [b, c].map(|p| [0, 1].map(|k| Dyadic::new(p[k]) - Dyadic::new(a[k])));
     sign(&(&m[0][0] * &m[1][1] - &m[0][1] * &m[1][0]))
 }
 
-/// Numbers in `-1..1`, the same in every run.
+/// Returns numbers in `-1..1`, the same in every run.
 fn random() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -36,7 +36,7 @@ fn random() -> impl FnMut() -> f64 {
 const SCALES: [f64; 8] = [1e-322, 1e-300, 1e-110, 1e-87, 1e-72, 1e-3, 1.0, crate::limits::LARGEST];
 
 #[test]
-fn convention() {
+fn signs_follow_the_convention() {
     assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), 1);
     assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NEG_Z), -1);
     assert_eq!(orient3d(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(5.0, 7.0, 0.0)), 0);
@@ -45,7 +45,7 @@ fn convention() {
     assert_eq!(orient2d(DVec2::ZERO, DVec2::X, DVec2::NEG_X), 0);
 }
 
-/// Points nearly on the plane (the line) through the others: closer than the filter decides.
+/// Points are nearly on the plane (or line) through the others, closer to it than the filter can decide.
 #[test]
 fn signs_are_exact() {
     let mut random = random();
@@ -84,14 +84,14 @@ fn underflow_does_not_deceive_the_planar_filter() {
     assert_eq!(naive_2d(a, b, c), -1);
 }
 
-/// Cancellation of very different numbers, with zeros.
+/// Very different numbers cancel, and some are zero.
 #[test]
 fn signs_are_exact_for_mixed_magnitudes() {
     let mut random = random();
     for _ in 0..1_500 {
         let mut coordinate = || {
             let exponent = (random() * 637.0 - 437.0) as i32;
-            // -1074 to 200; the smallest in two steps, as 2^-1074 is no normal number.
+            // Exponents are -1074 to 200. Powers are computed in two steps, as 2^-1074 is no normal number.
             let half = 2.0_f64.powi(exponent / 2);
             if random() < -0.5 { 0.0 } else { random() * half * 2.0_f64.powi(exponent - exponent / 2) }
         };

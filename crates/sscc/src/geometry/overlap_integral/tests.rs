@@ -1,4 +1,4 @@
-//! Terms against the same integrals in exact fractions.
+//! Tests terms against the same integrals in exact fractions.
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -13,12 +13,12 @@ fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }
 
-/// Twice the area of a triangle of the plane, with its sign.
+/// Returns twice the area of a triangle of the plane, with its sign.
 fn area(p: &Point, q: &Point, r: &Point) -> BigRational {
     (&q[0] - &p[0]) * (&r[1] - &p[1]) - (&q[1] - &p[1]) * (&r[0] - &p[0])
 }
 
-/// The part of a convex polygon on which a linear function is not negative.
+/// Returns the part of a convex polygon on which a linear function is not negative.
 fn clip(polygon: &[Point], side: impl Fn(&Point) -> BigRational) -> Vec<Point> {
     let mut clipped = Vec::new();
     for (k, p) in polygon.iter().enumerate() {
@@ -44,7 +44,7 @@ fn integral(polygon: &[Point], value: impl Fn(&Point) -> BigRational) -> BigRati
     sum
 }
 
-/// The term in exact arithmetic.
+/// Returns the term in exact arithmetic.
 fn exact_term(a: &[DVec3; 3], b: &[DVec3; 3]) -> BigRational {
     let flat = |t: &[DVec3; 3]| t.map(|p| [exact(p.x), exact(p.y)]);
     let (flat_a, flat_b) = (flat(a), flat(b));
@@ -73,7 +73,7 @@ fn exact_term(a: &[DVec3; 3], b: &[DVec3; 3]) -> BigRational {
     if turn_a.is_negative() == turn_b.is_negative() { sum } else { -sum }
 }
 
-/// A triangle: plain, far from the centre, a needle, steep, flat seen along z, small, or vertical.
+/// Returns a triangle of one kind: plain, far from the centre, a needle, steep, flat seen along z, small, or vertical.
 fn triangle(random: &mut u64, kind: u32) -> [DVec3; 3] {
     let mut vector = || DVec3::from([(); 3].map(|()| 2.0 * next_uniform(random) - 1.0));
     let [p, q, r] = [vector(), vector(), vector()];

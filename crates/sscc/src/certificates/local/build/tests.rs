@@ -1,4 +1,4 @@
-//! The inequality of a certificate against exact arithmetic.
+//! Tests the inequality of a certificate against exact arithmetic.
 
 use std::collections::BTreeSet;
 
@@ -16,8 +16,8 @@ fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
 }
 
-/// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` for the modes as they are, not as residuals are computed. Modes are affine maps up to
-/// rounding, so that residuals are rounding alone, or have a part that is not.
+/// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` for the exact residuals of the modes, not for computed ones. Modes are affine
+/// maps up to rounding, so that residuals are rounding alone, or have a part that is not affine.
 #[test]
 fn strains_are_at_least_those_of_exact_residuals() {
     let random = &mut Numbers(8);
@@ -28,7 +28,7 @@ fn strains_are_at_least_those_of_exact_residuals() {
         let middle = random.vector();
         let at = |i: u32| middle + (DVec3::X * 3.0 * f64::from(i / 3) + random.vector()) * size;
         let p: Vec<DVec3> = (0..3 * count).map(at).collect();
-        // Translations up to a few units in the last place: the rounding of G hides that of residuals elsewhere.
+        // Translations up to a few units in the last place: in other cases the rounding of G hides that of residuals.
         let is_translation = case % 5 == 4;
         let noise = match (is_translation, case % 4) {
             (true, _) => 4.0 * f64::EPSILON,
@@ -109,7 +109,7 @@ fn strains_are_at_least_those_of_exact_residuals() {
     assert!(checked > 5000 && close > 300, "{checked} {close}");
 }
 
-/// A sheet of 14 x 14 cells with bumps in one corner, or two sheets with one wave whose heights are a little apart.
+/// Returns a sheet of 14 x 14 cells with bumps in one corner, or two sheets with the same wave, one slightly above the other.
 fn flat_sheets(random: &mut Numbers, layers: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let side = 14_u32;
     let row = side + 1;
@@ -134,8 +134,8 @@ fn flat_sheets(random: &mut Numbers, layers: u32) -> (Vec<DVec3>, Vec<[u32; 3]>)
     (positions, (0..layers).flat_map(of_layer).collect())
 }
 
-/// Two triangles one above the other, far above the middle of two that are as long as the patch and come first. Few pairs, so that the
-/// rounding of heights decides which share is the largest.
+/// Returns two triangles one above the other, far above the middle of two triangles that come first and are as long as the patch.
+/// There are few pairs, so that the rounding of heights decides which share is the largest.
 fn flat_triangles(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (apart, height) = (random.power(-7.0, -5.0), 0.03 * random.signed());
     let mut positions = Vec::new();
@@ -145,7 +145,7 @@ fn flat_triangles(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         (DVec3::ZERO, 0.01, height, 0.2 * apart),
         (DVec3::ZERO, 0.01, height + apart, 0.2 * apart),
     ] {
-        // With their centroid in the middle, so that the direction across is the third axis.
+        // Centroids are in the middle, so that the direction across is the third axis.
         for corner in [DVec3::X, DVec3::Y, -DVec3::X - DVec3::Y] {
             positions.push(middle + corner * size + DVec3::Z * (height + roughness * random.signed()));
         }
@@ -153,8 +153,9 @@ fn flat_triangles(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
 
-/// Two triangles of one plane that nearly touch with their tips, far from the first one, which is in the plane, too. The height of one tip
-/// above the other is about the smallest share of the gap that is told apart, and not much more than the rounding of offsets.
+/// Returns two triangles of one plane whose tips nearly touch, far from the first triangle, which is in the plane, too. The
+/// height of one tip above the other is about the smallest share of the gap that is distinguished, and not much more than the
+/// rounding of offsets.
 fn flat_tips(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let gap = random.power(-8.8, -8.7);
     let height = f64::from(LEAST_FLATNESS) * gap * (1.0 + 0.1 * random.signed().abs());
@@ -167,7 +168,7 @@ fn flat_tips(random: &mut Numbers) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     ([first, left, right].concat(), (0..3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
 
-/// `|a.(p_j - p_i)| <= phi s_ij` for the pairs of a flat patch, exactly wherever it nearly fails.
+/// `|a.(p_j - p_i)| <= phi s_ij` for the pairs of a flat patch, in exact arithmetic wherever it nearly fails.
 #[test]
 fn heights_are_at_most_their_share_of_gaps() {
     let random = &mut Numbers(21);
@@ -235,9 +236,9 @@ fn heights_are_at_most_their_share_of_gaps() {
     assert!(checked > 1_000_000 && close > 1000 && outside > 30, "{checked} {close} {outside}");
 }
 
-/// A ratio that is NaN stays so in the lists of nodes above.
+/// A budget of 0 gives no certificates, and a larger one gives that of the root.
 #[test]
-fn certificates_of_no_numbers_are_not_stored() {
+fn a_budget_of_zero_gives_no_certificates() {
     let positions =
         (0..6).map(|i| DVec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 3))).collect();
     let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -252,7 +253,7 @@ fn certificates_of_no_numbers_are_not_stored() {
     assert!(some.bytes() > 0 && some.bounds[0].per_error >= 1.0);
 }
 
-/// Buckets, nodes at odd heights above them, and the root: nodes within buckets never.
+/// Buckets, nodes at odd heights above them and the root have a certificate, but never nodes within buckets.
 #[test]
 fn certified_nodes_are_at_odd_heights_and_buckets() {
     for quads in [3, 40, 200, 3000] {
@@ -263,7 +264,7 @@ fn certified_nodes_are_at_odd_heights_and_buckets() {
             let is_small = |n: u32| nodes[n as usize].fits_in_bucket();
             is_small(n) && (n == 0 || !is_small(parents[n as usize]))
         };
-        // From each bucket up.
+        // Ascends from each bucket.
         let mut heights = vec![None; nodes.len()];
         for mut n in (0..nodes.len() as u32).filter(|n| is_bucket(*n)) {
             let mut height = 0;
@@ -282,7 +283,7 @@ fn certified_nodes_are_at_odd_heights_and_buckets() {
     }
 }
 
-/// A sheet whose four parts have certificates of 20, 5, 5 and 5 modes, and the whole one of 30.
+/// The four parts of a sheet have certificates of 20, 5, 5 and 5 modes, and the whole sheet one of 30.
 #[test]
 fn certificates_of_few_modes_are_kept_if_they_cover_most() {
     let mesh = square(40);

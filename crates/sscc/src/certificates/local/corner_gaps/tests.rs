@@ -1,4 +1,4 @@
-//! Gaps of corners against exact arithmetic.
+//! Tests gaps of corners against exact arithmetic.
 
 use sscc_testing::{Dyadic, Numbers};
 
@@ -16,7 +16,7 @@ fn gaps_are_at_most_exact() {
     for case in 0..4000 {
         let size = random.power(-7.0, 0.0);
         let apart = random.vector() * random.power(-8.0, 0.0);
-        // Every third time both triangles are points.
+        // In every third case both triangles are points.
         let corner = if case % 3 == 0 { 0.0 } else { size };
         let [p, q] = [DVec3::ZERO, apart].map(|at| [(); 3].map(|()| at + random.vector() * corner));
         let differences: [DVec3; 9] = std::array::from_fn(|ij| q[ij % 3] - p[ij / 3]);

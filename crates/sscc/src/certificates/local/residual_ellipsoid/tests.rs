@@ -1,4 +1,4 @@
-//! Quotients of rows by W against exact arithmetic.
+//! Tests quotients of rows by W against exact arithmetic.
 
 use sscc_testing::{Dyadic, Numbers};
 
@@ -45,7 +45,7 @@ fn images_times_the_matrix_are_the_rows() {
         for k in 0..rank {
             for i in 0..lanes {
                 let expected = if i < rank { ellipsoid.entry(i, k) } else { 0.0 };
-                // The first eight rows come first, all their columns.
+                // The first eight rows come first, with all their columns.
                 assert_eq!(f64::from(upper_half_number(stored[lanes * k + i])), expected);
             }
             let square = |x: f64| exact(x) * exact(x);

@@ -1,4 +1,4 @@
-//! Ratios and spreads against all pairs, in double precision.
+//! Tests ratios and spreads against all pairs, in double precision.
 
 use sscc_testing::{FlexibleShape, Numbers, Shape};
 
@@ -9,8 +9,8 @@ use crate::filter::{PairFilter, Relation};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Modes, Neighbours, ReducedModel, TriMesh};
 
-/// The largest singular value of three rows from below: the longest image of three vectors along which the Gram matrix was
-/// multiplied 64 times, by squaring it, which takes less time than one product after another.
+/// Returns a lower bound of the largest singular value of three rows: the longest image of three vectors after 64 products with
+/// the Gram matrix. Its power is computed by squaring, which takes less time than one product after another.
 fn singular_value(rows: &[f64]) -> f64 {
     let row_len = rows.len() / 3;
     let row = |c: usize| &rows[c * row_len..][..row_len];
@@ -22,7 +22,7 @@ fn singular_value(rows: &[f64]) -> f64 {
         if trace == 0.0 {
             return 0.0;
         }
-        // The directions stay, and the numbers in range.
+        // Scaling keeps the directions, and the numbers in range.
         let scaled = power.map(|row| row.map(|x| x / trace));
         let entry = |a: usize, b: usize| (0..3).map(|c| scaled[a][c] * scaled[c][b]).sum::<f64>();
         power = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
@@ -78,7 +78,7 @@ fn nan_is_the_largest_ratio() {
     assert_eq!(larger(0.0, f32::INFINITY), f32::INFINITY);
 }
 
-/// A patch of all of a mesh, whose images are given.
+/// A model whose whole mesh is one patch, for tests with given images.
 struct Case {
     model: ReducedModel,
     hierarchy: Hierarchy,
@@ -97,14 +97,14 @@ impl Case {
     }
 }
 
-/// Random images with a common part: three rows for each vertex of the patch.
+/// Returns random images with a common part: three rows for each vertex of the patch.
 fn images(random: &mut Numbers, count: usize, width: usize) -> Vec<f64> {
     let common: Vec<f64> = (0..width).map(|_| random.signed() * 1e3).collect();
     let size = random.power(-5.0, 2.0);
     (0..count * width).map(|i| common[i % width] + size * random.signed()).collect()
 }
 
-/// The search over all of a mesh with random images.
+/// Calls `check` with the search over all of a mesh with random images.
 fn with_search(
     case: &Case,
     random: &mut Numbers,
@@ -161,7 +161,7 @@ fn ratios_are_at_least_those_of_all_pairs() {
             let shape = FlexibleShape::new(seed, Shape::ALL[seed as usize / 10 % 7], 1);
             Case::new(shape.positions, shape.faces, neighbours)
         } else {
-            // Few pairs, so that rounding decides which ratio is the largest.
+            // There are few pairs, so that rounding decides which ratio is the largest.
             let count = 2 + random.below(3) as u32;
             let corner = |i: u32| DVec3::X * f64::from(i / 3) * 3.0 + random.vector();
             let positions = (0..3 * count).map(corner).collect();
@@ -205,7 +205,7 @@ fn ratios_are_at_least_those_of_all_pairs() {
     assert!(finite > 200 && close > 100, "{finite} {close}");
 }
 
-/// A floor spares the search what is below it, and hides nothing above it.
+/// A floor only ends the search for ratios below it: larger ratios are found all the same.
 #[test]
 fn floors_are_never_above_the_result_and_nan_stays() {
     let mut finite = 0;

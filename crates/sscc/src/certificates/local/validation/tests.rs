@@ -1,4 +1,4 @@
-//! Each inconsistent part is refused, by its own message.
+//! Tests that each inconsistent part is refused with a message of its own.
 
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ fn each_inconsistent_part_is_refused() {
                 &|local| _ = local.ellipsoids.pop(),
                 &|local| local.ellipsoids.extend([0; 8]),
                 &|local| local.gradients.clear(),
-                // One mode less: another layout.
+                // With one mode less, the layout is another one.
                 &|local| {
                     local.modes.remove(3);
                     local.mode_starts[1..].iter_mut().for_each(|start| *start -= 1);
@@ -204,7 +204,7 @@ fn too_many_modes_are_refused() {
 
 /// Certificates of models of any size pass: also of those whose root is a leaf or as small as a bucket.
 #[test]
-fn what_is_computed_is_accepted() {
+fn computed_certificates_are_accepted() {
     for (quads, rank, budget) in
         [(2, 1, 0), (4, 2, 64), (9, 3, 4096), (20, 2, 64), (40, 9, 4096), (300, 3, 64)]
     {
@@ -214,10 +214,10 @@ fn what_is_computed_is_accepted() {
         let read = Certificates::try_from(parts.clone());
         assert_eq!(read.map_err(|error| error.to_string()).as_ref(), Ok(&certificates), "{quads} quads");
         assert_eq!(parts.local.nodes.is_empty(), budget == 0, "{quads} quads, {budget}");
-        // Neighbours are listed by one of the two, also where the root is as small as a bucket.
+        // One of two neighbours lists the other one, also if the root is as small as a bucket.
         let children = parts.hierarchy.nodes()[0].child_count as usize;
         assert!(budget == 0 || parts.local.list_nodes.len() + 1 >= children, "{quads} quads");
-        // Both budgets pay for all certificates, the hierarchy included.
+        // Both budgets together limit all certificates, the hierarchy included.
         let (nodes, order) = (parts.hierarchy.nodes(), parts.hierarchy.order());
         let stored = size_of_val(nodes) + size_of_val(order) + size_of_val(&*parts.node_radii);
         let all = stored + 5 * nodes.len() + parts.pair_tree.bytes() + parts.local.bytes();
