@@ -51,7 +51,7 @@ const TASKS: &[Task] = &[
     ),
     ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
     ("serial", "tests the core without threads", serial::run),
-    ("lint", "formatting, lints, documentation", lint::run),
+    ("lint", "checks formatting, lints and documentation", lint::run),
     ("layers", "checks the order of crates, modules and files", layers::run),
     ("lemmas", "proves the rounding lemmas of docs/proofs with Gappa", lemmas::run),
     ("lines", "counts the lines of the product", lines::run),

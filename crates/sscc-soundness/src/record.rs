@@ -51,12 +51,13 @@ impl Record {
             }
             Err(error) => return Err(format!("{name}: {error}")),
         };
-        let record =
-            Self::parse(&text).map_err(|error| format!("{name}: {error}; remove the file to begin a new record"))?;
+        let record = Self::parse(&text)
+            .map_err(|error| format!("{name}: {error}; remove the file to begin a new record"))?;
         match seed {
-            Some(seed) if seed != record.seed => {
-                Err(format!("{name}: its seed is {}, not {seed}; choose another file with --record", record.seed))
-            }
+            Some(seed) if seed != record.seed => Err(format!(
+                "{name}: its seed is {}, not {seed}; choose another file with --record",
+                record.seed
+            )),
             _ => Ok(record),
         }
     }

@@ -89,7 +89,9 @@ pub fn attack_free(tally: &mut Tally, a: &Ends, b: &Ends, effort: Effort) {
         }
     };
     if let Some(t) = contact {
-        tally.false_negative(|| format!("reported as free, but they meet at t={t} (NaN: at a root): {a:?} {b:?}"));
+        tally.false_negative(|| {
+            format!("reported as free, but they meet at t={t} (NaN: at a root): {a:?} {b:?}")
+        });
     }
 }
 
