@@ -1,5 +1,5 @@
-//! Prints a digest of the certificates, and one of the answers, of five small models that are made in code. They are the same
-//! on every machine: `cargo xtask digests` compares them with `docs/records/digests.txt`.
+//! Prints digests of the certificates and of the answers of five small models that are created in code. The digests are the
+//! same on every machine: `cargo xtask digests` compares them with `docs/records/digests.txt`.
 //!
 //! `cargo run --release -p sscc-examples --example digests [FOLDER]`. With a folder, the models, the q, and the bytes of certificates and
 //! answers are also written there, for programs in other languages: `models.json` lists them.
@@ -40,13 +40,13 @@ fn run() -> Result<(), Box<dyn Error>> {
     for (name, model, neighbours, reach) in [
         // One mode for each wave along the axis.
         ("waves", waves(spring_of(100, 8), 6)?, exclude, 0.3),
-        // All modes move all vertices, and a dense metric would not differ from the area's.
+        // All modes move all vertices; a dense metric would not differ from the metric by area.
         ("polynomials", dense, exclude, 0.1),
         // Morph targets of single precision, with seams that are welded.
         ("mouth", mouth, exclude, 3.0),
-        // Each vertex is moved by few modes, as in a skin.
+        // Few modes move each vertex, as in a skin.
         ("strips", strips(0.2)?, exclude, 3.0),
-        // Strips that cross at rest: exceptions; pairs with a common vertex count.
+        // Strips that cross at rest have exceptions. Pairs with a common vertex count.
         ("crossing", strips(0.0)?, include, 0.5),
     ] {
         let filter = (neighbours != exclude).then(|| ContactFilter::new(neighbours));
@@ -79,14 +79,14 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The q of a motion.
+/// Returns the q of a motion.
 fn motion(rank: usize, reach: f64) -> Vec<Vec<f64>> {
     let share = |sample: usize| sample as f64 / SAMPLES as f64;
     let weight = |k: usize, share: f64| reach * share * libm::sin((k * k + 1) as f64 + 2.0 * share);
     (0..SAMPLES).map(|sample| (0..rank).map(|k| weight(k, share(sample))).collect()).collect()
 }
 
-/// The bytes of pairs and times of all kinds of queries, and the number of q that collide.
+/// Returns the bytes of pairs and times of all kinds of queries, and the number of q that collide.
 fn answers(
     model: &ReducedModel,
     certificates: &Certificates,
@@ -112,7 +112,7 @@ fn answers(
     Ok((bytes, colliding))
 }
 
-/// A mesh with modes that are waves along z.
+/// Returns a mesh with modes that are waves along z.
 fn waves(mesh: TriMesh, rank: usize) -> Result<ReducedModel, sscc::Error> {
     let displacements = mesh.rest_positions().iter().flat_map(|p| {
         (0..rank).map(|k| {
@@ -124,7 +124,7 @@ fn waves(mesh: TriMesh, rank: usize) -> Result<ReducedModel, sscc::Error> {
     ReducedModel::new(mesh, modes)
 }
 
-/// Five strips above each other, which bend by a mode of their own, and at the height 0 cross each other.
+/// Returns five strips above each other, each with a mode that bends it. At `height` 0 they cross each other.
 fn strips(height: f64) -> Result<ReducedModel, sscc::Error> {
     const LENGTH: u32 = 24;
     const STRIPS: u32 = 5;

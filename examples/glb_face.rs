@@ -32,7 +32,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let model = loaded.model;
     println!("{}: {} triangles", loaded.info.provenance, model.mesh().faces().len());
 
-    // A glTF file splits vertices along seams. The mesh knows it, so that its equal vertices are welded: otherwise triangles
+    // A glTF file splits vertices along seams. The model stores this, and welds equal vertices: otherwise triangles
     // on the two sides of a seam would share no vertex, and always collide. Pairs that collide at rest (closed lips, eyes
     // in their sockets) are ignored.
     let options = CertifyOptions::default().ignore_rest(0);

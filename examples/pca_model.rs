@@ -67,7 +67,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let q = &samples[i];
     println!("sample {i}: {} pairs of triangles collide", answers[i].pairs.len());
 
-    // The sample is scaled towards the mean until it is proven free, and with it all shapes between.
+    // The sample is scaled towards the mean until it and all shapes between are proven free.
     let scale = query.safe_scale(q)?;
     let repaired: Vec<f64> = q.iter().map(|x| scale * x).collect();
     println!("  safe_scale keeps {:.1} % of it: {} pairs", 100.0 * scale, query.count(&repaired)?);
@@ -83,16 +83,16 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Pseudo-random numbers, the same in every run.
+/// A generator of pseudo-random numbers, the same in every run.
 struct Random(u64);
 
 impl Random {
-    /// Uniform in (0, 1].
+    /// Returns a number that is uniformly distributed in (0, 1].
     fn uniform(&mut self) -> f64 {
         ((sscc::parts::next_bits(&mut self.0) >> 11) + 1) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Normal, mean 0 and deviation 1 (Box and Muller).
+    /// Returns a normally distributed number with mean 0 and deviation 1 (Box and Muller).
     fn normal(&mut self) -> f64 {
         (-2.0 * libm::log(self.uniform())).sqrt() * libm::cos(TAU * self.uniform())
     }

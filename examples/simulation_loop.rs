@@ -1,7 +1,7 @@
 //! Queries self-collisions in every step of a simulation loop, until the first contact.
 //!
 //! The shape is the embedded spring, and each of its modes is a damped oscillator. A force of growing amplitude shakes
-//! all of them at the frequency of one, until coils of the spring touch.
+//! all of them at the frequency of one mode, until coils of the spring touch.
 //!
 //! `cargo run --release -p sscc-examples --example simulation_loop`
 #![allow(clippy::print_stdout)]
@@ -41,7 +41,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let token = CancelToken::when(move || Instant::now() >= deadline);
     let mut query = Query::new(&model, &certificates)?.cancelled_by(token);
     let mut oscillators = Oscillators::new(model.metric().scales());
-    // Numbers of steps and times of their queries: those that the root's certificate answers, and the others.
+    // Numbers and query times of the steps that the root's certificate answers, and of the other steps.
     let (mut steps, mut spent) = ([0_u32; 2], [Duration::ZERO; 2]);
     let touching = loop {
         oscillators.advance();
@@ -88,7 +88,7 @@ impl Oscillators {
         TAU * (1.0 + 0.2 * k as f64)
     }
 
-    /// Makes one step of symplectic Euler: velocities first, then positions by the new velocities.
+    /// Advances by one step of symplectic Euler: velocities first, then positions by the new velocities.
     fn advance(&mut self) {
         let shaking = 4.0 * self.time * libm::sin(Self::frequency(SQUEEZE) * self.time); // m/s^2
         for (k, scale) in self.scales.iter().enumerate() {

@@ -35,7 +35,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
 
     // All modes swing with growing amplitude, up to the |z| at which mode 0 alone moves some vertex by half the size of the
-    // shape. (Certificates reach farther by default, where the shape no longer looks like itself.)
+    // shape. (By default certificates reach farther, to strongly distorted shapes.)
     let rest = vec![0.0; model.rank()];
     let mut far = rest.clone();
     far[0] = half_size(&model);
@@ -48,8 +48,8 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut query = Query::new(&model, &certificates)?;
     check("growing", &mut query, growing)?;
 
-    // The shape may have settled in another pose, for example under its weight. Here that pose is half of that amplitude of
-    // mode 0 in the negative direction, or half of the safe scale if that is less. The shape swings about it with a small
+    // The shape may have settled in another pose, for example under its weight. Here mode 0 has half of the amplitude above,
+    // in the negative direction, or half of the safe scale if that is less. The shape swings about this pose with a small
     // amplitude.
     let mut settled = rest.clone();
     settled[0] = -far[0];
@@ -71,7 +71,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the amplitude of mode 0 at which some vertex has moved by half the diagonal of the box at rest.
+/// Returns the amplitude of mode 0 at which some vertex has moved by half the diagonal of the AABB at rest.
 fn half_size(model: &ReducedModel) -> f64 {
     let positions = model.mesh().rest_positions();
     let (low, high) = positions.iter().fold((positions[0], positions[0]), |(l, h), p| (l.min(*p), h.max(*p)));

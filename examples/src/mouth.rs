@@ -57,8 +57,8 @@ fn mouth() -> Mouth {
     mouth
 }
 
-/// Writes `mouth.glb` with four morph targets. Each triangle has three vertices of its own, as modelling programs write
-/// sharp edges, so the model needs welding.
+/// Writes `mouth.glb` with four morph targets. Each triangle has its own three vertices, as modelling programs write sharp
+/// edges, so the model needs welding.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -128,8 +128,8 @@ pub fn mouths_npz(folder: &Path) -> io::Result<PathBuf> {
     Ok(path)
 }
 
-/// Writes `mouth.obj` and, as VegaFEM writes modes, `mouth.U`: rows and columns (int32), then the matrix
-/// column by column (float64).
+/// Writes `mouth.obj`, and `mouth.U` in the format of VegaFEM for modes: rows and columns (int32), then the matrix column by
+/// column (float64).
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -98,7 +98,8 @@ fn vegafem_on_real_files() {
     settled_frames(&text);
 }
 
-/// Certificates with the centre at rest answer none of the frames by one comparison, those about the settled pose all.
+/// Checks the queries about the settled pose. Certificates with the centre at rest answer no frame by one comparison, those
+/// with the settled pose as centre answer all frames.
 fn settled_frames(text: &str) {
     line(text, "settled: 300 frames, 0 colliding, 0 answered by one comparison");
     line(text, "settled: 300 frames, 0 colliding, 300 answered by one comparison");
@@ -111,7 +112,7 @@ fn simulation_loop() {
     assert!(line(&text, "one comparison").contains(" of 316 steps"));
 }
 
-/// The same bytes everywhere, on this machine too.
+/// The digests are the same on this machine as in the record.
 #[test]
 fn digests() {
     let (text, _) = run("digests", NONE);

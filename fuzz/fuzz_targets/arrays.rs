@@ -1,4 +1,5 @@
-//! What bindings pass on: positions, faces, modes, metrics and q of any numbers. Queries by certificates are those of brute force.
+//! Arguments of bindings: positions, faces, modes, metrics and q of any numbers. Queries with certificates must equal brute
+//! force.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Containers of certificates, sealed again.
+//! Containers of certificates, with a corrected digest.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Containers of models, sealed again, so that the digest does not end the search.
+//! Containers of models, with a corrected digest, so that a wrong digest does not end the reading.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Frames of a mesh: `.npy`, point caches, VTK. The first byte chooses the ending.
+//! Frames of a mesh: `.npy`, point caches, VTK. The first byte chooses the file extension.
 #![no_main]
 
 use std::path::Path;

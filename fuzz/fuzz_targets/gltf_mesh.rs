@@ -1,4 +1,4 @@
-//! glTF: morph targets, and meshes where nodes put them.
+//! glTF: morph targets, and meshes at the positions of their nodes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

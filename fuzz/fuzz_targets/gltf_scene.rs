@@ -1,4 +1,4 @@
-//! glTF: contents, animations, skins, and poses of them.
+//! glTF: contents, animations, skins, and their poses.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -10,7 +10,7 @@ use sscc_fuzz::bounded;
 #[path = "../../crates/sscc-view/src/server/request.rs"]
 mod request;
 
-/// A connection that gives a few bytes at once.
+/// A connection that delivers a few bytes at once.
 struct Pieces<'a, 'b> {
     bytes: &'a mut &'b [u8],
     size: usize,

@@ -1,4 +1,4 @@
-//! OFF.
+//! Meshes in OFF.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

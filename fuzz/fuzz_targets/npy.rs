@@ -1,4 +1,4 @@
-//! Arrays of NumPy, and modes of them.
+//! Arrays of NumPy, and modes in them.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Arrays as Python and C pass them: any numbers, in small meshes.
+//! Arrays as the arguments of Python and C: any numbers, in small meshes.
 
 use sscc::glam::DVec3;
 use sscc::{
@@ -8,7 +8,7 @@ use sscc::{
 
 use crate::one_line;
 
-/// Numbers of an input, one after another; zeros at its end.
+/// The numbers of an input, one after another; zeros after its end.
 struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {
@@ -18,7 +18,7 @@ impl Numbers<'_> {
         *first
     }
 
-    /// Half of all numbers are small and whole, so that triangles touch.
+    /// Returns the next number. Half of all numbers are small integers, so that triangles touch.
     fn number(&mut self) -> f64 {
         match self.byte() {
             kind @ 0..200 => f64::from(kind % 9) - 4.0,
@@ -37,10 +37,10 @@ impl Numbers<'_> {
     }
 }
 
-/// Makes a mesh, a model, certificates and queries of an input.
+/// Creates a mesh, a model, certificates and queries from an input.
 ///
 /// # Panics
-/// When queries differ from brute force, or errors are no lines.
+/// When queries differ from brute force, or an error is not one line.
 pub fn attack(bytes: &[u8]) {
     let numbers = &mut Numbers(bytes);
     let [vertices, faces, rank] = [12, 16, 4].map(|most| usize::from(numbers.byte()) % most + 1);
@@ -72,8 +72,9 @@ fn query(numbers: &mut Numbers<'_>, model: &ReducedModel, filter: ContactFilter)
     let options = CertifyOptions::default().metric(metric).center(list(rank)).filter(filter).threads(1);
     let Some(certificates) = one_line(Certificates::compute(model, &options, &())) else { return };
     let methods = [Method::Certified, Method::BruteForce];
-    let [mut query, mut oracle] =
-        methods.map(|method| Query::with_method(model, &certificates, method).expect("its own certificates"));
+    let [mut query, mut oracle] = methods.map(|method| {
+        Query::with_method(model, &certificates, method).expect("the model's own certificates")
+    });
     let mut kinetic = KineticQuery::new(model, &certificates).ok();
     let mut last = list(rank);
     for _ in 0..4 {

@@ -1,4 +1,4 @@
-//! What all fuzz targets have in common: bounds of time and memory, errors of one line, sealed containers.
+//! Code that all fuzz targets share: bounds of time and memory, errors of one line, containers with correct digests.
 
 pub mod arrays;
 
@@ -12,16 +12,16 @@ use sscc::glam::DVec3;
 /// Memory that an input may take: so much, and so many times its size.
 const MEMORY: (u64, u64) = (8 << 20, 2048);
 
-/// Time of the processor that an input may take, at most [`MAX_BYTES`] of it: coverage and checks make code several times slower.
+/// Maximum processor time of an input of at most [`MAX_BYTES`]. Coverage and checks make code several times slower.
 const TIME: Duration = Duration::from_secs(4);
 
-/// Longer inputs are not tried.
+/// Longer inputs are skipped.
 pub const MAX_BYTES: usize = 1 << 16;
 
-/// Attacks with an input, and asserts the bounds.
+/// Runs a target with an input, and asserts the bounds.
 ///
 /// # Panics
-/// When the input takes more memory or time.
+/// When the input takes more memory or time than the bounds.
 pub fn bounded(bytes: &[u8], attack: impl FnOnce(&[u8])) {
     if bytes.len() > MAX_BYTES {
         return;
@@ -35,7 +35,7 @@ pub fn bounded(bytes: &[u8], attack: impl FnOnce(&[u8])) {
     assert!(time < TIME, "{} bytes take {time:?}", bytes.len());
 }
 
-/// The value, or nothing after a look at the error: one line, not too long.
+/// Returns the value; for an error checks that its message is one line and not too long, and returns None.
 ///
 /// # Panics
 /// When the message has several lines, or is empty or long.
@@ -46,11 +46,12 @@ pub fn one_line<T, E: Display>(result: Result<T, E>) -> Option<T> {
     };
     let message = error.to_string();
     let is_line = !message.is_empty() && !message.contains(['\n', '\r']) && message.len() < 2000;
-    assert!(is_line, "the error is no line: {message:?}");
+    assert!(is_line, "the error is not one line: {message:?}");
     None
 }
 
-/// A container whose digest is that of its bytes: otherwise nearly every input would end there.
+/// Returns a container with the correct digest of its bytes. With a wrong digest nearly every input would end at the check of
+/// the digest.
 pub fn sealed(bytes: &[u8]) -> Vec<u8> {
     const START: usize = 8 + r#"{"__metadata__":{"blake3":""#.len();
     let mut sealed = bytes.to_vec();
@@ -63,7 +64,7 @@ pub fn sealed(bytes: &[u8]) -> Vec<u8> {
     sealed
 }
 
-/// A mesh for readers that need one.
+/// Returns a mesh for readers that need one.
 ///
 /// # Panics
 /// Never.

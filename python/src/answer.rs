@@ -11,8 +11,8 @@ use crate::errors::{kind, value};
 /// The result of `__reduce__`: a function and its arguments.
 pub type Reduction<'py, A> = (Bound<'py, PyAny>, A);
 
-/// The pickled form of an answer: pairs (little-endian), norm, and the cost as in [`pickled`]: the first number is the proof. Earlier
-/// versions have there whether the root's radius was the proof.
+/// The pickled form of an answer: pairs (little-endian), norm, and the cost as in [`pickled`]. The first number of the cost
+/// is the proof; earlier versions stored there whether the root's radius was the proof.
 pub type PickledAnswer<'py> = (Bound<'py, PyBytes>, f64, (u8, bool, u64, u64, u64));
 
 /// The proofs by their pickled numbers.
@@ -128,7 +128,7 @@ pub fn pair_bytes<'py>(py: Python<'py>, pairs: &[Pair]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, &bytes)
 }
 
-/// Returns the pairs in such bytes.
+/// Returns the pairs in bytes of [`pair_bytes`].
 ///
 /// # Errors
 /// If the bytes are not a whole number of pairs.

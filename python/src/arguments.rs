@@ -68,7 +68,7 @@ pub fn choice<T: Copy>(
     }
 }
 
-/// The values of the argument `neighbours`, by their names.
+/// Returns the values of the argument `neighbours`, by their names.
 pub fn neighbours_by_name() -> [(&'static str, Neighbours); 3] {
     [Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded]
         .map(|rule| (rule.into(), rule))

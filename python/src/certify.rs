@@ -46,7 +46,7 @@ enum Scheme {
 }
 
 impl CertifyArguments<'_, '_> {
-    /// Returns the clearance; none without one.
+    /// Returns the clearance; `None` without the argument.
     fn clearance(&self) -> PyResult<Option<Clearance>> {
         match (self.clearance, self.rings) {
             (Some(distance), rings) => clearance(distance, rings).map(Some),
@@ -127,7 +127,7 @@ pub fn certify(
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
 }
 
-/// Returns the rings around pairs that collide at rest: True for these pairs alone, or a number of rings.
+/// Returns the number of rings around pairs that collide at rest. `True` means 0: these pairs only.
 pub fn rest_rings(typed: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u32>> {
     if let Some(Ok(is_ignored)) = typed.map(|typed| typed.extract::<bool>()) {
         return Ok(is_ignored.then_some(0));

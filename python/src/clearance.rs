@@ -1,4 +1,4 @@
-//! Arguments and results of questions about distances.
+//! Arguments and results of queries for distances.
 
 use pyo3::prelude::*;
 use sscc::{Clearance, NearPair};
@@ -13,7 +13,7 @@ pub type NearArrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 /// The nearest pair: distance, triangles.
 pub type Nearest = Option<(f64, (u32, u32))>;
 
-/// How many connected components are inside, and how many there are.
+/// Number of connected components that are inside, and number of all components.
 pub type Enclosed = (usize, usize);
 
 /// Returns the clearance in the arguments.

@@ -1,6 +1,6 @@
-//! The triangles of the pairs of an answer, at its positions: all that curves and penetration depths need.
+//! The triangles of the pairs of an answer, at its positions: the data for curves and penetration depths.
 //!
-//! An answer copies them instead of all positions, so that its size depends on its pairs alone.
+//! An answer copies them instead of all positions, so that its size depends only on its pairs.
 
 use std::cmp::Ordering;
 
@@ -17,14 +17,14 @@ const RECORD: usize = 4 + 3 * 4 + 9 * 8;
 /// Triangles of one mesh.
 #[derive(Clone)]
 pub struct CollidingTriangles {
-    /// Ascending.
+    /// The numbers of the triangles, ascending.
     numbers: Vec<u32>,
     faces: Vec<[u32; 3]>,
     corners: Vec<[DVec3; 3]>,
 }
 
 impl CollidingTriangles {
-    /// Copies the triangles with these numbers, of which some may be equal.
+    /// Copies the triangles with these numbers. Repeated numbers are copied once.
     pub fn of(faces: &[[u32; 3]], positions: &[DVec3], numbers: impl Iterator<Item = u32>) -> Self {
         let mut numbers: Vec<u32> = numbers.collect();
         numbers.sort_unstable();
@@ -34,23 +34,23 @@ impl CollidingTriangles {
         Self { numbers, faces, corners }
     }
 
-    /// The place of a triangle, which is its number in [`Self::mesh`].
+    /// Returns the index of a triangle, which is its number in [`Self::mesh`].
     pub fn place(&self, triangle: u32) -> Option<u32> {
         self.numbers.binary_search(&triangle).ok().map(|place| place as u32)
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub fn corners(&self, triangle: u32) -> Option<&[DVec3; 3]> {
         self.corners.get(self.place(triangle)? as usize)
     }
 
-    /// The number of the triangle at a place.
+    /// Returns the number of the triangle at an index.
     pub fn number(&self, place: u32) -> u32 {
         self.numbers[place as usize]
     }
 
-    /// Returns the triangles as a mesh: faces and positions. Vertices at the same position are one, the lowest, so that
-    /// curves do not end where a file splits vertices. The order of the vertices is that of the whole mesh.
+    /// Returns the triangles as a mesh: faces and positions. Vertices at the same position are replaced by the lowest of
+    /// them, so that curves do not end where a file splits vertices. The order of the vertices is that of the whole mesh.
     pub fn mesh(&self) -> (Vec<[u32; 3]>, Vec<DVec3>) {
         let compare = |x: &DVec3, y: &DVec3| {
             x.to_array().partial_cmp(&y.to_array()).unwrap_or(Ordering::Equal) // positions are finite
@@ -59,7 +59,7 @@ impl CollidingTriangles {
         let mut lowest: Vec<(DVec3, u32)> = corners.iter().copied().zip(faces.iter().copied()).collect();
         lowest.sort_unstable_by(|(x, i), (y, j)| compare(x, y).then(i.cmp(j)));
         lowest.dedup_by(|(x, _), (y, _)| compare(x, y).is_eq());
-        // Positions in the order of their lowest vertices.
+        // Positions are in the order of their lowest vertices.
         let mut order: Vec<u32> = (0..lowest.len() as u32).collect();
         order.sort_unstable_by_key(|at| lowest[*at as usize].1);
         let mut vertex = vec![0; lowest.len()];
@@ -84,7 +84,7 @@ impl CollidingTriangles {
     /// Returns the triangles of a pickled form.
     ///
     /// # Errors
-    /// If the bytes are no such form.
+    /// If the bytes do not have this form.
     pub fn from_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Self> {
         let damaged = || value("the pickled answer is damaged: its bytes are not those of triangles");
         let (records, []) = bytes.as_bytes().as_chunks::<RECORD>() else { return Err(damaged()) };

@@ -16,14 +16,14 @@ use crate::interrupt::signals;
 /// The pickled form: the triangles of the first mesh, and of the second if there are two.
 pub type PickledContacts<'py> = (Bound<'py, PyBytes>, Option<Bound<'py, PyBytes>>);
 
-/// How many penetration depths are computed between two checks of signals.
+/// Number of penetration depths that are computed between two checks of signals.
 const DEPTHS_AT_ONCE: usize = 256;
 
 /// The triangles of the pairs of an answer.
 #[derive(Clone)]
 pub struct Contacts {
     first: CollidingTriangles,
-    /// Those of the second mesh; `None` for collisions of one mesh with itself.
+    /// The triangles of the second mesh; `None` for collisions of one mesh with itself.
     second: Option<CollidingTriangles>,
 }
 
@@ -83,7 +83,7 @@ impl Contacts {
         Ok(curves.collect())
     }
 
-    /// Returns the smallest translation that parts each pair. A signal handler's exception ends the work.
+    /// Returns the smallest translation that separates each pair. A signal handler's exception ends the work.
     pub fn penetrations(&self, pairs: &[Pair]) -> PyResult<Vec<Penetration>> {
         let mut found = Vec::with_capacity(pairs.len());
         for some in pairs.chunks(DEPTHS_AT_ONCE) {
@@ -107,7 +107,7 @@ impl Contacts {
     /// Returns the contacts of a pickled form.
     ///
     /// # Errors
-    /// If the bytes are no such form.
+    /// If the bytes do not have this form.
     pub fn unpickled((first, second): &PickledContacts<'_>) -> PyResult<Self> {
         let second = second.as_ref().map(CollidingTriangles::from_bytes).transpose()?;
         Ok(Self { first: CollidingTriangles::from_bytes(first)?, second })

@@ -39,12 +39,12 @@ type PickledDetector<'py> = (
 #[pyclass(frozen, module = "sscc", name = "Detector")]
 pub struct Detector {
     pool: DetectorPool,
-    /// The argument `rest`.
+    /// Whether the argument `rest` was given.
     has_rest: bool,
 }
 
 impl Detector {
-    /// Returns the hierarchy, from these positions if they are the first.
+    /// Returns the hierarchy. Builds it from these positions if they are the first.
     fn built(&self, positions: &NamedPositions) -> PyResult<Arc<Built>> {
         self.pool.built(&positions.points, positions.name)
     }
@@ -54,7 +54,7 @@ impl Detector {
         FoundFrame::of(frame, |pairs| Contacts::within((&self.pool.mesh.faces, positions), pairs))
     }
 
-    /// Answers a query. `work` runs without the GIL, after the hierarchy exists.
+    /// Runs a query. `work` runs without the GIL, after the hierarchy exists.
     fn ask<T: Send>(
         &self,
         py: Python<'_>,
@@ -68,7 +68,7 @@ impl Detector {
         })?
     }
 
-    /// The same for two detectors, each with its positions.
+    /// Runs a query of two detectors, each with its positions.
     fn ask_both<T: Send>(
         &self,
         py: Python<'_>,
@@ -132,7 +132,7 @@ impl Detector {
         }
         let weld = Weld::of(weld)?;
         if rest.is_none() && matches!(weld, Weld::ByPosition) {
-            return Err(value("weld is True, but rest is missing: it says which vertices are equal"));
+            return Err(value("weld is True, but rest is missing: it defines which vertices are equal"));
         }
         let filter = contact_filter(neighbours, &weld, ignored, faces.len())?;
         let filter = with_groups(filter, faces.len(), groups, ignore_groups)?;
@@ -381,7 +381,7 @@ impl Detector {
         pairs(py, &groups.map_or_else(Vec::new, |groups| ignored_pairs(groups)))
     }
 
-    /// The copy builds its own hierarchy, from `rest` or the first positions that it checks.
+    /// Returns the pickled form. The copy builds its own hierarchy, from `rest` or the first positions that it checks.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, PickledDetector<'py>>> {
         let groups = self.groups(py);
         let ignore_groups = groups.as_ref().map(|_| self.ignored_groups(py)).transpose()?;
@@ -417,7 +417,7 @@ pub fn _detector(
     Detector::new(py, faces, rest, Some(weld), Some(neighbours), Some(ignored), groups, ignore_groups)
 }
 
-/// Exact self-intersections of a mesh, as an array (n, 2).
+/// Returns the exact self-intersections of a mesh, as an array (n, 2).
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, weld=None, neighbours=None))]
 pub fn self_intersections<'py>(

@@ -1,7 +1,7 @@
 //! `sscc.DetectorAnswer` and `sscc.DetectorImpacts`: the results of a detector at given positions and between them.
 //!
-//! The cost of an answer depends on earlier calls, because the detector rebuilds its BVH. So equality compares pairs,
-//! times and completeness alone.
+//! The cost of an answer depends on earlier calls, because the detector rebuilds its BVH. So equality compares only pairs,
+//! times and completeness.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::interrupt::{answer, run};
 /// `rebuilds`.
 pub type PickledFrame<'py> = (Bound<'py, PyBytes>, (bool, u64, u64, u64, f64, u64));
 
-/// The pickled form of an answer: pairs, and their triangles if there are any.
+/// The pickled form of an answer: pairs, and their triangles if there are pairs.
 pub type PickledAnswer<'py> = (PickledFrame<'py>, Option<PickledContacts<'py>>);
 
 /// An answer of the core, and the triangles of its pairs.
@@ -34,7 +34,7 @@ pub struct FoundFrame {
 }
 
 impl FoundFrame {
-    /// `contacts` copies the triangles of pairs.
+    /// Creates the answer. `contacts` copies the triangles of pairs.
     pub fn of(frame: Answer, contacts: impl FnOnce(&[Pair]) -> Contacts) -> Self {
         let contacts = (!frame.pairs.is_empty()).then(|| Arc::new(contacts(&frame.pairs)));
         Self { frame, contacts }
@@ -48,7 +48,7 @@ impl FoundFrame {
     /// Returns the answer of a pickled form.
     ///
     /// # Errors
-    /// If it is damaged.
+    /// If the bytes are damaged.
     pub fn unpickled((frame, contacts): &PickledAnswer<'_>) -> PyResult<Self> {
         let contacts = contacts.as_ref().map(Contacts::unpickled).transpose()?.map(Arc::new);
         let frame = unpickled(frame)?;
@@ -129,7 +129,7 @@ impl DetectorAnswer {
         let curves = match &self.found.contacts {
             Some(contacts) => {
                 let (contacts, pairs) = (Arc::clone(contacts), self.found.frame.pairs.clone());
-                // On another thread, because nothing cancels the core's work.
+                // The work runs on another thread, because nothing can cancel it.
                 let silent = PyBool::new(py, false).to_owned().into_any();
                 run(py, Some(&silent), "", move |_| contacts.curves(&pairs))??
             }
@@ -270,7 +270,7 @@ impl DetectorImpacts {
     }
 }
 
-/// Whether two answers are the same but for their cost.
+/// Whether two answers are equal, apart from their cost.
 pub fn is_same(a: &Answer, b: &Answer) -> bool {
     a.pairs == b.pairs && a.statistics.complete == b.statistics.complete
 }

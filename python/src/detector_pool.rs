@@ -40,13 +40,13 @@ impl DetectorPool {
         Self { mesh, built: Mutex::default(), idle: Mutex::default() }
     }
 
-    /// Returns the hierarchy, if there is one.
+    /// Returns the hierarchy; `None` if it is not built.
     pub fn known(&self) -> Option<Arc<Built>> {
         lock(&self.built).clone()
     }
 
-    /// Returns the hierarchy; builds it from these positions if there is none. `name` is their argument's. Call it
-    /// without the GIL, because other threads wait for the end.
+    /// Returns the hierarchy. Builds it from these positions if it is not built; `name` is the name of their argument. Call
+    /// it without the GIL, because other threads wait for the end.
     pub fn built(&self, positions: &[DVec3], name: &str) -> PyResult<Arc<Built>> {
         let mut built = lock(&self.built);
         if let Some(built) = &*built {

@@ -54,13 +54,13 @@ pub fn ignored_pairs(groups: &TriangleGroups) -> Vec<Pair> {
     if table.others_count {
         return table.listed.iter().map(|&[g, h]| (g.into(), h.into())).collect();
     }
-    // At least half of all pairs do not count, so the list is not much shorter than the search.
+    // At least half of all pairs do not count, so a search visits at most twice as many pairs as it lists.
     let all = 0..table.count as u32;
     let pairs = all.clone().flat_map(|g| (g..all.end).map(move |h| (g, h)));
     pairs.filter(|(g, h)| table.listed.binary_search(&[*g as u16, *h as u16]).is_err()).collect()
 }
 
-/// Group numbers; the core refuses those that are too large.
+/// Copies group numbers. The core refuses numbers that are too large.
 fn copied(numbers: &[i64], name: &str) -> PyResult<Vec<u32>> {
     let number = |number: &i64| {
         u32::try_from(*number).map_err(|_| {

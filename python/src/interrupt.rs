@@ -89,8 +89,8 @@ impl Progress for Monitor {
     }
 }
 
-/// The argument `progress`, as two functions: one receives the finished share of the work, one ends the report. `None`
-/// shows no progress.
+/// The argument `progress`, as two functions: one receives the finished share of the work, one ends the report. With `None`
+/// no progress is shown.
 struct Reporter(Option<(Py<PyAny>, Py<PyAny>)>);
 
 impl Reporter {

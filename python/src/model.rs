@@ -57,8 +57,8 @@ pub fn mesh_of(positions: Vec<DVec3>, name: &str, faces: &Bound<'_, PyAny>) -> P
     })
 }
 
-/// Returns faces from an array (F, 3) of vertex numbers. `vertices`: how many there are, and their argument's name, if
-/// they are known.
+/// Returns faces from an array (F, 3) of vertex numbers. `vertices` is the number of vertices and the name of their argument,
+/// if they are known.
 pub fn face_corners(faces: &Bound<'_, PyAny>, vertices: Option<(usize, &str)>) -> PyResult<Vec<[u32; 3]>> {
     let array = integers(faces, "faces")?;
     if array.shape() == [0] {

@@ -130,14 +130,14 @@ impl Model {
         certify::certify(slf, &arguments, progress)
     }
 
-    /// The vertices at q, (V, 3): the positions that all queries test, bit for bit.
+    /// Returns the vertices at q, (V, 3): the positions that all queries test, bit for bit.
     fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let q = vector(q, "q")?;
         let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
         table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
     }
 
-    /// The q of a load.
+    /// Returns the q of a load.
     #[pyo3(name = "static", signature = (forces, *, gravity=None))]
     fn static_configuration<'py>(
         &self,
@@ -159,7 +159,7 @@ impl Model {
         Ok(line(py, found.q))
     }
 
-    /// The q whose shape is nearest to positions, and the share of the displacements that remains.
+    /// Returns the q whose shape is nearest to positions, and the share of the displacements that remains.
     fn fit<'py>(&self, py: Python<'py>, positions: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, f64)> {
         let mut displacements = self.of_vertices(positions, "positions")?;
         displacements.iter_mut().zip(self.core().mesh().rest_positions()).for_each(|(x, rest)| *x -= *rest);

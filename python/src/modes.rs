@@ -22,7 +22,7 @@ use crate::interrupt::run;
 use crate::model::{LoadedModel, Model, mesh, mesh_of, points};
 use crate::pool::{self, on_threads};
 
-/// A mesh or solid in a file, or a surface as `(vertices, faces)`.
+/// A file with a mesh or solid, or a surface as `(vertices, faces)`.
 enum Source {
     File(PathBuf),
     Surface(TriMesh),
@@ -44,7 +44,7 @@ impl Source {
         }
     }
 
-    /// Its name in the provenance of a model.
+    /// Returns the name of the source for the provenance of a model.
     fn name(&self) -> String {
         match self {
             Self::File(path) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -64,7 +64,7 @@ impl Source {
     }
 }
 
-/// Model of an elastic body with linear, nonlinear or polynomial modes.
+/// Returns the model of an elastic body with linear, nonlinear or polynomial modes.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _elastic(
@@ -114,7 +114,7 @@ fn two_corners(corners: &Bound<'_, PyAny>) -> PyResult<[DVec3; 2]> {
     points(&array, "fix_box")?.try_into().map_err(|_| wrong())
 }
 
-/// Polynomial modes of a surface. A solid in a file adds its stiffness.
+/// Returns a model with polynomial modes of a surface. A solid in a file adds its stiffness.
 #[pyfunction]
 pub fn _polynomial(
     py: Python<'_>,
@@ -140,7 +140,7 @@ pub fn _polynomial(
 struct BodyOptions {
     rank: Option<usize>,
     material: PartialMaterial,
-    /// Fixed vertices, and a box in which all are fixed.
+    /// Fixed vertices, and a box in which all vertices are fixed.
     fixed: Vec<u32>,
     fixed_box: Option<[DVec3; 2]>,
     resolution: Option<usize>,
@@ -215,7 +215,7 @@ fn vertex_numbers(any: &Bound<'_, PyAny>) -> PyResult<Vec<u32>> {
     array.as_slice()?.iter().enumerate().map(number).collect()
 }
 
-/// Model of the mean and the principal components of shapes.
+/// Returns the model of the mean and the principal components of shapes.
 #[pyfunction]
 pub fn _pca(
     py: Python<'_>,

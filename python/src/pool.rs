@@ -25,7 +25,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Refuses certificates of another model.
+    /// Creates a pool. Refuses certificates of another model.
     pub fn of(certified: CertifiedModel) -> Result<Self, Error> {
         let CertifiedModel { loaded, certificates } = &certified;
         let first = Query::new(&loaded.model, certificates)?.cancelled_by(signals().clone());
@@ -42,7 +42,7 @@ impl Pool {
         answer
     }
 
-    /// The query from which the others are cloned.
+    /// Returns the query from which the others are cloned.
     pub fn first(&self) -> &Query {
         &self.first
     }
@@ -91,8 +91,7 @@ pub fn threads(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<usize>> {
     crate::arguments::count(threads, "threads", 1..=1024)
 }
 
-/// Runs work on this number of threads (`None`: all cores), in a pool of its own: a forked process cannot use the
-/// global pool.
+/// Runs work on this number of threads (`None` means all cores), in its own pool: a forked process cannot use the global pool.
 pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         Ok(pool) => pool.install(work),

@@ -48,7 +48,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Returns a copy of the frames in an array; `vertices` is their number if it is known.
+    /// Returns a copy of the frames in an array. `vertices` is the number of vertices, if it is known.
     pub fn of(any: &Bound<'_, PyAny>, vertices: Option<usize>) -> PyResult<Self> {
         let array = floats(any, "frames")?;
         let shape = array.shape();
@@ -74,9 +74,9 @@ impl Frames {
 /// The argument `weld`.
 pub enum Weld {
     Off,
-    /// Vertices of equal rest position are one.
+    /// Vertices of equal rest position are welded.
     ByPosition,
-    /// Vertices of the same class are one. Classes are numbered from 0 without gaps.
+    /// Vertices of the same class are welded. Classes are numbered from 0 without gaps.
     Classes(Vec<u32>),
 }
 

@@ -24,7 +24,7 @@ fn options(
     Ok(ResolveOptions::default().start(start).all(switch(all, "all")?.unwrap_or(false)))
 }
 
-/// Names the argument at fault: the start where it collides, else the configuration.
+/// Returns an error that names the argument at fault: the start if it collides, else the configuration.
 fn refused_search(error: &Error, name: &str) -> PyErr {
     if *error == Error::ResolveStart { value(format!("start: {error}")) } else { refused(error, name) }
 }

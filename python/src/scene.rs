@@ -1,4 +1,4 @@
-//! The parts of `sscc.Scene` in Rust: what is in a glTF file, its collisions, and the positions of a node.
+//! The parts of `sscc.Scene` in Rust: the contents of a glTF file, its collisions, and the positions of a node.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use crate::interrupt::run_borrowing;
 use crate::pool;
 use crate::watching::Watching;
 
-/// Times a second, where neither they nor times are given.
+/// Times per second, if neither this rate nor times are given.
 const RATE: f64 = 30.0;
 
 /// A node: its number and name, the name of its mesh, its vertices and triangles.
@@ -98,7 +98,7 @@ fn times_of(
     }
 }
 
-/// What is kept of an answer.
+/// The stored parts of an answer.
 struct Kept {
     nodes: [Option<usize>; 2],
     names: [Option<String>; 2],
@@ -163,7 +163,9 @@ pub fn _check_scene<'py>(
         ..Detection::default()
     };
     if request.clearance.is_some() && (request.is_continuous || request.limit.is_some()) {
-        return Err(value("clearance is about positions, without a limit: leave out continuous and limit"));
+        return Err(value(
+            "clearance works only at positions, without a limit: leave out continuous and limit",
+        ));
     }
     request.motion =
         MeshMotion::Animation(AnimationMotion { animation, times, node, weights: SkinWeights::Normalized });

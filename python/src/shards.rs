@@ -17,7 +17,7 @@ use crate::interrupt::{answer, signals};
 use crate::model::Model;
 use crate::pool::{CertifiedModel, Pool};
 
-/// The keywords of `Model.certify`, except `progress`, and the clearance: clusters compute certificates of collisions.
+/// The keywords of `Model.certify`, except `progress` and the clearance: clusters compute only certificates of collisions.
 const KEYWORDS: [&str; 14] = [
     "epsilon",
     "metric",
@@ -124,7 +124,7 @@ impl ShardWorker {
     }
 }
 
-/// The finished share of the work, as the bits of a float. Ctrl-C cancels the work as it cancels queries.
+/// The finished share of the work, as the bits of a float. Ctrl-C cancels the work like queries.
 #[derive(Default)]
 struct Share(AtomicU64);
 
@@ -139,7 +139,7 @@ impl Progress for Share {
     }
 }
 
-/// `Model.certify` by jobs. `run(jobs, share)` returns the results of a list of jobs; `share` is the finished share of
+/// Runs `Model.certify` by jobs. `run(jobs, share)` returns the results of a list of jobs; `share` is the finished share of
 /// the work.
 #[pyfunction]
 pub fn _certify_in_shards(
@@ -181,7 +181,7 @@ pub fn _certify_in_shards(
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
 }
 
-/// Returns Q as float64 in C order, with the errors of `check_many`.
+/// Returns Q as float64 in C order. The errors are those of `check_many`.
 #[pyfunction]
 #[allow(non_snake_case)]
 pub fn _configurations<'py>(

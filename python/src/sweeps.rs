@@ -14,10 +14,10 @@ use crate::interrupt::run_borrowing;
 use crate::model::LoadedModel;
 use crate::pool::{Pool, threads};
 
-/// Samples of each weight, where their number is not given.
+/// Default number of samples of each weight.
 const SAMPLES: usize = 101;
 
-/// The arguments of both, except `progress` and `samples`; `None` for an absent one.
+/// The arguments of sweeps and intervals, except `progress` and `samples`; `None` for an absent argument.
 pub struct SweepArguments<'a, 'py> {
     pub range: Option<&'a Bound<'py, PyAny>>,
     pub q: Option<&'a Bound<'py, PyAny>>,
@@ -26,7 +26,7 @@ pub struct SweepArguments<'a, 'py> {
 }
 
 impl<'py> SweepArguments<'_, 'py> {
-    /// Sweeps the modes. Ctrl-C stops it.
+    /// Sweeps the modes. Ctrl-C stops the sweeps.
     pub fn run(
         &self,
         py: Python<'py>,
@@ -52,7 +52,7 @@ impl<'py> SweepArguments<'_, 'py> {
         PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Finds intervals. Ctrl-C stops it.
+    /// Finds intervals. Ctrl-C stops the search.
     pub fn intervals(
         &self,
         py: Python<'py>,
@@ -141,9 +141,11 @@ impl<'py> SweepArguments<'_, 'py> {
             let name = name.to_string_lossy();
             let unknown = || match nearest(&name, names.iter().map(String::as_str)) {
                 Some(nearest) => {
-                    value(format!("modes: there is no {name:?}; the nearest name is {nearest:?}"))
+                    value(format!("modes: no mode has the name {name:?}; the nearest name is {nearest:?}"))
                 }
-                None => value(format!("modes: there is no {name:?}: the modes of this model have no names")),
+                None => value(format!(
+                    "modes: no mode has the name {name:?}: the modes of this model have no names"
+                )),
             };
             numbers.push(names.iter().position(|known| *known == *name).ok_or_else(unknown)?);
         }

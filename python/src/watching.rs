@@ -1,4 +1,4 @@
-//! Passes on the progress of work in stages, and collects its notes and warnings.
+//! Observer that forwards the progress of work in stages, and collects its notes and warnings.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -6,22 +6,22 @@ use std::sync::{Mutex, PoisonError};
 use sscc::{CancelToken, Progress};
 use sscc_tasks::{Stage, Watch};
 
-/// Reports to `progress`, and keeps notes.
+/// Forwards progress to `progress`, and keeps notes.
 pub struct Watching<'a> {
     progress: &'a dyn Progress,
-    /// Whether only steps of simulations are reported, so that the share done never decreases.
+    /// Whether only steps of simulations are reported, so that the finished share never decreases.
     has_steps: bool,
     is_reported: AtomicBool,
     notes: Mutex<Vec<String>>,
 }
 
 impl<'a> Watching<'a> {
-    /// Reports all stages.
+    /// Creates an observer that reports all stages.
     pub fn all(progress: &'a dyn Progress) -> Self {
         Self { progress, has_steps: false, is_reported: AtomicBool::new(true), notes: Mutex::default() }
     }
 
-    /// Reports the steps of a simulation alone.
+    /// Creates an observer that reports only the steps of a simulation.
     pub fn steps(progress: &'a dyn Progress) -> Self {
         Self { has_steps: true, is_reported: AtomicBool::new(false), ..Self::all(progress) }
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-/// Tests that run at the same time install one after the other: apt-get locks its lists.
+/// Lock for installations, since apt-get locks its lists: tests that run at the same time install one after the other.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// Whether a program is on the path.
@@ -15,7 +15,7 @@ pub fn has(program: &str) -> bool {
         .is_some_and(|path| env::split_paths(&path).any(|folder| folder.join(program).is_file()))
 }
 
-/// Installs packages. Returns whether that worked.
+/// Installs packages. Returns whether this succeeded.
 pub fn install(packages: &[&str]) -> bool {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let apt = |arguments: &[&str]| -> io::Result<bool> {

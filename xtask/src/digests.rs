@@ -1,5 +1,5 @@
-//! `cargo xtask digests`: prints digests of certificates and answers of five small models, and compares them with those in
-//! [`RECORD`], which are the same on every machine.
+//! `cargo xtask digests`: prints digests of the certificates and answers of five small models, and compares them with those
+//! in [`RECORD`]. The digests are the same on every machine.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::program::{cargo, exit_code, output, root, usage};
 /// The record, below the root.
 const RECORD: &str = "docs/records/digests.txt";
 
-/// Compares, or with `--write` writes the record.
+/// Compares the digests with the record; with `--write`, writes the record.
 pub fn run(arguments: &[String]) -> ExitCode {
     match arguments {
         [] => exit_code(print(false)),
@@ -48,9 +48,11 @@ fn compare(found: &str) -> Result<(), String> {
     let path = root().join(RECORD);
     let record = fs::read_to_string(&path).map_err(|error| format!("{RECORD}: {error}"))?;
     match found.lines().zip(record.lines()).find(|(found, record)| found != record) {
-        Some((found, record)) => Err(format!("{RECORD} has '{}', found '{}'", record.trim(), found.trim())),
+        Some((found, record)) => {
+            Err(format!("{RECORD} has '{}', but the digest is '{}'", record.trim(), found.trim()))
+        }
         None if found.lines().count() != record.lines().count() => {
-            Err(format!("{RECORD} has another number of lines; cargo xtask digests --write"))
+            Err(format!("{RECORD} has another number of lines; to replace it: cargo xtask digests --write"))
         }
         None => Ok(()),
     }

@@ -1,4 +1,4 @@
-//! Virtual environments of Python, which are made anew when their requirements or the interpreter change.
+//! Virtual environments of Python, which are created again when their requirements or the interpreter change.
 //!
 //! `SSCC_PYTHON` names the interpreter; the default is `python3`.
 
@@ -12,7 +12,7 @@ use crate::program::run_and_forward;
 /// The oldest supported version of Python.
 const MIN_PYTHON: (u32, u32) = (3, 11);
 
-/// The reason why there are no results.
+/// The reason for missing results.
 pub enum Failure {
     /// Software that the task needs is missing.
     Missing(String),
@@ -28,7 +28,7 @@ impl Failure {
     }
 }
 
-/// The interpreter outside of all environments, and its version as text.
+/// Returns the interpreter outside of all environments, and its version as text.
 fn interpreter() -> Result<(PathBuf, String), Failure> {
     let outside = env::var_os("SSCC_PYTHON").unwrap_or_else(|| "python3".into());
     let shown = outside.to_string_lossy().into_owned();
@@ -47,8 +47,7 @@ fn interpreter() -> Result<(PathBuf, String), Failure> {
     Ok((outside.into(), text))
 }
 
-/// Returns the interpreter of the virtual environment in `folder`. Makes the environment if none exists for these
-/// requirements.
+/// Returns the interpreter of the virtual environment in `folder`. Creates the environment if none exists for these requirements.
 pub fn environment(folder: &Path, requirements: &Path) -> Result<PathBuf, Failure> {
     let (outside, version) = interpreter()?;
     let wanted = fs::read_to_string(requirements)
@@ -72,7 +71,7 @@ pub fn environment(folder: &Path, requirements: &Path) -> Result<PathBuf, Failur
     Ok(python)
 }
 
-/// Makes an environment without packages, and returns its interpreter.
+/// Creates an environment without packages, and returns its interpreter.
 pub fn empty_environment(folder: &Path) -> Result<PathBuf, Failure> {
     make(&interpreter()?.0, folder)?;
     Ok(python_of(folder))
@@ -85,7 +84,7 @@ fn make(outside: &Path, folder: &Path) -> Result<(), Failure> {
     )
 }
 
-/// The folder of an environment's programs.
+/// Returns the folder of an environment's programs.
 pub fn programs(folder: &Path) -> PathBuf {
     folder.join(if cfg!(windows) { "Scripts" } else { "bin" })
 }
@@ -100,7 +99,7 @@ pub fn pip(python: &Path) -> Command {
     pip
 }
 
-/// The files in a folder, sorted.
+/// Returns the files in a folder, sorted.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<_> =
         fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();

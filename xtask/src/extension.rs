@@ -1,7 +1,7 @@
-//! `cargo xtask extension`: packs the add-on of Blender with the wheels that are given, by default the one of
-//! `cargo xtask wheel`, into an extension: a zip file in `target/extension`, which Blender installs.
+//! `cargo xtask extension`: packs the Blender add-on with wheels into an extension: a zip file in `target/extension`, which
+//! Blender installs. Without arguments it uses the wheel of `cargo xtask wheel`.
 //!
-//! Where Blender as a module is installed (`cargo xtask python` does it), Blender's own tool validates the file.
+//! Where Blender as a module is installed (`cargo xtask python` installs it), Blender's own tool validates the file.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -13,7 +13,7 @@ use crate::program::{exit_code, output, root, succeed, usage};
 const TOOL: &str = "import importlib.util, pathlib; \
     print(*pathlib.Path(importlib.util.find_spec('bpy').origin).parent.glob('*/scripts/addons_core/bl_pkg/cli/blender_ext.py'))";
 
-/// Packs and validates.
+/// Packs and validates the extension.
 pub fn run(arguments: &[String]) -> ExitCode {
     if arguments.iter().any(|argument| argument.starts_with('-')) {
         return usage("extension [WHEEL ...]    (by default the wheel of cargo xtask wheel)");

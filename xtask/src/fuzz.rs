@@ -1,8 +1,8 @@
-//! `cargo xtask fuzz`: attacks readers with inputs that libFuzzer makes (`fuzz/`), each target for some seconds.
+//! `cargo xtask fuzz`: runs readers with inputs that libFuzzer generates (`fuzz/`), each target for some seconds.
 //!
 //! The targets are compiled with the coverage of libFuzzer and the address sanitizer, by the stable compiler, which takes
-//! these options with `RUSTC_BOOTSTRAP=1`; cargo-fuzz is not needed. Small valid files are the first inputs. What the fuzzer
-//! finds worth keeping is in `target/fuzz`, and an input that breaks a bound is written there, too.
+//! these options with `RUSTC_BOOTSTRAP=1`; cargo-fuzz is not needed. Small valid files are the first inputs. The fuzzer keeps
+//! further inputs in `target/fuzz`, and also writes each input that breaks a bound there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,10 +21,10 @@ const TARGET: &str = "x86_64-unknown-linux-gnu";
 /// The target that needs simulations, which take most of the time of the build.
 const SCENE: &str = "scene";
 
-/// Memory of a target (MB), and seconds for an input: the last resort beside the bounds that targets assert.
+/// Limits of memory of a target (MB), and of seconds for an input. They are higher than the bounds that targets assert.
 const LIMITS: [&str; 3] = ["-rss_limit_mb=2048", "-malloc_limit_mb=512", "-timeout=20"];
 
-/// Compiles all targets and runs them, or those named.
+/// Compiles the targets and runs all of them, or those named.
 pub fn run(arguments: &[String]) -> ExitCode {
     let mut seconds = 10_u32;
     let mut names = Vec::new();
@@ -45,7 +45,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
 fn fuzz(seconds: u32, names: &[String]) -> Result<(), String> {
     let all = targets()?;
     if let Some(name) = names.iter().find(|name| !all.contains(name)) {
-        return Err(format!("no target '{name}'; there are: {}", all.join(", ")));
+        return Err(format!("no target has the name '{name}'; the targets are: {}", all.join(", ")));
     }
     let chosen = || all.iter().filter(|name| names.is_empty() || names.contains(name));
     let programs = build(chosen().any(|name| name == SCENE))?;
@@ -63,7 +63,7 @@ fn fuzz(seconds: u32, names: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// The names of all targets.
+/// Returns the names of all targets.
 fn targets() -> Result<Vec<String>, String> {
     let folder = root().join("fuzz/fuzz_targets");
     let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
@@ -73,7 +73,7 @@ fn targets() -> Result<Vec<String>, String> {
     Ok(names)
 }
 
-/// Compiles them, with or without [`SCENE`]. Returns the folder of the programs.
+/// Compiles the targets, with or without [`SCENE`]. Returns the folder of the programs.
 fn build(with_scene: bool) -> Result<PathBuf, String> {
     let folder = root().join("target/fuzz-build");
     let mut build = cargo();

@@ -1,4 +1,4 @@
-//! The kept list of public items: a line with names for each item at the root, and on the next line the reason for it.
+//! The kept list of public items. Each item at the root has one line with its names, and the reason for it on the next line.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ impl KeptList {
         list
     }
 
-    /// Differences from the items of the code, one a line, and items without a reason.
+    /// Returns the differences from the items of the code, one a line, and the items without a reason.
     pub fn differences(&self, found: &Items) -> Vec<String> {
         let flat = |items: &Items| -> Vec<String> {
             let with_members = |(name, members): (&String, &Vec<String>)| {
@@ -60,7 +60,7 @@ impl KeptList {
         lines
     }
 
-    /// The text of the list with the items of the code, and the reasons of this one.
+    /// Returns the text of the list with the items of the code, and the reasons of this list.
     pub fn updated(&self, found: &Items) -> String {
         let mut text = self.head.clone();
         for (name, members) in found {
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_names_each_difference() {
+    fn differences_name_each_changed_item() {
         let text = "# A head.\n\nA: b, c\n    For A.\nf\n    For f.\ng\n    (give the reason)\n";
         let list = KeptList::parse(text);
         let same = items(&[("A", &["b", "c"]), ("f", &[]), ("g", &[])]);

@@ -1,4 +1,5 @@
-//! `cargo xtask lemmas`: proves the rounding lemmas in docs/proofs with Gappa, and that it refuses a wrong one.
+//! `cargo xtask lemmas`: proves the rounding lemmas in docs/proofs with Gappa, and checks that Gappa refuses a wrong variant
+//! of each.
 
 use std::fs;
 use std::io::Write;
@@ -14,7 +15,7 @@ const GAPPA: &str = "gappa";
 /// Binary digits of Gappa's own numbers: lemmas compare numbers that differ by a few times 2^-53.
 const PRECISION: &str = "-Eprecision=150";
 
-/// Lemmas, and for each a change that makes it wrong.
+/// Lemmas, and a change of each that makes it wrong.
 const LEMMAS: [(&str, &str, &str); 2] =
     [("norm.g", "2 * t + 20b-53", "2 * t - 8b-53"), ("quotient.g", "1 - 8b-52", "1 - 1b-53")];
 
@@ -25,7 +26,7 @@ pub fn run(_: &[String]) -> ExitCode {
     log.conclude(tally)
 }
 
-/// The same as a part of all tests. `install`: Gappa, if it is missing.
+/// Proves all lemmas, as a part of all tests. With `install`, installs Gappa if it is missing.
 pub fn test(log: &Path, install: bool) -> Tally {
     println!("== Lemmas");
     if install && !debian::has(GAPPA) {
@@ -46,7 +47,7 @@ pub fn test(log: &Path, install: bool) -> Tally {
     tally
 }
 
-/// Whether Gappa proves a text; none if it cannot be run.
+/// Whether Gappa proves a text; None if Gappa cannot be run.
 fn is_proven(text: &str) -> Option<bool> {
     let mut gappa = Command::new(GAPPA);
     gappa.arg(PRECISION).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());

@@ -1,7 +1,8 @@
 //! `cargo xtask lines`: counts the lines of Rust that make up the product.
 //!
-//! These are the lines of all crates, of the Python package and of these tasks, without comments, blank lines, items for tests
-//! (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/`, and the crates for tests and examples.
+//! These are the lines of all crates, of the Python package and of the tasks. They exclude comments, blank lines, items for
+//! tests (`#[cfg(test)]`, `#[test]`) with their files, `tests/`, `benches/`, `examples/`, and the crates for tests and
+//! examples.
 
 use std::path::Path;
 use std::process::ExitCode;

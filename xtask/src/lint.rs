@@ -1,4 +1,4 @@
-//! `cargo xtask lint`: formatting, lints and documentation, without a warning.
+//! `cargo xtask lint`: checks formatting, lints and documentation. Warnings are errors.
 
 use std::process::ExitCode;
 
@@ -12,7 +12,7 @@ const STEPS: [&[&str]; 4] = [
     &["doc", "--workspace", "--no-deps"],
 ];
 
-/// Runs the steps, and stops at the first that fails.
+/// Runs the steps, and stops at the first step that fails.
 pub fn run(arguments: &[String]) -> ExitCode {
     if !arguments.is_empty() {
         return usage("lint    (formatting, lints and documentation)");

@@ -1,4 +1,4 @@
-//! Tasks of the project: `cargo xtask` lists them. Workflows and `.ci/run` call nothing else.
+//! Tasks of the project, which `cargo xtask` lists. Workflows and `.ci/run` call nothing else.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod c;
@@ -33,41 +33,49 @@ mod wheel;
 
 use std::process::ExitCode;
 
-/// A task: its name, its arguments and its purpose, and what runs it.
+/// A task: its name, its arguments and purpose, and its function.
 type Task = (&'static str, &'static str, fn(&[String]) -> ExitCode);
 
 const TASKS: &[Task] = &[
-    ("test", "[arguments for cargo test]: all tests; with arguments, those of the crates only", test::run),
-    ("python", "[arguments for pytest]: tests of the Python package", python::run),
+    (
+        "test",
+        "[arguments for cargo test]: runs all tests; with arguments, only those of the crates",
+        test::run,
+    ),
+    ("python", "[arguments for pytest]: runs the tests of the Python package", python::run),
     ("page", "[--write | --test]: builds the page and compares it with the one checked in", page::run),
-    ("c", "programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
+    ("c", "tests programs in C and C++: compilers, sanitizers, valgrind, the installed package", c::run),
     (
         "wasm",
         "[--test [--release]]: builds the package for npm, or tests it in Node and in a browser",
         wasm::run,
     ),
     ("site", "[--with-rustdoc]: builds and checks the site of the documents", site::run),
-    ("serial", "tests of the core without threads", serial::run),
-    ("lint", "formatting, lints, documentation", lint::run),
-    ("layers", "the order of crates, modules and files", layers::run),
+    ("serial", "tests the core without threads", serial::run),
+    ("lint", "checks formatting, lints and documentation", lint::run),
+    ("layers", "checks the order of crates, modules and files", layers::run),
     ("lemmas", "proves the rounding lemmas of docs/proofs with Gappa", lemmas::run),
     ("lines", "counts the lines of the product", lines::run),
     ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
-    ("semver", "[REVISION]: public items of the core and its version, since the last release", semver::run),
-    ("mutants", "[names]: the tests catch wrong variants of the core", mutants::run),
+    ("semver", "[REVISION]: compares public items of the core and its version, since the last release", semver::run),
+    ("mutants", "[names]: checks that the tests catch wrong variants of the core", mutants::run),
     (
         "soundness",
-        "[--hours H] [--seed S] [--quick] [--write]: attacks answers with exact arithmetic",
+        "[--hours H] [--seed S] [--quick] [--write]: compares random answers with exact arithmetic",
         soundness::run,
     ),
-    ("fuzz", "[--seconds N] [targets]: attacks readers with inputs of a fuzzer", fuzz::run),
-    ("digests", "[--write]: the same bytes on every machine", digests::run),
+    ("fuzz", "[--seconds N] [targets]: runs readers with inputs of a fuzzer", fuzz::run),
+    (
+        "digests",
+        "[--write]: checks that certificates and answers are the same bytes on every machine",
+        digests::run,
+    ),
     ("package", "[--verify]: packs the crates that are published", package::run),
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),
     ("extension", "[WHEEL ...]: packs the add-on of Blender", extension::run),
-    ("msrv", "the oldest versions of Rust that crates state", msrv::run),
-    ("deny", "licences and sources of dependencies", deny::run),
-    ("help", "this list", help),
+    ("msrv", "checks crates with the oldest versions of Rust that they state", msrv::run),
+    ("deny", "checks licences and sources of dependencies", deny::run),
+    ("help", "prints this list", help),
 ];
 
 fn main() -> ExitCode {
@@ -80,7 +88,7 @@ fn main() -> ExitCode {
         Some((_, _, run)) => run(rest),
         None => {
             let names: Vec<&str> = TASKS.iter().map(|task| task.0).collect();
-            eprintln!("error: no task '{name}'; there are: {}", names.join(", "));
+            eprintln!("error: no task has the name '{name}'; the tasks are: {}", names.join(", "));
             ExitCode::from(2)
         }
     }
@@ -98,7 +106,7 @@ mod tests {
 
     use crate::{TASKS, program::root};
 
-    /// Whether a step installs a tool and does nothing else.
+    /// Whether a step only installs a tool.
     fn is_installation(line: &str) -> bool {
         let installers = ["cargo install --locked ", "rustup toolchain install ", "sudo apt-get "];
         let is_plain = |c: char| c.is_ascii_alphanumeric() || " -+.".contains(c);
@@ -106,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_do_more_than_install_are_none() {
+    fn steps_that_do_more_than_install_are_not_installations() {
         assert!(is_installation("sudo apt-get install -y g++ libeigen3-dev"));
         for line in ["sudo apt-get update && make", "apt-get update", "make", "sudo apt-get update; ls"] {
             assert!(!is_installation(line), "{line}");
@@ -114,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn workflows_call_tasks_alone() {
+    fn workflows_call_only_tasks() {
         let mut calls = 0;
         for file in fs::read_dir(root().join(".github/workflows")).unwrap() {
             let text = fs::read_to_string(file.unwrap().path()).unwrap();

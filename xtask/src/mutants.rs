@@ -51,7 +51,7 @@ pub fn run(names: &[String]) -> ExitCode {
 
 fn try_run(names: &[String]) -> Result<bool, String> {
     if let Some(unknown) = names.iter().find(|name| ALL.iter().all(|mutation| mutation.name != *name)) {
-        return Err(format!("no mutation '{unknown}' in crates/sscc/src/mutants/list.rs"));
+        return Err(format!("crates/sscc/src/mutants/list.rs has no mutation '{unknown}'"));
     }
     check_uses()?;
     let mutations: Vec<&Mutation> = ALL
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_test_that_fails_in_wrong_code_catches() {
+    fn only_a_test_that_reaches_the_wrong_code_and_fails_catches() {
         let outcome = |passed, failed, reached| Outcome { tally: Tally { passed, failed }, reached };
         assert!(outcome(0, 1, true).is_caught() && outcome(1, 0, false).is_pass());
         for (passed, failed, reached) in

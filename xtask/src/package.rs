@@ -1,8 +1,8 @@
 //! `cargo xtask package`: packs the crates that are published, and checks the packages.
 //!
-//! Each has a description, a licence with its text, a readme, keywords, categories and the oldest version of Rust, and is at
-//! most [`MAX_BYTES`] large. With `--verify` cargo also compiles each from its package alone, which takes minutes. Without a
-//! `repository` in the workspace's `Cargo.toml` cargo warns: the project has no public address yet.
+//! Each package has a description, a licence with its text, a readme, keywords, categories and the oldest version of Rust,
+//! and is at most [`MAX_BYTES`] large. With `--verify` cargo also compiles each crate from its package alone, which takes
+//! minutes. Without a `repository` in the workspace's `Cargo.toml` cargo warns: the project has no public address yet.
 //!
 //! The packages are in `target/package`.
 
@@ -12,10 +12,10 @@ use std::process::ExitCode;
 use crate::packages::{self, Package};
 use crate::program::{cargo, exit_code, root, succeed, usage};
 
-/// The maximum size of a package. The page, a single file of 660 kB, is in one.
+/// The maximum size of a package. One package contains the page, a single file of 660 kB.
 const MAX_BYTES: u64 = 1_000_000;
 
-/// Packs and checks.
+/// Packs and checks the crates.
 pub fn run(arguments: &[String]) -> ExitCode {
     let mut verify = false;
     for argument in arguments {
@@ -33,14 +33,14 @@ fn pack_and_check(verify: bool) -> Result<(), String> {
     published.iter().try_for_each(check_manifest)?;
     let pack = |offline: bool| {
         let mut pack = cargo();
-        // Changes that are not committed belong to the package that a developer tests.
+        // The package includes changes that are not committed, so that a developer can test them.
         pack.args(["package", "--workspace", "--quiet", "--allow-dirty"]).current_dir(root());
         pack.arg("--target-dir").arg(root().join("target"));
         others.iter().for_each(|other| _ = pack.args(["--exclude", &other.name]));
         pack.args((!verify).then_some("--no-verify")).args(offline.then_some("--offline"));
         succeed(&mut pack, "the crates cannot be packed")
     };
-    // What is built here needs nothing from the registry, which answers slowly.
+    // The first attempt is offline, because the registry answers slowly and is usually not needed.
     pack(true).or_else(|_| pack(false))?;
     published.iter().try_for_each(check_size)
 }
@@ -53,7 +53,9 @@ fn check_manifest(package: &Package) -> Result<(), String> {
     for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let texts = [package.folder.join(licence), root().join(licence)].map(|path| fs::read(path).ok());
         if texts[0].is_none() || texts[0] != texts[1] {
-            return Err(format!("{name}: {licence} is not that of the workspace; link it"));
+            return Err(format!(
+                "{name}: {licence} differs from the file of the workspace; replace it by a link to that file"
+            ));
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The packages of the workspace, as cargo describes them.
+//! The packages of the workspace, from `cargo metadata`.
 
 use std::path::PathBuf;
 
@@ -14,9 +14,9 @@ pub struct Package {
     pub folder: PathBuf,
     /// Whether it may be published.
     pub is_published: bool,
-    /// The oldest version of Rust that compiles it, as it states.
+    /// The oldest version of Rust that compiles the package, as its manifest states.
     pub rust_version: Option<String>,
-    /// Required properties that it lacks.
+    /// Required properties that the manifest lacks.
     pub missing: Vec<&'static str>,
 }
 

@@ -1,5 +1,5 @@
-//! `cargo xtask page`: builds the page from `viewer/`, and compares it with the one that is checked in. With `--test`
-//! it also runs the page's tests in a browser.
+//! `cargo xtask page`: builds the page from `viewer/`, and compares it with the page that is checked in. With `--test` it
+//! also runs the page's tests in a browser.
 
 use std::env;
 use std::fs;
@@ -113,7 +113,7 @@ fn install() -> Result<(), String> {
         fs::read(viewer.join("package-lock.json")).map_err(|e| format!("viewer/package-lock.json: {e}"))?;
     let stamp = viewer.join("node_modules/.installed-lock");
     if fs::read(&stamp).ok().as_deref() != Some(lock.as_slice()) {
-        // Not `npm ci`: it wants every platform's optional packages from the registry.
+        // `npm ci` would need every platform's optional packages from the registry.
         npm(&["install", "--no-save", "--no-audit", "--no-fund"])?;
         fs::write(&stamp, &lock).map_err(|e| format!("{}: {e}", stamp.display()))?;
     }
@@ -140,7 +140,7 @@ fn compare(built: &Path) -> Result<String, String> {
                 .into(),
         );
     }
-    Ok(format!("the page is the one that viewer/ builds: {} bytes", page.len()))
+    Ok(format!("the page equals the one that viewer/ builds: {} bytes", page.len()))
 }
 
 fn replace(built: &Path) -> Result<String, String> {
@@ -149,7 +149,7 @@ fn replace(built: &Path) -> Result<String, String> {
     Ok(format!("written: crates/sscc-view/page/index.html ({} bytes)", page.len()))
 }
 
-/// Checks that a Chromium is installed. With `install`, tries to install Debian's.
+/// Checks that a Chromium is installed. With `install`, tries to install Debian's package.
 fn chromium(install: bool) -> Result<(), String> {
     let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
     let is_installed =
@@ -184,7 +184,7 @@ fn browser_tests(is_command_built: bool) -> Result<Tally, String> {
     Ok(tally(success, &text))
 }
 
-/// The results of a run whose output is TAP.
+/// Returns the results of a run whose output is TAP.
 pub fn tally(success: bool, text: &str) -> Tally {
     let mut tally = results(text);
     if !success && tally.failed == 0 {
@@ -193,8 +193,7 @@ pub fn tally(success: bool, text: &str) -> Tally {
     tally
 }
 
-/// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. Skipped and cancelled tests count as
-/// failed.
+/// Adds up the lines `# pass 3` and `# fail 0` of TAP, which `npm test` writes. Skipped and cancelled tests count as failed.
 fn results(text: &str) -> Tally {
     let number = |line: &str, what: &str| line.strip_prefix(what)?.trim().parse::<u64>().ok();
     let count = |what: &str| text.lines().filter_map(|line| number(line, what)).sum::<u64>();

@@ -13,8 +13,8 @@ pub fn cargo() -> Command {
     cargo
 }
 
-/// Turns incremental compilation off where no crate of ours was compiled in that way before. It makes the first build of the
-/// tests a twentieth longer, and that of the wheel twice as long.
+/// Disables incremental compilation unless a crate of the project was compiled with it before. It would make the first build
+/// of the tests a twentieth longer, and the first build of the wheel twice as long.
 pub fn build_from_nothing(command: &mut Command) {
     let state = env::current_exe().map(|xtask| xtask.with_file_name("incremental"));
     let mut crates = state.and_then(fs::read_dir).into_iter().flatten().flatten();
@@ -40,14 +40,14 @@ pub fn run_and_forward(command: &mut Command, mut each: impl FnMut(&str)) -> io:
     Ok(child.wait()?.success())
 }
 
-/// The root of the workspace.
+/// Returns the root of the workspace.
 pub fn root() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    // Without the verbatim prefix of Windows, which few programs understand.
+    // On Windows the path keeps its form: few programs understand the verbatim prefix of a canonical path.
     fs::canonicalize(&root).ok().filter(|_| !cfg!(windows)).unwrap_or(root)
 }
 
-/// Runs a command to its end. The error is `failure`.
+/// Runs a command to its end. Returns the error `failure` if it fails.
 pub fn succeed(command: &mut Command, failure: &str) -> Result<(), String> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
@@ -56,7 +56,7 @@ pub fn succeed(command: &mut Command, failure: &str) -> Result<(), String> {
     }
 }
 
-/// Runs a command, and returns its output as text. The error is `failure`.
+/// Runs a command, and returns its output as text. Returns the error `failure` if it fails.
 pub fn output(command: &mut Command, failure: &str) -> Result<String, String> {
     let output = command.stderr(Stdio::inherit()).output().map_err(|error| format!("{failure}: {error}"))?;
     match output.status.success() {
@@ -65,7 +65,7 @@ pub fn output(command: &mut Command, failure: &str) -> Result<String, String> {
     }
 }
 
-/// The exit code of a task: an error is one line on standard error.
+/// Returns the exit code of a task. Prints an error as one line on standard error.
 pub fn exit_code(result: Result<(), String>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -76,7 +76,7 @@ pub fn exit_code(result: Result<(), String>) -> ExitCode {
     }
 }
 
-/// Returns the exit code of wrong arguments.
+/// Prints the usage, and returns the exit code of wrong arguments.
 pub fn usage(line: &str) -> ExitCode {
     eprintln!("Usage: cargo xtask {line}");
     ExitCode::from(2)

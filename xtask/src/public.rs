@@ -1,8 +1,9 @@
 //! `cargo xtask public`: counts the public items of the core that a user may have to read.
 //!
-//! These are types, traits, functions, methods, constants, public fields and variants that can be reached from the root, without
-//! those of the module `parts`. Not counted: modules, fields of variants, implementations of traits, what other crates define,
-//! and what is hidden from the documentation. By this rule there were 387 at commit 1fcad41, `parts` included, which did not exist.
+//! Public items are types, traits, functions, methods, constants, public fields and variants that can be reached from the
+//! root. Not counted are the module `parts` and its items, modules, fields of variants, implementations of traits, items of
+//! other crates, and items that are hidden from the documentation. Commit 1fcad41, which had no module `parts`, had 387 items
+//! by this definition.
 //!
 //! The items are compared with the list in [`LIST`], which has a reason for each item at the root: a change of the public
 //! surface is a change of that file.
@@ -19,18 +20,21 @@ use serde_json::Value;
 use crate::kept_list::{self, KeptList};
 use crate::program::{cargo, exit_code, root, usage};
 
-/// The version of rustdoc's JSON that is read here, and the version of Rust that writes it, which the workflow installs.
+/// The version of rustdoc's JSON that this task reads.
 const FORMAT: u64 = 57;
+
+/// The version of Rust that writes this version of the JSON. The workflow installs it.
 const RUST: &str = "1.95";
 
-/// The maximum number of items outside of `parts`: 260, and those of distances, of intervals of weights, of clearances of certificates, and of two errors.
+/// The maximum number of items outside of `parts`: 260, plus the items of distances, of intervals of weights, of clearances
+/// of certificates, and of two errors.
 const MAX_ITEMS: usize = 260 + 21 + 19 + 7;
 
 /// The kept list, below the root of the workspace.
 const LIST: &str = "crates/sscc/public-items.txt";
 
-/// Prints the sums of the items, with `--list` also their names. Fails where they differ from the kept list, which
-/// `--write` writes anew, and where there are more than [`MAX_ITEMS`].
+/// Prints the counts of the items, with `--list` also their names. Fails if they differ from the kept list, which `--write`
+/// replaces, or if there are more than [`MAX_ITEMS`].
 pub fn run(arguments: &[String]) -> ExitCode {
     let (is_listed, is_written) = match arguments {
         [] => (false, false),
@@ -94,11 +98,11 @@ fn compare(found: &[Vec<String>], is_written: bool) -> Result<(), String> {
     }
 }
 
-/// Set where cargo runs this program in place of rustdoc.
+/// Environment variable that is set where cargo runs this program in place of rustdoc.
 pub const AS_RUSTDOC: &str = "SSCC_XTASK_AS_RUSTDOC";
 
-/// Runs rustdoc with the arguments of this program and with unstable options allowed. If cargo itself allowed them, it would compile all
-/// dependencies again.
+/// Runs rustdoc with the arguments of this program and with unstable options allowed. If cargo itself allowed these options,
+/// it would compile all dependencies again.
 pub fn rustdoc() -> ExitCode {
     let status =
         Command::new("rustdoc").args(std::env::args_os().skip(1)).env("RUSTC_BOOTSTRAP", "1").status();
@@ -146,19 +150,19 @@ impl<'j> Items<'j> {
         &self.index[id.to_string()]
     }
 
-    /// The public items of a module.
+    /// Returns the public items of a module.
     fn children(&self, module: &Value) -> Vec<&'j Value> {
         let items = list(&module["inner"]["module"]["items"]).iter().map(|id| self.of(id));
         items.filter(|item| item["visibility"] == "public").collect()
     }
 
-    /// Counts the public items of a module, or an item and its own ones.
+    /// Counts the public items of a module, or an item with its fields, variants and methods.
     fn visit(&mut self, item: &'j Value) {
         let inner = &item["inner"];
         if inner["module"].is_object() {
             self.children(item).into_iter().for_each(|child| self.visit(child));
         } else if inner["use"].is_object() {
-            // An item of another crate is null, which is nothing.
+            // An item of another crate is null, and is not counted.
             self.visit(self.of(&inner["use"]["id"]));
         } else if !item.is_null() && self.visited.insert(item["id"].to_string()) {
             let kind = inner.as_object().and_then(|map| map.values().next()).unwrap_or(inner);

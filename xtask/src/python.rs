@@ -1,9 +1,9 @@
 //! `cargo xtask python`: builds the wheel of the Python package, installs it into a virtual environment and runs the
 //! tests there.
 //!
-//! The environment is `python/.venv`. The task makes it anew when the requirements or the interpreter change.
-//! `SSCC_PYTHON` names the interpreter; the default is `python3`. The tests are skipped without an interpreter of
-//! version 3.11 or later, or without the packages, which are downloaded once.
+//! The environment is `python/.venv`. The task creates it again when the requirements or the interpreter change.
+//! `SSCC_PYTHON` names the interpreter; the default is `python3`. The tests are skipped without an interpreter of version
+//! 3.11 or later, or without the packages, which are downloaded once.
 
 use std::env;
 use std::fs;
@@ -14,10 +14,10 @@ use crate::environment::{Failure, environment, files, pip, succeed};
 use crate::program::{build_from_nothing, cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 
-/// The requirements to test a package, beside its tests.
+/// The file with the requirements of tests, in the folder of a package.
 const REQUIREMENTS: &str = "requirements-test.txt";
 
-/// The feature with which dependencies are compiled as for the other tests, once.
+/// The feature that gives dependencies the same features as in the other tests, so that they are compiled once.
 const SHARED: &str = "shared-dependencies";
 
 /// Runs the tests with these arguments for pytest.
@@ -46,7 +46,7 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     let python = environment(&package.join(".venv"), &package.join(REQUIREMENTS))?;
     let wheels = package.join(".venv/wheels");
     let _ = fs::remove_dir_all(&wheels);
-    // The profile of the other tests, as well.
+    // The profile is that of the other tests.
     let mut maturin = Command::new(&python);
     build_from_nothing(&mut maturin);
     maturin.args(["-m", "maturin", "build", "--profile", "dev", "--features", SHARED]);
@@ -81,7 +81,7 @@ fn build_and_test(arguments: &[String], log: &Path, is_command_built: bool) -> R
     if !arguments.is_empty() {
         return pytest(&python, arguments);
     }
-    // One process for each core.
+    // pytest runs one process for each core.
     let mut tally = pytest(&python, &["--numprocesses=auto".to_owned()])?;
     // A separate environment: Blender as a module needs one version of Python and of NumPy.
     let blender = package.join("blender");
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use crate::program::root;
 
-    /// All packages of a build, macros included, with their features.
+    /// Returns all packages of a build with their features, including packages of macros.
     fn packages(arguments: &[&str]) -> BTreeSet<String> {
         let mut tree = cargo();
         tree.args(["tree", "--locked", "--prefix", "none", "--format", "{p} {f}"]);
@@ -120,7 +120,8 @@ mod tests {
         lines.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
     }
 
-    /// Would fail if a package that a macro is compiled with had other features: all that uses the macro would be compiled twice.
+    /// The test fails if a package that a macro is compiled with had other features: then all code that uses the macro would
+    /// be compiled twice.
     #[test]
     fn the_wheel_has_the_features_of_the_other_tests() {
         let of_wheel = packages(&["--package", "sscc-python", "--features", SHARED]);

@@ -1,6 +1,6 @@
-//! `cargo xtask serial`: tests of the core without the feature `parallel`: on one thread, without rayon.
+//! `cargo xtask serial`: tests the core without the feature `parallel`, so on one thread and without rayon.
 //!
-//! These are the test programs of [`TESTS`], compiled without optimisation, which would take longer than it saves.
+//! These are the test programs of [`TESTS`], compiled without optimisation: optimisation would take longer than it saves.
 
 use std::process::ExitCode;
 

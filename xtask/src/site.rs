@@ -1,5 +1,5 @@
-//! `cargo xtask site`: builds the site of the documents in `target/site`, and checks its links, its figures and its size. With
-//! `--with-rustdoc` the documentation of the crates is a part of it.
+//! `cargo xtask site`: builds the site of the documents in `target/site`, and checks its links, its figures and its size.
+//! With `--with-rustdoc` the site includes the documentation of the crates.
 //!
 //! The work is done by `docs/site/build.py`, in an environment with the packages of `docs/site/requirements.txt`.
 
@@ -27,7 +27,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     )
 }
 
-/// Builds and checks the site as one test, which is skipped without Python or its packages. The command is built.
+/// Builds and checks the site as one test, which is skipped without Python or its packages. Expects that the command is built.
 pub fn test(log: &Path) -> Tally {
     println!("== Site");
     match build(false) {

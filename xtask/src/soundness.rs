@@ -1,16 +1,17 @@
-//! `cargo xtask soundness`: attacks the core's answers with exact arithmetic (`crates/sscc-soundness`), for hours if wanted.
+//! `cargo xtask soundness`: searches for wrong answers of the core by exact arithmetic (`crates/sscc-soundness`), for hours
+//! if wanted.
 //!
-//! The counters are in `target/soundness.csv`, so that a campaign resumes; `--write` then copies them to [`SUMMARY`].
+//! The counters are in `target/soundness.csv`, so that a campaign can resume; `--write` then copies them to [`SUMMARY`].
 
 use std::fs;
 use std::process::ExitCode;
 
 use crate::program::{cargo, exit_code, root, succeed};
 
-/// The counters of a campaign, below the root.
+/// The file with the counters of a campaign, relative to the root.
 const RECORD: &str = "target/soundness.csv";
 
-/// The summary that documents show, below the root.
+/// The file with the summary that documents show, relative to the root.
 const SUMMARY: &str = "docs/records/soundness.csv";
 
 /// Runs the campaign with these arguments, or writes its summary.

@@ -19,7 +19,7 @@ pub struct Crate {
 pub struct Source {
     /// Its path, relative to the root of the workspace.
     pub path: String,
-    /// Its module: no name for `lib.rs` and `main.rs`.
+    /// The names of its module; empty for `lib.rs` and `main.rs`.
     pub module: Vec<String>,
     /// The lines of the product with their numbers, counted from 1.
     pub lines: Vec<(usize, String)>,
@@ -37,7 +37,7 @@ fn table(root: &Path, path: &str) -> Result<Table, String> {
     text(root, path)?.parse().map_err(|error| format!("{path}: {error}"))
 }
 
-/// The text of a file; the error names it.
+/// Returns the text of a file. An error names the file.
 pub fn text(root: &Path, path: &str) -> Result<String, String> {
     fs::read_to_string(root.join(path)).map_err(|error| format!("{path}: {error}"))
 }
@@ -59,7 +59,7 @@ fn read_crate(root: &Path, folder: &str) -> Result<Crate, String> {
     Ok(Crate { name, folder: folder.to_owned(), dependencies, files })
 }
 
-/// Adds the files of a folder, whose module is given, but those of tests.
+/// Adds the files of a folder with the given module, except files for tests.
 fn add_files(root: &Path, folder: &str, module: &[String], files: &mut Vec<Source>) -> Result<(), String> {
     let at = |error| format!("{folder}: {error}");
     let mut names = Vec::new();
@@ -82,7 +82,7 @@ fn add_files(root: &Path, folder: &str, module: &[String], files: &mut Vec<Sourc
             files.push(Source { lines: product_lines(&text(root, &path)?), path, module: own });
         }
     }
-    // Files that are modules for tests alone.
+    // Files that are modules only for tests are skipped.
     let is_declared = |lines: &[(usize, String)], name: &str| {
         lines.iter().any(|(_, line)| line.trim_end().ends_with(&format!("mod {name};")))
     };
@@ -99,7 +99,7 @@ fn add_files(root: &Path, folder: &str, module: &[String], files: &mut Vec<Sourc
     Ok(())
 }
 
-/// The lines of formatted code that are part of the product: no comments, no blank lines, no items for tests.
+/// Returns the lines of formatted code that are part of the product, without comments, blank lines and items for tests.
 pub fn product_lines(text: &str) -> Vec<(usize, String)> {
     let is_code = |line: &str| !line.trim().is_empty() && !line.trim_start().starts_with("//");
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| is_code(line));
@@ -110,7 +110,7 @@ pub fn product_lines(text: &str) -> Vec<(usize, String)> {
             product.push((number, line.to_owned()));
             continue;
         }
-        // The item ends on the line on which all of its brackets are closed.
+        // The item ends on the line that closes all of its brackets.
         let mut open = 0;
         for (_, line) in lines.by_ref() {
             if line.trim_start().starts_with("#[") && open == 0 {
@@ -127,7 +127,7 @@ pub fn product_lines(text: &str) -> Vec<(usize, String)> {
     product
 }
 
-/// A line without the contents of its string and character literals, and without a comment at its end.
+/// Returns a line without the contents of its string and character literals, and without a comment at its end.
 pub fn without_text(line: &str) -> String {
     let mut code = String::new();
     let mut characters = line.chars().peekable();
@@ -145,7 +145,7 @@ pub fn without_text(line: &str) -> String {
                 code.push('"');
             }
             '\'' => {
-                // A character literal, or a lifetime.
+                // This is a character literal or a lifetime.
                 let mut ahead = characters.clone();
                 let first = ahead.next();
                 let is_literal = first == Some('\\') || ahead.next() == Some('\'');
@@ -170,11 +170,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_lines_of_the_product_count() {
+    fn comments_blank_lines_and_tests_do_not_count() {
         let text = "//! A file.\n\nuse a::b;\n\n/// A function.\nfn f() {\n    // Nothing.\n    g(\"}\", '{', '\\'', \"\\\"{\"); // {\n}\n\n\
                     mod inner {\n    #[cfg(test)]\n    mod tests {\n        fn t() {}\n    }\n}\n\n\
                     #[cfg(test)]\nuse a::{\n    b,\n    c,\n};\n\n#[cfg(test)]\n#[derive(Clone)]\nmod tests {\n    use super::*;\n    fn t() {}\n}\n";
-        // The `use`, three lines of the function, two of the inner module.
+        // These are the `use`, three lines of the function, and two of the inner module.
         let lines: Vec<usize> = product_lines(text).into_iter().map(|(number, _)| number).collect();
         assert_eq!(lines, [3, 6, 8, 9, 11, 16]);
     }

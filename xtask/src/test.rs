@@ -1,6 +1,7 @@
-//! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then those of the Python
-//! package, of the page, of the site and of C, and the lemmas, at the same time: none keeps two cores busy. With arguments for `cargo test`
-//! it runs the tests of the crates only. The package for npm has its own task, `cargo xtask wasm --test`.
+//! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then at the same time those of
+//! the Python package, of the page, of the site and of C, and the lemmas, since none of these keeps two cores busy. With
+//! arguments for `cargo test` it runs only the tests of the crates. The package for npm has its own task, `cargo xtask wasm
+//! --test`.
 //!
 //! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
 //! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.
@@ -13,7 +14,7 @@ use crate::program::{cargo, run_and_forward};
 use crate::tally::{SkipLog, Tally};
 use crate::{c, lemmas, page, python, site};
 
-/// Runs all tests; with arguments for `cargo test`, those of the crates only.
+/// Runs all tests. With arguments for `cargo test`, runs only those of the crates.
 pub fn run(arguments: &[String]) -> ExitCode {
     let log = SkipLog::new();
     let mut tally = cargo_test(arguments, log.path());

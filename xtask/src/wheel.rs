@@ -1,9 +1,9 @@
 //! `cargo xtask wheel`: builds the source distribution and the wheel of the Python package, and checks them.
 //!
 //! The tracked files are copied, the source distribution is built from the copy alone, and the wheel from the source
-//! distribution, both in environments of their own. On Linux zig links the wheel against glibc 2.17 (manylinux2014). Then twine
-//! checks the metadata, abi3audit that the module uses the stable interface of Python alone, auditwheel the glibc. At last
-//! the wheel is installed beside NumPy in an environment without Rust, and runs the examples.
+//! distribution, both in environments of their own. On Linux zig links the wheel against glibc 2.17 (manylinux2014). Then
+//! twine checks the metadata, abi3audit that the module uses only Python's stable interface, and auditwheel the version of
+//! glibc. At last the wheel is installed beside NumPy in an environment without Rust, and runs the examples.
 //!
 //! The results are in `target/wheel/dist`.
 
@@ -16,13 +16,13 @@ use std::process::{Command, ExitCode};
 use crate::environment::{Failure, empty_environment, environment, files, pip, programs};
 use crate::program::{exit_code, output, root, succeed, usage};
 
-/// Examples that need NumPy alone.
+/// Examples that need only NumPy.
 const EXAMPLES: [&str; 4] = ["deforming", "many", "pca_shapes", "performance"];
 
-/// The wheel of Linux serves systems with glibc 2.17 or later, as of 2012; Rust itself needs that version.
+/// Options of maturin for Linux. The wheel works with glibc 2.17 (2012) or later, which Rust itself needs, too.
 const LINUX: &str = "--zig --compatibility manylinux2014";
 
-/// Builds and checks.
+/// Builds and checks the distributions.
 pub fn run(arguments: &[String]) -> ExitCode {
     match arguments {
         [] => exit_code(build_and_check()),
@@ -71,7 +71,7 @@ fn build_and_check() -> Result<(), String> {
     Ok(())
 }
 
-/// Copies the files that git tracks, as they are, to a folder of nothing else.
+/// Copies the files that git tracks, in their current state, to an empty folder.
 fn copy_tracked_files(to: &Path) -> Result<(), String> {
     remove(to)?;
     let list =
@@ -80,7 +80,7 @@ fn copy_tracked_files(to: &Path) -> Result<(), String> {
         let (from, to) = (root().join(name), to.join(name));
         let at = |error| format!("{}: {error}", from.display());
         fs::create_dir_all(to.parent().unwrap_or(&to)).map_err(at)?;
-        // A deleted file that git still lists is no part of the copy.
+        // A deleted file that git still lists is not copied.
         if from.exists() {
             fs::copy(&from, &to).map_err(at)?;
         }
@@ -95,7 +95,7 @@ fn remove(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// The only wheel among files.
+/// Returns the only wheel among files.
 fn wheel_of(files: &[PathBuf]) -> Result<PathBuf, String> {
     let mut wheels = files.iter().filter(|path| path.extension().is_some_and(|end| end == "whl"));
     match (wheels.next(), wheels.next()) {
@@ -104,7 +104,7 @@ fn wheel_of(files: &[PathBuf]) -> Result<PathBuf, String> {
     }
 }
 
-/// Installs the wheel beside NumPy, and runs the examples with a search path that has no Rust.
+/// Installs the wheel beside NumPy, and runs the examples with a search path without Rust.
 fn install_and_try(folder: &Path, wheel: &Path) -> Result<(), String> {
     let python = empty_environment(folder).map_err(Failure::into_line)?;
     let path = env::join_paths([programs(folder)]).unwrap_or_else(|_| OsString::new());
@@ -116,7 +116,7 @@ fn install_and_try(folder: &Path, wheel: &Path) -> Result<(), String> {
         println!("== {example}.py");
         let file = root().join("python/examples").join(format!("{example}.py"));
         let mut run = Command::new(&python);
-        // The environment has no Rust, and no folder of this project is searched for modules but that of the examples.
+        // Python searches only the folder of the examples for modules of this project.
         run.arg(file).current_dir(folder).env("PATH", &path).env_remove("PYTHONPATH");
         succeed(&mut run, &format!("the example {example} fails with the wheel"))?;
     }

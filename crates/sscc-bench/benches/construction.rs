@@ -1,7 +1,8 @@
-//! Measures how long certificates and a first query take: `cargo bench -p sscc-bench --bench construction`, on all threads.
+//! Measures the time of certificates and of creating a query: `cargo bench -p sscc-bench --bench construction`, on all threads.
 //!
-//! `Query::new` checks the digest of the model and makes what queries keep. The bench prints the median of seven times, and its share
-//! of the time of the certificates. Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! `Query::new` checks the digest of the model and creates the state that queries keep. The bench prints the median of seven
+//! times, and its share of the time of the certificates. Real models are taken from `SSCC_MODELS`, else from
+//! `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 mod models;

@@ -3,7 +3,8 @@
 //! Each model moves along trajectories about the rest pose, `z_k(t) = a_k sin(w_k t) / k` with random a, w and phase.
 //! They are scaled so that the largest displacement of a vertex is a few percent of half the AABB's diagonal. One step
 //! is 1/60 of a period of about one. All methods run on the same steps, on one thread, and must list the same pairs.
-//! Arguments name the models (none: all). Real models are taken from `SSCC_MODELS`, else from `../shared/models`.
+//! Arguments name the models; without arguments all are measured. Real models are taken from `SSCC_MODELS`, else from
+//! `../shared/models`.
 #![allow(clippy::print_stdout)]
 
 mod models;

@@ -2,7 +2,7 @@
 //! `cargo bench -p sscc-bench --bench detector [-- FILE...]` (default: bunny and dragon in `SSCC_MODELS`, else in
 //! `../shared/models`, and the embedded spring).
 //!
-//! *One-shot* includes the build of the hierarchy. *Repeated* answers random q of 20 polynomial modes: the detector is given
+//! *One-shot* includes the build of the hierarchy. *Repeated* queries use random q of 20 polynomial modes: the detector gets
 //! the positions, the traditional query moves the vertices itself. *Two meshes* is the mesh against a rotated copy. All
 //! methods use the same exact test of two triangles and must list the same pairs. Times are medians of interleaved
 //! repetitions in milliseconds.
@@ -133,7 +133,7 @@ fn smooth_modes(mesh: &TriMesh) -> Result<Modes> {
 
 type Job<'j> = dyn FnMut() -> Result<Vec<Pair>> + 'j;
 
-/// The medians of the times of interleaved repetitions (ms), and the common answer.
+/// Returns the medians of the times of interleaved repetitions (ms), and the common answer.
 fn interleaved(jobs: &mut [&mut Job<'_>]) -> Result<(Vec<f64>, Vec<Pair>)> {
     let mut times = vec![Vec::new(); jobs.len()];
     let mut answer: Option<Vec<Pair>> = None;

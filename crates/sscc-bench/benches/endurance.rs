@@ -1,8 +1,9 @@
-//! Kinetic queries in one process for long: memory stays as it is, answers stay those of the traditional method.
+//! Runs many kinetic queries in one process: memory does not grow, and answers equal those of the traditional method.
 //! `cargo bench -p sscc-bench --bench endurance [-- STEPS]` (1,000,000 by default).
 //!
 //! The embedded spring of 20 modes swings with up to 2.5 times its root's radius, in small steps. Every 1,000,000 steps the pairs are
-//! compared, and the peak memory since the last comparison (Linux) must be at most [`GROWTH`] above that of the first time.
+//! compared, and the peak memory since the last comparison (Linux) must be at most [`GROWTH`] above the peak before the first
+//! comparison.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
@@ -12,13 +13,13 @@ use sscc::{Certificates, CertifyOptions, KineticQuery, Method, Query};
 use sscc_modes::shapes::elastic_spring;
 use sscc_tasks::PeakMemory;
 
-/// Configurations of one period.
+/// Number of configurations in one period.
 const PERIOD: usize = 100_000;
 
-/// Steps between two comparisons; no multiple of the period.
+/// Steps between two comparisons; not a multiple of the period.
 const BETWEEN: usize = 1_000_003;
 
-/// Memory that may be added to that of the first steps, in bytes.
+/// Maximum growth of memory after the first comparison, in bytes.
 const GROWTH: u64 = 16 << 20;
 
 fn main() -> Result<(), Box<dyn Error>> {

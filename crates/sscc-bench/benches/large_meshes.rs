@@ -1,8 +1,8 @@
 //! Time and memory of the detector for large meshes, on one thread: `cargo bench -p sscc-bench --bench large_meshes`.
 //!
-//! *soup*: random triangles, each with vertices of its own, at two sizes. *sheet*: a rolled sheet of connected triangles.
-//! *Build* makes the detector, *first* is the answer after it, *repeated* the median of further answers. *Memory* is the
-//! largest resident set of the process so far, on Linux; meshes come in ascending size.
+//! *soup*: random triangles, none of which share vertices, at two sizes. *sheet*: a rolled sheet of connected triangles.
+//! *Build* is the time to create the detector, *first* that of its first query, *repeated* the median of further queries.
+//! *Memory* is the largest resident set of the process so far, on Linux; meshes come in ascending size.
 #![allow(clippy::print_stdout)]
 
 use std::time::Instant;
@@ -13,7 +13,7 @@ use sscc_bench::Random;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Repeated answers.
+/// Number of repeated queries.
 const REPETITIONS: usize = 5;
 
 fn main() -> Result<()> {
@@ -52,7 +52,7 @@ fn row(name: &str, mesh: impl FnOnce() -> Result<TriMesh>) -> Result<()> {
     Ok(())
 }
 
-/// Random triangles in the unit cube.
+/// Returns random triangles in the unit cube.
 fn soup(triangles: u32, edge: f64) -> Result<TriMesh> {
     let random = &mut Random(11);
     let mut positions = Vec::new();
@@ -64,7 +64,7 @@ fn soup(triangles: u32, edge: f64) -> Result<TriMesh> {
     Ok(TriMesh::new(positions, (0..triangles).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())?)
 }
 
-/// A square sheet of `2 n^2` triangles, rolled up without touching itself.
+/// Returns a square sheet of `2 n^2` triangles, rolled up without touching itself.
 fn sheet(n: u32) -> Result<TriMesh> {
     let position = |i: u32| {
         let [s, t] = [i % (n + 1), i / (n + 1)].map(|x| f64::from(x) / f64::from(n));
@@ -78,7 +78,7 @@ fn sheet(n: u32) -> Result<TriMesh> {
     Ok(TriMesh::new((0..(n + 1) * (n + 1)).map(position).collect(), (0..n * n).flat_map(face).collect())?)
 }
 
-/// The largest resident set of this process (MiB), on Linux.
+/// Returns the largest resident set of this process (MiB), on Linux.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

@@ -1,10 +1,10 @@
-//! Measures `Query::resolve` on real models: `cargo bench -p sscc-bench --bench resolve`, with `-- 1000` for so many
+//! Measures `Query::resolve` on real models: `cargo bench -p sscc-bench --bench resolve`. `-- 1000` sets the number of
 //! samples of each row (default: 20).
 //!
 //! A sample is a random direction in q-space (`z_k = N(0,1)`) about a free centre, scaled to a multiple of the scale at
 //! which the shape first collides; multiples are enlarged by 10% until the shape does collide there. Each row states the share of samples
-//! that were resolved, and of these the distance from q over the one that stepping back along the ray leaves, by
-//! `safe_scale` and by the last free q on the ray. Brute force confirms every answer. Real models are taken from
+//! that were resolved. For these it states the distance from q, over the distance of a step back along the ray by
+//! `safe_scale` and to the last free q on the ray. Brute force confirms every answer. Real models are taken from
 //! `SSCC_MODELS`, else from `../shared/models`.
 #![allow(clippy::print_stdout)]
 

@@ -1,10 +1,10 @@
 //! Compares the check of a glTF scene of 20 meshes with parry3d-f64, on one thread: `cargo bench -p sscc-bench --bench scene`.
 //!
-//! Ten hares, five serpents and five springs hang in a cloud, each turned at random and moved by an animation, so that
-//! neighbours pass through each other. Ours is all that `sscc check --animation --between-nodes` does after reading the file
-//! and building the detectors: evaluating the animation, every node with itself, every two nodes. parry's time is that of
-//! refitting each BVH once a frame, all traversals and our exact test; positions are given to it. Frames are in
-//! one run, alternately; both must list the same pairs.
+//! Ten hares, five serpents and five springs hang in a cloud, each rotated at random and moved by an animation, so that
+//! neighbours pass through each other. Our time is all work of `sscc check --animation --between-nodes` after reading the
+//! file and building the detectors: evaluating the animation, testing each node with itself, and testing each two nodes.
+//! parry's time is that of refitting each BVH once a frame, all traversals and our exact test; it gets the positions without
+//! cost. Both run alternately in one process, and must list the same pairs.
 #![allow(clippy::print_stdout)]
 
 mod peer;
@@ -32,7 +32,7 @@ const FRAMES: usize = 11;
 
 const REPETITIONS: usize = 5;
 
-/// The pairs of each frame and two nodes, or one.
+/// The colliding pairs by frame and two nodes; the two are equal for pairs within one node.
 type Found = BTreeMap<(usize, usize, usize), Vec<Pair>>;
 
 fn main() -> Result<()> {
@@ -48,7 +48,7 @@ fn main() -> Result<()> {
             check(&path, times, &mut ours)?;
             Ok(start.elapsed().as_secs_f64())
         };
-        // Reading and building take as long for one time.
+        // Reading and building take the same time for one frame, so the difference excludes them.
         let (once, all) = (seconds(&times[..1])?, seconds(&times)?);
         ours_s.push((all - once) / (FRAMES - 1) as f64);
         parry_s.push(peer(&path, &times, &mut parry)?);
@@ -66,7 +66,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Checks the scene at these times, and adds what collides.
+/// Checks the scene at these times, and adds the colliding pairs.
 fn check(path: &Path, times: &[f64], all: &mut Found) -> Result<()> {
     let request = Detection {
         meshes: vec![path.to_owned()],
@@ -90,7 +90,7 @@ fn check(path: &Path, times: &[f64], all: &mut Found) -> Result<()> {
     Ok(detect(&request, &(), take)?)
 }
 
-/// Answers the same by parry; returns the seconds of a frame, without reading and building.
+/// Checks the scene by parry. Returns the seconds per frame, without reading and building.
 fn peer(path: &Path, times: &[f64], all: &mut Found) -> Result<f64> {
     let scene = read_scene(path)?;
     let mut meshes = Vec::new();
@@ -119,7 +119,7 @@ fn peer(path: &Path, times: &[f64], all: &mut Found) -> Result<f64> {
     Ok(seconds / times.len() as f64)
 }
 
-/// The scene as a glTF file.
+/// Returns the scene as a glTF file.
 fn scene() -> Value {
     let shapes = [hare(), serpent(), spring()].map(|mesh| {
         let size = mesh.rest_positions().iter().fold(0.0_f64, |size, x| size.max(x.abs().max_element()));
@@ -171,7 +171,7 @@ fn scene() -> Value {
     })
 }
 
-/// The numbers in single precision.
+/// Returns the numbers in single precision, as bytes.
 fn floats(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(|x| (x as f32).to_le_bytes()).collect()
 }

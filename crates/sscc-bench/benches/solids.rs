@@ -53,7 +53,7 @@ fn main() -> Result<()> {
     if arguments.iter().any(|argument| argument == "--quick") {
         return Ok(());
     }
-    // The default lattice has 44 cubes along the bunny, nearly.
+    // The default lattice has about 44 cubes along the bunny.
     let fine = run(&bunny, "linear", 10, "88")?;
     report("bunny", "88", "linear 10", &fine);
     println!("\n| mode | Hz, default | Hz, twice as fine | higher by |\n| --- | --- | --- | --- |");

@@ -86,7 +86,7 @@ const TABLE_3: [Table3Row; 2] = [
     Table3Row { name: "certified", own: "42", dynamics: "51", ground: "6", penalty: "1" },
 ];
 
-/// Label of the paper's row below ours.
+/// Label of the row with the paper's numbers, below our row.
 const PAPER: &str = "    the paper";
 
 impl PaperTable {
@@ -167,7 +167,7 @@ fn table_2(record: &Record) -> Vec<String> {
     lines
 }
 
-/// A line that names the shape which replaces that of a scene: under `--quick`, or without files of the models.
+/// Returns a line that names the shape that replaces the shape of a scene: under `--quick`, or without files of the models.
 fn substitute(record: &Record) -> Option<String> {
     record.is_substitute.then(|| {
         let triangles = grouped(record.triangles as u64);

@@ -9,7 +9,7 @@ use crate::error::Error;
 /// Settings of all scenarios.
 #[derive(Clone, Copy)]
 pub struct Setup<'a> {
-    /// Folder of the real models; none: embedded shapes replace them.
+    /// Folder of the real models. If None, embedded shapes replace the real models.
     pub models: Option<&'a Path>,
     /// Cache of models, certificates and simulations.
     pub cache: &'a Cache,
@@ -42,7 +42,7 @@ impl Setup<'_> {
     }
 }
 
-/// The first spring of the scenario `growth`.
+/// Returns the recipe of the first spring of the scenario `growth`.
 fn small_spring() -> Recipe {
     Recipe::new("spring-4k", Shape::SMALL_SPRING, ModesSpec::Linear(20))
 }

@@ -48,11 +48,12 @@
 //! - **Contacts never add energy**, up to rounding: they return at most the energy that they have dissipated
 //!   ([`World::dissipated`]), for every stiffness and step. Linear modes and free flight conserve energy up to
 //!   rounding; tumbling conserves it to second order in the step. Newmark's method may add 2% of the energy of nonlinear
-//!   modes; steps that would add more, and steps without a solution, take a rule that adds none, in shorter parts where
-//!   that needs it.
+//!   modes; steps that would add more, and steps without a solution, use a mean force that adds none, in shorter parts where
+//!   no whole step has a solution.
 //! - **No intersections** between bodies, within them ([`Response::Contact`]) and with the ground in any state, if there are
-//!   none in the first one: swept queries prove each step.
-//! - **Momenta** are conserved exactly between bodies and within them, except where a body moves only a share of its way.
+//!   none in the first state: swept queries prove each step.
+//! - **Momenta** are conserved exactly between bodies and within them, except where a body moves only a part of its motion in
+//!   a step.
 //! - **Bodies at rest sleep** ([`SleepOptions`]), and cost nothing until a moving body touches them.
 //!
 //! # Limitations

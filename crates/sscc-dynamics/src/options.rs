@@ -15,7 +15,7 @@ pub struct ContactOptions {
     pub damping: f64,
     /// Coulomb's coefficient of friction between bodies.
     pub friction: f64,
-    /// Distance within which surfaces are in contact (model unit); bodies at rest keep half of it. None: a thousandth of the
+    /// Distance within which surfaces are in contact (model unit); bodies at rest keep half of it. None means a thousandth of the
     /// smallest body's radius.
     pub skin: Option<f64>,
     /// Maximum number of iterations of the impulse solver.
@@ -54,13 +54,13 @@ impl ContactOptions {
     }
 }
 
-/// When bodies at rest sleep. Bodies sleep together with all that they touch, when none of them has moved for a while and
-/// one of them touches the ground or a held body. They wake when a moving body touches one of them.
+/// Conditions under which bodies at rest sleep. Bodies sleep together with all bodies that they touch, when none of them has
+/// moved for a while and one of them touches the ground or a held body. They wake when a moving body touches one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SleepOptions {
-    /// Time without motion after which bodies sleep (s); infinite: never.
+    /// Time without motion after which bodies sleep (s). If infinite, bodies never sleep.
     pub time: f64,
-    /// Distance within which all points of a body stay in this time (model unit). None: 1/50 of the body's radius.
+    /// Distance within which all points of a body stay in this time (model unit). None means 1/50 of the body's radius.
     pub distance: Option<f64>,
 }
 
@@ -98,12 +98,12 @@ pub struct WorldOptions {
     pub contact: ContactOptions,
     /// Response of bodies to self-collisions.
     pub response: Response,
-    /// When bodies at rest sleep.
+    /// Conditions under which bodies at rest sleep.
     pub sleep: SleepOptions,
 }
 
 impl Default for WorldOptions {
-    /// A time step of 1 ms, gravity of 9.81 m/s^2 along -y, and the ground at y = 0.
+    /// Returns options with a time step of 1 ms, gravity of 9.81 m/s^2 along -y, and the ground at y = 0.
     fn default() -> Self {
         Self {
             step: 1e-3,

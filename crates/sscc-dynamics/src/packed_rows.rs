@@ -11,7 +11,7 @@ pub(crate) const ROW_LANES: usize = 2 * LANES;
 /// Lanes of a vector.
 const LANES: usize = 4;
 
-/// Runs an operation with the widest vectors of four lanes.
+/// Runs an operation with AVX2 if the processor has it, else with the baseline.
 pub(crate) fn dispatch<Op: WithSimd>(op: Op) -> Op::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {

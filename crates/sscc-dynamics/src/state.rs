@@ -28,7 +28,7 @@ const RIGID: usize = 13 + 11 + 1;
 const CONTACT: usize = 2 + 2 + 6 + 3 + 10;
 
 impl State {
-    /// Returns the state of a world after so many steps.
+    /// Returns the state of a world after `step` steps.
     pub(crate) fn of(step: u64, bodies: &[Body], contacts: &WorldContacts) -> Self {
         let mut numbers = Vec::new();
         for (body, ground) in bodies.iter().zip(&contacts.ground) {
@@ -183,7 +183,7 @@ fn contact(numbers: &[f64; CONTACT], all: &[Body]) -> Option<Contact> {
     })
 }
 
-/// Returns a number as an index below `count`. None if it is not one.
+/// Returns a number as an index below `count`. None if it is not such an index.
 fn index(x: f64, count: usize) -> Option<u32> {
     (x >= 0.0 && x < count as f64 && x.fract() == 0.0).then_some(x as u32)
 }

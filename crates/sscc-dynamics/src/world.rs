@@ -111,7 +111,7 @@ impl World {
         self.contacts.collisions.colliding()
     }
 
-    /// Returns the number of bodies that moved only a share of their way in the last step, because no correction kept them
+    /// Returns the number of bodies that moved only a part of their motion in the last step, because no correction kept them
     /// apart, or because the corrected end had too much elastic energy.
     pub fn shortened_bodies(&self) -> usize {
         self.limiter.shortened_bodies

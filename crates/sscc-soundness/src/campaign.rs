@@ -1,4 +1,4 @@
-//! Runs configurations: the next one of the path that has taken the least time, of those with fewer answers than wanted.
+//! Runs configurations. The path with the least processor time so far is next, among the paths with fewer answers than wanted.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -17,26 +17,26 @@ use crate::tally::Tally;
 /// Time between two writes of the record.
 const WRITE_EVERY: Duration = Duration::from_secs(10);
 
-/// Processor time after which a configuration of a campaign asks nothing more.
+/// Processor time after which a configuration of a campaign makes no more queries.
 const LONGEST: Duration = Duration::from_secs(2);
 
-/// The share of a configuration in a quick run.
+/// The size of a configuration in a quick run, as a share of its full size.
 const QUICK: f64 = 0.03;
 
-/// What to run.
+/// Options of a campaign.
 #[derive(Clone, Debug)]
 pub struct Campaign {
-    /// The time that this sitting takes; none: until all paths have as many answers as wanted.
+    /// The time that this run takes. If None, it ends when all paths have as many answers as wanted.
     pub time: Option<Duration>,
-    /// The seed; none: that of the record, or 1.
+    /// The seed. If None, it is the seed of the record, or 1.
     pub seed: Option<u64>,
     /// The record.
     pub record: PathBuf,
-    /// One path alone.
+    /// The only path to run. If None, all paths are run.
     pub path: Option<String>,
 }
 
-/// One configuration; a panic is a wrong answer.
+/// Runs one configuration. A panic counts as a wrong answer.
 fn configuration(path: &Path, seed: u64, number: u64, share: f64, limit: Option<Duration>) -> Tally {
     let mut random = Random::new(path.name, seed.wrapping_mul(1 << 32).wrapping_add(number));
     let mut tally = Tally::default();
@@ -47,15 +47,15 @@ fn configuration(path: &Path, seed: u64, number: u64, share: f64, limit: Option<
     tally
 }
 
-/// The command that runs a configuration again.
+/// Returns the command that runs a configuration again.
 fn command(path: &Path, seed: u64, number: u64) -> String {
     format!("cargo xtask soundness --path {} --seed {seed} --configuration {number}", path.name)
 }
 
-/// Runs a sitting. Returns the record at its end.
+/// Runs a campaign, from its record on. Returns the record at the end.
 ///
 /// # Errors
-/// One line, where the record cannot be read or written, or where there is no such path.
+/// A message of one line if the record cannot be read or written, or if no path has the given name.
 pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, String> {
     let mut record = Record::read(&campaign.record, campaign.seed)?;
     let chosen = campaign.path.as_deref().map(index_of).transpose()?;
@@ -83,7 +83,7 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
     Ok(record)
 }
 
-/// The path that runs next; none if all are done, and no more than that is to be done.
+/// Returns the path that runs next. None if all paths have the wanted number of answers, unless `beyond` allows more.
 fn next_path(record: &Record, chosen: Option<usize>, beyond: bool) -> Option<usize> {
     let all = || (0..PATHS.len()).filter(|i| chosen.is_none_or(|chosen| chosen == *i));
     let is_open = |i: &usize| record.paths[*i].tally.done < PATHS[*i].wanted;
@@ -97,7 +97,7 @@ fn index_of(name: &str) -> Result<usize, String> {
     PATHS
         .iter()
         .position(|path| path.name == name)
-        .ok_or_else(|| format!("no path '{name}'; there are: {}", names.join(", ")))
+        .ok_or_else(|| format!("no path has the name '{name}'; the paths are: {}", names.join(", ")))
 }
 
 fn failure(path: &Path, seed: u64, number: u64, tally: &Tally) -> String {
@@ -118,17 +118,17 @@ fn append(file: &File, lines: &str) -> Result<(), String> {
 /// Runs one configuration again.
 ///
 /// # Errors
-/// One line where there is no such path.
+/// A message of one line if no path has this name.
 pub fn replay(name: &str, seed: u64, number: u64) -> Result<Tally, String> {
     index_of(name)?;
-    let path = paths::find(name).ok_or("no such path")?;
+    let path = paths::find(name).ok_or("no path has this name")?;
     Ok(configuration(path, seed, number, 1.0, None))
 }
 
 /// Runs the first configurations of each path, or of a single one, in short form.
 ///
 /// # Errors
-/// One line where there is no such path.
+/// A message of one line if no path has this name.
 pub fn run_quick(
     seed: u64,
     name: Option<&str>,

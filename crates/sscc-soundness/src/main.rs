@@ -9,12 +9,12 @@ use sscc_soundness::{Campaign, Record, replay, run, run_quick};
 
 const USAGE: &str = "Usage: cargo xtask soundness [--hours H] [--seed S] [--record FILE] [--path NAME]
        cargo xtask soundness --quick [--path NAME] [--configurations N] [--seed S]
-       cargo xtask soundness --path NAME --configuration N [--seed S]    (one configuration again)";
+       cargo xtask soundness --path NAME --configuration N [--seed S]    (runs one configuration again)";
 
-/// Configurations of each path in a quick run.
+/// Number of configurations of each path in a quick run.
 const QUICK_CONFIGURATIONS: u64 = 3;
 
-/// What was typed.
+/// The arguments of the command.
 #[derive(Default)]
 struct Arguments {
     hours: Option<f64>,
@@ -34,7 +34,7 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, Strin
             continue;
         }
         let value = arguments.next().ok_or_else(|| format!("{flag}: a value is missing"))?;
-        let wrong = || format!("{flag}: '{value}' is no such number");
+        let wrong = || format!("{flag}: '{value}' is not a valid number");
         match flag.as_str() {
             "--hours" => {
                 let hours = value.parse().ok().filter(|hours| (0.0..=10_000.0).contains(hours));
@@ -45,7 +45,7 @@ fn parse(mut arguments: impl Iterator<Item = String>) -> Result<Arguments, Strin
             "--configuration" => parsed.configuration = Some(value.parse().map_err(|_| wrong())?),
             "--record" => parsed.record = Some(value.into()),
             "--path" => parsed.path = Some(value),
-            _ => return Err(format!("there is no {flag}")),
+            _ => return Err(format!("unknown option {flag}")),
         }
     }
     Ok(parsed)

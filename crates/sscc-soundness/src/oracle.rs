@@ -1,5 +1,5 @@
-//! Which pairs of triangles of a shape collide, by exact tests of all pairs whose boxes overlap. Its rule for neighbours is
-//! written from `docs/guarantees.md`, not from the code of the core.
+//! Oracle for the colliding pairs of triangles of a shape: exact tests of all pairs whose AABBs overlap. Its contact filter
+//! is written from `docs/guarantees.md`, not from the code of the core.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,11 +8,11 @@ use crate::exact::{Point, Triangle, meet, meet_beyond_corner};
 /// Two triangles, the lower number first.
 pub type Pair = (u32, u32);
 
-/// How two triangles count.
+/// Whether a pair of triangles counts, and which common points count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Relation {
     Counts,
-    /// They count beyond the common corner: its place in each of them.
+    /// Common points other than the common corner count. Holds the index of this corner in each triangle.
     BeyondCorner(usize, usize),
     Never,
 }
@@ -28,16 +28,17 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// The rule by which triangles with a common vertex never count, or with exactly one beyond it.
+    /// Creates an oracle for which triangles with a common vertex never count, or, with `with_one_vertex`, count beyond one
+    /// common vertex.
     pub fn new(faces: &[[u32; 3]], vertices: usize, with_one_vertex: bool) -> Self {
         let classes = (0..vertices as u32).collect();
         Self { faces: faces.to_vec(), classes, with_one_vertex, ignored: BTreeSet::new() }
     }
 
-    /// The same where vertices with equal rest position and modes are one.
+    /// Welds vertices with equal rest position and modes.
     pub fn welded(mut self, points: &[Point], modes: &[Point]) -> Self {
         let rank = modes.len() / points.len();
-        // Both zeros are equal.
+        // Adding 0 makes both zeros equal.
         let key = |v: usize| -> Vec<u64> {
             let numbers = points[v..=v].iter().chain(&modes[v * rank..(v + 1) * rank]).flatten();
             numbers.map(|x| (x + 0.0).to_bits()).collect()
@@ -47,7 +48,7 @@ impl Oracle {
         self
     }
 
-    /// The same without the pairs that collide at these positions.
+    /// Excludes the pairs that collide at these positions.
     pub fn ignoring_at(mut self, positions: &[Point]) -> Self {
         self.ignored = self.pairs(positions).into_iter().collect();
         self
@@ -57,7 +58,7 @@ impl Oracle {
         let [numbers_a, numbers_b] = [a, b].map(|t| self.faces[t as usize]);
         let [classes_a, classes_b] =
             [numbers_a, numbers_b].map(|face| face.map(|v| self.classes[v as usize]));
-        // Each number of a degenerate face counts once.
+        // A repeated vertex of a degenerate face counts once.
         let common = |x: [u32; 3], y: [u32; 3]| -> usize {
             (0..3).filter(|i| y.contains(&x[*i]) && !x[..*i].contains(&x[*i])).count()
         };
@@ -83,7 +84,7 @@ impl Oracle {
         self.relation(pair) == Relation::Counts && !self.ignored.contains(&pair)
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub fn triangle(&self, positions: &[Point], t: u32) -> Triangle {
         self.faces[t as usize].map(|v| positions[v as usize])
     }
@@ -102,7 +103,7 @@ impl Oracle {
         }
     }
 
-    /// All pairs that count and collide, sorted.
+    /// Returns all pairs that count and collide, sorted.
     pub fn pairs(&self, positions: &[Point]) -> Vec<Pair> {
         let boxes: Vec<Bounds> =
             (0..self.faces.len() as u32).map(|t| Bounds::of(&self.triangle(positions, t))).collect();
@@ -121,7 +122,7 @@ impl Oracle {
         self.pairs(positions).is_empty()
     }
 
-    /// All pairs without a common vertex that count, and whose boxes around both ends of a motion overlap.
+    /// Returns all pairs without a common vertex that count, and whose AABBs of both ends of a motion overlap.
     pub fn candidates(&self, ends: [&[Point]; 2]) -> Vec<Pair> {
         let boxes: Vec<Bounds> = (0..self.faces.len() as u32)
             .map(|t| Bounds::of(&self.triangle(ends[0], t)).with(&Bounds::of(&self.triangle(ends[1], t))))
@@ -145,7 +146,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Around some points.
+    /// Returns the AABB of some points.
     pub fn of(points: &[Point]) -> Self {
         let mut bounds = Self { lower: [f64::INFINITY; 3], upper: [f64::NEG_INFINITY; 3] };
         for p in points {
@@ -157,7 +158,7 @@ impl Bounds {
         bounds
     }
 
-    /// Around both.
+    /// Returns the AABB of both.
     pub fn with(&self, other: &Self) -> Self {
         Self {
             lower: std::array::from_fn(|c| self.lower[c].min(other.lower[c])),
@@ -165,7 +166,7 @@ impl Bounds {
         }
     }
 
-    /// The longest side.
+    /// Returns the longest side.
     pub fn size(&self) -> f64 {
         (0..3).map(|c| self.upper[c] - self.lower[c]).fold(0.0, f64::max)
     }
@@ -175,7 +176,7 @@ impl Bounds {
     }
 }
 
-/// Calls `each` for all pairs of boxes that overlap: a sweep along the longest axis of all.
+/// Calls `each` for all pairs of AABBs that overlap. Sweeps along the longest axis of their common AABB.
 fn overlapping(boxes: &[Bounds], mut each: impl FnMut(Pair)) {
     let Some(all) = boxes.iter().copied().reduce(|a, b| a.with(&b)) else { return };
     let length = |c: &usize| all.upper[*c] - all.lower[*c];
@@ -186,7 +187,7 @@ fn overlapping(boxes: &[Bounds], mut each: impl FnMut(Pair)) {
         let x = &boxes[a as usize];
         for &b in &order[i + 1..] {
             let y = &boxes[b as usize];
-            // Both zeros are equal in this comparison, as in those of coordinates.
+            // Both zeros are equal in this comparison, as in comparisons of coordinates.
             if y.lower[axis] > x.upper[axis] {
                 break;
             }
@@ -197,7 +198,7 @@ fn overlapping(boxes: &[Bounds], mut each: impl FnMut(Pair)) {
     }
 }
 
-/// All pairs of a triangle of one mesh and one of another that have a common point, sorted.
+/// Returns all pairs of a triangle of one mesh and a triangle of another that have a common point, sorted.
 pub fn pairs_between(x: &[Triangle], y: &[Triangle]) -> Vec<Pair> {
     let boxes: Vec<Bounds> = x.iter().chain(y).map(|t| Bounds::of(t)).collect();
     let count = x.len() as u32;
@@ -217,7 +218,7 @@ mod tests {
 
     #[test]
     fn pairs_count_by_common_vertices_and_welds() {
-        // Two triangles through each other, with a corner at one place.
+        // Two triangles pass through each other, and a corner of each is at the same position.
         let points: Vec<Point> = vec![
             [0.0, 0.0, 0.0],
             [2.0, -1.0, 0.0],

@@ -1,11 +1,11 @@
 //! Pseudo-random numbers: SplitMix64. A seed gives the same numbers on every machine.
 
-/// A stream of numbers.
+/// A pseudo-random generator.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of one configuration of a path.
+    /// Creates the generator of one configuration of a path.
     pub fn new(path: &str, seed: u64) -> Self {
         let salt = path
             .bytes()
@@ -15,7 +15,7 @@ impl Random {
         random
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -24,47 +24,47 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// In [0, 1).
+    /// Returns a number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// In [-1, 1).
+    /// Returns a number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 
-    /// In 0 .. n.
+    /// Returns a number in 0 .. n.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n.max(1) as u64) as usize
     }
 
-    /// True once in n times.
+    /// Returns true once in n times, on average.
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
 
-    /// One of some values.
+    /// Returns one of some values.
     pub fn of<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len())]
     }
 
-    /// `10^x` with x between two exponents.
+    /// Returns `10^x` with x between two exponents.
     pub fn power(&mut self, from: f64, to: f64) -> f64 {
         10.0_f64.powf(from + (to - from) * self.unit())
     }
 
-    /// In a cube.
+    /// Returns a random point in the cube [-1, 1)^3.
     pub fn point(&mut self) -> [f64; 3] {
         std::array::from_fn(|_| self.signed())
     }
 
-    /// A whole number from -size to size.
+    /// Returns an integer from -size to size.
     pub fn whole(&mut self, size: usize) -> f64 {
         self.below(2 * size + 1) as f64 - size as f64
     }
 
-    /// Roughly a normal distribution.
+    /// Returns a number that is roughly normally distributed.
     pub fn normal(&mut self) -> f64 {
         self.signed() + self.signed() + self.signed()
     }

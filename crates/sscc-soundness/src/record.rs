@@ -1,5 +1,5 @@
-//! The counters of a campaign on disk: one line for each path, so that a campaign resumes where it was. A file is replaced as a
-//! whole, so that it is never half written.
+//! The counters of a campaign on disk, one line for each path, so that a campaign can resume. A file is replaced as a whole,
+//! so that it is never half written.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,33 +15,33 @@ const HEADER: &str = "path,wanted,done,false negatives,wrong,configurations,seco
 /// The counters of all paths.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// From it the seeds of all configurations follow.
+    /// The seed from which the seeds of all configurations follow.
     pub seed: u64,
-    /// In the order of [`PATHS`].
+    /// The counters of each path, in the order of [`PATHS`].
     pub paths: Vec<PathRecord>,
 }
 
 /// The counters of a path.
 #[derive(Clone, Debug, Default)]
 pub struct PathRecord {
-    /// What was counted.
+    /// The counters.
     pub tally: Tally,
-    /// Configurations that were run: the number of the next one.
+    /// Number of configurations that were run. It is the number of the next configuration.
     pub configurations: u64,
-    /// The time of the processor that they took.
+    /// Processor time of these configurations (s).
     pub seconds: f64,
 }
 
 impl Record {
-    /// Nothing counted yet.
+    /// Creates a record without counts.
     pub fn new(seed: u64) -> Self {
         Self { seed, paths: PATHS.iter().map(|_| PathRecord::default()).collect() }
     }
 
-    /// Reads a record; a new one where there is no file.
+    /// Reads a record. Returns a new one if the file does not exist.
     ///
     /// # Errors
-    /// One line, where the file cannot be read, is no record, or has another seed than the given one.
+    /// A message of one line if the file cannot be read, is not a record, or has another seed than the given one.
     pub fn read(file: &File, seed: Option<u64>) -> Result<Self, String> {
         let name = file.display();
         let text = match fs::read_to_string(file) {
@@ -51,12 +51,13 @@ impl Record {
             }
             Err(error) => return Err(format!("{name}: {error}")),
         };
-        let record =
-            Self::parse(&text).map_err(|error| format!("{name}: {error}; remove it to begin anew"))?;
+        let record = Self::parse(&text)
+            .map_err(|error| format!("{name}: {error}; remove the file to begin a new record"))?;
         match seed {
-            Some(seed) if seed != record.seed => {
-                Err(format!("{name}: its seed is {}, not {seed}; give another --record", record.seed))
-            }
+            Some(seed) if seed != record.seed => Err(format!(
+                "{name}: its seed is {}, not {seed}; choose another file with --record",
+                record.seed
+            )),
             _ => Ok(record),
         }
     }
@@ -64,14 +65,14 @@ impl Record {
     fn parse(text: &str) -> Result<Self, String> {
         let mut lines = text.lines();
         if lines.next() != Some(HEADER) {
-            return Err("the first line is not that of a record".to_owned());
+            return Err("the first line is not the header of a record".to_owned());
         }
         let mut record = Self::new(0);
         for (number, line) in lines.enumerate() {
             let place = || format!("line {}", number + 2);
             let (seed, name, path) = parse_line(line).ok_or_else(place)?;
             let index = PATHS.iter().position(|path| path.name == name);
-            record.paths[index.ok_or_else(|| format!("{}: no path '{name}'", place()))?] = path;
+            record.paths[index.ok_or_else(|| format!("{}: no path has the name '{name}'", place()))?] = path;
             record.seed = seed;
         }
         Ok(record)
@@ -80,7 +81,7 @@ impl Record {
     /// Writes the record beside the file, and renames it.
     ///
     /// # Errors
-    /// One line with the file and the cause.
+    /// A message of one line with the file and the cause.
     pub fn write(&self, file: &File) -> Result<(), String> {
         let part = file.with_extension("part");
         let write = || -> std::io::Result<()> {
@@ -114,7 +115,7 @@ impl Record {
         text
     }
 
-    /// A table for people.
+    /// Returns a table for people.
     pub fn table(&self) -> String {
         let mut table = format!(
             "{:<15} {:>10} {:>10} {:>6} {:>6} {:>8}\n",
@@ -162,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_record_is_read_as_it_was_written() {
+    fn a_written_record_is_read_back_unchanged() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("new/record.csv");
         let mut record = Record::read(&file, Some(7)).unwrap();
@@ -175,13 +176,13 @@ mod tests {
         assert!(!file.with_extension("part").exists());
         assert!(Record::read(&file, Some(8)).unwrap_err().contains("its seed is 7"));
         fs::write(&file, "other\n").unwrap();
-        assert!(Record::read(&file, None).unwrap_err().ends_with("remove it to begin anew"));
+        assert!(Record::read(&file, None).unwrap_err().ends_with("remove the file to begin a new record"));
         fs::write(&file, format!("{HEADER}\ndiscrete,1\n")).unwrap();
         assert!(Record::read(&file, None).unwrap_err().contains("line 2"));
     }
 
     #[test]
-    fn the_table_shows_what_was_not_reached() {
+    fn the_table_lists_inner_paths_that_were_not_reached() {
         let table = Record::new(1).table();
         assert!(table.contains("NOT REACHED: active pairs"), "{table}");
     }

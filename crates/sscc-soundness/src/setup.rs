@@ -1,4 +1,4 @@
-//! A model of the core, its certificates, and the oracle for the same question.
+//! A model for the core, its certificates, and the oracle for the same pairs.
 
 use sscc::glam::DVec3;
 use sscc::{
@@ -12,34 +12,34 @@ use crate::oracle::{Bounds, Oracle};
 use crate::random::Random;
 use crate::tally::Tally;
 
-/// What a path asks of its models.
+/// Requirements of a path on its models.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
-    /// Triangles, about.
+    /// Approximate number of triangles.
     pub triangles: usize,
-    /// How extreme models may be.
+    /// Range of lengths of models.
     pub extremes: Extremes,
-    /// Certificates about another configuration than the rest pose.
+    /// Whether certificates have a centre other than the rest pose.
     pub has_center: bool,
-    /// A dense metric.
+    /// Whether the metric is dense.
     pub is_dense: bool,
 }
 
-/// All of it.
+/// A model, its certificates and its oracle.
 pub struct Setup {
-    /// The plain numbers.
+    /// The model as plain numbers.
     pub model: Model,
-    /// The same for the core.
+    /// The model for the core.
     pub reduced: ReducedModel,
-    /// Its certificates.
+    /// Certificates of the model.
     pub certificates: Certificates,
-    /// Which pairs collide.
+    /// Oracle for the colliding pairs.
     pub oracle: Oracle,
     /// The largest side of the box at rest.
     pub size: f64,
 }
 
-/// The core's mesh of plain numbers.
+/// Returns the mesh for the core.
 pub fn mesh_of(model: &Model) -> Result<TriMesh, Error> {
     TriMesh::new(model.points.iter().map(|p| DVec3::from_array(*p)).collect(), model.faces.clone())
 }
@@ -49,7 +49,7 @@ fn reduced_of(model: &Model) -> Result<ReducedModel, Error> {
     ReducedModel::new(mesh_of(model)?, modes)
 }
 
-/// A triangular factor with a condition up to 1e7, so that the condition of `M = S'S` is up to 1e14.
+/// Returns a triangular factor S with a condition up to 1e7, so that the condition of `M = S'S` is up to 1e14.
 fn dense_factor(random: &mut Random, scales: &[f64]) -> Vec<f64> {
     let rank = scales.len();
     let condition = random.power(0.0, 7.0);
@@ -86,7 +86,7 @@ impl Setup {
     /// Draws a model and computes its certificates.
     ///
     /// # Errors
-    /// Where the core refuses the model, by its message.
+    /// The error of the core if it refuses the model.
     pub fn random(random: &mut Random, wanted: &Wanted) -> Result<Self, Error> {
         let model = Model::random(random, wanted.triangles, wanted.extremes);
         let reduced = reduced_of(&model)?;
@@ -117,7 +117,7 @@ impl Setup {
         Ok(Self { model, reduced, certificates, oracle, size })
     }
 
-    /// The share of a configuration that is worth its time: little where most triangles collide at the centre.
+    /// Returns the size of a configuration, as a share of the full size. It is small if many triangles collide at the centre.
     pub fn share(&self) -> f64 {
         let colliding = self.oracle.pairs(&self.model.positions(self.certificates.center())).len();
         match colliding {
@@ -127,7 +127,7 @@ impl Setup {
         }
     }
 
-    /// A random q, by its norm or by how far it moves vertices.
+    /// Returns a random q, with a random norm or a random displacement of vertices.
     pub fn draw(&self, random: &mut Random) -> Vec<f64> {
         let center = self.certificates.center();
         let y = direction(random, &self.model);
@@ -138,7 +138,7 @@ impl Setup {
         let root = self.certificates.root_radius();
         let by_norm = root / unit * random.power(0.0, 1.3);
         let scale = match random.below(8) {
-            // At the root's radius, up to a few units in the last place.
+            // The norm is the root's radius, up to a few units in the last place.
             0 => root / unit * (1.0 + f64::EPSILON * random.whole(8)),
             1..4 => by_norm,
             4 => self.certificates.global_radius() / unit * random.power(-0.3, 0.5),
@@ -149,7 +149,7 @@ impl Setup {
         if scale.is_finite() { at(scale) } else { center.to_vec() }
     }
 
-    /// Whether the core may refuse this q: it moves some vertex beyond its limits.
+    /// Whether the core may refuse this q because it moves some vertex beyond its limits.
     pub fn is_beyond_range(&self, q: &[f64]) -> bool {
         let modes = self.model.modes.chunks(self.model.rank);
         let reach = modes.zip(&self.model.points).flat_map(|(modes, p)| {
@@ -159,7 +159,7 @@ impl Setup {
         largest > 0.5 * sscc::limits::LARGEST || q.iter().any(|x| !x.is_finite())
     }
 
-    /// Counts a refusal, which is wrong where all these q are within range.
+    /// Counts a refusal, which is wrong if all these q are within range.
     pub fn refused(&self, tally: &mut Tally, q: &[&[f64]], error: &Error) {
         tally.reach("refused q");
         if !q.iter().any(|q| self.is_beyond_range(q)) {
@@ -168,7 +168,7 @@ impl Setup {
     }
 }
 
-/// A direction in q-space: of all modes, of a few, of one, or of modes that nearly cancel.
+/// Returns a direction in q-space: of all modes, of a few, of one, or of modes that nearly cancel.
 pub fn direction(random: &mut Random, model: &Model) -> Vec<f64> {
     let mut y: Vec<f64> = vec![0.0; model.rank];
     let scale = |k: usize| -> f64 {
@@ -198,7 +198,7 @@ pub fn direction(random: &mut Random, model: &Model) -> Vec<f64> {
     y
 }
 
-/// How far a direction moves vertices, about.
+/// Returns the largest displacement of a vertex along a direction, approximately; 1 if no vertex moves.
 fn reach(model: &Model, y: &[f64]) -> f64 {
     let displacement = |modes: &[Point]| -> f64 {
         (0..3).map(|c| modes.iter().zip(y).map(|(u, y)| u[c] * y).sum::<f64>().abs()).fold(0.0, f64::max)
@@ -207,7 +207,7 @@ fn reach(model: &Model, y: &[f64]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// A centre that moves vertices by up to a third of the model's size.
+/// Returns a centre that moves vertices by a small share of the model's size.
 fn shift(random: &mut Random, model: &Model, size: f64) -> Vec<f64> {
     let y = direction(random, model);
     let scale = size * random.power(-4.0, -1.3) / reach(model, &y);

@@ -1,22 +1,22 @@
-//! What a path has counted, and what it found wrong.
+//! Counters of answers and of failures of a path.
 
 use std::collections::BTreeMap;
 
-/// Failures kept in words; all are counted.
+/// Maximum number of failures that are kept as messages. All failures are counted.
 const MOST_MESSAGES: usize = 20;
 
 /// The counters of a path.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// Answers compared.
+    /// Number of answers compared.
     pub done: u64,
-    /// Of these, how many reached an inner path.
+    /// How often each inner path was reached.
     pub reached: BTreeMap<String, u64>,
-    /// Pairs that were called free, and collide.
+    /// Number of failures in which colliding pairs were reported as free.
     pub false_negatives: u64,
-    /// Pairs that were listed and do not collide, and other broken promises.
+    /// Number of failures in which listed pairs do not collide, and of other wrong answers.
     pub wrong: u64,
-    /// The first failures, in words.
+    /// Messages of the first failures.
     pub messages: Vec<String>,
 }
 
@@ -39,7 +39,7 @@ impl Tally {
         }
     }
 
-    /// Counts an inner path where a condition holds.
+    /// Counts an inner path if a condition holds.
     pub fn reach_if(&mut self, is_reached: bool, path: &str) {
         if is_reached {
             self.reach(path);
@@ -95,7 +95,7 @@ impl Tally {
         other.messages.into_iter().for_each(|message| self.keep(|| message));
     }
 
-    /// Whether nothing was wrong.
+    /// Whether no failure was counted.
     pub fn is_clean(&self) -> bool {
         self.false_negatives == 0 && self.wrong == 0
     }
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn missing_and_extra_pairs_are_told_apart() {
+    fn missing_and_extra_pairs_are_counted_separately() {
         let mut tally = Tally::default();
         tally.compare(&[1, 2], &[1, 2], String::new);
         assert!(tally.is_clean());

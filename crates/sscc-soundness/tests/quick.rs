@@ -1,14 +1,15 @@
-//! The campaign in short form: every path is clean, reaches its most important inner paths, and runs again by its number.
+//! The campaign in short form: every path is clean and reaches its most important inner paths. A configuration can be run
+//! again by its number.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::time::Duration;
 
 use sscc_soundness::{Campaign, PATHS, replay, run, run_quick};
 
-/// Configurations of each path.
+/// Number of configurations of each path.
 const CONFIGURATIONS: u64 = 4;
 
-/// Inner paths that so few configurations reach.
+/// Inner paths that this number of configurations reaches.
 const REACHED: [(&str, &str); 9] = [
     ("triangle-pairs", "touching"),
     ("triangle-pairs", "shared vertex"),
@@ -36,7 +37,7 @@ fn every_path_is_clean() {
 }
 
 #[test]
-fn a_sitting_resumes_and_a_configuration_runs_again() {
+fn a_campaign_resumes_and_a_configuration_can_be_run_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("record.csv");
     let path = Some("triangle-pairs".to_owned());
@@ -51,5 +52,5 @@ fn a_sitting_resumes_and_a_configuration_runs_again() {
     let again = replay("triangle-pairs", 3, 0).unwrap();
     assert!(again.is_clean() && again.done <= second.1);
     assert!(run(&Campaign { seed: Some(4), ..campaign }, |_| ()).unwrap_err().contains("its seed is 3"));
-    assert!(replay("no path", 1, 0).unwrap_err().contains("there are: triangle-pairs, "));
+    assert!(replay("no path", 1, 0).unwrap_err().contains("the paths are: triangle-pairs, "));
 }

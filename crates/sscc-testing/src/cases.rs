@@ -1,10 +1,10 @@
-//! Number of random cases of a test: all of them with `CI=true` in the environment, else the first eighth.
+//! Number of random cases of a test: all cases with `CI=true` in the environment, else the first eighth.
 //!
-//! Both begin with the same seeds.
+//! The first cases have the same seeds in both runs.
 
 use std::ops::Div;
 
-/// Divisor of the number of cases outside of CI.
+/// Returns the number of cases to try out of `all`: all cases in CI, else an eighth, at least one.
 const DIVISOR: u8 = 8;
 
 /// Returns the number of cases to try out of `all`: all of them in CI, else an eighth, at least one.

@@ -7,8 +7,8 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use num_bigint::{BigInt, Sign};
 use num_traits::{Float, ToPrimitive};
 
-/// An integer times a power of two. All doubles are such numbers, and so are their sums and products: unlike those of
-/// fractions these need no greatest common divisor, which takes most of the time there.
+/// An integer times a power of two. All doubles are such numbers, and so are their sums and products. Unlike fractions, they
+/// need no greatest common divisor, which takes most of the time of computations with fractions.
 #[derive(Clone, Debug)]
 pub struct Dyadic {
     integer: BigInt,
@@ -45,8 +45,8 @@ impl Dyadic {
         if self.is_negative() { -self } else { self.clone() }
     }
 
-    /// Returns the number within one unit in the last place, as a double that is 0 or of size 1 to 2^64, and the exponent of
-    /// the power of two to multiply it with: numbers beyond the range of doubles have these, too.
+    /// Returns the number within one unit in the last place, as a double and the exponent of the power of two to multiply it
+    /// with. The double is 0 or of size 1 to 2^64. Numbers beyond the range of doubles can be represented, too.
     pub fn mantissa_and_exponent(&self) -> (f64, i32) {
         if self.is_zero() {
             return (0.0, 0);
@@ -59,7 +59,7 @@ impl Dyadic {
     /// Returns the number within one unit in the last place.
     pub fn to_f64(&self) -> f64 {
         let (mantissa, exponent) = self.mantissa_and_exponent();
-        // In two steps, because powers of two beyond the range of doubles may be needed.
+        // The multiplication takes two steps, because powers of two beyond the range of doubles may be needed.
         mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
     }
 
@@ -72,8 +72,8 @@ impl Dyadic {
     }
 }
 
-/// Returns the product of all denominators, and for each the product of the others: what its numerator is to be multiplied
-/// with for a sum of quotients over the product.
+/// Returns the product of all denominators, and for each denominator the product of the others. A sum of quotients over the
+/// product has each numerator multiplied with the latter.
 pub fn common_denominator(denominators: &[Dyadic]) -> (Dyadic, Vec<Dyadic>) {
     assert!(denominators.iter().all(|x| !x.is_zero()), "a denominator is 0");
     let others = |i: usize| [&denominators[..i], &denominators[i + 1..]].concat();
@@ -123,7 +123,7 @@ impl Neg for Dyadic {
     }
 }
 
-/// The same for values.
+/// Implements operators for values by those for references.
 macro_rules! by_value {
     ($($Operator:ident $operator:ident),*) => {$(
         impl $Operator for Dyadic {
@@ -187,7 +187,7 @@ impl PartialEq for Dyadic {
 
 impl Eq for Dyadic {}
 
-/// Returns an odd number and the exponent of the power of two to multiply it with; none for 0.
+/// Returns an odd number and the exponent of the power of two to multiply it with; None for 0.
 ///
 /// # Panics
 /// When the number is not finite.

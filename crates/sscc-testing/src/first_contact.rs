@@ -13,7 +13,7 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use sscc::MovingTriangle;
 
-/// Returns the exact time in [0, 1] at which the triangles first have a common point, or none. Touching counts.
+/// Returns the exact time in [0, 1] at which the triangles first have a common point; None if they have none. Touching counts.
 ///
 /// # Panics
 /// When a corner is not finite.

@@ -1,34 +1,34 @@
-//! Shapes of several buckets that bend, turn and touch themselves far from rest, as plain numbers.
+//! Shapes of several buckets that bend, rotate and touch themselves far from rest, as plain numbers.
 
 use glam::{DMat3, DVec3};
 
-/// Pseudo-random numbers (an LCG).
+/// A generator of pseudo-random numbers (LCG).
 pub struct Numbers(pub u64);
 
 impl Numbers {
-    /// In [-1, 1).
+    /// Returns a number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / 2.0_f64.powi(52) - 1.0
     }
 
-    /// In 0 .. n.
+    /// Returns a number in 0 .. n.
     pub fn below(&mut self, n: usize) -> usize {
         (((self.signed() + 1.0) * 0.5 * n as f64) as usize).min(n - 1)
     }
 
-    /// `10^x` for x between the two exponents.
+    /// Returns `10^x` for x between the two exponents.
     pub fn power(&mut self, from: f64, to: f64) -> f64 {
         10.0_f64.powf(from + (to - from) * 0.5 * (self.signed() + 1.0))
     }
 
-    /// In a cube.
+    /// Returns a vector in the cube [-1, 1)^3.
     pub fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
 }
 
-/// What the vertices are on.
+/// Kind of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A disk with a radial slit: the parts beside the slit touch the part at its end.
@@ -48,7 +48,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 7] =
         [Self::SlitDisk, Self::Box, Self::Sheet, Self::Helix, Self::Ring, Self::Comb, Self::Coil];
 }
@@ -61,9 +61,9 @@ pub struct FlexibleShape {
     pub faces: Vec<[u32; 3]>,
     /// The number of modes.
     pub rank: usize,
-    /// In vertex-major order.
+    /// Displacements of the vertices by the modes, in vertex-major order.
     pub displacements: Vec<DVec3>,
-    /// Whether the first twelve modes are all affine maps: nine gradients `e_c p_j` at `3 c + j`, then three translations.
+    /// Whether the first twelve modes are affine maps: nine gradients `e_c p_j` at `3 c + j`, then three translations.
     pub is_affine: bool,
 }
 
@@ -169,7 +169,7 @@ fn surface(random: &mut Numbers, shape: Shape) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     }
 }
 
-/// A mode, as a function of position and vertex.
+/// Returns a mode, as a function of position and vertex.
 fn mode(random: &mut Numbers, k: usize, is_affine: bool, noise: f64) -> impl FnMut(DVec3) -> DVec3 + use<> {
     let [w, a, b] = [random.vector(), random.vector(), random.vector()];
     let matrix = DMat3::from_cols(random.vector(), random.vector(), random.vector());
@@ -184,9 +184,9 @@ fn mode(random: &mut Numbers, k: usize, is_affine: bool, noise: f64) -> impl FnM
         let bend = w * (waves * x.dot(a) + b.x).sin();
         let bump = |center: DVec3, wide: f64| (1.0 - (x - center).length_squared() / (wide * wide)).max(0.0);
         let smooth = match kind {
-            // A part alone moves.
+            // Only one part moves.
             0 => w * bump(a, 0.8).powi(2),
-            // Around an axis, along the angle: rings and slits close.
+            // A displacement around an axis that grows with the angle closes rings and slits.
             1 => DVec3::new(-x.y, x.x, 0.0) * x.y.atan2(x.x),
             2 => matrix * x + b * x.length_squared(),
             3 => bend + w * 1e3,
@@ -199,14 +199,14 @@ fn mode(random: &mut Numbers, k: usize, is_affine: bool, noise: f64) -> impl FnM
 }
 
 impl FlexibleShape {
-    /// The shape number `seed` of a kind. `rank`: at least this many modes, and twelve affine ones more for some.
+    /// Returns the shape number `seed` of a kind. It has at least `rank` modes; some shapes have twelve affine modes in addition.
     pub fn new(seed: u64, shape: Shape, rank: usize) -> Self {
         let random = &mut Numbers(seed.wrapping_mul(0xd1b5_4a32_d192_ed03) ^ 77);
         let (mut positions, mut faces) = surface(random, shape);
         let jitter = random.power(-6.0, -2.5);
         positions.iter_mut().for_each(|p| *p += random.vector() * jitter);
         if random.below(4) == 0 {
-            // Duplicates, and triangles without area.
+            // Adds duplicates, and triangles without area.
             for _ in 0..3 {
                 let [a, b, c] = faces[random.below(faces.len())];
                 let odd = [[a, b, c], [c, b, a], [a, a, b], [a, a, a]];
@@ -222,7 +222,7 @@ impl FlexibleShape {
             .flat_map(|p| modes.iter_mut().map(|mode| mode(*p)).collect::<Vec<_>>())
             .collect();
         if random.below(3) == 0 {
-            // Some corners have vertices of their own, as along the seams of a file for drawing.
+            // Some corners get vertices of their own, as at texture seams.
             for corner in faces.iter_mut().flatten() {
                 if random.below(6) == 0 {
                     let v = *corner as usize;
@@ -235,7 +235,7 @@ impl FlexibleShape {
         Self { positions, faces, rank, displacements, is_affine }
     }
 
-    /// The same with all lengths times a factor, also those of modes.
+    /// Returns the shape with all lengths multiplied by a factor, also those of modes.
     #[must_use]
     pub fn scaled(mut self, size: f64) -> Self {
         self.positions.iter_mut().for_each(|p| *p *= size);
@@ -243,7 +243,7 @@ impl FlexibleShape {
         self
     }
 
-    /// A q that turns the shape about an axis by an angle (radians), if it has affine modes.
+    /// Returns a q that rotates the shape about an axis by an angle (radians); None if the shape has no affine modes.
     pub fn turned(&self, axis: DVec3, angle: f64) -> Option<Vec<f64>> {
         if !self.is_affine {
             return None;

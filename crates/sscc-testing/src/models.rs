@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Environment variable with the name of a file to which each skipped test appends a line.
 pub const SKIP_LOG: &str = "SSCC_SKIP_LOG";
 
-/// Returns the folder of the real models. If there is none, records the test of this name as skipped.
+/// Returns the folder of the real models. If it does not exist, records the test of this name as skipped.
 pub fn models(test: &str) -> Option<PathBuf> {
     let folder = match std::env::var_os("SSCC_MODELS") {
         Some(folder) => PathBuf::from(folder),

@@ -14,7 +14,7 @@ const ROWS: usize = 4;
 ///
 /// Coordinates are multiplied by a common power of two that makes them integers. This changes no sign and no root.
 pub(crate) struct Minors {
-    /// By the bits of the corners, then of the rows; empty where their numbers differ.
+    /// The determinant of each set of corners and rows, by their bits; empty if the two sets differ in size.
     table: Vec<Polynomial>,
 }
 

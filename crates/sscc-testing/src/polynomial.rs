@@ -4,16 +4,16 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-/// Coefficients, the constant one first, the last one not 0.
+/// Coefficients, the constant first; the last coefficient is not 0.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Polynomial(Vec<BigInt>);
 
 /// Root of a polynomial, stored as the only root in an interval, or a rational number.
 #[derive(Clone, Debug)]
 pub struct Root {
-    /// A polynomial without repeated roots.
+    /// A polynomial without repeated roots, of which this is a root.
     of: Polynomial,
-    /// Neither end is a root, unless both ends are equal.
+    /// Interval that contains only this root. Neither end is a root, unless both ends are equal.
     interval: [BigRational; 2],
 }
 
@@ -176,7 +176,7 @@ impl Root {
         for _ in 0..times {
             let middle = middle(&self.interval);
             let signs = [&self.interval[0], &middle].map(|x| self.of.sign_at(x));
-            // The root is simple, so the sign changes there. The ends stay off the root.
+            // The root is simple, so the sign changes there. No end becomes the root.
             match signs[0] * signs[1] {
                 0 => self.interval = [middle.clone(), middle],
                 1 => self.interval[0] = middle,

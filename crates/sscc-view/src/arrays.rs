@@ -30,12 +30,12 @@ impl Arrays {
         name
     }
 
-    /// The bytes of an array; `None` if no array has this name.
+    /// Returns the bytes of an array; `None` if no array has this name.
     pub fn get(&self, name: &str) -> Option<&[u8]> {
         self.arrays.get(name).map(Vec::as_slice)
     }
 
-    /// The total size of all arrays (bytes).
+    /// Returns the total size of all arrays (bytes).
     pub fn bytes(&self) -> usize {
         self.arrays.values().map(Vec::len).sum()
     }

@@ -1,4 +1,4 @@
-//! What a report needs to check q itself: the core as WebAssembly, the model and its certificates in double precision.
+//! Data with which a report checks q itself: the core as WebAssembly, the model and its certificates in double precision.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -21,7 +21,7 @@ const MODULE: &str = "sscc_bg.wasm";
 /// The file of the package with its version.
 const MANIFEST: &str = "package.json";
 
-/// How the script begins: the page calls that name.
+/// Beginning of the script: the page uses this name.
 const START: &str = "let ssccPackage";
 
 /// The core as WebAssembly, from the folder of the npm package, with its script.
@@ -35,7 +35,7 @@ impl WasmPackage {
     /// Reads the package.
     ///
     /// # Errors
-    /// If a file of it cannot be read, or is none of the package, or if the package has another version than this crate.
+    /// If one of its files cannot be read or is not of the package, or if the package has another version than this crate.
     pub fn read(folder: &Path) -> Result<Self, ViewError> {
         check_version(&folder.join(MANIFEST))?;
         let (script, module) = (folder.join(SCRIPT), folder.join(MODULE));

@@ -16,7 +16,7 @@ pub enum ViewError {
     Range,
     /// A report has too much data.
     #[error(
-        "the report would be larger than {} MiB, the most that sscc view reads: give fewer frames",
+        "the report would be larger than {} MiB, the limit of sscc view: give fewer frames",
         crate::MAX_REPORT_BYTES >> 20
     )]
     TooLarge,

@@ -18,12 +18,12 @@ pub struct Extremal {
     pub q: Vec<f64>,
 }
 
-/// Shapes that move no vertex by this share of half the diagonal of the AABB look like the one at the centre: it is about a pixel of a
-/// picture.
+/// Factor on half the diagonal of the AABB: a shape whose vertices all move by less looks like the shape at the centre. The
+/// factor is about one pixel of a picture.
 const VISIBLE: f64 = 0.02;
 
-/// Returns both directions of each of the first modes, as far as they can be told from the shape at the centre; none if the root's
-/// radius is 0 or infinite.
+/// Returns q along each of the first modes, in both directions, unless the shape looks like the shape at the centre. Returns
+/// none if the root's radius is 0 or infinite.
 pub fn extremal(model: &ReducedModel, certificates: &Certificates) -> Vec<Extremal> {
     let (center, radius) = (certificates.center(), certificates.root_radius());
     if radius <= 0.0 || !radius.is_finite() {

@@ -8,10 +8,10 @@ use crate::{Axis, Plot, Series};
 /// Numbers of modes to compare, below the model's rank. The rank itself is added.
 const RANKS: [usize; 6] = [1, 5, 10, 20, 40, 80];
 
-/// Returns for each number of modes, and for both metrics, the largest deformation along the first mode that the root
-/// proves free. A deformation is measured by the displacement of the vertex that moves farthest. `unit` is its unit on
-/// the axis; empty: no unit. The model's own metric must be the diagonal energy metric. Computes certificates of each
-/// of these models.
+/// Returns for each number of modes, and for both metrics, the largest deformation along the first mode that the root proves
+/// free. A deformation is measured by the displacement of the vertex that moves farthest. `unit` is its unit on the axis; if
+/// empty, the axis has no unit. The model's own metric must be the diagonal energy metric. Computes certificates of each of
+/// these models.
 ///
 /// # Errors
 /// If `progress` cancels.

@@ -9,14 +9,14 @@ use crate::Plot;
 pub struct Playback {
     /// Times of the frames (s), ascending.
     pub times: Vec<f64>,
-    /// How the page names a frame.
+    /// The name of a frame on the page.
     pub clock: Clock,
     /// The bodies.
     pub bodies: Vec<Body>,
     /// For each frame the number of self-colliding triangle pairs of all bodies, as the maximum over the steps strictly
     /// between the previous frame and this one; 0 for the first frame. `None` if the motion has no such steps.
     pub pairs_since: Option<Vec<u64>>,
-    /// The pairs that were not tested, for the end of a sentence: ", apart from ..."; empty if all were.
+    /// The pairs that were not tested, for the end of a sentence: ", apart from ..."; empty if all pairs were tested.
     pub apart: String,
     /// The colliding triangles, where known.
     pub colliding: Option<Colliding>,
@@ -32,15 +32,15 @@ pub struct Playback {
     pub costs: Option<Plot>,
 }
 
-/// How the page names a frame.
+/// Name of a frame on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Clock {
-    /// By its time.
+    /// The frame's time.
     Time,
-    /// By its number: the times only set the speed.
+    /// The frame's number: the times only set the speed.
     Frame,
-    /// By its number and its time.
+    /// The frame's number and its time.
     FrameAndTime,
 }
 
@@ -56,10 +56,10 @@ pub struct Body {
     pub track: Track,
     /// Name of the array of x and of R as a quaternion x y z w (frames x 7).
     pub rigid: Option<String>,
-    /// The point about which the body turns. Of given positions: the origin of the page's coordinates, the same for all
-    /// bodies.
+    /// The point about which the body rotates. For given positions it is the origin of the page's coordinates, the same for
+    /// all bodies.
     pub center: [f64; 3],
-    /// For each frame the number of colliding triangle pairs in that frame, or of a continuous check in the step after it;
+    /// For each frame the number of colliding triangle pairs in that frame; for a continuous check, in the step after it.
     /// `None` if unknown, or if another body counts them.
     pub pairs: Option<Vec<u64>>,
 }
@@ -83,7 +83,7 @@ pub struct Colliding {
     pub triangles: String,
 }
 
-/// Colliding pairs of each frame and body; of a continuous check those of the step after each frame.
+/// Colliding pairs of each frame and body; for a continuous check, of the step after each frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contacts {
     /// Name of the array of offsets into `pairs`: one for each list, ordered by frame, then by body, and the end.

@@ -14,9 +14,9 @@ pub struct ModelDetails {
     pub frequencies: Option<Vec<f64>>,
     /// Name of each mode; empty where unknown.
     pub mode_names: Vec<String>,
-    /// Standard deviation of each entry of q, of principal components.
+    /// Standard deviation of each entry of q, if the modes are principal components.
     pub deviations: Option<Vec<f64>>,
-    /// The initial q of the page; `None`: the centre.
+    /// The initial q of the page; `None` means the centre.
     pub default_q: Option<Vec<f64>>,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct ReducedFacts {
     pub(crate) intervals: Option<Vec<IntervalRow>>,
 }
 
-/// The sentences for a shape that is free, by what proves it.
+/// The sentences for a free shape, one for each kind of proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct FreeSentences {
     root: String,
@@ -93,7 +93,7 @@ impl ReducedFacts {
         }
     }
 
-    /// Whether the page can show all that its sliders reach.
+    /// Whether the page can show all shapes that its sliders reach.
     pub(crate) fn fits(&self) -> bool {
         let farthest = self.limits.iter().fold(1.0_f64, |far, x| far.max(*x)) * MAX_SLIDER_SCALE;
         farthest <= f64::from(f32::MAX)

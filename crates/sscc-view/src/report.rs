@@ -13,7 +13,7 @@ pub struct Report {
     pub scene: Scene,
     /// The arrays that the scene names.
     pub arrays: Arrays,
-    /// What checks q within the report; none: it shows what is recorded, and what the root's radius proves.
+    /// The data with which the report checks q itself. If None, it shows only recorded results and what the root's radius proves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checks: Option<Checks>,
 }
@@ -32,7 +32,7 @@ impl Report {
     /// another program may have written them.
     ///
     /// # Errors
-    /// If `html` contains no report, or one with a program.
+    /// If `html` contains no report, or a report with a program.
     pub fn rebuild(html: &str) -> Result<String, ViewError> {
         let json = json_in(html).ok_or_else(|| ViewError::NotAReport("it has no data".into()))?;
         let keys: ReportKeys =
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_report_with_a_program_is_not_taken_over() {
+    fn a_report_with_a_program_is_not_rebuilt() {
         let html = |json: &str| with_json(json);
         assert!(Report::rebuild(&html("{\"scene\":{},\"arrays\":{}}")).is_ok());
         assert!(Report::rebuild(&html("{\"scene\":{},\"arrays\":{},\"checks\":null}")).is_ok());
@@ -79,7 +79,7 @@ mod tests {
         let plain = Report { scene, arrays: Arrays::default(), checks: None }.html().unwrap();
         let allowed = "script-src 'unsafe-inline' 'wasm-unsafe-eval'";
         assert!(!plain.contains("wasm-unsafe-eval'"));
-        // The policy of reports, and that of the page.
+        // The policy of reports, and the policy of the page.
         assert_eq!(allowing_modules(plain).matches(allowed).count(), 2);
     }
 }

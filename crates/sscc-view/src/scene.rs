@@ -47,7 +47,7 @@ pub struct ModelScene {
     triangles: usize,
     vertices: usize,
     arrays: ModelArrays,
-    /// The AABB of the rest pose; of a mesh, that of all recorded positions.
+    /// The AABB of the rest pose; for a mesh, the AABB of all recorded positions.
     #[serde(rename = "box")]
     bounds: Bounds,
     /// Absent in a mesh.
@@ -72,7 +72,7 @@ struct Bounds {
 }
 
 impl ModelScene {
-    /// The model's name.
+    /// Returns the model's name.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -116,8 +116,8 @@ impl ModelScene {
         })
     }
 
-    /// The same, with the intervals of collision of all modes about the initial q, which the page marks along the sliders. Their
-    /// ranges are those of the sliders.
+    /// Returns the scene with the intervals of collision of all modes about the initial q, which the page marks along the
+    /// sliders. Their ranges are those of the sliders.
     #[must_use]
     pub fn with_intervals(mut self, intervals: Vec<IntervalRow>) -> Self {
         if let Some(reduced) = &mut self.reduced {
@@ -154,7 +154,7 @@ impl ModelScene {
     }
 }
 
-/// The AABB of points, as minimum and maximum; zero for no points.
+/// Returns the AABB of points, as minimum and maximum; zero for no points.
 fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let Some(first) = points.first() else { return (DVec3::ZERO, DVec3::ZERO) };
     points.iter().fold((*first, *first), |(min, max), p| (min.min(*p), max.max(*p)))

@@ -1,5 +1,5 @@
-//! `bindgen INPUT.wasm FOLDER`: writes a package of JavaScript modules, with types, to FOLDER, and to FOLDER/script the same as a script
-//! without modules.
+//! `bindgen INPUT.wasm FOLDER`: writes a package of JavaScript modules, with types, to FOLDER, and the same package as a
+//! script without modules to FOLDER/script.
 
 use std::env;
 use std::error::Error;

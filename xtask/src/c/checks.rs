@@ -1,4 +1,4 @@
-//! Checks that run programs and count themselves.
+//! Checks that run programs, and their counts.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::debian;
 use crate::program::cargo;
 use crate::tally::{SkipLog, Tally};
 
-/// Checks that count themselves, and where they find what.
+/// The counts of checks, and the paths that checks use.
 pub struct Checks {
     pub tally: Tally,
     /// The file to which skipped checks add a line.
@@ -21,7 +21,7 @@ pub struct Checks {
     pub commands: PathBuf,
     /// The folder of the libraries.
     pub libraries: PathBuf,
-    /// A folder for builds, emptied.
+    /// An empty folder for builds.
     pub folder: PathBuf,
 }
 
@@ -38,7 +38,7 @@ impl Checks {
         if !is_built && !build().is_ok_and(|status| status.success()) {
             return Err("the library or the command cannot be built".into());
         }
-        // Cargo puts them beside this program.
+        // Cargo writes both into the folder of this program.
         let commands = env::current_exe().map_err(|e| e.to_string())?;
         let commands = commands.parent().ok_or("no folder of programs")?.to_owned();
         let (libraries, folder) = (commands.join("deps"), commands.join("c"));
@@ -48,7 +48,8 @@ impl Checks {
         Ok(Self { tally, log, root, commands, libraries, folder })
     }
 
-    /// Counts a check, and prints its name, its time, and why it failed. It is skipped where a program that it needs is missing.
+    /// Runs and counts a check, and prints its name, its time and, if it failed, the reason. Skips it if a program that it
+    /// needs is missing.
     pub fn check(&mut self, name: &str, needed: &[&str], check: impl FnOnce(&Self) -> Result<(), String>) {
         if let Some(reason) = skip_reason(needed, debian::has) {
             return self.skip(name, &reason);

@@ -8,10 +8,10 @@ use serde_json::Value;
 use super::checks::Checks;
 use super::packages::{BUILD_PROGRAMS, EIGEN_PACKAGE};
 
-/// What runs the command in `docs/c.md`.
+/// Beginning of a command in `docs/c.md` that the command of this build replaces.
 const BUILT: &str = "cargo run --release -- ";
 
-/// Runs all. An example is left out without Eigen.
+/// Runs all checks. Skips an example if Eigen is not installed.
 pub fn run(checks: &mut Checks) {
     checks.check("commands of docs/c.md", &BUILD_PROGRAMS, commands);
     checks.check("spring.cpp answers as the command", &BUILD_PROGRAMS, spring);
@@ -25,7 +25,7 @@ pub fn run(checks: &mut Checks) {
     }
 }
 
-/// The only block of that language in `docs/c.md`.
+/// Returns the only block of a language in `docs/c.md`.
 fn block(checks: &Checks, language: &str) -> Result<String, String> {
     let text = fs::read_to_string(checks.root.join("docs/c.md")).map_err(|e| format!("docs/c.md: {e}"))?;
     let fence = format!("```{language}\n");
@@ -62,7 +62,7 @@ fn commands(checks: &Checks) -> Result<(), String> {
     Ok(())
 }
 
-/// The lines of the spring are those of the command, byte for byte, without the fields that it does not print.
+/// Checks that the example prints the lines of the command, byte for byte, without the fields that it does not print.
 fn spring(checks: &Checks) -> Result<(), String> {
     let demo = checks.root.join("target/demo");
     let found = checks.succeed(&checks.root, &checks.root.join("target/c/spring"), &["target/demo"])?;
@@ -76,7 +76,7 @@ fn spring(checks: &Checks) -> Result<(), String> {
     if found == wanted { Ok(()) } else { Err(format!("printed:\n{found}wanted:\n{wanted}")) }
 }
 
-/// A line of `check --json` with the fields that the spring prints.
+/// Returns a line of `check --json` with the fields that the example `spring` prints.
 fn printed_fields(line: &str) -> String {
     let without = |text: String, field: &str| match text.split_once(&format!("\"{field}\":")) {
         Some((before, rest)) => {
@@ -89,7 +89,7 @@ fn printed_fields(line: &str) -> String {
     line.split(",\"opened\"").next().unwrap_or_default().to_owned() + "}"
 }
 
-/// A mesh that is free, and one that is not.
+/// Checks that the example `check_mesh` answers like the command, for a mesh that is free and for one that collides.
 fn meshes(checks: &Checks) -> Result<(), String> {
     let crossing = checks.folder.join("crossing.obj");
     let text = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 2\nv 2 1 2\nv 0 1 1\nv 4 1 1\nv 1 2 1\n\
@@ -113,14 +113,14 @@ fn meshes(checks: &Checks) -> Result<(), String> {
     Ok(())
 }
 
-/// Matrices in both orders of storage have the same answer.
+/// Checks that matrices in both orders of storage have the same answer.
 fn eigen_maps(checks: &Checks) -> Result<(), String> {
     let found = checks.succeed(&checks.root, &checks.root.join("target/c/eigen_maps"), &[])?;
     let wanted = "at rest: 0 pairs\nat q: 0 1\ndetector: 1 pairs\n";
     if found == wanted { Ok(()) } else { Err(format!("printed {found:?}, not {wanted:?}")) }
 }
 
-/// The program that `docs/c.md` shows compiles without a warning, and prints what it says.
+/// Checks that the program that `docs/c.md` shows compiles without a warning, and prints the text that the document states.
 fn program(checks: &Checks) -> Result<(), String> {
     let folder = checks.folder.join("shown");
     fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_that_are_not_printed_are_left_out() {
+    fn fields_that_the_example_does_not_print_are_removed() {
         let line =
             "{\"index\":1,\"norm\":0.2,\"count\":0,\"microseconds\":0.5,\"proof\":\"radius\",\"opened\":0}";
         assert_eq!(printed_fields(line), "{\"index\":1,\"count\":0,\"proof\":\"radius\"}");

@@ -1,9 +1,9 @@
 //! `cargo xtask c`: builds programs in C and C++ against `sscc-c` with CMake, and runs them.
 //!
-//! `crates/sscc-c/tests/programs` is built with gcc and clang, as it is and with the sanitizers for addresses and undefined
-//! behaviour, and runs under valgrind. The package is installed and found by CMake and by pkg-config. The commands of `docs/c.md` are
-//! run as shown, and the examples answer as the command does. A check is skipped by name where one of its programs is missing;
-//! a run that counts skipped tests as failed may install Debian's packages.
+//! `crates/sscc-c/tests/programs` is built with gcc and clang, without and with the sanitizers for addresses and undefined
+//! behaviour, and runs under valgrind. The package is installed and found by CMake and by pkg-config. The commands of
+//! `docs/c.md` are run as shown, and the examples answer as the command does. A check is skipped, and listed by name, if one
+//! of its programs is missing. A run that counts skipped tests as failed may install Debian's packages.
 
 mod checks;
 mod examples;
@@ -32,7 +32,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
 pub fn test(log: &Path, is_built: bool) -> Tally {
     println!("== C and C++");
     if !cfg!(target_os = "linux") {
-        return SkipLog::skip(log, "programs in C and C++", "they are tested on Linux alone");
+        return SkipLog::skip(log, "programs in C and C++", "they are tested only on Linux");
     }
     if SkipLog::is_strict() {
         packages::install_missing();

@@ -1,4 +1,4 @@
-//! The programs that checks need, and Debian's packages of them.
+//! The programs that checks need, and their Debian packages.
 
 use std::path::Path;
 
@@ -16,16 +16,17 @@ const PROGRAMS: [(&str, &str); 8] = [
     ("pkg-config", "pkg-config"),
 ];
 
-/// What CMake needs to build programs.
+/// Programs that CMake needs to build programs.
 pub const BUILD_PROGRAMS: [&str; 4] = ["cmake", "make", "gcc", "g++"];
 
-/// The Debian package of Eigen, for an example and for assertions that are left out without it.
+/// The Debian package of Eigen, for an example and for assertions that are skipped without it.
 pub const EIGEN_PACKAGE: &str = "libeigen3-dev";
 
-/// The Debian package of clang's sanitizers, which that of clang only recommends.
+/// The Debian package of clang's sanitizers. Debian's package of clang only recommends it.
 const SANITIZERS_PACKAGE: &str = "libclang-rt-dev";
 
-/// Installs the packages of all programs that are missing. What cannot be installed is skipped, which then fails.
+/// Installs the packages of all missing programs. Checks whose packages cannot be installed are skipped, and then count as
+/// failed.
 pub fn install_missing() {
     let missing = PROGRAMS.iter().filter(|(program, _)| !debian::has(program));
     let mut packages: Vec<&str> = missing.map(|(_, package)| *package).collect();
@@ -40,7 +41,7 @@ pub fn install_missing() {
     }
 }
 
-/// Why a check that needs these programs is skipped; none if it can run.
+/// Returns the reason for which a check that needs these programs is skipped; None if the check can run.
 pub fn skip_reason(needed: &[&str], has: impl Fn(&str) -> bool) -> Option<String> {
     let is_missing = |program: &&(&str, &str)| needed.contains(&program.0) && !has(program.0);
     let missing = PROGRAMS.iter().find(is_missing);

@@ -16,7 +16,7 @@ const COMPILERS: [[&str; 2]; 2] = [["gcc", "g++"], ["clang", "clang++"]];
 const INSTALL: [&str; 3] =
     ["cmake -S crates/sscc-c -B build", "cmake --build build", "cmake --install build --prefix DIR"];
 
-/// Runs all.
+/// Runs all checks.
 pub fn run(checks: &mut Checks) {
     for [c, cpp] in COMPILERS {
         let options = [format!("-DCMAKE_C_COMPILER={c}"), format!("-DCMAKE_CXX_COMPILER={cpp}")];
@@ -53,8 +53,8 @@ fn all_pass(checks: &Checks, build: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Any error fails, and so does any memory that is lost. Memory that is possibly lost is that of threads of the library, which
-/// end a moment after their computation.
+/// Runs a program under valgrind. Any error and any lost memory fail. Memory that is possibly lost does not fail: it belongs
+/// to threads of the library, which end a moment after their computation.
 fn under_valgrind(checks: &Checks, program: &Path) -> Result<(), String> {
     let program = program.to_string_lossy();
     let arguments = [
@@ -67,7 +67,7 @@ fn under_valgrind(checks: &Checks, program: &Path) -> Result<(), String> {
     checks.succeed(&checks.folder, Path::new("valgrind"), &arguments).map(drop)
 }
 
-/// Installs the package as the document says: where it is becomes known after the configuration.
+/// Installs the package by the commands of the document. The prefix is given only to the last command, after the configuration.
 fn install(checks: &Checks) -> Result<(), String> {
     let text = fs::read_to_string(checks.root.join("docs/c.md")).map_err(|e| format!("docs/c.md: {e}"))?;
     let [package, prefix] =
@@ -98,7 +98,7 @@ fn found_by_cmake(checks: &Checks) -> Result<(), String> {
     all_pass(checks, &build)
 }
 
-/// Builds and runs a program with pkg-config alone.
+/// Builds and runs a program with pkg-config only.
 fn found_by_pkg_config(checks: &Checks) -> Result<(), String> {
     let prefix = checks.folder.join("prefix");
     let prefix = prefix.display();
@@ -113,7 +113,7 @@ fn found_by_pkg_config(checks: &Checks) -> Result<(), String> {
     if text == "passed\n" { Ok(()) } else { Err(format!("by pkg-config: {text}")) }
 }
 
-/// A folder of libraries with an absolute path stays where it is, and pkg-config says so.
+/// Checks that a library folder with an absolute path is kept, and that pkg-config reports it.
 fn absolute_folder(checks: &Checks) -> Result<(), String> {
     let build = checks.folder.join("absolute");
     let text = build.to_string_lossy();
@@ -122,5 +122,5 @@ fn absolute_folder(checks: &Checks) -> Result<(), String> {
     let file = build.join("sscc.pc");
     let arguments = ["--variable=libdir", &file.to_string_lossy()];
     let found = checks.succeed(&checks.root, Path::new("pkg-config"), &arguments)?;
-    if found == "/opt/sscc/lib\n" { Ok(()) } else { Err(format!("pkg-config says {found:?}")) }
+    if found == "/opt/sscc/lib\n" { Ok(()) } else { Err(format!("pkg-config reports {found:?}")) }
 }

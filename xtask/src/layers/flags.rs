@@ -1,8 +1,9 @@
-//! Libraries name no flags of the command: they name settings, which each front end calls by its own name. A program (`main.rs`) is one.
+//! Checks that libraries name no flags of the command. They name settings, and each front end has its own names for these. A
+//! program (`main.rs`) is a front end.
 
 use crate::sources::Crate;
 
-/// Crates whose messages are those of the command and of the tasks.
+/// Crates whose messages belong to the command and to the tasks.
 const FRONT_ENDS: [&str; 4] = ["sscc-cli", "sscc-bench", "sscc-soundness", "xtask"];
 
 /// Returns the places where a library names a flag.
@@ -14,12 +15,15 @@ pub fn flags(krate: &Crate) -> Vec<String> {
     let lines = files.flat_map(|file| file.lines.iter().map(|line| (&file.path, line)));
     let violation = |(path, (number, line)): (&String, &(usize, String))| {
         let flag = flag_in(line)?;
-        Some(format!("{path}:{number}: names the flag {flag}: libraries name a setting (sscc_io::Setting)"))
+        Some(format!(
+            "{path}:{number}: a library names the flag {flag}: libraries name a setting (sscc_io::Setting)"
+        ))
     };
     lines.filter_map(violation).collect()
 }
 
-/// Returns the first flag in a line of code without its comment. Only string literals have flags, as Rust has no operator `--`.
+/// Returns the first flag in a line of code without its comment. Flags occur only in string literals, as Rust has no operator
+/// `--`.
 fn flag_in(line: &str) -> Option<&str> {
     let code = line.split(" // ").next()?;
     let is_flag = |at: &usize| {
@@ -35,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn flags_are_found_in_text_alone() {
+    fn flags_are_found_only_in_string_literals() {
         assert_eq!(flag_in(r#"    "add --mesh-name=NAME","#), Some("--mesh-name"));
         assert_eq!(flag_in("    continued --q, --"), Some("--q"));
         for line in ["f(x); // --q", r#"    "<!-- a -- b -->""#, "a - -b", r#"    "------BEGIN""#] {

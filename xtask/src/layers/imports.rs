@@ -1,4 +1,4 @@
-//! Which file of a crate imports which other one.
+//! The imports between the files of a crate.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::order::{Order, folder};
 use super::paths::{CodePath, paths_and_items};
 use crate::sources::Crate;
 
-/// Re-exports are followed so far.
+/// Maximum number of re-exports that are followed for one path.
 const MOST_RE_EXPORTS: usize = 16;
 
 /// The imports of one crate.
@@ -18,7 +18,7 @@ pub struct Imports<'c> {
     all: Vec<Import>,
 }
 
-/// One file imports another.
+/// An import of one file by another.
 struct Import {
     from: usize,
     to: usize,
@@ -42,7 +42,7 @@ impl<'c> Imports<'c> {
         imports
     }
 
-    /// The file that defines what a path names; none for a path into another crate.
+    /// Returns the file that defines the item of a path; None for a path into another crate.
     fn resolve(&self, from: usize, path: &CodePath, re_exports: usize) -> Option<usize> {
         let (mut module, mut names) = self.start(from, path)?;
         while let Some((name, rest)) = names.split_first() {
@@ -50,7 +50,7 @@ impl<'c> Imports<'c> {
             module.push(name.clone());
             let is_module = self.of_module.contains_key(&module[..]);
             if rest.is_empty() || !is_module {
-                // A module and an item may have one name.
+                // A module and an item may have the same name.
                 let exported = self.exported(file, name, re_exports);
                 if exported.is_some() || !is_module {
                     return exported.or(Some(file));
@@ -61,12 +61,12 @@ impl<'c> Imports<'c> {
         self.of_module.get(&module[..]).copied()
     }
 
-    /// The module in which a path begins, and the names after it; none for a path into another crate.
+    /// Returns the module in which a path begins, and the names after it; None for a path into another crate.
     fn start<'p>(&self, from: usize, path: &'p CodePath) -> Option<(Vec<String>, &'p [String])> {
         let (mut module, mut inner) = (self.krate.files[from].module.clone(), path.inner);
         let first = path.names.first()?;
         if !["crate", "self", "super"].contains(&first.as_str()) {
-            // A child, or a module that a `use` names.
+            // The first name is a child, or a module that a `use` names.
             let child = [&module[..], std::slice::from_ref(first)].concat();
             if self.of_module.contains_key(&child[..]) {
                 return Some((module, &path.names));
@@ -91,7 +91,7 @@ impl<'c> Imports<'c> {
         Some((module, names))
     }
 
-    /// The file of an item that a file re-exports.
+    /// Returns the file of an item that a file re-exports.
     fn exported(&self, file: usize, name: &str, re_exports: usize) -> Option<usize> {
         if re_exports >= MOST_RE_EXPORTS {
             return None;
@@ -104,7 +104,7 @@ impl<'c> Imports<'c> {
             if path.names.last().is_some_and(|last| last == "*") {
                 let names = path.names[..path.names.len() - 1].to_vec();
                 let module = CodePath { names, ..path.clone() };
-                // The module itself is no re-export: following all others for it would take exponential time.
+                // The module itself is not a re-export: following all re-exports for it would take exponential time.
                 let found = self.resolve(file, &module, MOST_RE_EXPORTS);
                 if let Some(found) =
                     found.filter(|found| self.files[*found].1.iter().any(|item| item == name))
@@ -121,7 +121,7 @@ impl<'c> Imports<'c> {
         format!("{}:{}: imports {} ({})", path(import.from), import.line, import.path, path(import.to))
     }
 
-    /// Imports that do not go down the order.
+    /// Returns the imports that do not go down the order.
     pub fn up_the_order(&self, order: &Order) -> Vec<String> {
         let mut violations = Vec::new();
         for import in &self.all {
@@ -138,7 +138,7 @@ impl<'c> Imports<'c> {
         violations
     }
 
-    /// A circle of files, if there is one.
+    /// Returns a circle of files; None if there is none.
     pub fn circle(&self) -> Option<String> {
         let mut is_done = vec![false; self.krate.files.len()];
         let mut way = Vec::new();

@@ -2,7 +2,7 @@
 //! of a crate, that no files of a crate form a circle, and that libraries name no flags of the command.
 //!
 //! Crates are checked by their dependencies. Within a crate an import is a path from `crate`, `super` or `self`, in a `use` or in
-//! code, or from a module that a `use` names. It imports the file that defines the item: re-exports are followed. The tool does
+//! code, or from a module that a `use` names. It imports the file that defines the item: re-exports are followed. The task does
 //! not know types, so it misses methods. Items and files for tests do not count.
 
 mod flags;
@@ -39,7 +39,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// All violations in a workspace, each one or more lines `file:line: message`.
+/// Returns all violations in a workspace, each as one or more lines `file:line: message`.
 fn violations(root: &Path) -> Result<Vec<String>, String> {
     let (order, crates) = (Order::read(root)?, sources::read(root)?);
     let mut violations = order.unknown_crates(&crates);
@@ -57,7 +57,7 @@ fn violations(root: &Path) -> Result<Vec<String>, String> {
 fn dependencies(krate: &Crate, order: &Order) -> Vec<String> {
     let why = |dependency: &String| {
         let why = order.reason_against("crates", &krate.name, dependency)?;
-        Some(format!("{}/Cargo.toml: depends on {dependency}: {why}", krate.folder))
+        Some(format!("{}/Cargo.toml: the crate depends on {dependency}: {why}", krate.folder))
     };
     krate.dependencies.iter().filter_map(why).collect()
 }

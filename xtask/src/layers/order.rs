@@ -11,12 +11,12 @@ use crate::sources::{self, Crate};
 /// The file that declares the order, at the root of the workspace.
 pub const FILE: &str = "layers.toml";
 
-/// The list of a folder of modules: `sscc`, `sscc/query`.
+/// Returns the key of the list of a folder of modules: `sscc`, `sscc/query`.
 pub fn folder(krate: &str, module: &[String]) -> String {
     std::iter::once(krate).chain(module.iter().map(String::as_str)).collect::<Vec<_>>().join("/")
 }
 
-/// For the crates (`crates`), for each crate and for some folders of modules the level of each name, 0 the lowest.
+/// The level of each name, 0 the lowest, for the crates (key `crates`), for each crate and for some folders of modules.
 pub struct Order(BTreeMap<String, BTreeMap<String, usize>>);
 
 impl Order {
@@ -41,7 +41,7 @@ impl Order {
         Ok(Self(order))
     }
 
-    /// Why one name of a list must not import another; none if it may, or if one has no place.
+    /// Returns the reason why one name of a list must not import another; None if it may, or if one of them has no place.
     pub fn reason_against(&self, list: &str, from: &str, to: &str) -> Option<String> {
         let levels = self.0.get(list)?;
         match levels.get(from)?.cmp(levels.get(to)?) {
@@ -51,7 +51,7 @@ impl Order {
         }
     }
 
-    /// Crates without a place, and lists of crates that do not exist.
+    /// Returns the crates without a place, and lists of crates that do not exist.
     pub fn unknown_crates(&self, crates: &[Crate]) -> Vec<String> {
         let mut violations = Vec::new();
         let levels = self.0.get("crates").cloned().unwrap_or_default();
@@ -61,11 +61,11 @@ impl Order {
         let lists = self.0.keys().filter(|list| *list != "crates");
         let named = levels.keys().map(String::as_str).chain(lists.filter_map(|list| list.split('/').next()));
         let unknown = named.filter(|name| !is_crate(name));
-        violations.extend(unknown.map(|name| format!("{FILE}: there is no crate {name}")));
+        violations.extend(unknown.map(|name| format!("{FILE}: no crate has the name {name}")));
         violations
     }
 
-    /// Modules without a place in the list of their folder, and places without a module.
+    /// Returns the modules without a place in the list of their folder, and places without a module.
     pub fn unplaced_modules(&self, krate: &Crate) -> Vec<String> {
         let mut violations = Vec::new();
         if !self.0.contains_key(&krate.name) {

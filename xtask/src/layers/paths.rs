@@ -6,20 +6,20 @@ use crate::sources::{Source, without_text};
 #[derive(Clone, Debug, PartialEq)]
 pub struct CodePath {
     pub line: usize,
-    /// Its names; the last is `*` for a glob.
+    /// The names of the path; the last is `*` for a glob.
     pub names: Vec<String>,
-    /// The name by which a `use` makes it known.
+    /// The name that a `use` gives it.
     pub known_as: Option<String>,
-    /// Whether it is re-exported.
+    /// Whether the path is re-exported.
     pub is_public: bool,
-    /// In how many modules within the file it is.
+    /// Number of modules within the file that contain the path.
     pub inner: usize,
 }
 
 /// A name, `::`, or another character, with its line.
 type Token = (usize, String);
 
-/// The paths of two names or more, those of `use` each by itself, and the names of the items that the file defines.
+/// Returns the paths of at least two names, one for each item of a `use`, and the names of the items that the file defines.
 pub fn paths_and_items(source: &Source) -> (Vec<CodePath>, Vec<String>) {
     let tokens: Vec<Token> = source.lines.iter().flat_map(|(line, text)| tokens(*line, text)).collect();
     let (mut paths, mut items) = (Vec::new(), Vec::new());
@@ -87,7 +87,7 @@ fn use_tree(tokens: &[Token], mut at: usize, start: &CodePath, paths: &mut Vec<C
             "::" | "$" => {}
             "{" => loop {
                 at = use_tree(tokens, at, &path, paths);
-                // After a comma or the brace.
+                // The position is after a comma or the brace.
                 if tokens.get(at - 1).is_none_or(|(_, token)| token != ",") {
                     path.names.clear();
                     break;

@@ -1,4 +1,4 @@
-//! Each rule, with and without a violation, and this workspace.
+//! Tests of each kind of violation, and of this workspace.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 use super::*;
 
-/// A workspace of one crate, `a`, with this order of modules and these files.
+/// Creates a workspace of one crate, `a`, with this order of modules and these files.
 fn tree(order: &str, files: &[(&str, &str)]) -> TempDir {
     let tree = tempfile::tempdir().unwrap();
     write(&tree, "Cargo.toml", "[workspace]\nmembers = [\"a\"]\n");
@@ -51,7 +51,7 @@ fn legal_code_passes() {
             "middle/right.rs",
             "pub fn right() {\n    super::left();\n}\n#[cfg(test)]\nmod tests {\n    use super::super::middle;\n}\n",
         ),
-        // A name that is a module and a function.
+        // A module and a function have the same name.
         ("top/mod.rs", "pub mod run;\npub use run::run;\npub use run::Top;\n"),
         ("top/run.rs", "use crate::middle;\npub struct Top;\npub fn run() {\n    middle::middle();\n}\n"),
     ];
@@ -59,7 +59,7 @@ fn legal_code_passes() {
     assert_eq!(found(&tree(order, &files)), [""; 0]);
 }
 
-/// The violations of `low`, which must not import `high`; `high.rs` defines `f` and `T`.
+/// Returns the violations of `low`, which must not import `high`; `high.rs` defines `f` and `T`.
 fn low(text: &str) -> Vec<String> {
     let files = [
         ("lib.rs", "pub mod high;\npub mod low;\n"),
@@ -93,7 +93,7 @@ fn every_way_to_name_an_item_is_an_import() {
             "{text}"
         );
     }
-    // By a module that is named first.
+    // The import goes through a module that a `use` names.
     assert_eq!(low("use crate::high as h;\nfn g() {\n    h::f()\n}").len(), 2);
 }
 
@@ -127,7 +127,7 @@ fn re_exports_are_followed_to_the_file_that_defines_the_item() {
         let why = "low is below high in layers.toml";
         let line = format!("a/src/low.rs:3: imports crate::{name} (a/src/high/part.rs): {why}");
         assert_eq!(found(&tree), [line]);
-        // Down the order the same import is legal: lib.rs, which imports both files, is not involved.
+        // If the order is reversed, the same import is legal, although lib.rs imports both files.
         write(&tree, "layers.toml", "crates = [\"a\"]\n[modules]\na = [\"high\", \"low\"]\n");
         assert_eq!(found(&tree), [""; 0]);
     }
@@ -162,7 +162,7 @@ fn crates_and_modules_have_places_and_are_in_order() {
         found(&tree),
         [
             "crate b has no place in layers.toml",
-            "layers.toml: there is no crate c",
+            "layers.toml: no crate has the name c",
             "layers.toml: a has no module three",
             "a/src/one.rs:1: imports crate::two::f (a/src/two.rs): one and two are on one level in layers.toml",
             "layers.toml: the modules of b have no list",
@@ -173,7 +173,7 @@ fn crates_and_modules_have_places_and_are_in_order() {
         found(&tree),
         [
             "layers.toml: a: module one has no place",
-            "b/Cargo.toml: depends on a: b is below a in layers.toml",
+            "b/Cargo.toml: the crate depends on a: b is below a in layers.toml",
             "layers.toml: the modules of b have no list",
         ]
     );

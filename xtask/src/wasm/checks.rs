@@ -44,7 +44,7 @@ pub fn run(log: &Path, folder: &Path) -> Tally {
         }
 }
 
-/// Writes the native certificates and answers of five models, whose digests are those of the record. Returns their folder.
+/// Writes the native certificates and answers of five models, and checks their digests by the record. Returns their folder.
 fn native_bytes() -> Result<PathBuf, String> {
     let folder = root().join("target/npm-test/digests");
     fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
@@ -57,7 +57,7 @@ fn command() -> Result<PathBuf, String> {
     let mut build = cargo();
     build.args(["build", "--package", "sscc-cli"]).current_dir(root());
     succeed(&mut build, "the command cannot be built")?;
-    // It is in the folder of this program.
+    // The command is in the folder of this program.
     let program = env::current_exe().map_err(|error| error.to_string())?;
     Ok(program.with_file_name(format!("sscc{}", env::consts::EXE_SUFFIX)))
 }

@@ -1,6 +1,6 @@
-//! `cargo xtask wasm`: builds the npm package of `crates/sscc-wasm` in `target/npm/sscc`. With `--test` it builds one to test, with
-//! assertions, and runs its tests in Node and in a browser, which compare certificates and answers with the native ones, byte for byte.
-//! `--release` tests the package that is published.
+//! `cargo xtask wasm`: builds the npm package of `crates/sscc-wasm` in `target/npm/sscc`. With `--test` it builds a package
+//! with assertions, and runs its tests in Node and in a browser, which compare certificates and answers with the native ones,
+//! byte for byte. `--release` tests the package that is published.
 
 mod checks;
 mod package;
@@ -31,7 +31,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
 }
 
-/// The folder of the package that is published.
+/// Returns the folder of the package that is published.
 fn published() -> PathBuf {
     root().join("target/npm/sscc")
 }

@@ -8,14 +8,14 @@ use std::process::Command;
 use super::toolchain::{TARGET, Toolchain, cargo_home, renamed};
 use crate::program::{cargo, root, succeed};
 
-/// The module.
+/// The file of the module.
 const MODULE: &str = "sscc_bg.wasm";
 
 /// The files of `crates/sscc-wasm/npm`, and the licences.
 const FILES: [&str; 4] = ["package.json", "node.js", "queries.js", "README.md"];
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
-/// Builds the package that is published in `folder`: small and fast, and without paths of this machine.
+/// Builds the package that is published in `folder`. It is small and fast, and contains no paths of this machine.
 pub fn build(toolchain: &Toolchain, folder: &Path) -> Result<(), String> {
     let flags = [renamed(&root(), "sscc"), renamed(&cargo_home(), "cargo")];
     let module = compile(toolchain, "wasm", &flags)?;
@@ -23,7 +23,7 @@ pub fn build(toolchain: &Toolchain, folder: &Path) -> Result<(), String> {
     let bytes = fs::read(folder.join(MODULE)).map_err(|error| format!("{MODULE}: {error}"))?;
     let home = env::var_os("HOME").map(PathBuf::from);
     match [Some(root()), Some(cargo_home()), home].into_iter().flatten().find(|path| has_path(&bytes, path)) {
-        Some(path) => Err(format!("{MODULE} has a path of this machine, below {}", path.display())),
+        Some(path) => Err(format!("{MODULE} contains a path of this machine, below {}", path.display())),
         None => Ok(()),
     }
 }
@@ -34,14 +34,14 @@ fn has_path(bytes: &[u8], folder: &Path) -> bool {
     text.len() > 1 && bytes.windows(text.len()).any(|part| part == text.as_bytes())
 }
 
-/// Builds a package to test in `folder`: quickly, with assertions.
+/// Builds a package with assertions for tests in `folder`, which takes less time.
 pub fn build_to_test(toolchain: &Toolchain, folder: &Path) -> Result<(), String> {
     assemble(&compile(toolchain, "dev", &[])?, folder)
 }
 
 /// Compiles the module. Returns its path.
 fn compile(toolchain: &Toolchain, profile: &str, flags: &[String]) -> Result<PathBuf, String> {
-    // Of this checkout alone: cargo takes what another one compiled for its own where the files of this are older.
+    // The folder belongs to this checkout only: with a shared one, cargo would use newer results of another checkout.
     let target = root().join("target/wasm");
     let mut build = toolchain.cargo(flags)?;
     build
@@ -76,7 +76,7 @@ fn assemble(module: &Path, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes the scripts and types of a module by the program in `xtask/bindgen`.
+/// Writes the scripts and types of a module with the program in `xtask/bindgen`.
 fn bindgen(module: &Path, folder: &Path) -> Result<(), String> {
     let target = root().join("target/bindgen");
     let mut build = cargo();
@@ -93,7 +93,7 @@ fn bindgen(module: &Path, folder: &Path) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    /// The version of wasm-bindgen in a lock file.
+    /// Returns the version of wasm-bindgen in a lock file.
     fn locked(lock: &str) -> String {
         let text = fs::read_to_string(root().join(lock)).unwrap();
         let lock: toml::Table = text.parse().unwrap();

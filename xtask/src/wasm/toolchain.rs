@@ -1,7 +1,7 @@
 //! A compiler that has a standard library for WebAssembly.
 //!
-//! rustup installs one (`rustup target add wasm32-unknown-unknown`). Where only the packages of Debian can be had, the library is
-//! compiled once from the sources in `rust-web-src` by the compiler in `rustc-web`, and kept in [`cache`].
+//! rustup installs one (`rustup target add wasm32-unknown-unknown`). Where only Debian's packages are available, the library
+//! is compiled once from the sources in `rust-web-src` by the compiler in `rustc-web`, and kept in [`cache`].
 
 use std::env;
 use std::fs;
@@ -14,32 +14,36 @@ use crate::program::{cargo, output, succeed};
 /// The target.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
-/// All engines have 128-bit SIMD: Chromium 91, Firefox 89, Safari 16.4, Node 16.
+/// Compiler flag for 128-bit SIMD, which all engines have: Chromium 91, Firefox 89, Safari 16.4, Node 16.
 const FEATURES: &str = "-Ctarget-feature=+simd128";
 
-/// Debian's compiler, the sources of its library, and their packages.
+/// Debian's compiler.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
+
+/// The sources of the standard library for Debian's compiler.
 const DEBIAN_SOURCES: &str = "/usr/lib/rustlib/src/rust/library/std/Cargo.toml";
+
+/// The Debian packages of the compiler and of these sources.
 const DEBIAN_PACKAGES: [&str; 2] = ["rustc-web", "rust-web-src"];
 
 /// The oldest version of Debian's compiler that compiles the crates.
 const MIN_MINOR: u32 = 89;
 
-/// The compiler, and how it is called.
+/// The compiler, and how to call it.
 pub struct Toolchain {
-    /// None: the compiler of the project has the library.
+    /// Debian's compiler; None if the compiler of the project has the library.
     debian: Option<Debian>,
 }
 
-/// Debian's compiler, and what it lacks.
+/// Debian's compiler, and the parts that it lacks.
 struct Debian {
-    /// The folder where its library is kept, once it is compiled.
+    /// The folder of its library, once this is compiled.
     sysroot: PathBuf,
     linker: PathBuf,
 }
 
 impl Toolchain {
-    /// Finds a compiler. With `install`, tries to install Debian's. The error is the reason why there is none.
+    /// Finds a compiler. With `install`, tries to install Debian's. The error states why there is none.
     pub fn find(install: bool) -> Result<Self, String> {
         if library()?.is_dir() {
             return Ok(Self { debian: None });
@@ -60,8 +64,8 @@ impl Toolchain {
         Ok(Self { debian: Some(Debian { sysroot: sysroot(DEBIAN_RUSTC)?, linker }) })
     }
 
-    /// A cargo that compiles for the target with this compiler, and with more flags. The error is that of the library, which is
-    /// compiled where that was not done before.
+    /// Returns a cargo that compiles for the target with this compiler, and with more flags. Compiles the standard library if
+    /// this was not done before; an error is an error of this compilation.
     pub fn cargo(&self, flags: &[String]) -> Result<Command, String> {
         let mut cargo = cargo();
         let mut all = vec![FEATURES.to_owned()];
@@ -81,25 +85,25 @@ impl Toolchain {
     }
 }
 
-/// The variable of cargo for flags that may contain spaces. It has precedence over all others.
+/// The variable of cargo for flags that may contain spaces. It has precedence over all other variables for flags.
 const FLAGS: &str = "CARGO_ENCODED_RUSTFLAGS";
 
 fn encoded(flags: &[String]) -> String {
     flags.join("\u{1f}")
 }
 
-/// The flag that replaces a folder of this machine by a name, in all paths that a module contains.
+/// Returns the flag that replaces a folder of this machine by a name, in all paths that a module contains.
 pub fn renamed(folder: &Path, name: &str) -> String {
     format!("--remap-path-prefix={}={name}", folder.display())
 }
 
-/// The folder of cargo with the sources of dependencies.
+/// Returns cargo's folder with the sources of dependencies.
 pub fn cargo_home() -> PathBuf {
     let home = || PathBuf::from(env::var_os("HOME").unwrap_or_default()).join(".cargo");
     env::var_os("CARGO_HOME").map_or_else(home, PathBuf::from)
 }
 
-/// The folder that the library for the target has in the toolchain of the project, or would have.
+/// Returns the folder of the library for the target in the toolchain of the project. It need not exist.
 fn library() -> Result<PathBuf, String> {
     let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let mut rustc = Command::new(rustc);
@@ -107,21 +111,21 @@ fn library() -> Result<PathBuf, String> {
     Ok(PathBuf::from(output(&mut rustc, "rustc cannot be run")?.trim()))
 }
 
-/// The linker in the toolchain of the project: `lib/rustlib/HOST/bin/rust-lld`.
+/// Returns the linker in the toolchain of the project: `lib/rustlib/HOST/bin/rust-lld`.
 fn linker() -> Result<Option<PathBuf>, String> {
     let library = library()?;
     let hosts = library.ancestors().nth(2).map(fs::read_dir).into_iter().flatten().flatten().flatten();
     Ok(hosts.map(|host| host.path().join("bin/rust-lld")).find(|linker| linker.exists()))
 }
 
-/// A folder for the library, which a fresh copy of the project need not compile again.
+/// Returns a folder for the library outside of the project, so that a fresh copy of the project need not compile it again.
 fn cache() -> PathBuf {
     let home = || env::var_os("HOME").map(|home| Path::new(&home).join(".cache"));
     let base = env::var_os("XDG_CACHE_HOME").map(PathBuf::from).or_else(home);
     base.unwrap_or_else(env::temp_dir).join("sscc-wasm")
 }
 
-/// The folder of the library of a compiler, which may not exist. The error is that the compiler is too old.
+/// Returns the folder of the library of a compiler, which may not exist. Returns an error if the compiler is too old.
 fn sysroot(rustc: &str) -> Result<PathBuf, String> {
     let version = output(Command::new(rustc).arg("--version"), "rustc cannot be run")?;
     let number = version.split(' ').nth(1).unwrap_or("").to_owned();
@@ -137,7 +141,7 @@ fn compile_library(rustc: &str, sysroot: &Path) -> Result<(), String> {
     println!("compiling the standard library of {TARGET}, once for {}", sysroot.display());
     let folder = sysroot.with_file_name(format!("library-of-{}", std::process::id()));
     let made = collect_library(rustc, &folder).and_then(|()| {
-        // Another run may have made it meanwhile.
+        // Another run may have created the folder meanwhile.
         match fs::rename(folder.join("sysroot"), sysroot) {
             Err(error) if !sysroot.is_dir() => Err(format!("{}: {error}", sysroot.display())),
             _ => Ok(()),
@@ -159,10 +163,10 @@ fn collect_library(rustc: &str, folder: &Path) -> Result<(), String> {
     let mut build = cargo();
     build
         .args(["build", "--quiet", "--release", "--target", TARGET])
-        // Without traces of panics, which the module cannot make.
+        // The library has no traces of panics, which the module cannot produce.
         .args(["-Z", "build-std=std,panic_abort", "-Z", "build-std-features="])
         .current_dir(folder)
-        // The option is of nightly versions; this library is part of the compiler that compiles it.
+        // Only nightly versions allow the option. It is safe here: the library is part of the compiler that compiles it.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("RUSTC", rustc)
         .env(FLAGS, encoded(&[FEATURES.to_owned(), renamed(&cargo_home(), "cargo")]))

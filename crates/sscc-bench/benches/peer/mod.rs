@@ -31,7 +31,7 @@ impl<'a> Peer<'a> {
         self.bvh.refit_without_opt();
     }
 
-    /// The colliding pairs of the mesh with itself, without neighbours, sorted.
+    /// Returns the colliding pairs of the mesh with itself, without neighbours, sorted.
     pub fn with_itself(&self) -> Vec<Pair> {
         let mut pairs = Vec::new();
         self.bvh.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |i, j| {
@@ -47,7 +47,7 @@ impl<'a> Peer<'a> {
         pairs
     }
 
-    /// The colliding pairs with another mesh, sorted.
+    /// Returns the colliding pairs with another mesh, sorted.
     pub fn with(&self, other: &Self) -> Vec<Pair> {
         let mut pairs: Vec<Pair> = self
             .bvh

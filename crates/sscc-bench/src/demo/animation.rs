@@ -9,8 +9,8 @@ const FRAMES: usize = 90;
 /// `|z|` of the last frame, as a multiple of the root radius.
 const MAX_NORM: f64 = 4.0;
 
-/// Returns one q for each frame of the demo, whose root radius this is. Every mode swings with its own frequency, and the amplitude grows from 0. The numbers
-/// are the same on every machine.
+/// Returns one q for each frame of the demo; `root_radius` is that of the model. Every mode swings with its own frequency,
+/// and the amplitude grows from 0. The numbers are the same on every machine.
 pub fn demo_animation(model: &ReducedModel, root_radius: f64) -> Rows {
     let rank = model.rank();
     let mut data = Vec::with_capacity(FRAMES * rank);

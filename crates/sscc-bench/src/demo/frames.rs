@@ -6,14 +6,14 @@ use std::time::Instant;
 use sscc::{Certificates, Error, Method, Progress, Proof, Query, ReducedModel};
 use sscc_io::Rows;
 
-/// Repetitions of a root-certified query, which is shorter than a reading of the clock.
+/// Number of repetitions of a root-certified query, which takes less time than a reading of the clock.
 const REPETITIONS: u32 = 1000;
 
 /// The answers of one method, frame by frame.
 pub struct Answers {
     /// Colliding pairs.
     pub pairs: Vec<Vec<(u32, u32)>>,
-    /// Whether the root's radius proved the shape free: one comparison.
+    /// Whether the root's radius proved the shape free (one comparison).
     pub root_certified: Vec<bool>,
     /// Time of a query.
     pub microseconds: Vec<f64>,

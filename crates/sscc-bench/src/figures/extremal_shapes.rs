@@ -13,10 +13,10 @@ use crate::record::Means;
 use crate::sampling::half_diagonal;
 use crate::setup::Setup;
 
-/// Modes in the table: as many as the picture shows.
+/// Number of modes in the table, equal to that in the picture.
 const MODES: usize = 4;
 
-/// Figure 11: the bunny with 30 vibrations.
+/// Returns Figure 11: the bunny with 30 vibrations.
 pub fn of_vibrations(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     let model = setup.certified_model(&Recipe::new("bunny", Shape::Bunny, ModesSpec::Linear(30)))?;
     let percents = percents(&model);
@@ -26,7 +26,7 @@ pub fn of_vibrations(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     Ok(FigureRecord { scenario: "figure11", source: model.source, note: model.note, rows, svg })
 }
 
-/// Figure 14: the dragon with quadratic polynomials, and with vibrations.
+/// Returns Figure 14: the dragon with quadratic polynomials, and with vibrations.
 pub fn of_polynomials(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     let dragon = |name: &str, modes| setup.certified_model(&Recipe::new(name, Shape::Dragon, modes));
     let polynomials = dragon("dragon-polynomial", ModesSpec::Polynomial)?;
@@ -45,7 +45,7 @@ pub fn of_polynomials(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     Ok(FigureRecord { scenario: "figure14", source, note, rows, svg })
 }
 
-/// The largest displacement at the root's radius along each mode alone, in percent of half the AABB's diagonal.
+/// Returns the largest displacement at the root's radius along each mode alone, in percent of half the AABB's diagonal.
 fn percents(model: &CertifiedModel) -> Vec<f64> {
     let radius = model.full.certificates.root_radius();
     let scales = model.full.certificates.metric().scales();

@@ -4,14 +4,14 @@ use serde::Serialize;
 
 use crate::record::Means;
 
-/// The numbers of a figure, and its picture. In JSON without the picture.
+/// The numbers of a figure, and its picture. The JSON omits the picture.
 #[derive(Clone, Debug, Serialize)]
 pub struct FigureRecord {
     /// The name of the scenario.
     pub scenario: &'static str,
-    /// Its model, and where the shape comes from.
+    /// Name of the model, and origin of its shape.
     pub source: String,
-    /// A note for people, for example on an embedded shape in place of a file.
+    /// A note, for example on an embedded shape in place of a file.
     pub note: Option<String>,
     /// The numbers, row by row.
     pub rows: Vec<Means>,

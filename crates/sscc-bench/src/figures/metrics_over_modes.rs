@@ -21,7 +21,7 @@ pub fn make(setup: &Setup<'_>) -> Result<FigureRecord, Error> {
     let model = setup.certified_model(&Recipe::new("spring-80", Shape::SPRING, ModesSpec::Linear(most)))?;
     let all = model.model.modes();
     let first = largest_displacements(&model.model)[0];
-    // The model's own metric is that of energy.
+    // The model's own metric is the energy metric.
     let scales = model.model.metric().scales();
     let mut rows = Vec::new();
     for rank in RANKS.into_iter().filter(|rank| *rank <= all.rank()) {

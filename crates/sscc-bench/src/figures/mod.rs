@@ -20,7 +20,7 @@ pub enum Figure {
     MetricsOverModes,
     /// Figure 11: the shapes at the root's radius along the first modes.
     ExtremalShapes,
-    /// Figure 14: the same, of quadratic polynomials and of vibrations.
+    /// Figure 14: the shapes at the root's radius along the first modes, for quadratic polynomials and for vibrations.
     GeometricModes,
 }
 

@@ -1,8 +1,8 @@
-//! How far modes move vertices.
+//! Largest displacements of vertices by modes.
 
 use sscc::ReducedModel;
 
-/// The largest displacement of a vertex by each mode at weight 1 (model unit).
+/// Returns the largest displacement of a vertex by each mode at weight 1 (model unit).
 pub fn largest_displacements(model: &ReducedModel) -> Vec<f64> {
     let modes = model.modes();
     let mut largest = vec![0.0_f64; modes.rank()];

@@ -10,10 +10,10 @@ use crate::plots::{Line, SvgPlot, YAxis};
 use crate::record::Means;
 use crate::setup::Setup;
 
-/// How far radii reach, in units of the paper's global radius: so far that it caps none.
+/// Maximum radius, in units of the paper's global radius: so large that it caps no radius.
 const REACH: f64 = 1e6;
 
-/// Bytes for each triangle. The usual budget ends radii before their growth is seen.
+/// Memory budget per triangle (bytes). The usual budget ends radii before their growth is seen.
 const BUDGET: usize = 4096;
 
 pub fn make(setup: &Setup<'_>) -> Result<FigureRecord, Error> {

@@ -12,10 +12,10 @@ use crate::methods::{COLUMNS, Column, Engine, Role};
 use crate::progress::Counter;
 use crate::sampling::{Counts, Strata, Stratum};
 
-/// Maximum number of queries (steps times bodies) for which comparators run on all discrete ones.
+/// Maximum number of queries (steps times bodies) for which comparators run on all discrete queries.
 const MAX_QUERIES_OF_COMPARATORS: usize = 64;
 
-/// Number of steps, drawn from all strata, on which comparators run otherwise, also for continuous queries.
+/// Number of steps, drawn from all strata, on which comparators run if there are more queries. Continuous queries always use it.
 const COMPARED_STEPS: usize = 20;
 
 /// Results of all methods on some steps.
@@ -37,13 +37,13 @@ pub struct Comparison {
 /// Kinds of measured queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinds {
-    /// Discrete and continuous ones.
+    /// Discrete and continuous queries.
     Both,
-    /// Discrete ones.
+    /// Discrete queries only.
     Discrete,
 }
 
-/// Runs all methods. `scene` counts the strata of all steps of the scene that the given steps represent; None if these
+/// Runs all methods. `scene` counts the strata of all steps of the scene that the given steps represent; None if the given steps
 /// are the whole scene.
 ///
 /// # Errors

@@ -71,7 +71,7 @@ pub fn time_kinetic(
     })
 }
 
-/// Queries the q of each body.
+/// Runs the kinetic query of each body at its q.
 fn update<'q>(
     queries: &mut [KineticQuery],
     bodies: impl IntoIterator<Item = &'q Vec<f64>>,

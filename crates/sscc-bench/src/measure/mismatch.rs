@@ -32,7 +32,7 @@ mod tests {
     use super::*;
     use sscc::{Modes, TriMesh};
 
-    /// A triangle at rest, and one above it at this height which mode 0 lowers.
+    /// Returns a triangle at rest, and one above it at this height, which mode 0 lowers.
     fn model(height: f64) -> ReducedModel {
         let lower = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let upper = lower.map(|p| p + DVec3::Z * height);
@@ -42,7 +42,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_within_the_tolerance_are_no_mismatch() {
+    fn pairs_within_the_tolerance_are_not_mismatches() {
         let model = model(1.0);
         let listed = |q: f64, time: f64| is_mismatch(&model, &[0.0], &[q], &Impact { pair: (0, 1), time });
         assert!(listed(1.0, 1.0), "contact at the end");

@@ -13,7 +13,7 @@ use crate::progress::Counter;
 /// Repetitions of each method on each block of steps; the time of a step is their median.
 pub const REPETITIONS: usize = 3;
 
-/// Steps in a block. Only the first step of each block runs with the caches that another method left.
+/// Number of steps in a block. Only in the first step of each block, the caches contain the data of another method.
 const BLOCK: usize = 20;
 
 /// Milliseconds by step and column; None where a method did not run on a step.

@@ -19,8 +19,8 @@ pub struct Times {
 }
 
 impl Times {
-    /// Returns the milliseconds of one method on the steps on which it ran; with several engines, those of the faster
-    /// one.
+    /// Returns the milliseconds of one method on the steps on which it ran; if the method has several engines, the times of
+    /// the faster engine.
     pub fn of(&self, key: &str) -> Vec<(usize, f64)> {
         if key == KINETIC {
             return self.kinetic.iter().copied().enumerate().collect();
@@ -109,10 +109,10 @@ mod tests {
         );
         let means = times.means(&[0, 1], &strata);
         assert_eq!((of(&means, COLUMNS[0].key), of(&means, "kinetic")), (Some(1.5), Some(1.5)));
-        // The median of times 1 and 3, of which the first has three quarters of the weight, is the first one.
+        // The median of times 1 and 3is 1, which has three quarters of the weight.
         let medians = times.medians(&[0, 1], &strata);
         assert_eq!((of(&medians, COLUMNS[0].key), of(&medians, "kinetic")), (Some(1.0), Some(1.0)));
-        // Each step on which the method ran, and no other.
+        // The times contain each step on which the method ran, and no other.
         assert_eq!(times.of(COLUMNS[0].key), [(0, 1.0), (1, 3.0)]);
         assert_eq!(times.of("parry")[1], (1, at as f64 + 3.0));
         assert_eq!(times.of("kinetic"), [(0, 1.0), (1, 3.0), (2, 9.0)]);

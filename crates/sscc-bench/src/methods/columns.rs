@@ -12,7 +12,7 @@ use crate::error::Error;
 pub struct Column {
     /// Its name in tables and JSON.
     pub key: &'static str,
-    /// Determines the steps on which it runs, and whether its answers are compared.
+    /// Role, which determines the steps on which the method runs, and whether its answers are compared.
     pub role: Role,
     make: for<'a> fn(&'a CertifiedModel) -> Result<Box<dyn Engine + 'a>, Error>,
 }

@@ -8,7 +8,7 @@ use sscc_modes::shapes::spring_of;
 
 use crate::random::Random;
 
-/// A grid of squares; `at` maps (u, v) in the unit square to positions.
+/// Returns a grid of squares; `at` maps (u, v) in the unit square to positions.
 fn sheet((m, n): (u32, u32), at: impl Fn(f64, f64) -> DVec3) -> TriMesh {
     let place = |i: u32, j: u32| at(f64::from(i) / f64::from(m), f64::from(j) / f64::from(n));
     let positions = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j))).map(|(i, j)| place(i, j)).collect();
@@ -25,7 +25,7 @@ fn certify(model: &ReducedModel) -> Certificates {
     Certificates::compute(model, &options, &()).unwrap()
 }
 
-/// A spring that bends in random waves.
+/// Returns a spring that bends in random waves.
 fn spring(random: &mut Random) -> ReducedModel {
     let mesh = spring_of(60, 8);
     let waves: Vec<[DVec3; 2]> = (0..4)
@@ -41,7 +41,7 @@ fn spring(random: &mut Random) -> ReducedModel {
 }
 
 #[test]
-fn listed_pairs_collide_and_few_are_missed() {
+fn approximate_cones_list_only_colliding_pairs_and_miss_few() {
     let random = &mut Random(5);
     let (mut listed, mut missed) = (0, 0);
     for _ in 0..2 {
@@ -62,14 +62,14 @@ fn listed_pairs_collide_and_few_are_missed() {
     assert!(listed > 500 && missed < listed / 4, "{listed} {missed}");
 }
 
-/// All normals of a ramp point up, also where one turn passes through the other.
+/// All normals of a spiral ramp point up, also where one winding passes through the other.
 #[test]
-fn a_ramp_through_itself_is_missed() {
+fn approximate_cones_miss_a_ramp_that_passes_through_itself() {
     let mesh = sheet((60, 3), |u, v| {
         let (sin, cos) = (2.0 * TAU * u).sin_cos();
         DVec3::new(cos * (1.0 + v), sin * (1.0 + v), u)
     });
-    // A bump on the first turn.
+    // A bump on the first winding.
     let bump = |at: usize| {
         let u = (at / 4) as f64 / 60.0;
         if u < 0.5 { DVec3::Z * (TAU * u).sin().powi(2) } else { DVec3::ZERO }
@@ -81,14 +81,14 @@ fn a_ramp_through_itself_is_missed() {
     let mut exact = Query::with_method(&model, &certificates, Method::NormalCones).unwrap();
     assert!(exact.discrete(&[0.7]).unwrap().len() > 10);
     assert_eq!(cones.discrete(&[0.7]).unwrap(), []);
-    // Continuous queries are exact.
+    // Continuous queries are exact with every method.
     let expected = exact.continuous(&[0.0], &[0.7]).unwrap();
     assert!(expected.len() > 10);
     assert_eq!(cones.continuous(&[0.0], &[0.7]).unwrap(), expected);
 }
 
-/// Two sheets that face each other, one of them pushed through the other while it tilts by less than 45 degrees: no
-/// direction is on the positive side of both.
+/// Two sheets face each other, and one of them is pushed through the other while it tilts by less than 45 degrees: no
+/// direction is on the positive side of the normals of both.
 #[test]
 fn sheets_with_opposite_normals_are_not_culled() {
     let lower = sheet((20, 20), |u, v| DVec3::new(u, v, 0.0));

@@ -14,24 +14,24 @@ const TITLE: f64 = 24.0;
 
 /// Lines over a common x axis.
 pub struct SvgPlot<'a> {
-    /// The title, for readers of the file, and above plots that are stacked.
+    /// The title, for screen readers and above stacked plots.
     pub title: String,
     /// The label of the x axis.
     pub x_label: &'a str,
     /// The label of the y axis.
     pub y_label: &'a str,
-    /// How y is drawn.
+    /// The scale of the y axis.
     pub y_axis: YAxis,
     /// The lines.
     pub lines: Vec<Line<'a>>,
 }
 
-/// How y is drawn.
+/// Scale of the y axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum YAxis {
-    /// As a power of ten; numbers that are not positive are not drawn.
+    /// Powers of ten; numbers that are not positive are not drawn.
     Logarithmic,
-    /// From 0 on.
+    /// Linear, from 0.
     Linear,
 }
 
@@ -55,7 +55,7 @@ impl SvgPlot<'_> {
         let all = || self.lines.iter().flat_map(|line| &line.points).filter(|p| is_drawn(p));
         let [x_low, x_high] = range(all().map(|p| p[0]));
         let [low, high] = range(all().map(|p| p[1]));
-        // Heights are linear in these.
+        // Heights are linear in these values.
         let [low, high] = if is_log { [low.log10().floor(), high.log10().ceil()] } else { [0.0, high] };
         let high = high.max(low + 1.0);
         let span = if x_high > x_low { x_high - x_low } else { 1.0 };
@@ -128,7 +128,7 @@ impl SvgPlot<'_> {
     }
 }
 
-/// Returns one SVG element with some plots below each other, each below its title.
+/// Returns one SVG element with the plots below each other, each below its title.
 pub fn stacked(plots: &[SvgPlot<'_>]) -> String {
     let each = HEIGHT + TITLE;
     let mut svg = format!(

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-/// A value for each method, in the order of the columns; in JSON an object.
+/// A value for each method, in the order of the columns. The JSON is an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Means<T = f64>(pub Vec<(&'static str, T)>);
 

@@ -1,4 +1,4 @@
-//! Records of measurements, as in JSON.
+//! Records of measurements, as written to JSON.
 
 mod means;
 mod model_record;

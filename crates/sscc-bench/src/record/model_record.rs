@@ -1,4 +1,4 @@
-//! The record of one model in a scenario: the keys that scripts rely on.
+//! The record of one model in a scenario. Scripts rely on its keys.
 
 use serde::Serialize;
 use sscc_sim::STEP_PARTS;
@@ -22,15 +22,15 @@ pub struct Record {
     /// Note on a replaced model or on missing strata.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// Whether another shape replaces that of the scenario: under `--quick`, or without its file.
+    /// Whether another shape replaces the shape of the scenario: under `--quick`, or without its file.
     #[serde(skip)]
     pub is_substitute: bool,
     /// The largest displacement in percent of half the diagonal of the AABB.
     pub share: f64,
-    /// The largest `|z|` over the root's radius, where this is what scales the motion.
+    /// The largest `|z|` over the root's radius, in scenarios that scale motions by it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times_root: Option<f64>,
-    /// Mean shares of the triangles that each kind of proof covers in free states, where they were measured.
+    /// Mean share of the triangles for each kind of proof, in free states, where it was measured.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub proven_shares: Means,
     /// Triangles of one body.
@@ -41,38 +41,38 @@ pub struct Record {
     pub objects: usize,
     /// Steps that were measured.
     pub steps: usize,
-    /// Those of them in which some body collides with itself.
+    /// Measured steps in which some body collides with itself.
     pub colliding_steps: usize,
-    /// Those of them in which some body's root certificate fails.
+    /// Measured steps in which some body's root certificate fails.
     pub root_failed_steps: usize,
-    /// Those of them on which all methods ran.
+    /// Measured steps on which all methods ran.
     pub compared_steps: usize,
-    /// Those of the compared ones in which some body's root certificate fails.
+    /// Compared steps in which some body's root certificate fails.
     pub compared_root_failed_steps: usize,
     /// Steps with continuous queries.
     pub continuous_steps: usize,
     /// Steps of the whole scene.
     pub scene_steps: usize,
-    /// Those of them in which some body collides with itself.
+    /// Steps of the whole scene in which some body collides with itself.
     pub scene_colliding_steps: usize,
-    /// Steps times bodies.
+    /// Steps of the whole scene times bodies.
     pub scene_body_steps: usize,
-    /// Those of them in which the body collides with itself.
+    /// Pairs of a step and a body, in the whole scene, in which the body collides with itself.
     pub scene_colliding_body_steps: usize,
     /// Steps in which two exact methods differ.
     pub mismatches: usize,
     /// Wall-clock seconds of the certificates.
     pub certify_seconds: f64,
-    /// Threads that computed them.
+    /// Number of threads that computed the certificates.
     pub certify_threads: usize,
-    /// Peak memory of the process during their computation (bytes).
+    /// Peak memory of the process during the computation of certificates (bytes).
     pub certify_peak_bytes: Option<u64>,
     /// Seconds of one discrete query of one body by parry.
     pub parry_query_seconds: Option<f64>,
-    /// Steps of each stratum in the scene, and among the compared ones.
+    /// Steps of each stratum in the scene, and among the compared steps.
     #[serde(skip)]
     pub strata: [Counts; 2],
-    /// Processor time of the whole scene (s) with the detection of its file; none without a simulation.
+    /// Processor time of the whole scene (s) with the method of detection in its file; None without a simulation.
     pub simulation_seconds: Option<f64>,
     /// Share of self-collision detection in this time.
     pub self_collision_share: Option<f64>,

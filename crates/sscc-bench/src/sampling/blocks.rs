@@ -5,16 +5,16 @@ use std::ops::Range;
 
 use super::strata::{Counts, Stratum};
 
-/// Number of blocks, one in each of as many equal parts of the scene.
+/// Number of blocks. The scene is divided into as many equal parts, with one block in each.
 const BLOCKS: usize = 10;
 
 /// Chooses `wanted` steps of a scene, in blocks of consecutive steps, one in each of ten equal parts of the scene.
 /// Returns their numbers, ascending.
 ///
-/// All blocks begin equally far into their parts. The shift is the one with the most strata in the blocks, then with
-/// the most steps of rare strata (one landing may have all steps that are not certified), then with shares of the
-/// strata nearest to those of the scene. If a stratum is still missing, one block is shifted to it within its part.
-/// Only strata decide, never costs. Weights correct the shares of rare strata.
+/// All blocks begin equally far into their parts. The shift is the one with the most strata in the blocks, then with the most
+/// steps of rare strata (a single landing may contain all steps that are not certified), then with shares of the strata
+/// nearest to those of the scene. If a stratum is still missing, one block is shifted to it within its part. The choice
+/// depends on strata only, never on costs. Weights correct the shares of rare strata.
 pub fn blocks(of: &[Stratum], wanted: usize) -> Vec<usize> {
     let wanted = wanted.min(of.len());
     let layout = Layout::new(of, BLOCKS.min(wanted), wanted);
@@ -115,12 +115,12 @@ mod tests {
     use super::super::strata::Stratum::{Colliding, RootCertified, RootFailed};
     use super::*;
 
-    /// Stretches of strata.
+    /// Returns the strata of consecutive stretches of steps.
     fn scene(stretches: &[(Stratum, usize)]) -> Vec<Stratum> {
         stretches.iter().flat_map(|(stratum, steps)| vec![*stratum; *steps]).collect()
     }
 
-    /// Strata of a dragon that lands early and then lies still.
+    /// Returns the strata of a dragon that lands early and then lies still.
     fn landing() -> Vec<Stratum> {
         scene(&[
             (RootCertified, 310),

@@ -70,9 +70,9 @@ impl Strata {
         Stratum::counts(steps.iter().map(|step| self.of[*step]))
     }
 
-    /// Draws at most `count` of the steps. Returns them ascending: equally many of each stratum that occurs, if it has
-    /// as many, and at least one. In most scenes the root certifies nearly all steps, which cost nearly the same. A
-    /// draw in proportion would have only one or two of the other steps, whose costs differ.
+    /// Draws at most `count` of the steps. Returns them ascending: equally many of each stratum that occurs, or all steps of
+    /// a smaller stratum, and at least one. In most scenes the root certifies nearly all steps, which cost nearly the same. A
+    /// proportional draw would contain only one or two of the other steps, whose costs differ.
     pub fn draw(&self, count: usize) -> Vec<usize> {
         self.draw_by(count, &mut Random(SEED))
     }
@@ -110,8 +110,8 @@ impl Strata {
         steps.iter().map(weight).collect()
     }
 
-    /// Returns a note that names the strata of the scene without a measured step; means exclude them. None if there are
-    /// none.
+    /// Returns a note that names the strata of the scene without a measured step; means exclude them. None if no stratum is
+    /// missing.
     pub fn missing(&self) -> Option<String> {
         let counts = Stratum::counts(self.of.iter().copied());
         let names =
@@ -149,12 +149,12 @@ mod tests {
     use super::Stratum::{Colliding, RootCertified, RootFailed};
     use super::*;
 
-    /// Stretches of strata.
+    /// Returns the strata of consecutive stretches of steps.
     fn scene(stretches: &[(Stratum, usize)]) -> Vec<Stratum> {
         stretches.iter().flat_map(|(stratum, steps)| vec![*stratum; *steps]).collect()
     }
 
-    /// Strata of a dragon that lands early and then lies still.
+    /// Returns the strata of a dragon that lands early and then lies still.
     fn landing() -> Vec<Stratum> {
         scene(&[
             (RootCertified, 310),

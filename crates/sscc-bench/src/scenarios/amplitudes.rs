@@ -12,7 +12,7 @@ use crate::setup::Setup;
 /// Largest displacements in percent of half the diagonal of the AABB.
 const SHARES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0];
 
-/// Measures a model at so many random q of each displacement. Returns one record for each displacement.
+/// Measures a model at `samples` random q of each displacement. Returns one record for each displacement.
 pub fn measure(
     name: &str,
     model: &CertifiedModel,

@@ -21,7 +21,7 @@ const SHARE: f64 = 5.0;
 pub struct GrowthSize {
     /// Its name.
     pub name: &'static str,
-    /// Factor on the default number of rings and on the vertices of each, in halves.
+    /// Factor on the default number of rings and on the vertices of each ring, in halves.
     halves: usize,
     rank: usize,
 }

@@ -23,7 +23,7 @@ pub enum Scenario {
     Scenes {
         /// Their names and texts.
         scenes: &'static [(&'static str, &'static str)],
-        /// The table of the paper to print beside them, if any.
+        /// The table of the paper to print beside the results, if any.
         table: Option<PaperTable>,
     },
 }

@@ -16,8 +16,8 @@ const TIMES_ROOT: [f64; 3] = [2.0, 4.0, 8.0];
 /// Duration of a motion, in periods of the first mode.
 const PERIODS: f64 = 10.0;
 
-/// Measures so many states of `q_k = a cos(omega_k t + phase_k) / omega_k`, evenly over ten periods of the first mode.
-/// Returns one record for each of [`TIMES_ROOT`].
+/// Measures `samples` states of `q_k = a cos(omega_k t + phase_k) / omega_k`, evenly spread over ten periods of the first
+/// mode. Returns one record for each of [`TIMES_ROOT`].
 pub fn measure(
     name: &str,
     model: &CertifiedModel,
@@ -40,7 +40,7 @@ pub fn measure(
     TIMES_ROOT.into_iter().map(record).collect()
 }
 
-/// Returns so many states of the motion, scaled so that the largest norm of them is 1.
+/// Returns `samples` states of the motion, scaled so that their largest norm is 1.
 fn unit_motion(
     oscillators: &Oscillators,
     norm: impl Fn(&[f64]) -> Result<f64, sscc::Error>,
@@ -57,7 +57,7 @@ fn unit_motion(
 mod tests {
     use super::*;
 
-    /// Ten periods of the first mode, all modes at the same largest speed, and a largest norm of 1.
+    /// The states span ten periods of the first mode, all modes have the same largest speed, and the largest norm is 1.
     #[test]
     fn states_are_those_of_the_stated_motion() {
         let frequencies = [3.0, 7.5, 20.0];

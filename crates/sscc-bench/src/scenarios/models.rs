@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::record::Record;
 use crate::setup::Setup;
 
-/// What the models of a scenario do.
+/// Motions of the models of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelsScenario {
     /// Random q of growing displacement.
@@ -50,7 +50,7 @@ impl ModelsScenario {
         }
     }
 
-    /// Measures a model at so many samples for each record.
+    /// Measures a model at `samples` samples for each record.
     ///
     /// # Errors
     /// When the model cannot be read or made, the cache cannot be written to, or the work is cancelled.

@@ -1,4 +1,4 @@
-//! Scenario `norms`: the cost of queries over `|z|`, and what proves the shape free there.
+//! Scenario `norms`: the cost of queries over `|z|`, and the kinds of proof that certify the shape there.
 
 use sscc::Query;
 use sscc::parts::ProvenShares;
@@ -15,7 +15,7 @@ use crate::setup::Setup;
 /// `|z|` over the root's radius.
 const TIMES_ROOT: [f64; 13] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0];
 
-/// Measures so many random q of each `|z|`. Returns one record for each of [`TIMES_ROOT`].
+/// Measures `samples` random q of each `|z|`. Returns one record for each of [`TIMES_ROOT`].
 pub fn measure(
     name: &str,
     model: &CertifiedModel,
@@ -48,7 +48,7 @@ pub fn measure(
     TIMES_ROOT.into_iter().map(record).collect()
 }
 
-/// A kind of proof of [`ProvenShares`], by the name that `proof` has in answers.
+/// A kind of proof of [`ProvenShares`], with the name that the key `proof` has in answers.
 struct Kind {
     name: &'static str,
     share: fn(&ProvenShares) -> f64,
@@ -61,7 +61,7 @@ const KINDS: [Kind; 3] = [
     Kind { name: "search", share: |shares| shares.search, color: "#cc6600" },
 ];
 
-/// The mean share of each kind; none of no shares.
+/// Returns the mean share of each kind; empty if there are no shares.
 fn means(shares: &[ProvenShares]) -> Means {
     let mean = |kind: &Kind| shares.iter().map(kind.share).sum::<f64>() / shares.len() as f64;
     Means(KINDS.iter().filter(|_| !shares.is_empty()).map(|kind| (kind.name, mean(kind))).collect())
@@ -74,8 +74,8 @@ const METHODS: [(&str, &str, &str); 3] = [
     ("full", "certified", "#0066cc"),
 ];
 
-/// Returns a plot of the records of all models, as SVG: for each one the mean time of a query in free states over `|z|`, and the share
-/// of the triangles by kind of proof.
+/// Returns a plot of the records of all models, as SVG: for each model the mean time of a query in free states over `|z|`,
+/// and the share of the triangles by kind of proof.
 pub fn plot_norms(records: &[Record]) -> String {
     let over = |record: &Record, y: Option<f64>| Some([record.times_root?.log2(), y?]);
     let mut plots = Vec::new();

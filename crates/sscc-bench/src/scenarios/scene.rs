@@ -69,7 +69,7 @@ pub fn measure_scene(
     Ok(SceneMeasurement { record, costs })
 }
 
-/// Returns a plot of the costs of scenes, as SVG: those of each step over time, as in the paper's Figure 12.
+/// Returns a plot of the costs of scenes, as SVG: the cost of each step over time, as in the paper's Figure 12.
 pub fn plot_scenes(costs: &[Plot]) -> String {
     stacked(&costs.iter().map(svg_plot).collect::<Vec<_>>())
 }

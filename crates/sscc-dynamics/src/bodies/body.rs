@@ -330,7 +330,7 @@ impl Body {
         Ok(())
     }
 
-    /// Notes whether q is outside the certificate of the root, if self-collisions are detected.
+    /// Stores whether q is outside the certificate of the root, if self-collisions are detected.
     pub(crate) fn measure_root(&mut self) {
         self.root_failed = !matches!(self.detector, Detector::Off) && !self.is_root_certified();
     }
@@ -408,12 +408,12 @@ impl Body {
         Ok(())
     }
 
-    /// Forgets the elastic energy of another q.
+    /// Discards the elastic energy, which belongs to an old q.
     pub(crate) fn forget_energy(&mut self) {
         self.elastic_energy = None;
     }
 
-    /// Updates for how long all points of the body have stayed within a distance.
+    /// Updates the time for which all points of the body have stayed within a distance.
     pub(crate) fn measure_rest(&mut self, step: f64, distance: f64) {
         let Self { shape, rigid, q, posed, rest, .. } = self;
         let bend_bound = |change: &[f64]| posed.displacement_bound(change).unwrap_or(f64::INFINITY);
@@ -448,7 +448,7 @@ impl Body {
         self.mark_moved();
     }
 
-    /// Moves the body back to a share of its way from the beginning of the step to its current state.
+    /// Moves the body back to the point at a fraction `share` of its motion from the beginning of the step to its current state.
     pub(crate) fn shorten(&mut self, share: f64) {
         let before = &self.start.rigid;
         self.rigid.position = before.position.lerp(self.rigid.position, share);

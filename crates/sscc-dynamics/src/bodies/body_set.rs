@@ -11,7 +11,7 @@ impl BodySet {
         self.0.extend(flags);
     }
 
-    /// Makes this the empty set of a world with so many bodies.
+    /// Makes this the empty set of a world with `bodies` bodies.
     pub fn clear(&mut self, bodies: usize) {
         self.0.clear();
         self.0.resize(bodies, false);
@@ -39,7 +39,7 @@ impl BodySet {
         &self.0
     }
 
-    /// Like [`Self::flags`], to change them.
+    /// Returns [`Self::flags`], mutable.
     pub fn flags_mut(&mut self) -> &mut [bool] {
         &mut self.0
     }

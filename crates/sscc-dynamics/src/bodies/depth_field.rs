@@ -68,7 +68,7 @@ impl DepthField {
         field
     }
 
-    /// Returns the signed distance of a point from the surface; None farther outside than about two cells.
+    /// Returns the signed distance of a point from the surface; None if the point is outside by more than about two cells.
     pub fn at(&self, x: DVec3) -> Option<SignedDistance> {
         let cell = (x - self.origin) / self.spacing;
         let base = cell.floor();

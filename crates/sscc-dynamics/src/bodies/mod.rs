@@ -1,6 +1,6 @@
 //! Bodies: the shapes that they share, their motion without contacts, and the detection of their self-collisions.
 //!
-//! Nothing here knows of other bodies, of the ground or of contacts.
+//! No file in this folder uses other bodies, the ground or contacts.
 
 mod body;
 pub(crate) mod body_set;

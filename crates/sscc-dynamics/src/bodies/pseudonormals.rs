@@ -7,8 +7,8 @@ use sscc::TriMesh;
 
 use crate::nearest_point::Feature;
 
-/// Pseudonormals of faces, edges and vertices. That of an edge is the sum over its faces; that of a vertex is the sum
-/// over its faces weighted by angle.
+/// Pseudonormals of faces, edges and vertices. The pseudonormal of an edge is the sum over its faces; that of a vertex is the
+/// sum over its faces weighted by angle.
 pub(crate) struct Pseudonormals {
     faces: Vec<DVec3>,
     /// Welded vertices of each face.

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use super::displacement::displacement;
 use crate::{RigidMotion, Shape};
 
-/// Vertices of a body that vibrates near its reference state are tested once in so many steps.
+/// A body that vibrates near its reference state has its vertices tested once in this number of steps.
 const CHECK_STEPS: u64 = 16;
 
 /// A body whose modes have moved by more than this multiple of the distance, summed over the modes, is not at rest.
@@ -14,7 +14,7 @@ const MAX_BEND: f64 = 16.0;
 /// How long a body has been at rest, measured against a reference state.
 #[derive(Clone, Debug)]
 pub(crate) struct Rest {
-    /// Whether the body sleeps: it does not move, and no step computes anything of it.
+    /// Whether the body sleeps: it does not move, and steps compute nothing for it.
     pub is_asleep: bool,
     /// Time for which the body has stayed near the reference state (s).
     pub time: f64,
@@ -24,9 +24,9 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// Adds a step to the time, or, if some point may have moved farther than `distance` from the reference state, makes
-    /// the current state the reference. Costs O(r), and O(r) for each vertex where the modes move little, but many do.
-    /// `bend_bound` bounds the displacements of all vertices by a change of q.
+    /// Adds a step to the time, or makes the current state the reference if some point may have moved farther than `distance`
+    /// from the reference state. Costs O(r), plus O(r) for each vertex where many modes move, each by little. `bend_bound`
+    /// bounds the displacements of all vertices by a change of q.
     pub fn update(
         &mut self,
         shape: &Shape,
@@ -59,7 +59,7 @@ impl Rest {
     }
 
     /// Whether the modes have moved all vertices by at most `distance` from the reference state. The sum of the largest
-    /// displacements by each mode is a bound, but vibrations of many modes have it at no vertex.
+    /// displacements by each mode is a bound, but vibrations of many modes reach it at no vertex.
     fn is_bent_within(
         &self,
         shape: &Shape,

@@ -25,7 +25,7 @@ pub struct Start {
     /// Whether the body has rigid motion. A held body (false) keeps its pose, and its modes must be those of a held
     /// shape.
     pub is_free: bool,
-    /// Position of the centre of mass (model unit). None: that of the rest pose.
+    /// Position of the centre of mass (model unit). None means the position in the rest pose.
     pub position: Option<DVec3>,
     /// Rotation from axes of the rest pose to axes of the world.
     pub orientation: DQuat,
@@ -33,9 +33,9 @@ pub struct Start {
     pub velocity: DVec3,
     /// Angular velocity in axes of the world (rad/s).
     pub spin: DVec3,
-    /// Initial q (r numbers). Empty: zeros.
+    /// Initial q (r numbers). An empty list means zeros.
     pub q: Vec<f64>,
-    /// Initial rate of q (r numbers, 1/s). Empty: zeros.
+    /// Initial rate of q (r numbers, 1/s). An empty list means zeros.
     pub v: Vec<f64>,
     /// Damping of the modes.
     pub damping: Damping,

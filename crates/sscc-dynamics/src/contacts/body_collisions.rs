@@ -19,11 +19,11 @@ pub struct BodyPairs<'a> {
     pub pairs: &'a [Pair],
 }
 
-/// Maximum number of near pairs of two bodies: bounds the memory where the skin is large. Pairs that are left out are found
-/// as impacts, if they meet.
+/// Maximum number of near pairs of two bodies: bounds the memory where the skin is large. A near pair that is omitted is
+/// found as an impact if its triangles meet.
 const MAX_NEAR: usize = 1 << 14;
 
-/// Two bodies, and a range of their pairs or impacts in a list of all.
+/// Two bodies, and the range of their pairs or impacts in a list for all bodies.
 #[derive(Clone, Copy, Debug)]
 struct Found {
     bodies: [usize; 2],
@@ -38,7 +38,7 @@ pub(crate) struct BodyCollisions {
     swept: SweepAndPrune,
     /// Whether the swept AABB of each body is that of its last motion.
     is_placed: Vec<bool>,
-    /// AABB of all motions so far; searches in one frame share the volumes of bodies that do not move.
+    /// AABB of all motions so far; bodies that do not move keep their volumes while the frame stays the same.
     around: Option<Aabb>,
     /// Number of bodies among which all others but [`Self::colliding`] are proven free by swept queries.
     proven: usize,
@@ -136,7 +136,8 @@ impl BodyCollisions {
     }
 
     /// Appends the pairs of triangles of two bodies that come within a distance of each other in the motion of the last
-    /// [`BodyCollisions::find_impacts`], and some that do not; at most [`MAX_NEAR`].
+    /// [`BodyCollisions::find_impacts`]. The list may contain pairs that stay farther apart, and has at most [`MAX_NEAR`]
+    /// pairs.
     pub fn find_near(
         &self,
         bodies: &mut [Body],
@@ -158,18 +159,18 @@ impl BodyCollisions {
         self.colliding_bodies.iter().map(move |found| BodyPairs { bodies: found.bodies, pairs: pairs(found) })
     }
 
-    /// Returns the bodies with impacts, sorted, with these.
+    /// Returns the bodies with impacts, sorted, and their impacts.
     pub fn impacts(&self) -> impl Iterator<Item = ([usize; 2], &[Impact])> {
         self.impact_bodies.iter().map(|found| (found.bodies, &self.impacts[found.first..found.end]))
     }
 
-    /// Forgets what swept queries have proven; needed after a body was moved to another state.
+    /// Discards the results of swept queries; needed after a body was moved to another state.
     pub fn reset(&mut self) {
         self.proven = 0;
         self.is_placed.fill(false);
     }
 
-    /// Forgets the motion of a body, which was changed since.
+    /// Discards the motion of a body, which has changed since it was computed.
     pub fn forget_motion(&mut self, body: usize) {
         if let Some(is_placed) = self.is_placed.get_mut(body) {
             *is_placed = false;
@@ -184,7 +185,7 @@ struct MotionPair {
     impacts: Vec<Impact>,
 }
 
-/// Takes pairs from a list in which no body occurs twice: they can be tested at the same time.
+/// Takes pairs from a list such that no body occurs twice: the pairs can be tested at the same time.
 fn disjoint_pairs(bodies: &mut [Body], open: &mut Vec<[usize; 2]>) -> Vec<MotionPair> {
     let mut is_taken = vec![false; bodies.len()];
     let mut pairs = Vec::new();

@@ -34,15 +34,15 @@ pub(crate) struct Contact {
     pub anchors: [Anchor; 2],
     /// Unit normal, out of the second body, in axes of the second body.
     pub normal: DVec3,
-    /// The normal in axes of the world; of rigid contacts.
+    /// The normal in axes of the world; used by rigid contacts.
     pub world_normal: DVec3,
-    /// Vectors from the centres of mass to the common point on which impulses act (axes of the world); of rigid contacts.
+    /// Vectors from the centres of mass to the common point on which impulses act (axes of the world); used by rigid contacts.
     pub arms: [DVec3; 2],
-    /// Vector between the two points at the beginning of the step (axes of the world); of rigid contacts.
+    /// Vector between the two points at the beginning of the step (axes of the world); used by rigid contacts.
     pub between: DVec3,
-    /// Minimum gap at the end of the step; of rigid contacts.
+    /// Minimum gap at the end of the step; used by rigid contacts.
     pub min_gap: f64,
-    /// Impulses along the normal and perpendicular to it (axes of the world); of rigid contacts.
+    /// Impulses along the normal and perpendicular to it (axes of the world); used by rigid contacts.
     pub normal_impulse: f64,
     pub friction_impulse: DVec3,
     /// Difference between the distance of the points along the normal and the gap: the penetration depth at the
@@ -123,12 +123,12 @@ impl Contact {
         self.bodies[0] == self.bodies[1]
     }
 
-    /// Whether it belongs to these triangles of these bodies.
+    /// Whether the contact belongs to these triangles of these bodies.
     pub fn is_of(&self, indices: [u32; 2], pair: Pair) -> bool {
         (self.bodies, self.pair()) == (indices, pair)
     }
 
-    /// Whether it holds its points apart: it is rigid, and no duplicate, which has no points.
+    /// Whether the contact holds its points apart: it is rigid, and not a duplicate, which has no points.
     pub fn is_rigid_constraint(&self) -> bool {
         self.is_rigid && !self.is_duplicate
     }
@@ -225,14 +225,14 @@ impl Contact {
     }
 
     /// Returns the velocity at which the points of a rigid contact approach each other along its normal at the beginning of
-    /// the step, by the rigid motion of the bodies. Modes are left out, because they bounce by themselves: with
+    /// the step, by the rigid motion of the bodies. Modes are left out, because they bounce without restitution: with
     /// restitution, the points of prestressed bodies would hammer at each other in every other step.
     pub fn approach(&self, bodies: [&Body; 2]) -> f64 {
         let [x, y] = [0, 1].map(|n| bodies[n].start.rigid.velocity_at(self.arms[n]));
         self.world_normal.dot(y - x)
     }
 
-    /// Returns the vector between the points of a rigid contact in some states of its bodies.
+    /// Returns the vector between the points of a rigid contact for the given states of its bodies.
     pub fn between(&self, states: [&Kinematics; 2]) -> DVec3 {
         states[0].point(self.rest[0], &self.modes[0]) - states[1].point(self.rest[1], &self.modes[1])
     }

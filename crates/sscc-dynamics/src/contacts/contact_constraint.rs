@@ -1,11 +1,11 @@
-//! Contact constraint of one step, which can only push, with Coulomb friction.
+//! Contact constraint of one step, which only pushes its points apart, with Coulomb friction.
 
 use glam::DVec3;
 
 use super::contact::{Contact, ModalInverseMass};
 use crate::{Body, Shape};
 
-/// Number of the ground where a constraint lists its bodies.
+/// Number that stands for the ground in a constraint's list of bodies.
 pub(crate) const GROUND: u32 = u32::MAX;
 
 /// Origin of a contact constraint.
@@ -76,7 +76,7 @@ impl ContactPoints {
         (0..2).filter(counts).map(move |n| Side { n, body: bodies[n] as usize, sign: [1.0, -1.0][n] })
     }
 
-    /// Returns the displacements of the point of side n by each mode (r vectors, axes of the body).
+    /// Returns the displacements of the point of body n of the constraint by each mode (r vectors, axes of the body).
     pub fn modes<'s>(&self, n: usize, shape: &'s Shape, contacts: &'s [Contact]) -> &'s [DVec3] {
         match self.source {
             Source::Vertex(v) => shape.model().modes().of_vertex(v),
@@ -84,8 +84,8 @@ impl ContactPoints {
         }
     }
 
-    /// Adds an impulse on the first body, and its reaction, to momenta and modal velocities. `inverse_mass`
-    /// returns that of a mode from its [`Body::step_weights`].
+    /// Adds an impulse on the first body, and its reaction, to momenta and modal velocities. `inverse_mass` maps an entry of
+    /// [`Body::step_weights`] to the inverse mass of the mode.
     pub fn push(
         &self,
         impulse: DVec3,

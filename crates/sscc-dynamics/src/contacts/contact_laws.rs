@@ -35,9 +35,9 @@ const MAX_RECOVERY: f64 = 0.1;
 /// Gap that resting bodies keep, in skins.
 const REST_GAP: f64 = 0.5;
 
-/// Gap below which vertices become points on the ground, and up to which gaps recover, as a share of the gap that resting
-/// bodies keep. Were the second one larger, a body that rocks would be lifted at each vertex on which it lands, and the
-/// energy of this would keep it rocking.
+/// Factor on the gap that resting bodies keep. Vertices with a gap below the product become points on the ground, and
+/// recovery widens gaps up to the product. With a larger factor, a rocking body would be lifted at each vertex on which it
+/// lands, and the added energy would keep it rocking.
 const MIN_GAP: f64 = 0.5;
 
 /// Rate at which preloads adapt, as a share of the angular frequency of contacts. Resting bodies are held after a few
@@ -79,12 +79,12 @@ impl ContactLaws {
         MIN_GAP * self.rest_gap
     }
 
-    /// Returns by how much a gap should grow in a step; 0 if it is large enough.
+    /// Returns the length by which a gap should grow in a step; 0 if the gap is large enough.
     pub fn recovery(&self, gap: f64) -> f64 {
         self.recovery * (self.min_gap() - gap).max(0.0)
     }
 
-    /// Returns the velocity at which an impact with this velocity bounces; None if it does not.
+    /// Returns the velocity at which an impact with this velocity bounces; None if it does not bounce.
     pub fn bounce(&self, approach: f64) -> Option<f64> {
         (approach > self.min_bounce).then_some(self.restitution * approach)
     }

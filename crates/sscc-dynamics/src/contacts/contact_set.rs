@@ -1,4 +1,4 @@
-//! Set of all triangle contacts of a world: begins, keeps and ends contacts, and turns them into contact constraints.
+//! Set of all triangle contacts of a world: begins, keeps and ends contacts, and makes contact constraints of them.
 
 use std::collections::HashSet;
 
@@ -31,12 +31,12 @@ pub(crate) struct ContactSet {
 /// Added to the features of contacts that impacts began: see [`Contact::features`].
 const IMPACT: u8 = 16;
 
-/// Points of contacts nearer than this share of the skin are the same.
+/// Contacts whose points are nearer to each other than this share of the skin are duplicates.
 const POINT_SIZE: f64 = 1e-4;
 
 impl ContactSet {
-    /// Ends contacts that opened, and begins contacts of collisions between bodies, and within them where the laws say so. The
-    /// geometry of a pair that collides for long is computed again.
+    /// Ends contacts that opened, and begins contacts of collisions between bodies, and within them if the laws require it.
+    /// The geometry of a pair that collides for long is computed again.
     pub fn update(&mut self, bodies: &[Body], collisions: &BodyCollisions, laws: &ContactLaws) {
         let ContactLaws { skin, max_age, .. } = *laws;
         self.old.clear();
@@ -161,9 +161,9 @@ impl ContactSet {
         self.new_contacts().iter().any(|contact| contact.is_of(indices, pair))
     }
 
-    /// Begins a rigid contact of the nearest points of two triangles whose corners in the world are `corners`, or moves
-    /// that which the same features began earlier in this step. Returns it, with the distance of the points, or None if
-    /// no direction separates the triangles.
+    /// Begins a rigid contact of the nearest points of two triangles whose corners in the world are `corners`, or moves the
+    /// contact that the same features began earlier in this step. Returns the contact, with the distance of its points, or
+    /// None if no direction separates the triangles.
     pub fn begin_impact(
         &mut self,
         indices: [u32; 2],

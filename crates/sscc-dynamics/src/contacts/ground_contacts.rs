@@ -8,7 +8,7 @@ use super::ground_point::GroundPoint;
 use crate::bodies::displacement::displacement;
 use crate::{Body, DynamicsError, Ground, Shape};
 
-/// Number of steps for which a search for near vertices is meant to serve.
+/// Number of steps for which one search for near vertices should be valid.
 const SEARCH_STEPS: f64 = 64.0;
 
 /// Minimum margin of a search, as a share of the body's radius.
@@ -36,7 +36,7 @@ pub(crate) struct GroundContacts {
     search_limit: Option<f64>,
     /// Sum of the travels of all steps since the last search, for all vertices of the body.
     travel: f64,
-    /// The same for the vertices that the last search found.
+    /// Sum of the travels of all steps since the last search, for the vertices that the last search found.
     near_travel: f64,
     near_reach: Reach,
     /// Position of the body in the last step.
@@ -47,7 +47,7 @@ pub(crate) struct GroundContacts {
     q: Vec<f64>,
     /// Numbers of the vertices that the last search found, ascending.
     vertices: Vec<u32>,
-    /// The `near_travel` up to which each of them is outside the skin.
+    /// The `near_travel` up to which each vertex of `vertices` is outside the skin.
     limits: Vec<f64>,
     /// The smallest limit of each [`CHUNK`] vertices.
     chunk_limits: Vec<f64>,
@@ -55,7 +55,7 @@ pub(crate) struct GroundContacts {
     pub(super) skin: f64,
     /// Vertices within the skin, ascending, each with its gap, in the state of the last update.
     pub(super) touching: Vec<(u32, f64)>,
-    /// The same at the beginning of this step.
+    /// Vertices within the skin at the beginning of this step, with their gaps.
     pub(super) touching_at_start: Vec<(u32, f64)>,
     /// Vertices that corrections keep above the ground, ascending.
     pub points: Vec<GroundPoint>,

@@ -14,7 +14,7 @@ pub(crate) struct GroundPoint {
     pub arm: DVec3,
     /// Gap at the beginning of the step.
     pub gap: f64,
-    /// Minimum gap at its end.
+    /// Minimum gap at the end of the step.
     pub min_gap: f64,
     pub normal_impulse: f64,
     pub friction_impulse: DVec3,

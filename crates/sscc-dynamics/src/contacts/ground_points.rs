@@ -1,17 +1,17 @@
 //! Choice of the points on the ground: vertices of a body that the corrections of a step keep above the ground.
 //!
-//! Few of the vertices near the ground bear the body, and all others follow from them through the modes. So a step begins
-//! with the points that bore the body in the last one, and adds the lowest of the vertices that would still sink.
+//! Few of the vertices near the ground bear the body, and the modes carry the others with them. So a step begins with the
+//! points that bore the body in the last step, and adds the lowest of the vertices that would still sink.
 
 use super::contact_laws::ContactLaws;
 use super::ground_contacts::GroundContacts;
 use super::ground_point::GroundPoint;
 use crate::{Body, DynamicsError, Ground};
 
-/// Maximum number of points that a body gains in one round of corrections.
+/// Maximum number of points that a body gains in one correction.
 const MAX_NEW_POINTS: usize = 8;
 
-/// Minimum distance between points that a body gains in the same round, as a share of its radius.
+/// Minimum distance between points that a body gains in the same correction, as a share of its radius.
 const MIN_DISTANCE: f64 = 0.05;
 
 impl GroundContacts {
@@ -42,8 +42,8 @@ impl GroundContacts {
         }
     }
 
-    /// Makes points of the lowest vertices that sink in the motion to the current state, which was the last one to be
-    /// updated. Returns whether there are any.
+    /// Makes points of the lowest vertices that sink in the motion to the current state, which is the state of the last
+    /// update. Returns whether any vertex sinks.
     pub fn add_sinking(&mut self, body: &Body, ground: &Ground, laws: &ContactLaws) -> bool {
         let mut sinking: Vec<(u32, f64)> = Vec::new();
         for &(vertex, gap) in &self.touching {
@@ -68,8 +68,8 @@ impl GroundContacts {
         !new.is_empty()
     }
 
-    /// Returns the share of the step after which the first vertex is below the ground in the current state, which was the
-    /// last one to be updated; None if all stay above. Vertices that begin below do not count.
+    /// Returns the fraction of the step after which the first vertex is below the ground in the current state, which is the
+    /// state of the last update; None if all stay above. Vertices that begin below do not count.
     pub fn sinks_after(&self) -> Option<f64> {
         let mut first = None;
         for &(vertex, gap) in self.touching.iter().filter(|(_, gap)| *gap < 0.0) {
@@ -89,7 +89,7 @@ impl GroundContacts {
         found.map_or(self.skin, |n| self.touching_at_start[n].1)
     }
 
-    /// Returns the place of a vertex's point, or where it would be.
+    /// Returns the index of a vertex's point, or the index at which it would be inserted.
     pub fn find(&self, vertex: u32) -> Result<usize, usize> {
         self.points.binary_search_by_key(&vertex, |point| point.vertex)
     }

@@ -51,7 +51,7 @@ impl<T> Default for PerIsland<T> {
 }
 
 impl<T: Clone> PerIsland<T> {
-    /// Gives all islands of a world with so many bodies the same value.
+    /// Sets the same value for all islands of a world with `bodies` bodies.
     pub fn reset(&mut self, bodies: usize, value: T) {
         self.0.clear();
         self.0.resize(bodies, value);

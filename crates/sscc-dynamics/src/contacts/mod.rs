@@ -1,7 +1,7 @@
-//! Contacts of bodies with each other, with themselves and with the ground: where they are, how they begin and end, and the
-//! impulses with which they act.
+//! Contacts of bodies with each other, with themselves and with the ground: their geometry, how they begin and end, and their
+//! impulses.
 //!
-//! Nothing here advances a body.
+//! No function in this folder advances a body in time.
 
 pub(crate) mod body_collisions;
 pub(crate) mod contact;

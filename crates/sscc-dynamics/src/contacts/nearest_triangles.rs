@@ -1,4 +1,4 @@
-//! Nearest points of the features of two triangles, and the directions that part them.
+//! Nearest points of the features of two triangles, and the directions that separate the triangles.
 
 use glam::DVec3;
 
@@ -19,8 +19,8 @@ pub(crate) struct Nearest {
 const MIN_DISTANCE: f64 = 1e-7;
 
 /// Finds the nearest points of two disjoint triangles, and then those of all pairs of features (a corner and a face, or two
-/// edges) that have them in their interior, within a distance. Where triangles almost touch, the direction is that of a
-/// face or of a pair of edges along which they are farthest apart. Nothing is found if all of these are zero.
+/// edges) whose nearest points lie in their interior, within a distance. Where triangles almost touch, the direction is the
+/// normal of a face or of a pair of edges along which they are farthest apart. Finds nothing if all of these are zero.
 pub(crate) fn nearest_features(a: &[DVec3; 3], b: &[DVec3; 3], range: f64, found: &mut Vec<Nearest>) {
     found.clear();
     let edges = |x: &[DVec3; 3]| (x[1] - x[0]).abs().max((x[2] - x[0]).abs()).max_element();

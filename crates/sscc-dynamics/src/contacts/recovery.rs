@@ -1,5 +1,5 @@
-//! Recovery of gaps: the points of a contact that are nearer than they should be move apart slowly, while the energy budgets of
-//! their bodies allow it.
+//! Recovery of gaps: where the gap of a contact is too small, its points move apart slowly, while the energy budgets of their
+//! bodies allow it.
 
 use super::world_contacts::WorldContacts;
 use crate::Body;

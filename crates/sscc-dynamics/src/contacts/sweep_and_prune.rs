@@ -2,7 +2,7 @@
 
 use sscc::parts::Aabb;
 
-/// Finds overlapping AABBs. The order along x is kept from one search to the next, in which it is nearly the same.
+/// Finds overlapping AABBs. The order along x is kept for the next search, in which it is nearly the same.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweepAndPrune {
     /// AABB of each body.

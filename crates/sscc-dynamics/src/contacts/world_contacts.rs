@@ -22,7 +22,7 @@ pub(crate) struct WorldContacts {
     /// Contacts between triangles.
     pub triangles: ContactSet,
     pub islands: Islands,
-    /// Energy that the recovery of all gaps of each island costs, and the budgets of its bodies.
+    /// For each island the energy that the recovery of all gaps costs, and the sum of the budgets of its bodies.
     pub(super) recovery: PerIsland<[f64; 2]>,
 }
 

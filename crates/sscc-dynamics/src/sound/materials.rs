@@ -26,7 +26,7 @@ const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64)
 
 /// Materials of everyday objects. Elastic constants of the first eight are round values in the range of handbooks; those of
 /// the others are usual values of the grades that `docs/command.md` names. Damping was chosen by ear for
-/// the first eight, and is that of the most similar of these for the others; no value was measured.
+/// the first eight; each other material has the damping of the most similar one. No value was measured.
 pub const MATERIALS: [SoundMaterial; 16] = [
     row("steel", 7850.0, 2.0e11, 0.29, 5.0, 3e-8),
     row("aluminium", 2700.0, 7.0e10, 0.33, 4.0, 5e-8),
@@ -47,7 +47,7 @@ pub const MATERIALS: [SoundMaterial; 16] = [
 ];
 
 impl SoundMaterial {
-    /// Returns the material with this name; None if there is none.
+    /// Returns the material with this name; None if no material has it.
     pub fn from_name(name: &str) -> Option<Self> {
         MATERIALS.into_iter().find(|material| material.name == name)
     }

@@ -1,4 +1,4 @@
-//! Sound of vibrating bodies, and the materials that it is known for.
+//! Sound of vibrating bodies, and materials with known damping.
 
 mod materials;
 mod sound_bank;

@@ -1,4 +1,4 @@
-//! Contacts of impacts: the triangles that meet on the way of a step, and those near them, become rigid contacts.
+//! Contacts of impacts: the triangles that meet during a step, and those near them, become rigid contacts.
 
 use glam::DVec3;
 use sscc::{Impact, Pair};
@@ -8,8 +8,8 @@ use crate::bodies::body_set::BodySet;
 use crate::contacts::world_contacts::WorldContacts;
 use crate::{Body, DynamicsError};
 
-/// Share of the time of impact at which the geometry of a contact is computed, and to which bodies move that no correction
-/// keeps apart: the triangles are still apart.
+/// Fraction of the time of impact at which the triangles are still apart. The geometry of a contact is computed there, and
+/// bodies that no correction keeps apart move only so far.
 pub(crate) const CONTACT_TIME: f64 = 0.9;
 
 /// Distance, in skins, within which triangles near an impact make contacts.
@@ -18,9 +18,9 @@ const NEAR_MARGIN: f64 = 2.0;
 /// Makes contacts of impacts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ImpactContacts {
-    /// Pairs of triangles near the impacts of a round, with their bodies.
+    /// Pairs of triangles near the impacts of the current correction, with their bodies.
     near: Vec<([usize; 2], Pair)>,
-    /// Bodies whose near pairs this step has found.
+    /// Pairs of bodies whose near pairs were already collected in this step.
     gathered: Vec<[usize; 2]>,
 }
 
@@ -59,8 +59,8 @@ impl ImpactContacts {
         Ok(())
     }
 
-    /// Finds the pairs of triangles near impacts that have no contact. Other triangles near those that meet would be found in
-    /// the next rounds.
+    /// Finds the pairs of triangles near impacts that have no contact. Without them, other triangles near the impacts would
+    /// be found only in later corrections.
     fn find_near(&mut self, bodies: &mut [Body], contacts: &WorldContacts, impacts: &[([usize; 2], Impact)]) {
         let Self { near, gathered } = self;
         let WorldContacts { laws, collisions, triangles, .. } = contacts;

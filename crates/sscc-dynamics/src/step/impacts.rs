@@ -1,5 +1,5 @@
-//! Impacts of a motion: pairs of triangles that meet on the way, of different bodies and of the same one, and bodies that sink
-//! into the ground.
+//! Impacts of a motion: pairs of triangles, of different bodies or of one body, that meet during the motion, and bodies that
+//! sink into the ground.
 
 use rayon::prelude::*;
 use sscc::Impact;

@@ -7,7 +7,7 @@ use crate::Body;
 use crate::contacts::contact::Contact;
 use crate::contacts::contact_constraint::{ContactPoints, GROUND, Source};
 
-/// Appends the impulses on the bodies of contacts. `of_contacts` has for each contact the impulse on its first body.
+/// Appends the impulses that contacts exert on bodies. `of_contacts` has for each contact the impulse on its first body.
 pub(crate) fn record<'c>(
     of_contacts: impl Iterator<Item = (&'c ContactPoints, DVec3)>,
     bodies: &[Body],

@@ -1,8 +1,8 @@
-//! Energy of corrections: what a correction adds to the energy of an island is paid from the energy budgets of its bodies.
+//! Energy of corrections: energy budgets of the bodies of an island pay for the energy that a correction adds to the island.
 //!
 //! Damping may dissipate energy in the motion without contacts. A correction that prevents this motion also prevents that
-//! loss, which is no energy added by contacts. So a correction adds only the energy above both that at the beginning of the
-//! step and that at its end without the correction, and dissipates only the energy below both.
+//! loss, and contacts have then added no energy. So a correction adds only the energy above both the energy at the beginning
+//! of the step and the energy at its end without the correction, and dissipates only the energy below both.
 
 use glam::{DMat3, DVec3};
 

@@ -1,6 +1,6 @@
 //! Parts of a step of a world: limits of the motion and of its energy, rolling friction, sleep, and the record of impulses.
 //!
-//! Each takes the bodies and the contacts that it changes as arguments. The step itself is in `world.rs`.
+//! Each module takes the bodies and the contacts that it changes as arguments. The step itself is in `world.rs`.
 
 pub(crate) mod divergence;
 mod impact_contacts;

@@ -1,8 +1,8 @@
 //! Limit of the potential energy at the end of a step: contacts do not lift or bend bodies farther than their energy allows.
 //!
-//! A correction displaces the modes as linear forces would let them follow. Nonlinear forces may be far stiffer there, and
-//! the elastic energy of the displaced end may exceed all the energy that the bodies have, so that no loss of velocity pays
-//! for it. Such bodies move only a share of their way. The state at the beginning of the step is within the limit.
+//! A correction displaces the modes as linear forces would let them follow. Nonlinear forces may be far stiffer there. The
+//! elastic energy of the displaced end may then exceed all the energy that the bodies have, so that no loss of velocity pays
+//! for it. Such bodies move only a part of their motion. The state at the beginning of the step is within the limit.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,8 +17,8 @@ const ENERGY_ROUNDING: f64 = 1e-9;
 /// Limit of the potential energy of corrected islands: at most their energy without contacts, plus their energy budgets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PotentialLimit {
-    /// Sums over each island: potential energy at the end of the step less energy budgets, energy at the beginning and at the
-    /// end without contacts, and the size of these.
+    /// For each island: potential energy at the end of the step less energy budgets, total energies at the beginning and at
+    /// the end without contacts, and the sum of the absolute values of all energies.
     sums: PerIsland<[f64; 4]>,
     newmark: NewmarkBuffers,
 }

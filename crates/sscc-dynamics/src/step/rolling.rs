@@ -1,4 +1,4 @@
-//! Rolling friction: the ground resists the rotation of what lies on it.
+//! Rolling friction: the ground resists the rotation of bodies that lie on it.
 
 use crate::Body;
 use crate::contacts::contact_constraint::Source;

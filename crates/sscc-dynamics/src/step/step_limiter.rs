@@ -2,9 +2,9 @@
 //!
 //! Contacts act at the end of the step: a correction displaces it as little as they need, and changes the velocities
 //! accordingly. Swept queries then find the pairs of triangles, of different bodies and of the same one, that have a point in
-//! common on the way to the corrected end, and a search finds the vertices that sink there. They become contacts, and the
-//! correction is computed again. Bodies that still meet themselves, each other or the ground after a few corrections move
-//! only a share of their way. So a state with intersections is never reached from one without (Harmon et al. 2009 and Li et
+//! common during the motion to the corrected end, and a search finds the vertices that sink there. They become contacts, and
+//! the correction is computed again. Bodies that still meet themselves, each other or the ground after a few corrections move
+//! only a part of their motion. So a state with intersections is never reached from one without (Harmon et al. 2009 and Li et
 //! al. 2020 argue for the same invariant).
 
 use glam::DVec3;
@@ -25,29 +25,30 @@ use crate::{Body, DynamicsError, Response};
 /// Maximum number of corrections of a step.
 const MAX_CORRECTIONS: usize = 8;
 
-/// Where a body could move only a smaller share of its way, it keeps its place.
+/// A body that could move only a smaller fraction of its motion keeps its place.
 const MIN_SHARE: f64 = 1e-3;
 
-/// Maximum number of times for which bodies are moved a share of their way; then they keep their place.
+/// Maximum number of times that bodies with impacts move back to a part of their motion; then they keep their place.
 const MAX_SHORTENINGS: usize = 4;
 
-/// Bodies with too much potential energy move half of their way, at most so many times; then they keep their place.
+/// Maximum number of times that bodies with too much potential energy move back to half of their motion; then they keep their
+/// place.
 const MAX_HALVINGS: u32 = 4;
 
 /// Limits steps. All buffers are kept from step to step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StepLimiter {
     pub corrections: CorrectionSolver,
-    /// Number of bodies that moved only a share of their way in this step.
+    /// Number of bodies that moved only a part of their motion in this step.
     pub shortened_bodies: usize,
     gravity: DVec3,
-    /// Bodies that the current round moves, or whose motion it tests.
+    /// Bodies that the current correction moves, or whose motion it tests.
     selected: BodySet,
     selected_islands: PerIsland<bool>,
     impacts: Impacts,
     impact_contacts: ImpactContacts,
     potential_limit: PotentialLimit,
-    /// Energies of each corrected body at the beginning of the step and before its correction; None for all others.
+    /// Energies of each corrected body at the beginning of the step and before its correction; None for all other bodies.
     energies: Vec<Option<[f64; 2]>>,
 }
 
@@ -56,7 +57,7 @@ impl StepLimiter {
         Self { gravity, ..Self::default() }
     }
 
-    /// Corrects the end of this step until no two bodies intersect on the way to it, and none sinks into the ground.
+    /// Corrects the end of this step until no two bodies intersect during the motion to it, and none sinks into the ground.
     pub fn limit(
         &mut self,
         bodies: &mut [Body],
@@ -143,7 +144,8 @@ impl StepLimiter {
         }
     }
 
-    /// Moves bodies with impacts or vertices below the ground a share of their way, until none are left.
+    /// Moves bodies with impacts or vertices below the ground back to a part of their motion, until no impact and no such
+    /// vertex remains.
     fn shorten(
         &mut self,
         bodies: &mut [Body],
@@ -182,8 +184,8 @@ impl StepLimiter {
         Ok(())
     }
 
-    /// Returns for each body the share of its way after which it first meets another body, itself or the ground; infinite if
-    /// it does not.
+    /// Returns for each body the fraction of its motion after which it first meets another body, itself or the ground;
+    /// infinite if it meets none.
     fn impact_times(&self, contacts: &WorldContacts) -> Vec<f64> {
         let mut times = vec![f64::INFINITY; contacts.ground.len()];
         for (bodies, impact) in &self.impacts.pairs {
@@ -195,8 +197,8 @@ impl StepLimiter {
         times
     }
 
-    /// Moves corrected islands a share of their way until their potential energy is at most their energy without contacts,
-    /// plus their energy budgets.
+    /// Moves corrected islands back to a part of their motion until their potential energy is at most their energy without
+    /// contacts, plus their energy budgets.
     fn limit_potential(
         &mut self,
         bodies: &mut [Body],

@@ -25,7 +25,7 @@ fn compare_each_step(make: impl Fn() -> World, steps: usize) -> usize {
     impulses
 }
 
-/// Arms of soft forks meet each other several times in a step.
+/// The arms of soft forks meet each other several times in a step.
 #[test]
 fn states_with_contacts_within_bodies_can_be_restored() {
     let shapes = [
@@ -49,7 +49,7 @@ fn states_with_contacts_within_bodies_can_be_restored() {
     assert!(compare_each_step(make, 300) > 100);
 }
 
-/// Blocks on each other have contacts at the same features of several pairs of triangles, and little energy to part.
+/// Blocks on each other have contacts at the same features of several pairs of triangles, and little energy to separate.
 #[test]
 fn states_with_duplicate_contacts_can_be_restored() {
     let held = elastic(&block([4, 1, 4], 0.1, material(1e6)), 6, false, &[0, 1, 2, 3]);

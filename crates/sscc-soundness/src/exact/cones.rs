@@ -1,4 +1,4 @@
-//! Whether two cones, each spanned by two vectors from a common apex, have another common point than the apex.
+//! Tests whether two cones, each spanned by two vectors from a common apex, have a common point other than the apex.
 //!
 //! Near a common corner a triangle is the cone of its two edges, also where it has no area. The common part of two cones is a
 //! cone, and one of its extreme rays is an extreme ray of one of them, or a common ray of both planes.
@@ -6,11 +6,11 @@
 use super::number::Number;
 use super::vectors::{Vector, cross, dot, is_zero, minus, plus};
 
-/// Whether the ray along `x`, not 0, is in the cone of `a` and `b`.
+/// Whether the ray along `x`, which is not 0, is in the cone of `a` and `b`.
 fn contains<N: Number>(x: &Vector<N>, [a, b]: [&Vector<N>; 2]) -> Option<bool> {
     let normal = cross(a, b);
     if is_zero(&normal)? {
-        // A ray, a line or the apex alone.
+        // The cone is a ray, a line or only the apex.
         for along in [a, b] {
             if is_zero(&cross(x, along))? && dot(x, along).sign()? > 0 {
                 return Some(true);
@@ -22,7 +22,7 @@ fn contains<N: Number>(x: &Vector<N>, [a, b]: [&Vector<N>; 2]) -> Option<bool> {
     Some(in_plane && dot(&cross(a, x), &normal).sign()? >= 0 && dot(&cross(x, b), &normal).sign()? >= 0)
 }
 
-/// Whether two cones, given by the ends of their edges and the apex, have another common point than the apex.
+/// Whether two cones, given by the ends of their edges and the apex, have a common point other than the apex.
 pub fn cones_meet<N: Number>(apex: &Vector<N>, a: [&Vector<N>; 2], b: [&Vector<N>; 2]) -> Option<bool> {
     let [a, b] = [a, b].map(|[p, q]| [minus(p, apex), minus(q, apex)]);
     let ([a0, a1], [b0, b1]) = (&a, &b);

@@ -5,7 +5,7 @@
 
 use super::number::Number;
 
-/// All numbers from `lower` to `upper`. A bound that overflows is infinite, and NaN decides nothing.
+/// All numbers from `lower` to `upper`. A bound that overflows is infinite; predicates remain undecided if a bound is NaN.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval {
     lower: f64,
@@ -13,7 +13,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// The interval of one number.
+    /// Returns the interval of one number.
     pub fn of(x: f64) -> Self {
         Self { lower: x, upper: x }
     }
@@ -23,7 +23,7 @@ impl Interval {
     }
 }
 
-/// Whether a sum is exact for sure.
+/// Whether a sum is certain to be exact.
 fn is_exact(x: f64, y: f64, sum: f64) -> bool {
     sum == 0.0 || x == 0.0 || y == 0.0
 }
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_enclose_what_rounding_loses() {
+    fn bounds_enclose_rounding_errors() {
         let [third, one, tiny] = [1.0 / 3.0, 1.0, f64::from_bits(1)].map(Interval::of);
         let sum = third.plus(&third).plus(&third).minus(&one);
         assert_eq!(sum.sign(), None);

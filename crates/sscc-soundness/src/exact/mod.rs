@@ -1,6 +1,6 @@
-//! Exact predicates of the oracles. They share no code with the core: each is written for any kind of [`Number`], tried with
-//! intervals of doubles first, and decided with whole numbers, of fixed width or big, where an interval contains 0. Ordinary
-//! pairs of triangles are decided before, by doubles with an error bound.
+//! Exact predicates of the oracles. They share no code with the core. Each is written for any kind of [`Number`] and
+//! evaluated with intervals of doubles first. Where an interval contains 0, it is decided with integers of fixed width, or
+//! with big integers. Most ordinary pairs of triangles are decided before that, by doubles with an error bound.
 
 mod cones;
 mod interval;

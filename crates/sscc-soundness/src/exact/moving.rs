@@ -1,8 +1,8 @@
-//! Whether two triangles whose corners move on straight lines have a common point at some time.
+//! Tests whether two triangles whose corners move on straight lines have a common point at some time.
 //!
 //! A time is a double. Corners at that time are multiples of a power of two, which intervals enclose and big integers hold
 //! exactly. An interval of times is free if a direction separates both triangles at its ends: corners are between their
-//! positions at the ends. Else it is halved, after an exact test at its middle.
+//! positions at the ends. Otherwise the interval is halved, after an exact test at its middle.
 
 use super::interval::Interval;
 use super::number::Number;
@@ -13,31 +13,31 @@ use super::vectors::Vector;
 use super::whole::{Unit, Whole};
 use super::work;
 
-/// What is known of a motion.
+/// Whether two moving triangles meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// They never meet.
+    /// The triangles never meet.
     Free,
-    /// They meet at this time.
+    /// The triangles meet at this time.
     Contact(f64),
-    /// Neither was found.
+    /// The search ended without a result.
     Unknown,
 }
 
-/// Intervals of time tried before the search ends without a result.
+/// Number of intervals of time that are tested before the search ends without a result.
 const MAX_INTERVALS: usize = 160;
 
 /// Intervals shorter than this are not halved.
 const SHORTEST: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// A time as `numerator / denominator`, the denominator a power of two.
+/// A time as `numerator / denominator`, where the denominator is a power of two.
 struct Time {
     numerator: f64,
     denominator: f64,
 }
 
 impl Time {
-    /// Panics for times that are neither 0 nor at least 2^-900.
+    /// Returns a time. Panics for times that are neither 0 nor at least 2^-900.
     fn of(t: f64) -> Self {
         let mut denominator = 1.0;
         while (t * denominator).fract() != 0.0 {
@@ -47,7 +47,7 @@ impl Time {
     }
 }
 
-/// Corners times the denominator, at a time.
+/// Returns the corners at a time, multiplied by the denominator of the time.
 fn at<N: Number>(
     ends: [&Triangle; 2],
     time: &Time,
@@ -72,7 +72,7 @@ fn interval_at(ends: [&Triangle; 2], t: f64) -> [Vector<Interval>; 3] {
     }
 }
 
-/// Whether they have a common point at a time, exactly.
+/// Whether two moving triangles have a common point at a time, exactly.
 pub fn meet_at(a: [&Triangle; 2], b: [&Triangle; 2], t: f64) -> bool {
     edges_meet(&interval_at(a, t), &interval_at(b, t)).unwrap_or_else(|| {
         work::count();
@@ -97,7 +97,7 @@ fn is_free_between(a: [&Triangle; 2], b: [&Triangle; 2], [from, to]: [f64; 2]) -
     })
 }
 
-/// Whether two moving triangles, each given at times 0 and 1, meet at some time from 0 to `until`.
+/// Searches for a common point of two moving triangles, each given at times 0 and 1, from time 0 to `until`.
 pub fn free_until(a: [&Triangle; 2], b: [&Triangle; 2], until: f64) -> Verdict {
     if until == 1.0 && is_free_between(a, b, [0.0, 1.0]) {
         return Verdict::Free;
@@ -146,12 +146,12 @@ mod tests {
         assert_eq!(falls(3.0, -1.0, 0.75), Verdict::Contact(0.75));
         assert_eq!(falls(3.0, -1.0, 0.749), Verdict::Free);
         assert!(matches!(falls(1.0, -1.0, 1.0), Verdict::Contact(t) if t == 0.5));
-        // At a third, which is no double.
+        // The contact is at time 1/3, which is not a double.
         assert_eq!(falls(1.0, -2.0, 1.0), Verdict::Unknown);
     }
 
     #[test]
-    fn contact_at_one_time_alone_is_exact() {
+    fn a_contact_at_a_single_time_is_found() {
         let from = [[0.25, 0.25, 1.0], [0.5, 0.25, 2.0], [0.25, 0.5, 2.0]];
         let to = [[0.25, 0.25, -1.0], [0.5, 0.25, 2.0], [0.25, 0.5, 2.0]];
         assert!(meet_at([&FLOOR, &FLOOR], [&from, &to], 0.5));

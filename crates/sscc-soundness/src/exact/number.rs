@@ -1,13 +1,13 @@
-//! The numbers that predicates compute with.
+//! The kinds of numbers that predicates compute with.
 
-/// A number whose sums and products are exact, or enclosed. No division: predicates need signs alone.
+/// A number whose sums and products are exact, or enclosed by intervals. It has no division: predicates need only signs.
 pub trait Number: Clone {
-    /// The sum.
+    /// Returns the sum.
     fn plus(&self, other: &Self) -> Self;
-    /// The difference.
+    /// Returns the difference.
     fn minus(&self, other: &Self) -> Self;
-    /// The product.
+    /// Returns the product.
     fn times(&self, other: &Self) -> Self;
-    /// -1, 0 or 1; none if the enclosure does not decide.
+    /// Returns -1, 0 or 1; None if the enclosure does not decide.
     fn sign(&self) -> Option<i8>;
 }

@@ -1,7 +1,7 @@
-//! The same question in doubles, where these decide: of the ordinary pairs of triangles nearly all, at a tenth of the time.
+//! Tests whether two triangles meet in doubles. It decides nearly all ordinary pairs of triangles, in a tenth of the time.
 //!
-//! All that is computed is on which side of a plane a point is. Where triangles touch, lie in one plane, have no area, or have
-//! extreme coordinates, nothing is decided.
+//! The test computes only on which side of a plane a point is. It remains undecided where triangles touch, lie in one plane,
+//! have no area, or have extreme coordinates.
 
 use super::point::{Point, Triangle};
 
@@ -13,15 +13,15 @@ fn size(p: &Point) -> f64 {
     p[0].abs().max(p[1].abs()).max(p[2].abs())
 }
 
-/// The side of the plane through `a`, `b` and `c` on which `d` is, 1 or -1; 0 where doubles do not decide.
+/// Returns on which side of the plane through `a`, `b` and `c` the point `d` is: 1 or -1, or 0 if doubles do not decide.
 ///
-/// With differences of at most E, F and D, the determinant is a sum of six products of three differences, each at most E F D,
-/// and eleven roundings; so its error is below `128 u E F D`.
+/// With differences of at most E, F and D, the determinant is a sum of six products of three differences. Each product is at
+/// most E F D, and there are eleven roundings. So the error is below `128 u E F D`.
 fn side([a, b, c]: [&Point; 3], d: &Point) -> i8 {
     let (e, f, d) = (minus(b, a), minus(c, a), minus(d, a));
     let area = size(&e) * size(&f);
     let product = area * size(&d);
-    // Products of extreme numbers are left to intervals.
+    // Intervals decide where products are extreme.
     if !(1e-200..1e200).contains(&product) || area <= 1e-200 {
         return 0;
     }
@@ -36,8 +36,8 @@ fn side([a, b, c]: [&Point; 3], d: &Point) -> i8 {
     }
 }
 
-/// Whether the segment from `p` to `q`, whose ends are strictly on different sides of the plane of a triangle, meets it: its
-/// line passes all edges on the same side. If it passes one on each side, it misses the triangle.
+/// Whether the segment from `p` to `q`, whose ends are strictly on different sides of the plane of a triangle, meets the
+/// triangle. It does if its line passes all edges on the same side, and misses it if the line passes edges on both sides.
 fn pierces(p: &Point, q: &Point, [a, b, c]: &Triangle) -> Option<bool> {
     let sides = [side([p, q, a], b), side([p, q, b], c), side([p, q, c], a)];
     if sides.contains(&1) && sides.contains(&-1) {
@@ -49,7 +49,7 @@ fn pierces(p: &Point, q: &Point, [a, b, c]: &Triangle) -> Option<bool> {
     }
 }
 
-/// Whether two triangles have a common point; none where doubles do not decide.
+/// Whether two triangles have a common point; None if doubles do not decide.
 pub fn meet(a: &Triangle, b: &Triangle) -> Option<bool> {
     let mut is_decided = true;
     let pairs = [(a, b), (b, a)].map(|(x, y)| (x, y, x.map(|p| side([&y[0], &y[1], &y[2]], &p))));
@@ -82,7 +82,7 @@ mod tests {
     use crate::random::Random;
 
     #[test]
-    fn what_doubles_decide_is_exact() {
+    fn decisions_by_doubles_equal_exact_ones() {
         let mut random = Random::new("rounded", 1);
         let mut decided = [0, 0];
         for _ in 0..20_000 {
@@ -95,7 +95,7 @@ mod tests {
             };
             let (a, mut b) = (triangle(), triangle());
             if random.one_in(4) {
-                // Nearly touching.
+                // A corner that nearly touches the other triangle.
                 b[0] = std::array::from_fn(|c| (a[0][c] + a[1][c]) / 2.0);
             }
             if let Some(is_meeting) = meet(&a, &b) {
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn touching_and_extreme_ones_are_left_open() {
+    fn touching_and_extreme_triangles_are_undecided() {
         let floor = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
         let post = [[0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [0.75, 0.5, 1.0]];
         assert_eq!(meet(&floor, &post), None);

@@ -1,5 +1,5 @@
-//! Whether closed segments have a common point with each other and with triangles. Segments may be points, and triangles may
-//! be segments or points. Each function returns none where its numbers do not decide.
+//! Tests whether closed segments have a common point with each other and with triangles. Segments may be points, and
+//! triangles may be segments or points. Each function returns None if its numbers do not decide.
 
 use super::number::Number;
 use super::vectors::{Vector, cross, dot, is_zero, minus};
@@ -9,7 +9,7 @@ fn is_within<N: Number>(x: &N, size: &N) -> Option<bool> {
     Some(x.sign()? >= 0 && size.minus(x).sign()? >= 0)
 }
 
-/// Whether a point is on the segment from `p` to `p + d`, `d` not 0.
+/// Whether a point is on the segment from `p` to `p + d`, where `d` is not 0.
 fn is_on_segment<N: Number>(x: &Vector<N>, p: &Vector<N>, d: &Vector<N>) -> Option<bool> {
     let from_p = minus(x, p);
     Some(is_zero(&cross(&from_p, d))? && is_within(&dot(&from_p, d), &dot(d, d))?)
@@ -23,7 +23,7 @@ pub fn segments_meet<N: Number>([p, q]: [&Vector<N>; 2], [r, s]: [&Vector<N>; 2]
         if dot(&gap, &normal).sign()? != 0 {
             return Some(false);
         }
-        // p + x d = r + y e, with both numerators over the square of the normal.
+        // Solves p + x d = r + y e; the denominator of x and y is the square of the normal.
         let size = dot(&normal, &normal);
         let x = dot(&cross(&gap, &e), &normal);
         let y = dot(&cross(&gap, &d), &normal);
@@ -34,7 +34,7 @@ pub fn segments_meet<N: Number>([p, q]: [&Vector<N>; 2], [r, s]: [&Vector<N>; 2]
         (true, false) => is_on_segment(p, r, &e),
         (false, true) => is_on_segment(r, p, &d),
         (false, false) => {
-            // Parallel ones meet exactly if an end of one is on the other.
+            // Parallel segments meet exactly if an end of one is on the other.
             for (x, from, along) in [(p, r, &e), (q, r, &e), (r, p, &d), (s, p, &d)] {
                 if is_on_segment(x, from, along)? {
                     return Some(true);
@@ -45,7 +45,7 @@ pub fn segments_meet<N: Number>([p, q]: [&Vector<N>; 2], [r, s]: [&Vector<N>; 2]
     }
 }
 
-/// Whether a point in the plane of a triangle with area is in it.
+/// Whether a point in the plane of a triangle that has an area is in the triangle.
 fn is_in_triangle<N: Number>(x: &Vector<N>, corners: &[Vector<N>; 3], normal: &Vector<N>) -> Option<bool> {
     for i in 0..3 {
         let (from, to) = (&corners[i], &corners[(i + 1) % 3]);
@@ -83,7 +83,7 @@ pub fn segment_meets_triangle<N: Number>([p, q]: [&Vector<N>; 2], corners: &[Vec
             let along = minus(q, p);
             for i in 0..3 {
                 let (from, to) = (minus(&corners[i], p), minus(&corners[(i + 1) % 3], p));
-                // The triple product is positive, seen along the normal, where the line passes inside.
+                // The triple product is positive if, seen along the normal, the line passes inside this edge.
                 if dot(&along, &cross(&from, &to)).sign()? * x > 0 {
                     return Some(false);
                 }

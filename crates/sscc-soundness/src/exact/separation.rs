@@ -1,4 +1,4 @@
-//! Directions that separate two triangles: guessed in doubles, verified with intervals.
+//! Directions that separate two triangles. Doubles propose them, and intervals verify them.
 
 use super::interval::Interval;
 use super::number::Number;
@@ -28,7 +28,7 @@ fn directions(a: &Triangle, b: &Triangle) -> Vec<Point> {
     all
 }
 
-/// Whether a direction separates both at each of some times, with intervals that decide.
+/// Whether a direction separates two triangles at each of some times. True only if the intervals decide it.
 pub fn is_separated(a: &[[Vector<Interval>; 3]], b: &[[Vector<Interval>; 3]], n: &Point) -> bool {
     let n = n.map(Interval::of);
     // The gap of two corners is linear in time.
@@ -42,7 +42,7 @@ pub fn is_separated(a: &[[Vector<Interval>; 3]], b: &[[Vector<Interval>; 3]], n:
     })
 }
 
-/// The smallest gap along a direction at some times, in doubles: a guess.
+/// Returns the smallest gap along a direction at some times, in doubles: an estimate.
 fn gap(a: &[Triangle], b: &[Triangle], n: &Point) -> f64 {
     let along = |p: &Point| n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
     let at_end = |(a, b): (&Triangle, &Triangle)| {
@@ -52,8 +52,8 @@ fn gap(a: &[Triangle], b: &[Triangle], n: &Point) -> f64 {
     a.iter().zip(b).map(at_end).fold(f64::INFINITY, f64::min)
 }
 
-/// The direction that separates two triangles best at some times, of those that their positions at one time suggest; none if
-/// none seems to.
+/// Returns the direction that separates two triangles best at some times, among the directions that their positions at one
+/// time suggest. None if no direction seems to separate them.
 pub fn best_direction(at: [&Triangle; 2], a: &[Triangle], b: &[Triangle]) -> Option<Point> {
     let both = directions(at[0], at[1]).into_iter().flat_map(|n| [n, n.map(|x| -x)]);
     let best = both.map(|n| (gap(a, b, &n), n)).max_by(|g, h| g.0.total_cmp(&h.0));

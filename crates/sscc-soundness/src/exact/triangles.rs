@@ -1,4 +1,4 @@
-//! Whether two closed triangles have a common point.
+//! Tests whether two closed triangles have a common point.
 //!
 //! An extreme point of the common part of two triangles is on an edge of one of them, so they meet exactly if some edge of one
 //! meets the other. Triangles without area are the union of their edges.
@@ -15,7 +15,7 @@ use super::whole::Unit;
 use super::wide::fits;
 use super::work;
 
-/// Whether the corners of one triangle are all strictly on one side of the plane of the other. False where it is not decided.
+/// Whether the corners of one triangle are all strictly on one side of the plane of the other. False if undecided.
 fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {
     let normal = cross(&minus(&a[1], &a[0]), &minus(&a[2], &a[0]));
     let side = |x: &Vector<N>| dot(&normal, &minus(x, &a[0])).sign();
@@ -23,7 +23,7 @@ fn is_beside_plane<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> bool {
     first.is_some_and(|s| s != 0) && side(&b[1]) == first && side(&b[2]) == first
 }
 
-/// Whether an edge of one triangle meets the other one; none where it is not decided.
+/// Whether an edge of one triangle meets the other triangle; None if undecided.
 pub(super) fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> Option<bool> {
     let mut undecided = false;
     for (x, y) in [(a, b), (b, a)] {
@@ -38,7 +38,7 @@ pub(super) fn edges_meet<N: Number>(a: &[Vector<N>; 3], b: &[Vector<N>; 3]) -> O
     (!undecided).then_some(false)
 }
 
-/// The same with numbers that decide.
+/// Whether two triangles have a common point, with numbers that always decide.
 fn edges_meet_as<N: Number>(a: &Triangle, b: &Triangle, number: impl Fn(f64) -> N) -> bool {
     let [x, y] = [a, b].map(|t| t.map(|p| p.map(&number)));
     let is_apart = is_beside_plane(&x, &y) || is_beside_plane(&y, &x);
@@ -65,7 +65,7 @@ pub fn meet(a: &Triangle, b: &Triangle) -> bool {
     rounded::meet(a, b).unwrap_or_else(|| meet_without_rounding(a, b))
 }
 
-/// The same with intervals, then whole numbers.
+/// Whether two triangles have a common point, by intervals and then integers.
 pub(super) fn meet_without_rounding(a: &Triangle, b: &Triangle) -> bool {
     let [x, y] = [a, b].map(intervals);
     if is_beside_plane(&x, &y) || is_beside_plane(&y, &x) {
@@ -74,7 +74,7 @@ pub(super) fn meet_without_rounding(a: &Triangle, b: &Triangle) -> bool {
     if let Some(is_meeting) = edges_meet(&x, &y) {
         return is_meeting;
     }
-    // Neighbours in nearly one plane.
+    // This decides neighbours that are nearly in one plane.
     if best_direction([a, b], &[*a], &[*b]).is_some_and(|n| is_separated(&[x], &[y], &n)) {
         return false;
     }
@@ -112,25 +112,25 @@ mod tests {
     }
 
     #[test]
-    fn touching_counts_and_the_next_double_does_not() {
+    fn touching_triangles_meet_and_triangles_one_double_apart_do_not() {
         let post = [[0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [0.75, 0.5, 1.0]];
         let tiny = f64::from_bits(1);
         assert!(meet(&FLOOR, &post));
         assert!(!meet(&FLOOR, &post.map(|p| [p[0], p[1], if p[2] == 0.0 { tiny } else { p[2] }])));
-        // Beyond the longest edge, by one unit in the last place.
+        // The post is beyond the longest edge, by one unit in the last place.
         let on_edge = moved(post, [0.5, 0.5, 0.0]);
         assert!(meet(&FLOOR, &on_edge));
         assert!(!meet(&FLOOR, &on_edge.map(|p| [p[0].next_up(), p[1], p[2]])));
     }
 
     #[test]
-    fn pierced_flat_and_degenerate_ones() {
+    fn pierced_coplanar_and_degenerate_triangles_meet_exactly() {
         let needle = [[0.5, 0.5, -1.0], [0.5, 0.5, 1.0], [0.5, 0.5, 1.0]];
         assert!(meet(&FLOOR, &needle) && meet(&needle, &FLOOR));
         assert!(!meet(&FLOOR, &moved(needle, [1.0, 1.0, 0.0])));
         assert!(meet(&FLOOR, &FLOOR) && meet(&FLOOR, &moved(FLOOR, [2.0, 0.0, 0.0])));
         assert!(!meet(&FLOOR, &moved(FLOOR, [1.0, 1.5, 0.0])));
-        // One inside the other, in one plane.
+        // One triangle is inside the other, in one plane.
         assert!(meet(&FLOOR, &FLOOR.map(|p| [0.25 + p[0] / 8.0, 0.25 + p[1] / 8.0, 0.0])));
         let point = [[0.5, 0.25, 0.0]; 3];
         assert!(meet(&FLOOR, &point) && meet(&point, &point));
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn common_corners_are_no_other_common_point() {
+    fn a_common_corner_alone_does_not_count() {
         let apex = [0.0, 0.0, 0.0];
         let flat = [[2.0, -1.0, 0.0], [2.0, 1.0, 0.0]];
         assert!(!meet_beyond_corner(apex, flat, [[1.0, 0.0, 1.0], [2.0, 0.0, 1.0]]));
@@ -147,7 +147,7 @@ mod tests {
         assert!(meet_beyond_corner(apex, flat, [[1.0, 0.0, 1.0], [2.0, 0.0, -1.0]]));
         assert!(!meet_beyond_corner(apex, flat, [[1.0, 2.0, 1.0], [2.0, 4.0, -1.0]]));
         assert!(!meet_beyond_corner(apex, flat, [[-1.0, 0.0, 1.0], [-2.0, 0.0, -1.0]]));
-        // A triangle without area along the middle of the other, and opposite to it.
+        // One triangle has no area: it is along the middle of the other, then opposite to it.
         assert!(meet_beyond_corner(apex, flat, [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0]]));
         assert!(!meet_beyond_corner(apex, flat, [[-1.0, 0.0, 0.0], [-3.0, 0.0, 0.0]]));
         assert!(meet_beyond_corner(apex, flat, [[-1.0, 0.0, 0.0], [3.0, 0.0, 0.0]]));

@@ -1,4 +1,4 @@
-//! Big integers: coordinates in units of a power of two of which all are multiples. Signs do not depend on the unit.
+//! Big integers. Coordinates are in units of a power of two of which all are multiples. Signs do not depend on the unit.
 
 use num_bigint::{BigInt, Sign};
 
@@ -14,7 +14,7 @@ pub struct Whole(BigInt);
 #[derive(Clone, Copy, Debug)]
 pub struct Unit(i32);
 
-/// The number as `whole * 2^exponent`, with an odd whole number; none for 0. Panics where it is not finite.
+/// Returns the number as `whole * 2^exponent`, with an odd integer `whole`; None for 0. Panics if it is not finite.
 fn split(x: f64) -> Option<(i64, i32)> {
     assert!(x.is_finite(), "coordinates are finite");
     if x == 0.0 {
@@ -30,13 +30,13 @@ fn split(x: f64) -> Option<(i64, i32)> {
 }
 
 impl Unit {
-    /// The largest unit of which all coordinates are multiples.
+    /// Returns the largest unit of which all coordinates are multiples.
     pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
         let exponents = points.into_iter().flatten().filter_map(|x| Some(split(*x)?.1));
         Self(exponents.min().unwrap_or(0))
     }
 
-    /// The bits of the largest coordinate in this unit.
+    /// Returns the bits of the largest coordinate in this unit.
     pub fn bits<'p>(self, points: impl IntoIterator<Item = &'p Point>) -> i32 {
         let sizes = points.into_iter().flatten().filter_map(|x| {
             let (odd, exponent) = split(*x)?;
@@ -45,13 +45,13 @@ impl Unit {
         sizes.max().unwrap_or(0)
     }
 
-    /// A coordinate in this unit, of fixed width. It must fit.
+    /// Returns a coordinate in this unit, of fixed width. It must fit.
     pub fn wide<const N: usize>(self, x: f64) -> Wide<N> {
         let (odd, exponent) = split(x).unwrap_or((0, self.0));
         Wide::of(odd, exponent - self.0)
     }
 
-    /// A coordinate in this unit.
+    /// Returns a coordinate in this unit.
     pub fn whole(self, x: f64) -> Whole {
         Whole(split(x).map_or(BigInt::ZERO, |(odd, exponent)| BigInt::from(odd) << (exponent - self.0)))
     }

@@ -1,7 +1,7 @@
-//! Whole numbers of fixed width: as big integers, without memory of their own.
+//! Integers of fixed width. They compute like big integers, without allocations.
 //!
-//! A predicate of degree 4 in differences of coordinates is at most `4 (bits + 1) + 8` bits long, so it fits where
-//! [`fits`] says so.
+//! A predicate of degree 4 in differences of coordinates is at most `4 (bits + 1) + 8` bits long. [`fits`] states whether
+//! this is within the width.
 
 use super::number::Number;
 
@@ -9,13 +9,13 @@ use super::number::Number;
 #[derive(Clone, Copy, Debug)]
 pub struct Wide<const N: usize>([u64; N]);
 
-/// Whether predicates of degree 4 fit, for coordinates of so many bits.
+/// Whether predicates of degree 4 fit, for coordinates of `bits` bits.
 pub fn fits<const N: usize>(bits: i32) -> bool {
     4 * (bits + 1) + 8 < 64 * N as i32
 }
 
 impl<const N: usize> Wide<N> {
-    /// The number `odd * 2^shift`. It must fit.
+    /// Returns the number `odd * 2^shift`, which must fit.
     pub fn of(odd: i64, shift: i32) -> Self {
         let (word, bit) = (shift as usize / 64, shift % 64);
         let magnitude = u128::from(odd.unsigned_abs()) << bit;
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_those_of_big_integers() {
+    fn fixed_width_integers_compute_like_big_integers() {
         let mut random = Random::new("wide", 1);
         for _ in 0..2000 {
             let mut number = || {

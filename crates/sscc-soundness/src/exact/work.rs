@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use cpu_time::ThreadTime;
 
-/// Decisions of a configuration by whole numbers.
+/// Maximum number of decisions by integers in one configuration.
 const MOST: u64 = 60_000;
 
 thread_local! {
@@ -21,7 +21,7 @@ pub fn begin(limit: Option<Duration>) {
     TIME.set(limit.map(|limit| (ThreadTime::now(), limit)));
 }
 
-/// Counts a decision.
+/// Counts a decision by integers.
 pub fn count() {
     SPENT.set(SPENT.get() + 1);
 }

@@ -10,7 +10,7 @@ use crate::random::Random;
 /// A mesh and its modes.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// What it is, for messages.
+    /// Description for messages.
     pub name: String,
     /// Rest positions.
     pub points: Vec<Point>,
@@ -18,23 +18,23 @@ pub struct Model {
     pub faces: Vec<[u32; 3]>,
     /// The number of modes.
     pub rank: usize,
-    /// `[vertex * rank + mode]`.
+    /// Displacement of each vertex by each mode, at index `vertex * rank + mode`.
     pub modes: Vec<Point>,
     /// Pairs of modes that are nearly equal: they cancel where their weights are opposite.
     pub twins: Vec<(usize, usize)>,
 }
 
-/// How extreme a model may be.
+/// Range of lengths of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extremes {
-    /// Also lengths down to 1e-300 and up to 1e60, and far from the origin.
+    /// Lengths from 1e-300 to 1e60, and positions far from the origin.
     All,
     /// Lengths near 1.
     Shape,
 }
 
 impl Model {
-    /// A random model of at least about `least` triangles.
+    /// Returns a random model of about `least` triangles or more.
     pub fn random(random: &mut Random, least: usize, extremes: Extremes) -> Self {
         let surface = surfaces::random(random, least);
         let (modes, twins, rank) = modes::random(random, &surface);
@@ -49,7 +49,7 @@ impl Model {
         model
     }
 
-    /// Some corners get a vertex of their own, as along the seams of a file for drawing.
+    /// Gives some corners a vertex of their own, as at texture seams.
     fn split_vertices(&mut self, random: &mut Random) {
         let rank = self.rank;
         for corner in self.faces.iter_mut().flatten() {
@@ -81,7 +81,7 @@ impl Model {
         }
     }
 
-    /// The shape at q, as `docs/guarantees.md` defines it.
+    /// Returns the shape at q, as `docs/guarantees.md` defines it.
     pub fn positions(&self, q: &[f64]) -> Vec<Point> {
         let at = |(v, p): (usize, &Point)| -> Point {
             let modes = &self.modes[v * self.rank..(v + 1) * self.rank];

@@ -1,10 +1,10 @@
-//! Modes: smooth, local, affine, closing, nearly equal to another one, cancelling, noisy, and nothing at all.
+//! Random modes: smooth, local, affine, closing, nearly equal to another mode, cancelling, noisy, and zero.
 
 use super::surfaces::Surface;
 use crate::exact::Point;
 use crate::random::Random;
 
-/// Each vertex's displacement in one mode.
+/// Displacement of each vertex in one mode.
 type Mode = Vec<Point>;
 
 fn along(n: Point, amount: f64) -> Point {
@@ -23,7 +23,7 @@ fn affine(random: &mut Random, surface: &Surface) -> Mode {
     let (a, b, axis) = (random.point(), random.point(), random.below(3));
     match random.below(4) {
         0 => each(surface, |_, _| a),
-        // A turn, to first order.
+        // A rotation, to first order.
         1 => each(surface, |_, p| {
             [a[1] * p[2] - a[2] * p[1], a[2] * p[0] - a[0] * p[2], a[0] * p[1] - a[1] * p[0]]
         }),
@@ -32,7 +32,7 @@ fn affine(random: &mut Random, surface: &Surface) -> Mode {
     }
 }
 
-/// Parts move towards each other by exact amounts.
+/// Returns a mode that moves parts towards each other by exact amounts.
 fn closing(random: &mut Random, surface: &Surface) -> Mode {
     let (axis, step) = (random.below(3), random.of(&[1.0, 0.5, 0.125]));
     let chosen = random.below(surface.parts.iter().max().map_or(1, |part| part + 1));
@@ -61,7 +61,7 @@ fn single(random: &mut Random, surface: &Surface) -> Mode {
     each(surface, |v, _| if v == vertex { w } else { [0.0; 3] })
 }
 
-/// Modes in vertex-major order, pairs of nearly equal ones, and their number.
+/// Returns modes in vertex-major order, the pairs of nearly equal modes, and the number of modes.
 pub fn random(random: &mut Random, surface: &Surface) -> (Vec<Point>, Vec<(usize, usize)>, usize) {
     let large = if random.one_in(40) { 200 } else { 48 };
     let rank = random.of(&[1, 2, 2, 3, 4, 6, 8, 8, 12, 20, large]);

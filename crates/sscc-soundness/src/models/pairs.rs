@@ -3,14 +3,14 @@
 use crate::exact::{Point, Triangle};
 use crate::random::Random;
 
-/// How a pair is drawn.
+/// Number of ways to draw a pair.
 const KINDS: usize = 7;
 
 fn plus(p: Point, q: Point) -> Point {
     std::array::from_fn(|c| p[c] + q[c])
 }
 
-/// A triangle near the origin: with corners on a grid of integers, anywhere, thin, or without area.
+/// Returns a triangle near the origin: with corners on a grid of integers, at random positions, thin, or without area.
 pub fn triangle(random: &mut Random) -> Triangle {
     let grid = 1 + random.below(4);
     let mut t: Triangle = match random.below(3) {
@@ -32,7 +32,7 @@ pub fn triangle(random: &mut Random) -> Triangle {
     t
 }
 
-/// A point of a triangle: a corner, on an edge, or inside, with weights that are powers of two.
+/// Returns a point of a triangle: a corner, on an edge, or inside, with weights that are multiples of 1/8.
 fn point_of(random: &mut Random, t: &Triangle) -> Point {
     let w = random.of(&[
         [1.0, 0.0, 0.0],
@@ -45,7 +45,7 @@ fn point_of(random: &mut Random, t: &Triangle) -> Point {
     std::array::from_fn(|c| (0..3).map(|i| w[i] * t[(first + i) % 3][c]).sum())
 }
 
-/// A few units in the last place beside a number.
+/// Returns a number within a few units in the last place of another one.
 fn beside(random: &mut Random, x: f64) -> f64 {
     match random.below(6) {
         0 => x.next_up(),
@@ -55,18 +55,18 @@ fn beside(random: &mut Random, x: f64) -> f64 {
     }
 }
 
-/// Two triangles.
+/// Returns two triangles.
 pub fn pair(random: &mut Random) -> (Triangle, Triangle) {
     let a = triangle(random);
     let mut b = triangle(random);
     match random.below(KINDS) {
-        // A point of one is at a point of the other.
+        // A point of the second triangle is at a point of the first.
         0..3 => {
             let (p, q) = (point_of(random, &a), point_of(random, &b));
             let by: Point = std::array::from_fn(|c| p[c] - q[c]);
             b = b.map(|x| plus(x, by));
         }
-        // In the plane of the other, as far as numbers go.
+        // The second triangle is in the plane of the first, up to rounding.
         3 => {
             b = std::array::from_fn(|_| {
                 let [x, y] = [random.signed(), random.signed()];
@@ -74,7 +74,7 @@ pub fn pair(random: &mut Random) -> (Triangle, Triangle) {
                 std::array::from_fn(|c| a[0][c] + s * (a[1][c] - a[0][c]) + t * (a[2][c] - a[0][c]))
             })
         }
-        // Near the other.
+        // The second triangle is a copy of the first, moved by a small distance.
         4 => {
             let far = random.power(-16.0, 0.0);
             let by = random.point().map(|x| x * far);
@@ -93,7 +93,7 @@ pub fn pair(random: &mut Random) -> (Triangle, Triangle) {
     (a, b)
 }
 
-/// A factor of lengths: usually 1, else extreme.
+/// Returns a factor of lengths: usually 1, else extreme.
 pub fn scale(random: &mut Random) -> f64 {
     match random.below(12) {
         0 => random.power(-323.0, -200.0),

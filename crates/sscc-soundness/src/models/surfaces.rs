@@ -6,18 +6,18 @@ use sscc_testing::{FlexibleShape, Shape};
 use crate::exact::Point;
 use crate::random::Random;
 
-/// A surface, and to which part of it each vertex belongs.
+/// A surface whose vertices are divided into parts.
 pub struct Surface {
     pub name: String,
     pub points: Vec<Point>,
     pub faces: Vec<[u32; 3]>,
-    /// The part of each vertex: a layer, or 0.
+    /// The part of each vertex: a layer or a triangle, or 0.
     pub parts: Vec<usize>,
-    /// How near parts come to each other, about: noise stays below it, most of the time.
+    /// Approximate distance between parts. Noise usually stays below it.
     pub gap: f64,
 }
 
-/// A grid of squares, each as two triangles, at the places that a function of two shares has.
+/// Returns a grid of squares, each made of two triangles. `at` maps two coordinates in [0, 1] to a position.
 fn sheet(columns: usize, rows: usize, at: impl Fn(f64, f64) -> Point) -> (Vec<Point>, Vec<[u32; 3]>) {
     let mut points = Vec::new();
     for i in 0..=columns {
@@ -91,7 +91,7 @@ fn needles(random: &mut Random, least: usize) -> Surface {
     Surface { name: format!("needles {thin:.0e}"), parts: vec![0; points.len()], points, faces, gap: thin }
 }
 
-/// A folded sheet in one plane, or along one line.
+/// Returns a folded sheet in one plane, or along one line.
 fn flat(random: &mut Random, least: usize) -> Surface {
     let (folds, is_line) = (random.of(&[1.0, 1.0, 2.0, 3.0]), random.one_in(5));
     let side = ((least as f64 / 2.0).sqrt().ceil() as usize).max(4);
@@ -105,7 +105,7 @@ fn flat(random: &mut Random, least: usize) -> Surface {
     Surface { name: format!("{kind} mesh"), parts: vec![0; points.len()], points, faces, gap: 1e-3 }
 }
 
-/// Small triangles with corners on a grid of integers: contacts of every exact kind.
+/// Returns small triangles with corners on a grid of integers, which have exact contacts of every kind.
 fn soup(random: &mut Random, least: usize) -> Surface {
     let size = 2 + ((least as f64).cbrt() as usize) * (1 + random.below(4));
     let mut points: Vec<Point> = Vec::new();
@@ -129,7 +129,7 @@ fn flexible(random: &mut Random) -> Surface {
     Surface { name: format!("{kind:?}"), parts: vec![0; points.len()], points, faces, gap: 1e-3 }
 }
 
-/// A random surface of at least about so many triangles.
+/// Returns a random surface of about `least` triangles or more.
 pub fn random(random: &mut Random, least: usize) -> Surface {
     let mut surface = match random.below(16) {
         0..4 => layers(random, least),

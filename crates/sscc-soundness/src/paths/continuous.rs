@@ -1,5 +1,5 @@
-//! Continuous queries: every pair that collides at an end must be listed, pairs that are not listed are attacked one by one, and
-//! so are times of impact.
+//! Continuous queries: every pair that collides at an end must be listed. Pairs that are not listed, and times of impact, are
+//! attacked one by one.
 
 use sscc::{Impact, Proof, Query};
 
@@ -13,10 +13,10 @@ use crate::random::Random;
 use crate::setup::{Setup, Wanted};
 use crate::tally::Tally;
 
-/// Pairs of one query that are attacked.
+/// Maximum number of pairs of one query that are attacked.
 const MOST_ATTACKS: usize = 24;
 
-/// Some motions of one model.
+/// Runs some motions of one model.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let extremes = if random.one_in(3) { Extremes::All } else { Extremes::Shape };
     let triangles = random.of(&[130, 160, 220]);

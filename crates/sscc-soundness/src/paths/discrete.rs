@@ -1,5 +1,5 @@
-//! Discrete queries by certificates: at random q, at the edge of the root's radius, and next to contacts that are found by
-//! halving the way from a free q to a colliding one. Only q beyond the root's radius are counted.
+//! Discrete queries by certificates: at random q, at the edge of the root's radius, and next to contacts, which are found by
+//! bisection between a free q and a colliding one. Only q beyond the root's radius are counted.
 
 use sscc::parts::ProvenShares;
 use sscc::{Proof, Query, Statistics};
@@ -11,17 +11,17 @@ use crate::random::Random;
 use crate::setup::{Setup, Wanted};
 use crate::tally::Tally;
 
-/// About the rest pose.
+/// Runs queries with certificates about the rest pose.
 pub fn run_rest(random: &mut Random, tally: &mut Tally, share: f64) {
     run(random, tally, share, false, false);
 }
 
-/// About other centres.
+/// Runs queries with certificates about other centres.
 pub fn run_centers(random: &mut Random, tally: &mut Tally, share: f64) {
     run(random, tally, share, true, false);
 }
 
-/// Under dense metrics.
+/// Runs queries with dense metrics.
 pub fn run_dense(random: &mut Random, tally: &mut Tally, share: f64) {
     let has_center = random.one_in(3);
     run(random, tally, share, has_center, true);
@@ -61,7 +61,7 @@ fn run(random: &mut Random, tally: &mut Tally, share: f64, has_center: bool, is_
     }
 }
 
-/// Compares answers.
+/// Compares answers of a query with the oracle.
 struct Asker<'s, 't> {
     setup: &'s Setup,
     query: Query,
@@ -69,7 +69,7 @@ struct Asker<'s, 't> {
 }
 
 impl Asker<'_, '_> {
-    /// Whether the shape is free at q; none where q is out of range.
+    /// Compares the answer at q. Returns whether the shape is free there; None if q is out of range.
     fn ask(&mut self, q: &[f64]) -> Option<bool> {
         let Self { setup, query, tally } = self;
         let found = match query.discrete(q) {
@@ -95,7 +95,7 @@ impl Asker<'_, '_> {
         Some(exact.is_empty())
     }
 
-    /// Halves the way from a free q to a colliding one, and asks on the way.
+    /// Bisects the line from a free q to a colliding one, and compares the answer at each midpoint.
     fn bisect(&mut self, free: &[f64], colliding: &[f64], steps: usize) {
         let (mut lower, mut upper) = (0.0, 1.0);
         for _ in 0..steps {
@@ -114,7 +114,7 @@ impl Asker<'_, '_> {
     }
 }
 
-/// Counts what a search did.
+/// Counts the kind of proof and the kinds of tests of a search.
 fn count_proof(setup: &Setup, statistics: &Statistics, tally: &mut Tally) {
     match statistics.proof {
         Proof::Radius => tally.reach("proof by radius"),

@@ -1,4 +1,4 @@
-//! Frames of a mesh without certificates, by the detector: discrete, and from one frame to the next.
+//! Frames of a mesh without certificates, by the detector: discrete queries, and continuous ones from one frame to the next.
 
 use sscc::glam::DVec3;
 use sscc::{ContactFilter, Detector, Neighbours};
@@ -13,7 +13,7 @@ use crate::random::Random;
 use crate::setup::{direction, mesh_of};
 use crate::tally::Tally;
 
-/// Some frames of one mesh.
+/// Runs some frames of one mesh.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let extremes = if random.one_in(2) { Extremes::All } else { Extremes::Shape };
     let least = random.of(&[100, 300, 700]);
@@ -24,7 +24,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     };
     let with_one_vertex = random.one_in(3);
     let neighbours = if with_one_vertex { Neighbours::IncludeOneVertex } else { Neighbours::Exclude };
-    // Vertices that are welded at rest may move apart; only with the rule that excludes neighbours is that of no account.
+    // Vertices that are welded at rest may move apart. This has no effect only if neighbours are excluded.
     let weld = !with_one_vertex && !random.one_in(6);
     let Ok(mut detector) = Detector::with_filter(&mesh, &ContactFilter::new(neighbours).weld(weld)) else {
         tally.wrong(|| format!("{}: its own mesh is refused", model.name));
@@ -55,7 +55,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
             }
         }
         if random.one_in(3) {
-            // Both ends were answered before, or are the rest pose.
+            // Both ends had a discrete answer before, or are the rest pose.
             match detector.continuous(&vectors(&last), &vectors(&frame)) {
                 Ok(impacts) => {
                     let impacts = impacts.to_vec();
@@ -76,7 +76,7 @@ fn is_within_range(frame: &[Point]) -> bool {
     frame.iter().flatten().all(|x| x.abs() <= 0.5 * sscc::limits::LARGEST)
 }
 
-/// The next frame: of the modes, with noise, or a small step.
+/// Returns the next frame: from the modes, with noise, or with a small step.
 fn next(random: &mut Random, model: &Model, size: f64, last: &[Point]) -> Vec<Point> {
     let step = size * random.power(-6.0, -0.3);
     let y: Vec<f64> = direction(random, model).iter().map(|y| y * step).collect();

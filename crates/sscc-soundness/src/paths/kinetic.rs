@@ -9,7 +9,7 @@ use crate::random::Random;
 use crate::setup::{Setup, Wanted, direction};
 use crate::tally::Tally;
 
-/// Some motions of one model.
+/// Runs some motions of one model.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let extremes = if random.one_in(3) { Extremes::All } else { Extremes::Shape };
     let triangles = random.of(&[150, 200, 300]);
@@ -24,7 +24,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         return;
     };
     for _ in 0..some(24, share) {
-        // The same query: a jump from one motion to the next.
+        // One query serves all motions, so it jumps from the end of one to the start of the next.
         motion(random, tally, &setup, &mut query, 120);
     }
 }
@@ -45,7 +45,7 @@ fn motion(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kin
             break;
         }
         match kind {
-            // Away from the centre and back.
+            // A motion away from the centre and back.
             0 => q
                 .iter_mut()
                 .zip(&length)
@@ -64,7 +64,7 @@ fn motion(random: &mut Random, tally: &mut Tally, setup: &Setup, query: &mut Kin
     }
 }
 
-/// Compares one step; false where q is out of range.
+/// Compares the answer of one step. Returns false if q is out of range.
 fn ask(
     random: &mut Random,
     tally: &mut Tally,
@@ -74,7 +74,7 @@ fn ask(
 ) -> bool {
     let place = || format!("{}: q={q:?} after {last:?}", setup.model.name);
     let exact = setup.oracle.pairs(&setup.model.positions(q));
-    // Before the discrete query of this step, as a simulation asks.
+    // The continuous query comes before the discrete one of this step, as in a simulation.
     if random.one_in(4) && !exact.is_empty() {
         swept(tally, setup, query, [last, q], &exact, &place);
     }
@@ -88,7 +88,7 @@ fn ask(
     let statistics = query.statistics();
     tally.compare(&found, &exact, place);
     if statistics.norm >= setup.certificates.root_radius() {
-        // A plain search opens the root at least.
+        // A search without active pairs opens at least the root.
         let is_search = statistics.proof == Proof::Search;
         tally.reach_if(is_search && statistics.opened == 0, "active pairs");
         tally.reach_if(statistics.proof == Proof::Local, "proof by local");
@@ -99,7 +99,7 @@ fn ask(
     true
 }
 
-/// A motion that ends in these pairs must list them.
+/// Checks that a motion that ends in these pairs lists them.
 fn swept(
     tally: &mut Tally,
     setup: &Setup,

@@ -1,5 +1,5 @@
-//! Safe scales, sweeps and free configurations: each promises that a part of a line, or a q, is free. The promise is attacked
-//! at its end and at random places.
+//! Safe scales, sweeps and free configurations. Each answer promises that a part of a line in q-space, or one q, is free. The
+//! promise is attacked at its end and at random places.
 
 use sscc::{Query, ResolveOptions, SweepOutcome};
 
@@ -10,7 +10,7 @@ use crate::random::Random;
 use crate::setup::{Setup, Wanted};
 use crate::tally::Tally;
 
-/// A model for questions that take as long as some queries.
+/// Returns a model for queries that take as long as several discrete queries.
 fn setup(random: &mut Random, tally: &mut Tally) -> Option<(Setup, Query)> {
     let extremes = if random.one_in(3) { Extremes::All } else { Extremes::Shape };
     let wanted = Wanted {
@@ -31,7 +31,7 @@ fn setup(random: &mut Random, tally: &mut Tally) -> Option<(Setup, Query)> {
     }
 }
 
-/// Safe scales.
+/// Runs queries for safe scales.
 pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
@@ -70,7 +70,7 @@ pub fn run_scales(random: &mut Random, tally: &mut Tally, share: f64) {
     }
 }
 
-/// Sweeps of one mode.
+/// Runs sweeps of one mode.
 pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
@@ -101,7 +101,7 @@ pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
         let Some(free) = sweep.first_free else {
             tally.reach("colliding at start");
             if pairs_at(from).is_empty() {
-                tally.wrong(|| format!("{place}: it does not collide at the start"));
+                tally.wrong(|| format!("{place}: the shape does not collide at the start"));
             }
             continue;
         };
@@ -125,7 +125,7 @@ pub fn run_sweeps(random: &mut Random, tally: &mut Tally, share: f64) {
     }
 }
 
-/// Free configurations near colliding ones.
+/// Runs queries for free configurations near colliding ones.
 pub fn run_resolves(random: &mut Random, tally: &mut Tally, share: f64) {
     let Some((setup, mut query)) = setup(random, tally) else { return };
     let share = share * setup.share();
@@ -156,7 +156,7 @@ pub fn run_resolves(random: &mut Random, tally: &mut Tally, share: f64) {
             tally.false_negative(|| format!("{}: {pairs:?} collide", place()));
         }
         if resolved.change > resolved.safe_scale_change {
-            tally.wrong(|| format!("{}: farther than the straight way", place()));
+            tally.wrong(|| format!("{}: farther than a step back along the line", place()));
         }
     }
 }

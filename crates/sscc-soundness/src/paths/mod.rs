@@ -1,5 +1,5 @@
-//! The paths of the campaign, each with the number of answers that a campaign compares at least. One configuration is a seed: a
-//! model, or some thousand pairs of triangles.
+//! The paths of the campaign, each with the minimum number of answers that a campaign compares. One configuration follows
+//! from one seed: it is a model, or some thousand pairs of triangles.
 
 mod continuous;
 mod discrete;
@@ -18,11 +18,11 @@ use crate::tally::Tally;
 pub struct Path {
     /// Its name, on the command line and in the record.
     pub name: &'static str,
-    /// Answers to compare.
+    /// Number of answers to compare.
     pub wanted: u64,
-    /// The inner paths that must be reached.
+    /// The inner paths that the campaign must reach.
     pub inner: &'static [&'static str],
-    /// Runs one configuration; the share of a whole one, at most 1.
+    /// Runs one configuration. The last argument is its size as a share of the full size, at most 1.
     pub run: fn(&mut Random, &mut Tally, f64),
 }
 
@@ -37,7 +37,7 @@ const SEARCHES: &[&str] = &[
     "exceptions",
 ];
 
-/// All of them.
+/// All paths.
 pub const PATHS: [Path; 12] = [
     Path {
         name: "triangle-pairs",
@@ -88,7 +88,7 @@ pub const PATHS: [Path; 12] = [
     Path { name: "frames", wanted: 100_000, inner: &["colliding", "swept"], run: frames::run },
 ];
 
-/// The path of that name.
+/// Returns the path of that name.
 pub fn find(name: &str) -> Option<&'static Path> {
     PATHS.iter().find(|path| path.name == name)
 }

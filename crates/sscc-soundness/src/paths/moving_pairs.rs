@@ -1,6 +1,6 @@
-//! The time of impact of two moving triangles. A pair that is called free is attacked by halving time, exactly; where that ends
-//! without a result, by the roots of all polynomials that could be a first contact. Times of impact are attacked before them, and
-//! the distance then is compared with the tolerance.
+//! The time of impact of two moving triangles. A pair that the core reports as free is attacked by bisection of time,
+//! exactly. If that ends without a result, the roots of all polynomials that could be a first contact decide. A time of
+//! impact is attacked in the times before it, and the distance at that time is compared with the tolerance.
 
 use num_rational::BigRational;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
@@ -13,10 +13,10 @@ use crate::models::pairs;
 use crate::random::Random;
 use crate::tally::Tally;
 
-/// A triangle at both ends.
+/// A triangle at both ends of a motion.
 pub type Ends = [Triangle; 2];
 
-/// Some thousand pairs.
+/// Runs some thousand pairs.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     for _ in 0..some(1000, share) {
         let (a, b) = ends(random);
@@ -26,7 +26,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         let found = impact_triangle_triangle(&x, &y, Impact::TOLERANCE);
         tally.answer();
         tally.reach_if(a[0][0] == a[0][1] || b[0][0] == b[0][1], "no area");
-        // The roots take a thousand times longer.
+        // The computation of roots takes a thousand times longer.
         let effort = if random.one_in(200) { Effort::Roots } else { Effort::Halving };
         match found {
             None => attack_free(tally, &a, &b, effort),
@@ -38,21 +38,21 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     }
 }
 
-/// How far an attack goes.
+/// Methods of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// Time is halved.
+    /// Bisection of time.
     Halving,
-    /// Where that does not decide, roots of polynomials do.
+    /// Bisection of time, then roots of polynomials if it does not decide.
     Roots,
 }
 
-/// Both for the core.
+/// Returns a moving triangle of the core.
 pub fn moving([t0, t1]: &Ends) -> MovingTriangle {
     MovingTriangle { t0: corners(t0), t1: corners(t1) }
 }
 
-/// Two moving triangles: from one pair to another one, turned, or as one.
+/// Returns two moving triangles: from one pair to another one, with permuted corners, or with common translations.
 fn ends(random: &mut Random) -> (Ends, Ends) {
     let (a0, b0) = pairs::pair(random);
     let (a1, b1) = pairs::pair(random);
@@ -71,7 +71,7 @@ fn ends(random: &mut Random) -> (Ends, Ends) {
     if random.one_in(2) { (a, b) } else { ([a[1], a[0]], [b[1], b[0]]) }
 }
 
-/// Attacks a pair that is called free.
+/// Attacks a pair that the core reports as free.
 pub fn attack_free(tally: &mut Tally, a: &Ends, b: &Ends, effort: Effort) {
     let contact = match free_until([&a[0], &a[1]], [&b[0], &b[1]], 1.0) {
         Verdict::Free => {
@@ -89,18 +89,20 @@ pub fn attack_free(tally: &mut Tally, a: &Ends, b: &Ends, effort: Effort) {
         }
     };
     if let Some(t) = contact {
-        tally.false_negative(|| format!("called free, but they meet at t={t} (NaN: at a root): {a:?} {b:?}"));
+        tally.false_negative(|| {
+            format!("reported as free, but they meet at t={t} (NaN: at a root): {a:?} {b:?}")
+        });
     }
 }
 
 /// Attacks a time of impact.
 pub fn attack_impact(random: &mut Random, tally: &mut Tally, a: &Ends, b: &Ends, time: f64, effort: Effort) {
     if !(0.0..=1.0).contains(&time) {
-        tally.wrong(|| format!("a time of impact of {time}: {a:?} {b:?}"));
+        tally.wrong(|| format!("the time of impact {time} is not in [0, 1]: {a:?} {b:?}"));
         return;
     }
     tally.reach("impact checked");
-    // Denominators of smaller times are too large to be exact in a double.
+    // Denominators of smaller times are too large for a double.
     if time > 1e-60 {
         let until =
             if effort == Effort::Roots { time.next_down() } else { time * (1.0 - random.power(-9.0, -1.0)) };
@@ -116,9 +118,9 @@ pub fn attack_impact(random: &mut Random, tally: &mut Tally, a: &Ends, b: &Ends,
     }
 }
 
-/// At the time of impact the distance is within the tolerance.
+/// Checks that the distance at the time of impact is within the tolerance.
 fn check_distance(tally: &mut Tally, a: &Ends, b: &Ends, time: f64) {
-    // From the first corner of a at the same end.
+    // Coordinates are relative to the first corner of a at the same end.
     let of_end = |end: usize| {
         let origin = a[end][0];
         let corners = a[end].iter().chain(&b[end]);

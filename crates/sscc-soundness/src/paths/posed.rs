@@ -1,4 +1,4 @@
-//! Two shapes in the world against each other, at rest and in motion, and two meshes by the detector.
+//! Queries of two posed shapes in the world, discrete and continuous, and of two meshes by the detector.
 
 use sscc::glam::{DMat3, DVec3};
 use sscc::parts::{Pose, PosedShape, SweptShape};
@@ -14,7 +14,7 @@ use crate::random::Random;
 use crate::setup::{Setup, Wanted, mesh_of};
 use crate::tally::Tally;
 
-/// A place in the world, in plain numbers.
+/// A pose in the world, in plain numbers.
 #[derive(Clone, Debug)]
 struct Place {
     columns: [Point; 3],
@@ -41,7 +41,7 @@ impl Place {
         Pose { rotation: DMat3 { x_axis, y_axis, z_axis }, translation: DVec3::from_array(self.translation) }
     }
 
-    /// Products and sums in a fixed order.
+    /// Applies the pose to a point. Products and sums are in the order of the core.
     fn apply(&self, p: Point) -> Point {
         let [x, y, z] = self.columns;
         std::array::from_fn(|c| {
@@ -57,7 +57,7 @@ fn triangles(setup: &Setup, q: &[f64], place: &Place) -> Vec<Triangle> {
     setup.model.faces.iter().map(|face| face.map(|v| points[v as usize])).collect()
 }
 
-/// Two shapes at some places.
+/// Runs two shapes at some poses.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let wanted = Wanted { triangles: 130, extremes: Extremes::Shape, has_center: false, is_dense: false };
     let (Ok(x), Ok(y)) = (Setup::random(random, &wanted), Setup::random(random, &wanted)) else {
@@ -100,7 +100,7 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     two_meshes(random, tally, [&x, &y], some(40, share));
 }
 
-/// One shape moves from here to another place: pairs that collide here, or there, must be listed.
+/// Moves one shape to another pose. Pairs that collide at either end must be listed.
 fn swept(
     random: &mut Random,
     tally: &mut Tally,
@@ -145,7 +145,7 @@ fn swept(
     }
 }
 
-/// The same meshes by the detector.
+/// Runs the same meshes with the detector.
 fn two_meshes(random: &mut Random, tally: &mut Tally, [x, y]: [&Setup; 2], count: usize) {
     let (Ok(mesh_x), Ok(mesh_y)) = (mesh_of(&x.model), mesh_of(&y.model)) else { return };
     let (mut a, mut b) = (Detector::new(&mesh_x), Detector::new(&mesh_y));

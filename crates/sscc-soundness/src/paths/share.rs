@@ -1,6 +1,6 @@
-//! Shares of a configuration: quick runs ask for less.
+//! Sizes of configurations: quick runs make fewer queries.
 
-/// How many of `count` a share asks for.
+/// Returns the share of `count`, at least 1.
 pub fn some(count: usize, share: f64) -> usize {
     ((count as f64 * share) as usize).clamp(1, count)
 }

@@ -1,4 +1,4 @@
-//! The exact test of two triangles, in every order of them and of their corners, with the same question asked otherwise.
+//! The exact test of two triangles, for several orders of the triangles and of their corners, with related tests for comparison.
 
 use sscc::glam::DVec3;
 use sscc::parts::{intersect_shared_vertex_pair, intersection_triangle_triangle};
@@ -10,12 +10,12 @@ use crate::models::pairs;
 use crate::random::Random;
 use crate::tally::Tally;
 
-/// Corners for the core.
+/// Returns the corners for the core.
 pub fn corners(t: &Triangle) -> [DVec3; 3] {
     t.map(DVec3::from_array)
 }
 
-/// Some thousand pairs.
+/// Runs some thousand pairs.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     for _ in 0..some(4000, share) {
         let (a, b) = pairs::pair(random);

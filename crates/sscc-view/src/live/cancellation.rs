@@ -6,7 +6,8 @@ use sscc::{CancelToken, Error, Progress};
 
 use crate::ViewError;
 
-/// Time limit of a search along a direction (s), which then ends with its result until then, and of a sweep, which has none.
+/// Time limit of a search along a direction, and of a sweep (s). At the limit a search returns its result so far; a sweep has
+/// none.
 pub(super) const MAX_SECONDS: u64 = 10;
 
 /// Cancels work at its time limit, if its client has left or has sent a newer request, or if the server ends. Each of
@@ -23,7 +24,7 @@ struct Conditions {
 }
 
 impl Cancellation {
-    /// `server`: the token of the server.
+    /// Creates the cancellation of a request. `server` is the token of the server.
     pub(super) fn new(
         server: Option<CancelToken>,
         is_over: impl Fn() -> bool + Send + Sync + 'static,

@@ -22,7 +22,7 @@ pub struct CheckRequest {
     /// A number that the answer repeats, so that the page recognises late answers.
     #[serde(default)]
     pub serial: u64,
-    /// Whether the answer lists the nodes that the certificates leave open.
+    /// Whether the answer lists the nodes that the certificates do not prove free.
     #[serde(default)]
     pub nodes: bool,
 }
@@ -48,7 +48,7 @@ pub struct CheckAnswer {
     pub microseconds: f64,
     /// Whether the root's certificate alone proved the shape free, apart from exceptions: its radius or its local certificate.
     pub root_certified: bool,
-    /// What proved the answer, apart from exceptions: `radius`, `local` or `search`.
+    /// Kind of the proof that decided the answer, apart from exceptions: `radius`, `local` or `search`.
     pub proof: &'static str,
     /// Number of opened nodes and node pairs.
     pub opened: u64,
@@ -58,7 +58,7 @@ pub struct CheckAnswer {
     pub triangle_tests: u64,
     /// `|z|` over the root's radius; `None` if the radius is 0.
     pub root_share: Option<f64>,
-    /// The nodes that the certificates leave open, on request.
+    /// The nodes that the certificates do not prove free, on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes: Option<Frontier>,
 }

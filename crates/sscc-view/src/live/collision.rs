@@ -18,7 +18,7 @@ pub struct DirectionRequest {
 pub struct DirectionAnswer {
     /// The safe scale: the certificates prove the shape free at every s up to it.
     certified: f64,
-    /// The first collision; `None` if there is none up to `searched`.
+    /// The first collision; `None` if the shape collides nowhere up to `searched`.
     first: Option<FirstCollision>,
     /// The end of the search, which covers every s up to it: the first collision, the time limit, or the s at which
     /// some vertex has moved by half the diagonal of the AABB.
@@ -32,8 +32,8 @@ pub struct DirectionAnswer {
 struct FirstCollision {
     /// The s of the collision; the shape is free at every smaller s.
     scale: f64,
-    /// The pairs that collide there. Thin sheets may pass each other between two numbers; then the pairs with the
-    /// earliest time of impact.
+    /// The pairs that collide there. Thin sheets may pass each other between two floating-point numbers; then these are the
+    /// pairs with the earliest time of impact.
     pairs: Vec<Pair>,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn along(
                     answer.searched = first.as_ref().map_or(to, |first| first.scale);
                     answer.first = first;
                 }
-                // The result until then is valid.
+                // The result until its time limit is valid.
                 Err(Error::Cancelled) if cancellation.is_wanted() && cancellation.is_over() => {
                     answer.complete = false;
                     break;
@@ -145,7 +145,7 @@ mod tests {
         });
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
-        // Radii that reach farther would leave nothing to search.
+        // Larger radii would prove the whole range free, without a search.
         let options = CertifyOptions::default().reach(1.0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let checks = Arc::new(AtomicU32::new(0));
@@ -164,7 +164,7 @@ mod tests {
         let (whole, checks) = separating(u32::MAX, u32::MAX);
         let whole = whole.unwrap();
         assert!(whole.complete && whole.first.is_none() && whole.searched > whole.certified, "{whole:?}");
-        // The safe scale is known by then, but not all segments are searched.
+        // The safe scale is found by then, but not all segments are searched.
         let late = checks - 4;
         let part = separating(late, u32::MAX).0.unwrap();
         assert!(!part.complete && part.first.is_none() && part.certified == whole.certified, "{part:?}");

@@ -17,7 +17,7 @@ pub struct IntervalsRequest {
     q: Vec<f64>,
     /// The mode, from 0.
     mode: usize,
-    /// The least and the largest weight.
+    /// The smallest and the largest weight.
     range: [f64; 2],
 }
 
@@ -31,7 +31,7 @@ pub(super) fn intervals(
     let ranges = [ModeRange { mode: *mode, low, high }];
     let found = query.sweep_intervals(q, &ranges, SAMPLES, None, cancellation);
     let mut found = found.map_err(|error| cancellation.explain(error))?;
-    // One range has one result.
+    // The request has one range, so there is one result.
     let found = found.pop().ok_or_else(|| ViewError::Request("there is no mode".into()))?;
     Ok(IntervalRow::new(found, &[]))
 }

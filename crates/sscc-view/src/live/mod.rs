@@ -103,12 +103,12 @@ impl Live {
         })
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The bytes of an array of the scene; `None` if no array has this name.
+    /// Returns the bytes of an array of the scene; `None` if no array has this name.
     pub fn array(&self, name: &str) -> Option<&[u8]> {
         self.arrays.get(name)
     }
@@ -124,7 +124,7 @@ impl Live {
     /// Returns the time and the number of pairs of the same query by the traditional method.
     ///
     /// # Errors
-    /// The errors of [`Live::check`].
+    /// The errors are those of [`Live::check`].
     pub fn traditional(&self, At { q }: &At) -> Result<TraditionalAnswer, ViewError> {
         let mut long = lock(&self.long);
         let query = match &mut long.traditional {
@@ -155,8 +155,8 @@ impl Live {
         })
     }
 
-    /// Returns how far the weight of one mode can go upwards and downwards until the shape touches itself. The sweep ends as
-    /// [`Live::safe_scale`], but without a result; searches along directions do not end it.
+    /// Returns the ranges of the weight of one mode, upwards and downwards, in which the shape does not touch itself. The
+    /// sweep is cancelled like [`Live::safe_scale`], but then has no result; searches along directions do not end it.
     ///
     /// # Errors
     /// If q is not a configuration of the model, the mode does not exist, or the range is empty; if the sweep ended
@@ -167,10 +167,10 @@ impl Live {
         })
     }
 
-    /// Returns the intervals of one mode's weight over which the shape collides. The search ends as [`Live::sweep`].
+    /// Returns the intervals of one mode's weight over which the shape collides. The search is cancelled like [`Live::sweep`].
     ///
     /// # Errors
-    /// As [`Live::sweep`].
+    /// The errors are those of [`Live::sweep`].
     pub fn intervals(
         &self,
         request: &IntervalsRequest,
@@ -181,7 +181,7 @@ impl Live {
         })
     }
 
-    /// Does work that ends early at the time limit, after a newer request of its kind, and when the client has left.
+    /// Runs work that is cancelled at the time limit, after a newer request of its kind, and when the client has left.
     fn newest<Q, T>(
         &self,
         Newest(newest): &Newest,
@@ -205,7 +205,7 @@ impl Live {
     /// Returns the AABBs of one level of the hierarchy at q.
     ///
     /// # Errors
-    /// The errors of [`Live::check`], and if the level does not exist.
+    /// The errors of [`Live::check`]; also if the level does not exist.
     pub fn boxes(&self, request: &BoxesRequest) -> Result<BoxesAnswer, ViewError> {
         nodes::boxes(&self.model, &self.certificates, request)
     }
@@ -215,7 +215,7 @@ impl Live {
     /// # Errors
     /// If there are too many frames, times do not ascend, or a q has not one finite number for each mode.
     pub fn animation(&self, request: &AnimationRequest) -> Result<Vec<u8>, ViewError> {
-        // One at a time, since each may need hundreds of megabytes.
+        // One motion at a time, since each may need hundreds of megabytes.
         let _turn = lock(&self.long);
         let name = self.scene.models.first().map_or("model", |model| model.name());
         animation::glb(name, &self.model, request)

@@ -1,4 +1,4 @@
-//! The hierarchy, its AABBs, and the nodes that the certificates leave open.
+//! The hierarchy, its AABBs, and the nodes that the certificates do not prove free.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! The sweep of one mode: a row of the column of first collisions.
+//! The sweep of one mode, for the page's column of first collisions.
 
 use serde::{Deserialize, Serialize};
 use sscc::{ModeRange, Pair, Query, Sweep, SweepOutcome};
@@ -14,7 +14,7 @@ pub struct SweepRequest {
     q: Vec<f64>,
     /// The mode, from 0.
     mode: usize,
-    /// The least and the largest weight.
+    /// The smallest and the largest weight.
     range: [f64; 2],
 }
 
@@ -23,15 +23,15 @@ pub struct SweepRequest {
 pub struct SweepAnswer {
     from: f64,
     to: f64,
-    /// The shape is proven free from `from` up to this weight; `None`: it collides at `from`.
+    /// The shape is proven free from `from` up to this weight; `None` if it collides at `from`.
     first_free: Option<f64>,
-    /// The first weight at which it collides; `None`: none.
+    /// The first weight at which the shape collides; `None` if it collides nowhere in the range.
     first_hit: Option<f64>,
     /// The first of the pairs that collide there, sorted.
     pairs: Vec<Pair>,
     /// The number of these pairs.
     count: usize,
-    /// What is unusual about the result.
+    /// The outcome in words, unless the sweep is free or ends at a collision.
     note: Option<String>,
 }
 
@@ -74,7 +74,7 @@ mod tests {
 
     use super::*;
 
-    /// The result for two triangles of which the upper one is lowered, and the number of checks for cancellation. After
+    /// Returns the result for two triangles of which the upper one is lowered, and the number of checks for cancellation. After
     /// `over` checks the time limit is reached; after `unwanted` checks the client has left.
     fn lowered(over: u32, unwanted: u32) -> (Result<Vec<SweepAnswer>, ViewError>, u32) {
         let below = [DVec3::ZERO, DVec3::X, DVec3::Y];

@@ -4,10 +4,10 @@ use glam::DVec3;
 use sscc::parts::{Intersection, Surface, contact_curves, contact_curves_between};
 use sscc::{Error, Pair};
 
-/// Calls `take` with both ends of each segment: those of the curves, and the outlines of coplanar contacts. Pairs that
-/// have no common point at these positions, as between two frames, have none.
+/// Calls `take` with both ends of each segment: the segments of the curves, and the outlines of coplanar contacts. Pairs
+/// without a common point at these positions (they meet between two frames) have no segments.
 ///
-/// `other` has the second triangle of each pair; none: `surface` has both.
+/// `other` has the second triangle of each pair; if None, `surface` has both triangles.
 pub(super) fn contact_segments(
     surface: Surface<'_>,
     other: Option<Surface<'_>>,
@@ -40,7 +40,7 @@ pub(super) fn contact_segments(
 mod tests {
     use super::*;
 
-    /// The segments of two triangles: one in the plane z = 0, the other with these corners.
+    /// Returns the segments of two triangles: one in the plane z = 0, the other with these corners.
     fn segments(second: [[f64; 3]; 3]) -> Vec<[[f64; 3]; 2]> {
         let first = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
         let positions: Vec<DVec3> = first.iter().chain(&second).map(|p| DVec3::from_array(*p)).collect();

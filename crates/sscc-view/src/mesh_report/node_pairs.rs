@@ -1,11 +1,11 @@
-//! The colliding pairs of two nodes of a scene in one frame, beside those of each node with itself.
+//! The colliding pairs of two nodes of a scene in one frame. The pairs of each node with itself are stored elsewhere.
 
 use sscc::Pair;
 
 /// The pairs of two bodies in a frame.
 pub(super) struct NodePairs {
     pub frame: usize,
-    /// The body of the first triangle of each pair, and that of the second.
+    /// The body of the first triangle of each pair, and the body of the second.
     pub bodies: [usize; 2],
     pub pairs: Vec<Pair>,
     /// Times of impact, one for each pair, of continuous checks.
@@ -21,7 +21,7 @@ impl NodePairs {
     }
 }
 
-/// Returns those of a frame; all are in the order of their frames.
+/// Returns the pairs of a frame. `all` is in the order of frames.
 pub(super) fn of_frame(all: &[NodePairs], frame: usize) -> &[NodePairs] {
     let start = all.partition_point(|pairs| pairs.frame < frame);
     let end = all.partition_point(|pairs| pairs.frame <= frame);

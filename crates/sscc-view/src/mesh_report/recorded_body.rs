@@ -10,7 +10,7 @@ use crate::scene::fits;
 /// The recording of one body. Positions are relative to the centre of the recording.
 pub(super) struct RecordedBody {
     pub name: String,
-    /// The node that it is.
+    /// The node of the scene, if the body is one.
     pub node: Option<usize>,
     /// Three vertex numbers for each triangle.
     pub faces: Vec<u32>,
@@ -19,7 +19,7 @@ pub(super) struct RecordedBody {
     pub positions: Vec<f32>,
     /// The AABB of all positions, as minimum and maximum.
     pub bounds: (DVec3, DVec3),
-    /// For each frame its pairs. Another body of the recording may have the second triangles.
+    /// For each frame its pairs. The second triangles may belong to another body of the recording.
     pub pairs: FrameLists<u32, 2>,
     /// Times of impact, one for each pair, of continuous checks.
     pub impacts: Vec<f32>,

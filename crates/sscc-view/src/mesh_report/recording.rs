@@ -14,13 +14,13 @@ const FRAMES_PER_SECOND: f64 = 30.0;
 pub(super) struct Recording {
     pub center: DVec3,
     pub bodies: Vec<RecordedBody>,
-    /// Time of each frame (s), of animations.
+    /// Time of each frame (s), for animations.
     pub times: Option<Vec<f64>>,
     pub frames: usize,
     pub is_continuous: bool,
-    /// Whether the pairs are those of the first body with the second one.
+    /// Whether each pair has one triangle of the first body and one of the second.
     pub is_between: bool,
-    /// The pairs of different bodies, of a scene.
+    /// The pairs of different bodies, for a scene.
     pub node_pairs: Vec<NodePairs>,
     /// The pairs that were not tested.
     pub left_out: LeftOut,
@@ -32,7 +32,7 @@ impl Recording {
         self.times.as_ref().is_some_and(|times| times.windows(2).all(|pair| pair[0] < pair[1]))
     }
 
-    /// The times by which the page plays (s).
+    /// Returns the times by which the page plays (s).
     pub fn playback_times(&self) -> Vec<f64> {
         match &self.times {
             Some(times) if self.is_timed() => times.clone(),
@@ -40,13 +40,13 @@ impl Recording {
         }
     }
 
-    /// The number of pairs of each frame, over all bodies.
+    /// Returns the number of pairs of each frame, over all bodies.
     pub fn counts(&self) -> Vec<u64> {
         let of_frame = |frame| (0..self.bodies.len()).map(|body| self.pairs_of(body, frame)).sum();
         (0..self.frames).map(of_frame).collect()
     }
 
-    /// The number of pairs of a body in a frame, with itself and with later bodies.
+    /// Returns the number of pairs of a body in a frame, with itself and with later bodies.
     fn pairs_of(&self, body: usize, frame: usize) -> u64 {
         let between = of_frame(&self.node_pairs, frame).iter().filter(|pairs| pairs.bodies[0] == body);
         let between: usize = between.map(|pairs| pairs.pairs.len()).sum();

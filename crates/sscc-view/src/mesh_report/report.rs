@@ -12,7 +12,7 @@ use super::recorded_body::RecordedBody;
 use super::recording::Recording;
 use crate::{Arrays, Axis, MAX_REPORT_BYTES, PAGE, Plot, Report, Scene, Series, ViewError};
 
-/// Size of a frame of a body in the text of a report, at most (bytes): time, numbers of pairs, plots.
+/// Maximum size of a frame of a body in the text of a report (bytes): time, numbers of pairs, plots.
 const FRAME_BYTES: u64 = 160;
 
 /// Number of pairs whose contacts are computed at a time. It bounds memory.
@@ -29,9 +29,9 @@ const MAX_ROWS: usize = 20;
 pub struct MeshReport {
     center: DVec3,
     bodies: Vec<RecordedBody>,
-    /// File of the first mesh, and of the other one.
+    /// File of the first mesh, and file of the other mesh, if any.
     files: Vec<String>,
-    /// Time of each frame (s), of animations.
+    /// Time of each frame (s), for animations.
     times: Option<Vec<f64>>,
     /// Time of the queries of each frame (microseconds).
     microseconds: Vec<f64>,
@@ -40,7 +40,7 @@ pub struct MeshReport {
     /// The pairs of different nodes of a scene.
     node_pairs: Vec<NodePairs>,
     left_out: LeftOut,
-    /// Size of the recorded positions and of those to come, in the report (bytes).
+    /// Size in the report of the positions that are recorded and of those still to be recorded (bytes).
     planned_bytes: u64,
 }
 
@@ -64,7 +64,7 @@ impl MeshReport {
                 body.push_positions(shape.x_t1, self.center)?;
             }
         }
-        // Before the pairs are copied.
+        // The size is checked before the pairs are copied.
         let impact_bytes = if self.is_continuous { 4 } else { 0 };
         self.check_size((8 + impact_bytes) * answer.pairs.len())?;
         self.bodies[first].push_pairs(answer);
@@ -88,7 +88,7 @@ impl MeshReport {
     /// Adds an answer about two nodes of a scene, whose own answers have been added.
     ///
     /// # Errors
-    /// As [`MeshReport::add`].
+    /// The errors are those of [`MeshReport::add`].
     pub fn add_between_nodes(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
         let shapes = answer.shape.zip(answer.other);
         let (shape, other) =
@@ -142,7 +142,7 @@ impl MeshReport {
         self.check_size(0)
     }
 
-    /// Refuses a report that is too large with this much more data (bytes).
+    /// Returns an error if the report would be too large with `more` further bytes.
     fn check_size(&self, more: usize) -> Result<(), ViewError> {
         let contacts = more
             + self.bodies.iter().map(RecordedBody::contact_bytes).sum::<usize>()
@@ -182,7 +182,7 @@ impl MeshReport {
     }
 }
 
-/// The middle of the AABB; zero for no points.
+/// Returns the middle of the AABB; zero for no points.
 fn middle(points: &[DVec3]) -> DVec3 {
     let Some(first) = points.first() else { return DVec3::ZERO };
     let (min, max) = points.iter().fold((*first, *first), |(min, max), p| (min.min(*p), max.max(*p)));
@@ -206,7 +206,7 @@ fn in_base64(bytes: u64) -> u64 {
     bytes.saturating_add(bytes / 3)
 }
 
-/// The rows of the table: what was checked, and the colliding frames of each body.
+/// Returns the rows of the table: the kind of check, and the colliding frames of each body.
 fn summary(recording: &Recording) -> Vec<(String, String)> {
     let row = |label: &str, value: String| (label.to_owned(), value);
     let noun = if recording.is_continuous { "step" } else { "frame" };
@@ -247,12 +247,12 @@ fn summary(recording: &Recording) -> Vec<(String, String)> {
         rows.push((name, format!("{triangles}, vertices: {vertices}{collides}")));
     }
     if recording.bodies.len() > MAX_ROWS {
-        rows.push(row("bodies", format!("{} in all", recording.bodies.len())));
+        rows.push(row("bodies", format!("{} in total", recording.bodies.len())));
     }
     rows
 }
 
-/// The number of pairs and the time of the queries, over the frames.
+/// Returns the number of pairs and the time of the queries, over the frames.
 fn plots(recording: &Recording, microseconds: &[f64]) -> [Plot; 2] {
     let times = recording.playback_times();
     let label = if recording.is_timed() { "time (s)" } else { "time (s), 30 frames a second" };

@@ -19,7 +19,7 @@ pub struct Camera {
     towards: DVec3,
     /// The point in the middle of the picture.
     center: DVec3,
-    /// Pixels for a unit of length.
+    /// Pixels per unit of length.
     scale: f64,
     size: [usize; 2],
 }
@@ -81,6 +81,6 @@ mod tests {
             }
         }
         let camera = Camera::around([DVec3::ZERO, DVec3::Y].into_iter());
-        assert!(camera.project(DVec3::Y, 1).y < camera.project(DVec3::ZERO, 1).y, "up is up");
+        assert!(camera.project(DVec3::Y, 1).y < camera.project(DVec3::ZERO, 1).y, "y points up in the model");
     }
 }

@@ -23,7 +23,7 @@ impl Image {
         }
     }
 
-    /// Covers a share of a pixel with the colour of text; nothing beyond the image.
+    /// Blends the colour of text into a pixel by this share; does nothing outside the image.
     pub fn ink(&mut self, x: usize, y: usize, share: f64) {
         if x < self.width && 3 * (y * self.width + x) < self.bytes.len() {
             let at = 3 * (y * self.width + x);

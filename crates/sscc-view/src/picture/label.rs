@@ -19,10 +19,10 @@ const MARGIN: usize = 8;
 /// Largest number of lines of a label.
 const MAX_LINES: usize = 6;
 
-/// Ends a label that has more lines.
+/// Last line of a label that has more lines.
 const ELLIPSIS: &str = "...";
 
-/// Breaks a text into lines for a width (pixels): after blanks and punctuation where there is any, else anywhere.
+/// Breaks a text into lines of at most this width (pixels): after blanks and punctuation if possible, else anywhere.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let fitting = (width.saturating_sub(2 * MARGIN) / ADVANCE).max(1 + ELLIPSIS.len());
     let letters: Vec<char> = text.chars().take(fitting * MAX_LINES + 1).collect();
@@ -42,7 +42,7 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Draws a line of text in the middle of a width (pixels) from `left` on.
+/// Draws a line of text centred in a width (pixels) that begins at `left`.
 pub fn draw(image: &mut Image, text: &str, left: usize, width: usize, top: usize) {
     let begin = left + width.saturating_sub(text.chars().count() * ADVANCE) / 2;
     for (i, letter) in text.chars().enumerate() {
@@ -82,7 +82,7 @@ mod tests {
         // The bar of the T is darkest in its middle.
         let dark = inked.iter().filter(|(x, y)| image.at(*x, *y)[0] < 90).count();
         assert!(dark > 10, "{dark}");
-        // Letters with accents have shapes of their own, and those that the font lacks have one together.
+        // Letters with accents have their own shapes; all letters that the font lacks share one shape.
         let drawn = |text: &str| {
             let mut image = Image::new(20, 20);
             draw(&mut image, text, 0, 20, 0);
@@ -90,7 +90,7 @@ mod tests {
         };
         assert!(drawn("\u{e4}") != drawn("a") && drawn("\u{e4}") != drawn("\u{7}"));
         assert!(drawn("\u{3b1}") == drawn("\u{7}") && drawn("\u{7}") != drawn(" "));
-        // Beyond the picture nothing is drawn.
+        // Outside the picture nothing is drawn.
         draw(&mut image, "beyond", 55, 4, 39);
     }
 }

@@ -30,9 +30,9 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Draws the shape at the centre (left), and at `|z|` equal to the root's radius along the first modes: one column
-    /// for each, with `+` above `-`. All views have the same direction and scale. The colour shows the displacement
-    /// from the shape at the centre. Labels state the modes and their weights; `names`: of the modes, else empty. If the
+    /// Draws the shape at the centre (left), and at `|z|` equal to the root's radius along the first modes: one column for
+    /// each, with `+` above `-`. All views have the same direction and scale. The colour shows the displacement from the
+    /// shape at the centre. Labels state the modes and their weights; `names` are the names of the modes, or empty. If the
     /// radius is 0 or infinite, the picture shows only the shape at the centre.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ const SAMPLES: usize = 3;
 /// Normals of two triangles are averaged if the cosine of their angle is larger (angles below 60 degrees).
 const MIN_COSINE: f64 = 0.5;
 
-/// Largest number of faces of a vertex whose normals are averaged: a vertex may have any number of faces.
+/// Maximum number of faces of one vertex whose normals are averaged. It bounds the time: a vertex may have any number of faces.
 const MAX_FACES: usize = 32;
 
 /// A shape, with its normals and displacements.
@@ -33,7 +33,7 @@ impl Panel<'_> {
         let seen: Vec<DVec3> = self.positions.iter().map(|p| camera.project(*p, SAMPLES)).collect();
         for (face, normals) in self.faces.iter().zip(self.normals) {
             let corners = face.map(|v| v as usize);
-            // Both sides look the same. The triangle decides which side is visible: along outlines averaged normals
+            // Both sides are drawn alike. The triangle decides which side is visible: along outlines averaged normals
             // point away too early.
             let flat = normal(corners.map(|v| self.positions[v]));
             let side = if camera.turn(flat).z < 0.0 { -1.0 } else { 1.0 };

@@ -72,7 +72,7 @@ impl Access {
     }
 }
 
-/// The token in the request, right or wrong.
+/// Returns the token in the request, right or wrong.
 fn given(head: &Head) -> Option<&str> {
     head.token.as_deref().or(head.parameter("token"))
 }

@@ -114,7 +114,7 @@ impl Drop for Presence<'_> {
     }
 }
 
-/// The response to a request that is refused before its body is read; `None` if it is accepted.
+/// Returns the response to a request that is refused before its body is read; `None` if it is accepted.
 fn refusal(head: &Head, access: &Access, content: &Content<'_>) -> Option<Response<'static>> {
     if let Err(refusal) = access.check(head, content.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_client_that_leaves_is_noticed() {
+    fn a_client_that_leaves_cancels_its_token() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let mut there = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         let (here, _) = listener.accept().unwrap();
@@ -156,7 +156,7 @@ mod tests {
             thread::sleep(Presence::CHECK_INTERVAL);
             presence.token.is_cancelled()
         }));
-        // The result stays the same, also between two checks.
+        // The token stays cancelled, also between two checks.
         assert!(presence.token.is_cancelled());
     }
 }

@@ -23,7 +23,7 @@ impl<'a> DeadlineStream<'a> {
         Self { stream, end: Instant::now() + time, is_stopped }
     }
 
-    /// The timeout of the next system call.
+    /// Returns the timeout of the next system call.
     fn slice(&self) -> io::Result<Duration> {
         let left = self.end.saturating_duration_since(Instant::now());
         if left.is_zero() || (self.is_stopped)() {

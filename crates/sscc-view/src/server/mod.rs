@@ -33,7 +33,7 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 struct Slot<'a>(&'a AtomicUsize);
 
 impl<'a> Slot<'a> {
-    /// Returns a free slot; `None` if all are taken.
+    /// Returns a free slot; `None` if all slots are taken.
     fn take(taken: &'a AtomicUsize) -> Option<Self> {
         let before = taken.fetch_add(1, Ordering::Relaxed);
         let slot = Self(taken);
@@ -55,7 +55,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Opens a port; 0: any free port.
+    /// Opens a port; 0 means any free port.
     ///
     /// # Errors
     /// If the port is taken, or the operating system has no random numbers.
@@ -65,7 +65,7 @@ impl Server {
         Ok(Self { listener, access: Access::new(port)?, port })
     }
 
-    /// The address of the page, with the token.
+    /// Returns the address of the page, with the token.
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/?token={}", self.port, self.access.token())
     }
@@ -81,7 +81,7 @@ impl Server {
     /// Serves a report until `is_stopped` returns true.
     ///
     /// # Errors
-    /// The errors of [`Server::serve`].
+    /// The errors are those of [`Server::serve`].
     pub fn serve_report(&self, html: &str, is_stopped: &(dyn Fn() -> bool + Sync)) -> io::Result<()> {
         self.run(&Content::Report(html), is_stopped)
     }
@@ -110,7 +110,7 @@ impl Server {
                     // An error means that the client has left.
                     let _ = connection::serve(stream, access, content, is_stopped);
                 };
-                // If there is no thread, this frees the slot and closes the connection.
+                // If no thread can be started, dropping `serve` frees the slot and closes the connection.
                 let _ = thread::Builder::new().spawn_scoped(scope, serve);
             }
             Ok(())

@@ -28,7 +28,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// A parameter of the query, without percent-decoding.
+    /// Returns a parameter of the query, without percent-decoding.
     pub(super) fn parameter(&self, name: &str) -> Option<&str> {
         self.query.split('&').find_map(|pair| pair.strip_prefix(name)?.strip_prefix('='))
     }
@@ -39,7 +39,7 @@ impl Head {
 pub(super) enum BadHead {
     /// The client has left, or the head took too long.
     Missing(io::Error),
-    /// A status, and a message of one line.
+    /// The request is refused with a status and a message of one line.
     Refused(u16, &'static str),
 }
 

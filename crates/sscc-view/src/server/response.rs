@@ -34,7 +34,7 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// An error with a message of one line.
+    /// Returns an error with a message of one line.
     pub(super) fn error(status: u16, message: &str) -> Self {
         Self { status, kind: JSON, body: json!({"error": message}).to_string().into_bytes().into() }
     }

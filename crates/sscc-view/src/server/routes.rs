@@ -104,7 +104,7 @@ fn get<'a>(answer: impl Fn() -> Response<'a> + 'a) -> Route<'a> {
     Route { method: "GET", max_body: 0, answer: Box::new(move |_, _| answer()) }
 }
 
-/// A route whose request is JSON.
+/// Returns a route whose request is JSON.
 fn post<'a, T: DeserializeOwned>(
     max_body: usize,
     answer: impl Fn(T, &CancelToken) -> Result<Response<'a>, ViewError> + 'a,

@@ -23,7 +23,7 @@ const MAX_COLLIDING_FRAMES: usize = 4000;
 /// Largest number of colliding triangles in all frames.
 const MAX_TRIANGLES: usize = 2 << 20;
 
-/// Returns the motion, unless no frame is in the range of the page, and notes on omitted data.
+/// Returns the motion, or None if no frame is in the range of the page, and notes on omitted data.
 pub fn playback(
     run: &FinishedRun,
     progress: &dyn Progress,
@@ -104,7 +104,7 @@ fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
     [0].into_iter().chain(between).take(frames.len()).collect()
 }
 
-/// The colliding triangles of each frame, body by body; `None` and a note if there are too many.
+/// Returns the colliding triangles of each frame, body by body; `None` and a note if there are too many.
 fn colliding(
     run: &FinishedRun,
     frames: &[usize],
@@ -148,7 +148,7 @@ fn colliding(
     Ok((Some(colliding), None))
 }
 
-/// The sound as a WAV file in an array, as loud as `sound.wav`; `None` and a note if it is too long.
+/// Returns the sound as a WAV file in an array, as loud as `sound.wav`; `None` and a note if it is too long.
 fn sound(run: &FinishedRun, arrays: &mut Arrays) -> (Option<String>, Option<String>) {
     let Some(sound) = SoundTrack::of(run) else { return (None, None) };
     if 2 * sound.samples.len() > MAX_SOUND_BYTES {

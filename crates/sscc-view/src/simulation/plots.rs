@@ -7,8 +7,8 @@ use crate::{Axis, Plot, Series};
 /// Largest number of points of a line.
 const MAX_POINTS: usize = 700;
 
-/// The cost of self-collision detection in each step, as in the paper's Figure 12. The simulation's own method shows
-/// the maximum of each run of consecutive steps, the traditional method single states.
+/// Returns the cost of self-collision detection in each step, as in the paper's Figure 12. For the simulation's own method
+/// the plot shows the maximum of each run of consecutive steps, for the traditional method single states.
 pub fn costs(run: &FinishedRun) -> Plot {
     let own = line(run, |state| 1e3 * run.history.step(state).self_seconds());
     let of = |cost: &TraditionalCost| [run.time(cost.state), 1e3 * cost.seconds];
@@ -23,7 +23,7 @@ pub fn costs(run: &FinishedRun) -> Plot {
     }
 }
 
-/// The total energy of all bodies.
+/// Returns the total energy of all bodies.
 pub fn energy(run: &FinishedRun) -> Plot {
     let mut points = line(run, |state| run.history.step(state).energy);
     points.retain(|point| point[1].is_finite());
@@ -35,7 +35,7 @@ pub fn energy(run: &FinishedRun) -> Plot {
     }
 }
 
-/// The sound as the largest and the smallest sample of each run of consecutive steps.
+/// Returns the sound as the largest and the smallest sample of each run of consecutive steps.
 pub fn sound(run: &FinishedRun) -> Plot {
     let points = line(run, |state| run.history.step(state).sound);
     let series = |name, pick| Series::new(name, thin(&points, MAX_POINTS, pick));

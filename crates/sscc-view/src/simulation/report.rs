@@ -9,7 +9,7 @@ use super::playback::playback;
 use super::plots::{energy, sound};
 use crate::{Arrays, ModelDetails, ModelScene, Report, Scene, ViewError};
 
-/// Returns the report of a simulation as one HTML file. Without the colliding triangles if `progress` cancels.
+/// Returns the report of a simulation as one HTML file. Omits the colliding triangles if `progress` cancels.
 ///
 /// # Errors
 /// If a number of a model exceeds the range of the page.

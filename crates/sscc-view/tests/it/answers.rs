@@ -80,7 +80,7 @@ fn a_search_finds_the_first_collision() {
                 assert!(query.discrete(&at(scale * (1.0 - 1e-6) * f64::from(i) / 99.0)).unwrap().is_empty());
             }
         }
-        // Away from each other, too far to the side, and no motion.
+        // The strips move apart, too far to the side, or not at all.
         for direction in [[-1.0, 0.0, 0.0], [0.3, 5.0, 0.1], [0.0, 0.0, 0.0]] {
             let answer = client.post("/api/safe_scale", &json!({"direction": direction}).to_string()).json();
             assert_eq!((&answer["first"], &answer["complete"]), (&Value::Null, &json!(true)));
@@ -99,7 +99,7 @@ fn sweeps_of_modes_are_those_of_the_core() {
             (0, [-1.0, 1.5], [true, false]),
             (1, [0.0, 1.0], [false, false]),
             (2, [-2.0, 2.0], [true, false]),
-            // From the nearer end of the range.
+            // The q is outside the range: the sweep begins at the nearer end.
             (0, [0.5, 1.5], [true, false]),
         ] {
             let request = json!({"q": q, "mode": mode, "range": range}).to_string();
@@ -226,7 +226,7 @@ fn the_scene_and_its_arrays_describe_the_model() {
                 assert!((shown - x[axis]).abs() < 1e-5);
             }
         }
-        // Along each mode, just inside the root's radius.
+        // Each q is along one mode, just inside the root's radius.
         let extremal = shape["extremal"].as_array().unwrap();
         assert_eq!(extremal.len(), 6);
         // Modes are numbered from 0, as in the command.
@@ -315,13 +315,13 @@ fn the_animation_is_the_reduced_motion() {
             assert!(farthest < 1e-5 * 19.0, "{farthest}");
             q.rotate_left(1);
         }
-        // A shape at rest.
+        // A motion of one frame at rest.
         let reply = client.post("/api/glb", r#"{"q":[[0,0,0]],"times":[0]}"#);
         assert_eq!(sscc_io::gltf::parse(&reply.body, None).unwrap().modes.rank(), 1);
     });
 }
 
-/// The page compares norms with radii by itself, so these must be about collisions.
+/// The page compares norms with radii by itself, so the radii must prove that nothing collides.
 #[test]
 fn certificates_with_a_clearance_are_refused() {
     let (model, plain) = strips();

@@ -1,4 +1,4 @@
-//! Many clients at once, slow and hostile ones among them: right answers, and memory that does not grow.
+//! Load of the server: many clients at once, some slow or hostile, get right answers, and memory does not grow.
 
 use std::io::{Read, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,10 +7,12 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Client, next_reply, with_server};
 
-/// So many clients ask, send bytes without meaning, and send a byte now and then: together as many as the server serves.
+/// Numbers of clients that send queries, that send random bytes, and that send single bytes slowly. Their sum is the server's
+/// limit.
 const CLIENTS: [usize; 3] = [48, 8, 8];
 
-/// Asks until the time is over: every answer is right. A connection that the server ends is opened again. Returns the answers.
+/// Sends queries until `end`, and checks every answer. Connects again when the server closes a connection. Returns the number
+/// of answers.
 fn ask(client: &Client, end: Instant, seed: u64) -> u64 {
     let mut answers = 0;
     while Instant::now() < end {
@@ -33,7 +35,7 @@ fn ask(client: &Client, end: Instant, seed: u64) -> u64 {
     answers
 }
 
-/// Sends random bytes and half requests, and leaves.
+/// Sends random bytes and incomplete requests, and disconnects.
 fn disturb(client: &Client, end: Instant, seed: u64) {
     let mut state = seed;
     while Instant::now() < end {
@@ -45,12 +47,12 @@ fn disturb(client: &Client, end: Instant, seed: u64) {
         let _ = stream.write_all(&bytes);
         let _ = stream.set_read_timeout(Some(Duration::from_millis(20)));
         let _ = stream.read(&mut [0; 256]);
-        // A system has not many ports for connections that have just ended.
+        // The number of ports is limited, and a closed connection blocks its port for a while.
         thread::sleep(Duration::from_millis(5));
     }
 }
 
-/// Sends one byte of a request now and then.
+/// Sends requests one byte at a time, slowly.
 fn dawdle(client: &Client, end: Instant) {
     while Instant::now() < end {
         let mut stream = client.connect();
@@ -71,7 +73,7 @@ fn memory() -> Option<u64> {
 
 #[test]
 fn many_clients_are_answered_beside_hostile_ones() {
-    // Ten minutes, to look at memory for long.
+    // A long run takes ten minutes, to measure memory.
     let is_long = std::env::var_os("SSCC_LONG").is_some();
     let time = Duration::from_secs(if is_long { 600 } else { 3 });
     with_server(|client| {
@@ -95,7 +97,7 @@ fn many_clients_are_answered_beside_hostile_ones() {
         });
         let answers = answers.into_inner();
         assert!(answers >= CLIENTS[0] as u64);
-        // Other tests run in this process, too, so that only a long run, which is one test alone, looks at memory.
+        // Only a long run, which is one test alone, measures memory: else other tests run in this process, too.
         if let (true, Some(early), Some(late)) = (is_long, early, memory()) {
             // Threads and buffers of all clients exist after a third of the time.
             assert!(late < early + (32 << 10), "{early} to {late} kB after {answers} answers");

@@ -1,5 +1,5 @@
-//! The page's data, its reports and its server, through the public interface. All tests are one program, since linking
-//! takes long.
+//! Tests of the page's data, its reports and its server, through the public interface. All tests are one program, since
+//! linking takes long.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod answers;

@@ -14,7 +14,7 @@ use sscc_view::{MeshReport, Report};
 /// A coordinate at which single precision has steps of 8.
 const FAR: f64 = 1e8;
 
-/// Two triangles: one in the plane z = 0, an upright one that begins at this height.
+/// Returns two triangles: one in the plane z = 0, and an upright one that begins at this height.
 fn positions(height: f64) -> Vec<DVec3> {
     let corners = [
         [0.0, 0.0, 0.0],
@@ -31,7 +31,7 @@ fn mesh() -> TriMesh {
     TriMesh::new(positions(1.0), vec![[0, 1, 2], [3, 4, 5]]).unwrap()
 }
 
-/// The answer at a frame of `frames` frames.
+/// Returns the answer at a frame of `frames` frames.
 fn answer<'a>(
     mesh: &'a TriMesh,
     index: usize,
@@ -74,10 +74,10 @@ fn answer<'a>(
     }
 }
 
-/// The data of a report.
+/// Returns the data of a report.
 fn data(report: MeshReport) -> Value {
     let html = report.html().unwrap();
-    // `sscc view` shows it, too.
+    // The report can be rebuilt, as `sscc view` does.
     assert_eq!(Report::rebuild(&html).unwrap(), html);
     let (_, rest) = html.split_once("id=\"sscc-report\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
@@ -204,17 +204,17 @@ fn times_that_do_not_ascend_are_played_in_their_order() {
 }
 
 #[test]
-fn what_the_page_cannot_show_is_refused() {
+fn numbers_and_sizes_beyond_the_limits_of_the_page_are_refused() {
     let (mesh, x) = (mesh(), positions(1.0));
     // 6 vertices of 16 bytes in base64 each, in every frame.
     let too_many =
         MeshReport::default().add(&answer(&mesh, 0, 3_000_000, &[], [&x, &[]])).unwrap_err().to_string();
     assert_eq!(
         too_many,
-        "the report would be larger than 256 MiB, the most that sscc view reads: give fewer frames"
+        "the report would be larger than 256 MiB, the limit of sscc view: give fewer frames"
     );
     MeshReport::default().add(&answer(&mesh, 0, 500_000, &[], [&x, &[]])).unwrap();
-    // Pairs count as well.
+    // Pairs count towards the size as well.
     let pairs = vec![(0, 0); 30_000_000];
     let error = MeshReport::default().add(&answer(&mesh, 0, 1, &pairs, [&x, &[]])).unwrap_err();
     assert_eq!(error.to_string(), too_many);

@@ -1,4 +1,4 @@
-//! The record of one vibration: the keys that scripts rely on.
+//! The record of one vibration. Scripts rely on its keys.
 
 use serde::Serialize;
 
@@ -20,21 +20,21 @@ pub struct KineticRecord {
     pub share: f64,
     /// Triangles of the body.
     pub triangles: usize,
-    /// Its modes.
+    /// Number of modes of the body.
     pub rank: usize,
     /// Length of a step relative to `|z|`, the mean over blocks.
     pub step: f64,
     /// Steps that were measured.
     pub steps: usize,
-    /// Those of them that collide.
+    /// Measured steps in which the body collides.
     pub colliding_steps: usize,
-    /// Those of them on which comparators ran.
+    /// Measured steps on which comparators ran.
     pub compared_steps: usize,
     /// Steps in which two exact methods differ.
     pub mismatches: usize,
     /// Mean microseconds of kinetic queries over the steps that collide.
     pub kinetic_us_colliding: Option<f64>,
-    /// Mean microseconds by method. Those of comparators are over `compared_steps`, each weighted by its stratum's
+    /// Mean microseconds by method. Times of comparators are over `compared_steps`, each weighted by its stratum's
     /// share of all steps.
     pub microseconds: Means,
     /// Description of the machine.

@@ -12,7 +12,7 @@ const PERIODS: usize = 5;
 const STATES_PER_PERIOD: usize = 12;
 const STATES: usize = PERIODS * STATES_PER_PERIOD;
 
-/// Number of these states that shall collide.
+/// Number of these states that should collide.
 const COLLIDING: usize = STATES / 8;
 
 /// Range of the amplitude (percent), and number of bisections of its logarithm.

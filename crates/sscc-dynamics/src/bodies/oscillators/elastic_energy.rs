@@ -12,7 +12,7 @@ use crate::DynamicsError;
 use crate::packed_rows::{ROW_LANES, add_row_twice, add_rows, dispatch};
 
 /// Maximum asymmetry of the forces: the difference between two values for a coefficient of the energy, relative to the
-/// largest coefficient of its degree. Rounding to single precision leaves less.
+/// largest coefficient of its degree. Rounding to single precision causes less.
 const MAX_ASYMMETRY: f64 = 1e-6;
 
 /// Polynomial of the elastic energy of [`ReducedForces`]. It evaluates forces several times as fast as their own
@@ -99,10 +99,10 @@ impl Evaluation {
 }
 
 impl ElasticEnergy {
-    /// Computes the energy of these forces.
+    /// Creates the energy of these forces.
     ///
     /// # Errors
-    /// When they are not the gradient of an energy: see [`ReducedForces::asymmetry`].
+    /// When the forces are not the gradient of an energy: see [`ReducedForces::asymmetry`].
     pub fn new(forces: &ReducedForces) -> Result<Self, DynamicsError> {
         let rank = forces.rank();
         let n = rank + 1;

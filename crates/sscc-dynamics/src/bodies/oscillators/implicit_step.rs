@@ -14,14 +14,14 @@ use super::trial::Trial;
 /// Maximum number of iterations in one step.
 const MAX_ITERATIONS: usize = 60;
 
-/// An iteration that leaves a larger share of the residual converges slowly; the next one is Newton's, with the derivative
-/// at the trial.
+/// An iteration that reduces the residual by a smaller factor converges slowly; the next iteration is Newton's, with the
+/// derivative at the trial.
 const SLOW_CONVERGENCE: f64 = 0.5;
 
 /// After a step with more iterations, the derivative is computed again, at its q.
 const MAX_CHEAP_ITERATIONS: usize = 4;
 
-/// Minimum share of a Newton step in the line search.
+/// Minimum fraction of a Newton step in the line search.
 const MIN_STEP_SHARE: f64 = 1e-6;
 
 /// A step is solved when the residual is at most this share of the sum of its terms: far below the error of the method, which
@@ -33,7 +33,7 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 pub(crate) enum Rule {
     /// Newmark's average acceleration: the mean of the forces at both ends.
     Newmark,
-    /// The mean of the forces on the straight way between both ends (average vector field). Forces are cubic, so Simpson's
+    /// The mean of the forces on the straight line between both ends (average vector field). Forces are cubic, so Simpson's
     /// rule gives it exactly, and its work is the change of the elastic energy: a step adds no energy.
     Conserving,
 }
@@ -70,7 +70,7 @@ pub(crate) struct ImplicitStep {
     energy: Arc<ElasticEnergy>,
     /// Damping matrix C, r x r, row after row.
     damping: Vec<f64>,
-    /// The q, the step and the rule for which the derivative of the residual was computed last.
+    /// The q, the step and the [`Rule`] for which the derivative of the residual was computed last.
     linearised_at: Vec<f64>,
     linearised_for: (Rule, f64),
     /// Inverse of this derivative, column after column.
@@ -93,8 +93,8 @@ impl ImplicitStep {
         &self.linearised_at
     }
 
-    /// Finds the end of a step of h seconds, which is then the trial of `buffers`. Begins with the derivative at
-    /// `linearise_at`. Returns whether this needed few iterations; None if it found no solution.
+    /// Finds the end of a step of h seconds and stores it as the trial of `buffers`. Begins with the derivative at
+    /// `linearise_at`. Returns whether few iterations were needed; None if no solution was found.
     pub fn solve(
         &mut self,
         rule: Rule,
@@ -147,7 +147,7 @@ impl ImplicitStep {
         None
     }
 
-    /// Makes the next trial by a share of the change, and returns the sum of its residual.
+    /// Computes the next trial by a fraction `share` of the change, and returns the sum of its residual.
     fn step(&self, share: f64, start: Start<'_>, buffers: &mut NewmarkBuffers) -> f64 {
         let NewmarkBuffers { evaluation, trial, next, acceleration, middle, broyden } = buffers;
         next.acceleration.clear();
@@ -158,7 +158,8 @@ impl ImplicitStep {
         next.residual_sum
     }
 
-    /// Chooses the first trial: it keeps q, where the forces are known, or it follows from this by the given derivative.
+    /// Chooses the first trial: the one with the smaller residual of a trial that keeps q, where the forces are known, and of
+    /// the trial that the given derivative yields from there.
     fn begin(&self, start: Start<'_>, buffers: &mut NewmarkBuffers) {
         let NewmarkBuffers { evaluation, trial, next: still, acceleration, middle, broyden } = buffers;
         let h = self.linearised_for.1;
@@ -204,7 +205,7 @@ impl ImplicitStep {
         trial.elastic_energy = evaluation.energy();
     }
 
-    /// Computes q, v and damping forces of a trial from its acceleration and that at the start.
+    /// Computes q, v and damping forces of a trial from its acceleration and the acceleration at the start.
     fn place(&self, start: Start<'_>, acceleration: &[f64], trial: &mut Trial) {
         let h = self.linearised_for.1;
         let Trial { acceleration: end, q, v, damping_forces, .. } = trial;

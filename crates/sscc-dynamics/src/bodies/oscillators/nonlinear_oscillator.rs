@@ -14,10 +14,10 @@ use crate::{Damping, DynamicsError};
 /// this much where it resolves the motion.
 const MAX_GAIN: f64 = 0.02;
 
-/// Maximum energy that it may have lost and may return later, as a share of that energy.
+/// Maximum energy that Newmark's method may have lost and may return later, as a share of the energy of the modes.
 const MAX_LOSS: f64 = 0.1;
 
-/// A step is halved at most so many times.
+/// Maximum number of times that a step is halved.
 const MAX_HALVINGS: u32 = 10;
 
 /// Integrator for reduced St. Venant-Kirchhoff forces, `q'' + C q' + f(q) = g`. It uses the implicit Newmark method of
@@ -26,7 +26,7 @@ const MAX_HALVINGS: u32 = 10;
 /// Newmark's method conserves the energy of linear forces. With nonlinear forces it may add energy in each step, where the
 /// step is long against the period of a mode that swings far. Steps that would add too much, and steps that it does not
 /// solve, are solved with the mean force of the step (`implicit_step.rs`), which adds none. A step without a solution is
-/// halved, again and again.
+/// halved until its parts have solutions.
 #[derive(Clone, Debug)]
 pub struct NonlinearOscillator {
     energy: Arc<ElasticEnergy>,
@@ -85,7 +85,7 @@ impl NonlinearOscillator {
 
     /// Advances q, v and the memory of the integrator by one step under the forces g (r numbers each). `undamped` is that of
     /// [`undamped_acceleration`](Self::undamped_acceleration). Its acceleration and energy depend on q alone, so impulses
-    /// may change v between steps. The same numbers give the same bits, whatever the last step was. Returns the elastic
+    /// may change v between steps. The same numbers give the same bits, independent of earlier steps. Returns the elastic
     /// energy at the end of the step.
     ///
     /// # Errors
@@ -128,8 +128,8 @@ impl NonlinearOscillator {
         Err(DynamicsError::Unsolved { energy })
     }
 
-    /// Advances by one step with the rule that conserves energy, in as many parts as have solutions. Returns false if the
-    /// shortest part has none.
+    /// Advances by one step with the energy-conserving force, split into as many parts as are needed. Returns false if the
+    /// shortest part has no solution.
     fn advance_in_parts(
         &mut self,
         q: &mut [f64],
@@ -171,7 +171,7 @@ fn kinetic(v: &[f64]) -> f64 {
     v.iter().map(|v| v * v / 2.0).sum()
 }
 
-/// Returns the work of the mean of the elastic forces at both ends of a step: what Newmark's method takes for the change of the
+/// Returns the work of the mean of the elastic forces at both ends of a step. Newmark's method uses it as the change of the
 /// elastic energy.
 fn work_of_mean_force(start: Start<'_>, end: &Trial) -> f64 {
     let undamped = end.acceleration.iter().zip(&end.damping_forces).map(|(b, damping)| b + damping);
@@ -179,8 +179,9 @@ fn work_of_mean_force(start: Start<'_>, end: &Trial) -> f64 {
     forces.zip(end.q.iter().zip(start.q)).map(|(force, (q1, q0))| force * (q1 - q0)).sum()
 }
 
-/// Adds the energy that a step added, or lost, beside the work of all forces. Newmark's method returns what it lost, within
-/// limits: losses count as far as it may lose where it resolves the motion, gains as far as they are allowed.
+/// Adds to `undamped` the energy that a step gained or lost beyond the work of all forces. Newmark's method returns losses
+/// later, within limits: losses count up to the amount that it may lose where it resolves the motion, gains up to the allowed
+/// gain.
 fn add_gain(undamped: &mut [f64], gain: f64, kinetic: f64) {
     let r = undamped.len() / 2 - 1;
     let energy = kinetic + undamped[2 * r];

@@ -3,7 +3,8 @@
 //! The unknowns of a body are the changes of its velocity, of its angular velocity and of its modal velocities, in one
 //! vector, each divided by the square root of its inverse mass (of the inverse inertia: Cholesky's factor). In these units the
 //! response to an impulse has the same rows as the velocity: `w = J u`, and an impulse p adds `J' p` to u. A contact has three
-//! rows for each body, along its own axes, of which the first is its normal: contacts that are open need no other one.
+//! rows for each body, along its own axes, of which the first is its normal: contacts that are open need only the row of the
+//! normal.
 
 use glam::{DMat3, DVec3};
 use pulp::Simd;
@@ -41,7 +42,7 @@ struct RowBody {
     mass_root: f64,
     /// Cholesky's factor of the inverse inertia.
     inertia_root: DMat3,
-    /// Index of its first number.
+    /// Index of the body's first number.
     state: usize,
     stride: usize,
 }
@@ -66,12 +67,12 @@ pub(crate) struct ContactRows {
     contacts: Vec<RowContact>,
     rows: Vec<f64>,
     state: Vec<f64>,
-    /// For each body the square roots of the inverse masses of its modes, where its state is.
+    /// For each body the square roots of the inverse masses of its modes, at the index of its state.
     roots: Vec<f64>,
 }
 
 impl ContactRows {
-    /// Removes all contacts, and sets the changes of these bodies to 0; each is given with the inverse masses of its modes.
+    /// Removes all contacts, and sets the changes of these bodies to 0. Each body is given with the inverse masses of its modes.
     pub fn begin<'b>(&mut self, bodies: impl Iterator<Item = (&'b RigidVelocity, &'b [f64])>) {
         self.bodies.clear();
         self.contacts.clear();
@@ -96,8 +97,8 @@ impl ContactRows {
         self.state.resize(state, 0.0);
     }
 
-    /// Adds a contact, which gets the next number. It has N rows: 3, or 1, along its normal, for [`Self::along_normal`] and
-    /// [`Self::push_along_normal`].
+    /// Adds a contact, which gets the next number. N is its number of rows: 3, or 1 (along the normal), which suffices for
+    /// [`Self::along_normal`] and [`Self::push_along_normal`].
     pub fn push<const N: usize>(&mut self, at: &ContactPoints, bodies: &[Body], contacts: &[Contact]) {
         let points = at.sides().map(|Side { n, body, sign }| RowPoint {
             body,
@@ -150,7 +151,7 @@ impl ContactRows {
         along
     }
 
-    /// Returns the changes of the velocity along its other two axes.
+    /// Returns the changes of the velocity along the two axes other than the normal.
     #[inline(always)]
     pub fn across<S: Simd>(&self, simd: S, contact: usize) -> [f64; 2] {
         self.along::<S, 2>(simd, contact, 1)
@@ -168,7 +169,7 @@ impl ContactRows {
         self.add(simd, contact, impulse);
     }
 
-    /// The products with N rows from `first` on.
+    /// Returns the products with N rows, beginning with row `first`.
     #[inline(always)]
     fn along<S: Simd, const N: usize>(&self, simd: S, contact: usize, first: usize) -> [f64; N] {
         let contact = &self.contacts[contact];

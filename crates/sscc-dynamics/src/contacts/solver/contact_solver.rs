@@ -5,7 +5,7 @@
 //! and after it.
 //!
 //! The energy budget of a body is the energy that its contacts have dissipated so far. An impulse may add at most the
-//! sum of the budgets of its bodies. Contacts therefore never add energy to that of the start, up to rounding, for
+//! sum of the budgets of its bodies. Contacts therefore never add energy to the initial energy, up to rounding, for
 //! every stiffness and step. Budgets of bodies that take no part in a contact are not used.
 
 use glam::{DMat3, DVec3};
@@ -123,7 +123,8 @@ impl ContactSolver {
         }
     }
 
-    /// Makes the rows of all constraints. An impulse changes modal velocities by the displacements of the modes, which have mass 1.
+    /// Adds the rows of all constraints. An impulse changes modal velocities by the displacements of the modes, which have
+    /// mass 1.
     fn add_rows(&mut self, bodies: &[Body], contacts: &[Contact]) {
         let Self { rows, velocities, constraints, mode_weights, .. } = self;
         let most_modes = bodies.iter().map(|body| body.v.len()).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Constraint on the end of a step, of a contact or of a point on the ground.
+//! Constraint on the end of a step, for a contact or a point on the ground.
 
 use glam::{DMat3, DVec3};
 
@@ -14,10 +14,10 @@ pub(crate) struct Correction {
     pub normal_inverse_mass: f64,
     /// The constraint along the normal is `n . w >= target`.
     pub target: f64,
-    /// Mean velocity between the points in the step, without w.
+    /// Mean velocity between the points in the step, without the correction w.
     pub slip: DVec3,
     pub friction: f64,
-    /// Velocity at which the points of an impact part after the step; None if they do not bounce.
+    /// Velocity at which the points of an impact separate after the step; None if they do not bounce.
     pub bounce: Option<f64>,
     /// Total impulse along the normal; never negative.
     pub normal_impulse: f64,

@@ -31,15 +31,15 @@ pub(crate) struct CorrectionSolver {
     pub list: Vec<Correction>,
     active: Vec<Active>,
     islands: Islands,
-    /// Also those of [`resting_velocities`](crate::resting_velocities).
+    /// Rows of the constraints. [`resting_velocities`](crate::resting_velocities) uses them, too.
     pub rows: ContactRows,
     masses: Vec<RigidVelocity>,
-    /// Change of each body, and that of the modes of all bodies, one after the other.
+    /// Change of each body, and the changes of the modes of all bodies, one after the other.
     changes: Vec<Change>,
     modes: Vec<f64>,
     /// First mode of each body.
     first_mode: Vec<usize>,
-    /// The changes with which bodies were moved last.
+    /// The changes by which bodies were moved last.
     applied: (Vec<Change>, Vec<f64>),
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct CorrectionSolver {
 struct PointMotion {
     /// Matrix from impulse to change of velocity.
     inverse_mass: DMat3,
-    /// Change of the velocity between the points with which their bodies were moved last.
+    /// Change of the velocity between the points that is already part of the current state.
     applied: DVec3,
     /// Vector between the points in the current state.
     now: DVec3,
@@ -138,7 +138,7 @@ impl CorrectionSolver {
         });
     }
 
-    /// Adds the constraint of a rigid contact. The vectors of one within a body are in axes of the body.
+    /// Adds the constraint of a rigid contact. For a contact within a body, vectors are in axes of the body.
     fn add_rigid(&mut self, number: usize, contact: &Contact, both: [&Body; 2], laws: &ContactLaws) {
         let Contact { bodies, min_gap, gap, normal_impulse, friction_impulse, .. } = *contact;
         let (normal, arms, bounce, motion) = if contact.is_within() {

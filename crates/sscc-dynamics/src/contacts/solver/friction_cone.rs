@@ -1,15 +1,16 @@
-//! Coulomb's cone: the friction impulses that a contact can give.
+//! Coulomb's cone: the friction impulses that a contact can exert.
 
 use glam::{DMat3, DVec3};
 
-/// Maximum change of the normal velocity by friction, as a share of that by the normal impulse. The iterations of
-/// Gauss-Seidel find the two impulses in turn. Where friction changes the normal velocity by more than the normal impulse
-/// does, they alternate between no impulse and one that is too large; and where it pulls the points together by more, no
-/// sliding contact holds them apart at all (Painlevé's paradox). Vertices of thin parts that bend in few modes do this.
+/// Maximum change of the normal velocity by friction, as a share of the change by the normal impulse. The iterations of
+/// Gauss-Seidel compute the two impulses alternately. Where friction changes the normal velocity by more than the normal
+/// impulse does, the iterations alternate between no impulse and one that is too large. Where friction pulls the points
+/// together by more, no sliding contact can hold them apart (Painlevé's paradox). Vertices of thin parts that bend in few
+/// modes behave like this.
 const MAX_COUPLING: f64 = 0.75;
 
-/// Where modes alone move the points of a contact, their mobility along a direction may be 0 up to rounding: this share of the
-/// whole mobility.
+/// Share of the whole mobility below which the mobility along a direction counts as 0. Where only modes move the points of a
+/// contact, the mobility along a direction may be 0 up to rounding.
 const MIN_MOBILITY: f64 = 1e-10;
 
 /// Returns the change of the friction impulse that stops points from sliding with a velocity; zero where no impulse along it

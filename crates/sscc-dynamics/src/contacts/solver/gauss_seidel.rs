@@ -11,20 +11,20 @@ use crate::contacts::islands::Island;
 /// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 200;
 
-/// A constraint that is solved, by its number, and its island.
+/// An active constraint: its number and its island.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Active {
     pub island: Island,
     pub number: u32,
 }
 
-/// The constraints of an island, whose rows have the numbers from `first` on, with the impulses that they begin with.
+/// The constraints of an island, with their initial impulses. Their rows have the numbers from `first`.
 pub(crate) struct GaussSeidel<'s> {
     pub list: &'s mut [Correction],
     pub island: &'s [Active],
     pub first: usize,
     pub rows: &'s mut ContactRows,
-    /// Iterations end when none changes the velocity between two points by more.
+    /// Iterations end when no constraint changes the velocity between its two points by more than this.
     pub tolerance: f64,
 }
 
@@ -135,7 +135,7 @@ mod tests {
         Shape::new(model, certificates, elasticity, mass).unwrap()
     }
 
-    /// Contacts of a few bodies, without their geometry: points and modes are any.
+    /// Contacts of a few bodies, without geometry: points and modes are arbitrary.
     struct Contacts {
         bodies: Vec<Body>,
         masses: Vec<RigidVelocity>,
@@ -300,7 +300,7 @@ mod tests {
         }
     }
 
-    /// Velocities along all axes of all contacts, after impulses at each.
+    /// Applies an impulse at each contact, and records the velocities along all axes of all contacts.
     struct Push<'s> {
         rows: &'s mut ContactRows,
         impulses: &'s [DVec3],

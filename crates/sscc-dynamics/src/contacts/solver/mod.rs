@@ -1,5 +1,5 @@
-//! Impulses of contacts by projected Gauss-Seidel: of springs (soft contacts), of corrections of the end of a step (rigid
-//! contacts), and of the velocities there.
+//! Contact impulses by projected Gauss-Seidel: of soft contacts (springs), of rigid contacts (corrections of the end of a
+//! step), and for the velocities at the end of a step.
 
 pub(crate) mod contact_rows;
 pub(crate) mod contact_solver;

@@ -1,16 +1,17 @@
-//! Velocities at the end of a step: points that contacts hold neither approach nor part, and impacts bounce.
+//! Velocities at the end of a step: points that contacts hold neither approach nor separate, and impacts bounce.
 //!
-//! The impulses of corrections act at the beginning of the step, and the forces of the step act after them. So the points
-//! of a body at rest end the step with a velocity towards the ground, half of what its weight adds in a step; and points
-//! whose gap recovers would be thrown off. Impulses of all contacts that bear a load stop both, and friction the sliding
-//! within Coulomb's cone. In the whole step contacts only push: an impulse at the end takes back at most the one at the
-//! beginning. Modes have the weights of corrections, so that both impulses of a body at rest are equal, and its modes at
-//! rest, too.
+//! The impulses of corrections act at the beginning of the step, and the forces of the step act after them. So the points of
+//! a body at rest end the step with a velocity towards the ground: half of the velocity that its weight adds in a step.
+//! Points whose gap recovers would be thrown off. Impulses of all contacts that bear a load stop both motions, and friction
+//! stops sliding within Coulomb's cone. In the whole step contacts only push: an impulse at the end cancels at most the
+//! impulse at the beginning. Modes have the weights of corrections, so that both impulses of a body at rest are equal, and
+//! its modes stay at rest, too.
 //!
 //! Impacts bounce by Newton's law, after all contacts were stopped, with impulses that are at most as large as those that
-//! stopped them. The bound is needed because Newton's law demands a velocity of each point: where a part is wedged between
-//! points with opposite normals, these velocities contradict each other, and without it impulses grow in each iteration. For
-//! the same reason the positions at the end of the step do not bounce: staying in place satisfies all contacts.
+//! stopped them. The bound is needed because Newton's law demands a velocity of each point. Where a part is wedged between
+//! points with opposite normals, these velocities contradict each other, and without the bound impulses grow in each
+//! iteration. For the same reason the positions at the end of the step do not bounce: staying in place satisfies all
+//! contacts.
 
 use glam::{DMat3, DVec3};
 use pulp::{Simd, WithSimd};
@@ -44,11 +45,11 @@ struct Load {
     /// Impulses at the beginning of the step.
     given_normal: f64,
     given_friction: DVec3,
-    /// Velocity at which the points of an impact part; None if they do not bounce.
+    /// Velocity at which the points of an impact separate; None if they do not bounce.
     bounce: Option<f64>,
     /// Velocity between the points before the impulses.
     velocity: DVec3,
-    /// Velocity along the normal that the impulses aim at.
+    /// Target velocity along the normal.
     target: f64,
     /// Minimum and maximum impulse along the normal at the end of the step.
     range: [f64; 2],
@@ -149,8 +150,7 @@ impl Load {
     }
 }
 
-/// Gives the points of all contacts the velocities that they aim at, as far as their impulses can. The rows have the numbers of
-/// the loads.
+/// Changes the velocities at all contacts to their targets, as far as the impulses may. The rows have the numbers of the loads.
 struct Stopping<'s> {
     loads: &'s mut [Load],
     rows: &'s mut ContactRows,
@@ -178,7 +178,7 @@ impl WithSimd for Stopping<'_> {
 }
 
 impl Stopping<'_> {
-    /// Stops the motion at one contact, or takes back as much of its impulse as the others allow. Returns the change of
+    /// Stops the motion at one contact, or cancels as much of its impulse as the other contacts allow. Returns the change of
     /// velocity.
     #[inline(always)]
     fn stop_contact<S: Simd>(&mut self, simd: S, n: usize) -> f64 {

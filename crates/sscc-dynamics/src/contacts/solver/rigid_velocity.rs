@@ -74,14 +74,14 @@ impl RigidVelocity {
         DMat3::from_diagonal(DVec3::splat(self.inverse_mass)) - cross * self.inverse_inertia * cross
     }
 
-    /// Returns the matrix from impulse to velocity at a point with these modes, of which each has a weight.
+    /// Returns the matrix from impulse to velocity at a point with these modes, each of which has a weight.
     pub fn inverse_mass_at(&self, arm: DVec3, modes: &[DVec3], weights: &[f64]) -> DMat3 {
         let modal = modal_inverse_mass(modes, weights);
         self.rigid_inverse_mass(arm) + self.rotation * modal * self.rotation.transpose()
     }
 }
 
-/// Returns the matrix from impulse to velocity due to modes, of which each has a weight (axes of the body).
+/// Returns the matrix from impulse to velocity due to modes, each of which has a weight (axes of the body).
 pub(crate) fn modal_inverse_mass(modes: &[DVec3], weights: &[f64]) -> DMat3 {
     let mut sum = DMat3::ZERO;
     for (u, weight) in modes.iter().zip(weights) {

@@ -16,7 +16,7 @@ pub fn certified(model: &ReducedModel) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default(), &()).unwrap()
 }
 
-/// A rigid shape: its only mode has no displacement.
+/// Returns a rigid shape: its only mode has no displacement.
 pub fn rigid(mesh: TriMesh, mass: f64) -> Shape {
     let p = mesh.rest_positions();
     let center = p.iter().sum::<DVec3>() / p.len() as f64;
@@ -34,7 +34,7 @@ pub fn rigid(mesh: TriMesh, mass: f64) -> Shape {
     Shape::new(model, certificates, elasticity, mass).unwrap()
 }
 
-/// An octahedron with a vertex at the bottom.
+/// Returns an octahedron with a vertex at the bottom.
 pub fn octahedron(radius: f64) -> TriMesh {
     let positions = [DVec3::X, DVec3::Y, DVec3::Z].map(|x| [x * radius, -x * radius]).concat();
     let faces = (0..8).map(|n: u32| {
@@ -44,7 +44,7 @@ pub fn octahedron(radius: f64) -> TriMesh {
     TriMesh::new(positions, faces.collect()).unwrap()
 }
 
-/// A solid of cubes of the given size at points of a grid.
+/// Returns a solid of cubes of the given size at points of a grid.
 pub fn cubes(places: &[[i32; 3]], size: f64, material: Material) -> Solid {
     let mut numbers = BTreeMap::new();
     let mut vertices = Vec::new();
@@ -63,14 +63,14 @@ pub fn cubes(places: &[[i32; 3]], size: f64, material: Material) -> Solid {
     Solid::uniform(vertices, Vec::new(), cubes, material).unwrap()
 }
 
-/// A solid block of cubes.
+/// Returns a solid block of cubes.
 pub fn block(counts: [i32; 3], size: f64, material: Material) -> Solid {
     let all =
         (0..counts[0]).flat_map(|x| (0..counts[1]).flat_map(move |y| (0..counts[2]).map(move |z| [x, y, z])));
     cubes(&all.collect::<Vec<_>>(), size, material)
 }
 
-/// A solid with two parallel arms, one cube apart, joined at one end.
+/// Returns a solid with two parallel arms, one cube apart, joined at one end.
 pub fn fork(arm: i32, size: f64, material: Material) -> Solid {
     let mut places = Vec::new();
     for y in 0..arm {
@@ -80,7 +80,7 @@ pub fn fork(arm: i32, size: f64, material: Material) -> Solid {
     cubes(&places, size, material)
 }
 
-/// The shape of a solid with its lowest modes; `fixed` lists the held vertices.
+/// Returns the shape of a solid with its lowest modes; `fixed` lists the held vertices.
 pub fn elastic(solid: &Solid, rank: usize, large: bool, fixed: &[u32]) -> Shape {
     let found =
         if large { nonlinear_modes(solid, fixed, rank, &()) } else { linear_modes(solid, fixed, rank, &()) };
@@ -100,7 +100,7 @@ pub fn rubber() -> Material {
     Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }
 
-/// A block of cubes without modes.
+/// Returns the shape of a block of cubes without modes.
 pub fn rigid_block(counts: [i32; 3], size: f64, mass: f64) -> Shape {
     rigid(block(counts, size, Material::default()).boundary().unwrap().mesh, mass)
 }

@@ -13,7 +13,7 @@ use sscc_dynamics::{ContactOptions, Damping, Ground, WorldOptions};
 use sscc_modes::natural_frequencies;
 use sscc_solid::Elasticity;
 
-/// Numbers that are the same on every machine.
+/// Generator of the same numbers on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -38,7 +38,7 @@ impl Random {
     }
 }
 
-/// What is random in a scene, apart from its shapes and how they start.
+/// Random options of a scene, apart from its shapes and how they start.
 pub struct RandomScene {
     /// Young's modulus (Pa).
     pub youngs: f64,

@@ -1,4 +1,4 @@
-//! Worlds of several tests, and what they measure.
+//! Worlds that several tests use, and their measurements.
 
 use glam::{DQuat, DVec3};
 use sscc::intersect_triangle_triangle;
@@ -7,7 +7,7 @@ use sscc_solid::Elasticity;
 
 use crate::common::{block, elastic, fork, rigid_block, rubber};
 
-/// A world without gravity and ground.
+/// Returns options of a world without gravity and ground.
 pub fn space(step: f64) -> WorldOptions {
     WorldOptions { step, gravity: DVec3::ZERO, ground: None, ..WorldOptions::default() }
 }
@@ -16,12 +16,12 @@ pub fn shapes() -> [Shape; 2] {
     [elastic(&block([2, 1, 2], 0.2, rubber()), 6, false, &[]), elastic(&fork(4, 0.1, rubber()), 6, true, &[])]
 }
 
-/// A world of five bodies that fall onto each other.
+/// Returns a world of five bodies that fall onto each other.
 pub fn heap(shapes: &[Shape; 2], detection: Detection) -> World {
     pile(shapes, detection, 0.35)
 }
 
-/// A world of five bodies, each higher than the last by `rise`.
+/// Returns a world of five bodies, each higher than the last by `rise`.
 pub fn pile(shapes: &[Shape; 2], detection: Detection, rise: f64) -> World {
     let mut world = World::new(WorldOptions { step: 2e-3, ..WorldOptions::default() }).unwrap();
     for n in 0..5 {
@@ -41,7 +41,7 @@ pub fn blocks() -> [Shape; 2] {
     [elastic(&block([2, 1, 2], 0.2, rubber()), 6, true, &[]), rigid_block([2, 1, 2], 0.2, 20.0)]
 }
 
-/// A stack of three elastic blocks and a rigid one on top.
+/// Returns a world with a stack of three elastic blocks and a rigid one on top.
 pub fn stack(blocks: &[Shape; 2]) -> World {
     let mut world = World::new(WorldOptions::default()).unwrap();
     for n in 0..4 {
@@ -57,7 +57,7 @@ pub fn stack(blocks: &[Shape; 2]) -> World {
     world
 }
 
-/// A world with a fork whose two arms swing towards each other.
+/// Returns a world with a fork whose two arms swing towards each other.
 pub fn clapping(shape: &Shape, options: WorldOptions, damping: Damping) -> World {
     // Selects the mode that changes the distance of the tips most.
     let (p, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
@@ -90,7 +90,7 @@ pub fn eigenvalues(shape: &Shape) -> Vec<f64> {
     }
 }
 
-/// The corners of all triangles of each body, in the world.
+/// Returns the corners of all triangles of each body, in the world.
 pub fn placed(world: &World) -> Vec<Vec<[DVec3; 3]>> {
     let corners = |body: &Body| {
         let model = body.shape().model();
@@ -100,7 +100,7 @@ pub fn placed(world: &World) -> Vec<Vec<[DVec3; 3]>> {
     world.bodies().iter().map(corners).collect()
 }
 
-/// The number of intersecting pairs of triangles of different bodies, by brute force.
+/// Returns the number of intersecting pairs of triangles of different bodies, by brute force.
 pub fn intersections(world: &World) -> usize {
     let placed = placed(world);
     let mut count = 0;

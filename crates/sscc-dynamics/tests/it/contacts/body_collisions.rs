@@ -10,7 +10,7 @@ use crate::common::{block, elastic, rigid, rigid_block, rubber};
 #[test]
 fn pairs_between_bodies_equal_brute_force() {
     let shapes = shapes();
-    // Bodies that begin in each other collide until they are apart; then they never meet again.
+    // Bodies that intersect at the start collide until they are apart; then they never meet again.
     let mut world = pile(&shapes, Detection::Certified, 0.2);
     let (mut met, mut apart) = (0, 0);
     for step in 0..700 {
@@ -106,7 +106,7 @@ fn colliding_bodies_conserve_momenta() {
 
 #[test]
 fn three_bodies_in_a_row_meet_in_one_step_and_keep_their_momentum() {
-    // The gaps between the blocks are much smaller than the way of a step.
+    // The gaps between the blocks are much smaller than the displacement in a step.
     let shape = rigid_block([1, 1, 1], 0.2, 2.0);
     let mut world = World::new(space(1e-3)).unwrap();
     for (n, speed) in [30.0, 0.0, -40.0].into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Friction, also of points that fewer than three modes move, or modes in one plane.
+//! Friction, also at points that fewer than three modes move, or that modes in one plane move.
 
 use glam::{DMat3, DVec3};
 use sscc::{Certificates, CertifyOptions, Metric, Modes, ReducedModel, TriMesh};
@@ -7,7 +7,7 @@ use sscc_solid::{Elasticity, MassProperties, Material, Stiffness};
 
 use crate::common::{block, rigid};
 
-/// Two parallel plates in one mesh; modes move the upper one as a whole.
+/// Returns a shape of two parallel plates in one mesh; modes move the upper plate as a whole.
 fn plates(normal: DVec3, modes: &[DVec3], gap: f64) -> Shape {
     let x = normal.any_orthonormal_vector();
     let y = normal.cross(x);
@@ -34,7 +34,7 @@ fn plates(normal: DVec3, modes: &[DVec3], gap: f64) -> Shape {
     shape.with_moments(modes.iter().map(|u| *u * 0.5).collect()).unwrap()
 }
 
-/// No impulse stops such points from sliding across their modes, where rounding makes them slide.
+/// No impulse stops such points from sliding perpendicular to their modes, where rounding makes them slide.
 #[test]
 fn points_that_few_modes_move_have_friction() {
     let lists = [
@@ -50,7 +50,7 @@ fn points_that_few_modes_move_have_friction() {
         .chain(tilted.into_iter().map(|normal| (normal, vec![normal * 2.5])));
     for (case, (normal, modes)) in cases.enumerate() {
         let shape = plates(normal, &modes, 0.1);
-        // Within the body alone, and with the ground.
+        // Contacts within the body alone, and contacts with the ground.
         let below = Ground { normal, height: -1.0, ..Ground::default() };
         for ground in [None, Some(Ground { height: 0.05, ..below })] {
             for is_free in [false, true] {

@@ -19,7 +19,7 @@ fn a_diverging_motion_names_step_body_and_energy() {
     assert!(error.to_string().contains("body 1"));
 }
 
-/// A body that no other one and no ground is near: a step needs none of its positions, but its state is given to others.
+/// No other body and no ground is near the body: a step needs none of its positions, but callers read its state.
 #[test]
 fn a_body_that_leaves_the_range_of_numbers_is_refused_in_that_step() {
     let shapes = shapes();

@@ -1,5 +1,5 @@
 //! Random scenes run to their end without new energy, whatever stiffness, damping, step, orientation, speed and shape are.
-//! The example `robustness` of `sscc-sim` is the long form.
+//! The example `robustness` of `sscc-sim` runs more scenes.
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::{Modes, ReducedModel};
@@ -12,11 +12,11 @@ use crate::common::{block, certified, cubes, elastic, fork, octahedron};
 /// Number of random scenes.
 const SCENES: u64 = 7;
 
-/// Steps of each.
+/// Number of steps of each scene.
 const STEPS: usize = 200;
 
-/// Bound of the energy and of what contacts have dissipated, over the first energy: Newmark's method may add 2% of that of
-/// the modes.
+/// Bound of the energy plus the energy that contacts have dissipated, over the first energy: Newmark's method may add 2% of
+/// the energy of the modes.
 const MAX_ENERGY: f64 = 1.02;
 
 /// A random scene and its shape.
@@ -39,7 +39,7 @@ fn draw(random: &mut Random) -> (RandomScene, Shape) {
     }
 }
 
-/// Runs a random scene. Returns its largest energy, with what contacts have dissipated, over the first one.
+/// Runs a random scene. Returns its largest energy, plus the energy that contacts have dissipated, over the first energy.
 fn run(seed: u64) -> f64 {
     let mut random = Random(seed);
     let (RandomScene { damping, options, .. }, shape) = draw(&mut random);
@@ -73,8 +73,9 @@ fn random_scenes_run_to_their_end_without_new_energy() {
     }
 }
 
-/// A heavy body falls on a vertex that a light mode moves. At rest the mode is soft, so corrections let it give way. But its
-/// force grows with the cube of the displacement, and where the whole weight moves on it has more energy than the fall.
+/// A heavy body falls on a vertex that a light mode moves. At rest the mode is soft, so corrections displace it far. But its
+/// force grows with the cube of the displacement: if the heavy body moved on with its whole weight, the mode would have more
+/// energy than the fall.
 #[test]
 fn corrected_bodies_get_no_more_potential_energy_than_they_had_energy() {
     let lowest = 3;

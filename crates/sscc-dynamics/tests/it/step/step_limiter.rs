@@ -1,4 +1,4 @@
-//! No intersections at the end of any step.
+//! Tests that no step ends with intersections.
 
 use glam::{DQuat, DVec3};
 use sscc_dynamics::{ContactOptions, Damping, Start, World, WorldOptions};
@@ -89,7 +89,7 @@ fn a_stack_comes_to_rest_without_interpenetration_and_gains_no_energy() {
     assert!(places[2].y > 0.48, "the top body has not fallen: {places:?}");
 }
 
-/// The lowest height of all vertices of a world.
+/// Returns the lowest height of all vertices of a world.
 fn lowest(world: &World) -> f64 {
     let heights = world.bodies().iter().flat_map(|body| {
         let positions = body.shape().model().positions(body.q()).unwrap();

@@ -14,7 +14,7 @@ use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Scene, Server};
 /// Number of vertices of a strip.
 const STRIP: usize = 40;
 
-/// Two strips of triangles at distance 1, one above the other. Mode 0 lowers the upper strip, mode 1 shifts it
+/// Returns two strips of triangles at distance 1, one above the other. Mode 0 lowers the upper strip, mode 1 shifts it
 /// lengthwise, mode 2 bends its end down.
 pub fn strips() -> (ReducedModel, Certificates) {
     let vertex = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
@@ -36,7 +36,7 @@ pub fn strips() -> (ReducedModel, Certificates) {
     (model, certificates)
 }
 
-/// The scene of the strips and its arrays.
+/// Returns the scene of the strips and its arrays.
 pub fn scene(model: &ReducedModel, certificates: &Certificates) -> (Scene, Arrays) {
     let (mut scene, mut arrays) = (Scene::new("strips"), Arrays::default());
     let details = ModelDetails { frequencies: Some(vec![1.0, 2.0, 3.0]), ..ModelDetails::default() };
@@ -86,7 +86,7 @@ impl Reply {
         serde_json::from_slice(&self.body).unwrap()
     }
 
-    /// The message of a refusal: one line.
+    /// Returns the message of a refusal: one line.
     pub fn error(&self) -> String {
         let line = self.json()["error"].as_str().unwrap().to_owned();
         assert!(!line.is_empty() && !line.contains('\n'));
@@ -139,7 +139,7 @@ pub fn read_reply(stream: &mut TcpStream) -> io::Result<Reply> {
     next_reply(stream, &mut Vec::new())
 }
 
-/// Reads the next reply; `bytes` are those that were read beyond the previous one.
+/// Reads the next reply; `bytes` are bytes that were read beyond the previous reply.
 pub fn next_reply(stream: &mut TcpStream, bytes: &mut Vec<u8>) -> io::Result<Reply> {
     let head = loop {
         if let Some(end) = bytes.windows(4).position(|window| window == b"\r\n\r\n") {
