@@ -57,7 +57,11 @@ const TASKS: &[Task] = &[
     ("lemmas", "proves the rounding lemmas of docs/proofs with Gappa", lemmas::run),
     ("lines", "counts the lines of the product", lines::run),
     ("public", "[--list | --write]: compares the public items of the core with the kept list", public::run),
-    ("semver", "[REVISION]: compares public items of the core and its version, since the last release", semver::run),
+    (
+        "semver",
+        "[REVISION]: compares public items of the core and its version, since the last release",
+        semver::run,
+    ),
     ("mutants", "[names]: checks that the tests catch wrong variants of the core", mutants::run),
     (
         "soundness",
