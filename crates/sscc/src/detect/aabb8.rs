@@ -1,8 +1,8 @@
-//! `Aabb8`, a packet of eight AABBs side by side: one AABB is compared with all of them at once. Also the AABB and the
-//! set of lanes that go with it.
+//! `Aabb8`, a packet of eight AABBs side by side: one AABB is compared with all of them at once. The file also has the
+//! AABB in single precision and sets of lanes.
 //!
-//! Two packets are compared in the instruction set that is chosen at run time. A single comparison takes less time than
-//! such a call, so it uses [`Vec4`], one SSE2 or NEON register.
+//! Two packets are compared by the instruction set that is chosen at run time. A comparison of one AABB takes less time than
+//! a call by instruction set, so it uses [`Vec4`], one SSE2 or NEON register.
 
 use glam::{Mat4, Vec4};
 
@@ -12,7 +12,7 @@ use crate::vectors::{InstructionSet, Kernel, Vectors};
 pub(crate) use crate::vectors::LANES;
 
 /// An AABB in the single-precision coordinates of an [`F32Frame`](crate::detect::f32_frame::F32Frame): lower and upper
-/// corner; the fourth components mean nothing.
+/// corner; the fourth components are unused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AabbF32 {
     pub(crate) lower: Vec4,
@@ -20,10 +20,10 @@ pub(crate) struct AabbF32 {
 }
 
 impl AabbF32 {
-    /// Contains nothing, and overlaps no AABB with finite corners.
+    /// The AABB that contains no point, and overlaps no AABB with finite corners.
     pub(crate) const EMPTY: Self = Self { lower: Vec4::INFINITY, upper: Vec4::NEG_INFINITY };
 
-    /// Contains everything.
+    /// The AABB that contains all points.
     pub(crate) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
 
     /// The AABB of a triangle by its corners at `E` configurations.
@@ -37,7 +37,7 @@ impl AabbF32 {
         a.union(&b).union(&c)
     }
 
-    /// An AABB larger by this much on both sides of each axis, up to a rounding.
+    /// Returns an AABB that is larger by this distance on both sides of each axis, up to a rounding.
     #[inline]
     pub(crate) fn widened(&self, by: Vec4) -> Self {
         Self { lower: self.lower - by, upper: self.upper + by }
@@ -70,7 +70,7 @@ impl Aabb8 {
     pub(crate) const EMPTY: Self =
         Self { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3] };
 
-    /// Sets the AABBs of the first four lanes (`half` 0) or of the others (1).
+    /// Sets the AABBs of the first four lanes (`half` 0) or of the last four (1).
     #[inline]
     pub(crate) fn set_half(&mut self, half: usize, [a, b, c, d]: &[AabbF32; LANES / 2]) {
         let lower = Mat4::from_cols(a.lower, b.lower, c.lower, d.lower).transpose();
@@ -102,7 +102,7 @@ impl Aabb8 {
         )
     }
 
-    /// The lanes among the first four whose AABB overlaps a given one.
+    /// Returns the lanes among the first four whose AABB overlaps a given one.
     #[inline]
     pub(crate) fn overlapping_of_four(&self, other: &AabbF32) -> Lanes {
         let (lower, upper) = (other.lower, other.upper);
@@ -131,7 +131,7 @@ impl Aabb8 {
         Lanes(!apart & 0xff)
     }
 
-    /// Which of four lanes from one on are disjoint from an AABB.
+    /// Returns which of the four lanes that begin at `from` are disjoint from an AABB.
     #[inline(always)]
     fn beyond_half(&self, from: usize, lower: [Vec4; 3], upper: [Vec4; 3]) -> u32 {
         let of = |ends: &[f32; LANES]| Vec4::from_slice(&ends[from..from + 4]);
@@ -141,14 +141,14 @@ impl Aabb8 {
     }
 }
 
-/// Two packets whose overlapping pairs of lanes are wanted.
+/// Two packets whose overlapping pairs of lanes are to be found.
 #[derive(Clone, Copy)]
 pub(crate) struct PacketPair<'p> {
     pub(crate) first: &'p Aabb8,
     pub(crate) second: &'p Aabb8,
     /// The lanes of the first packet to compare.
     pub(crate) rows: u32,
-    /// Bit `8 i + j` for lane i of the first and lane j of the second packet: the pairs to leave out.
+    /// The pairs to omit: bit `8 i + j` for lane i of the first and lane j of the second packet.
     pub(crate) masked: u64,
 }
 
@@ -157,19 +157,19 @@ pub(crate) struct PacketPair<'p> {
 pub(crate) struct Overlaps {
     /// Bit `8 i + j` for lane i of the first and lane j of the second packet.
     pub(crate) pairs: u64,
-    /// How many lanes of the first packet were compared.
+    /// The number of lanes of the first packet that were compared.
     pub(crate) rows: u32,
 }
 
 impl PacketPair<'_> {
-    /// The pairs of lanes whose AABBs overlap. Lanes of the first packet whose pairs are all left out are not compared.
+    /// Returns the pairs of lanes whose AABBs overlap. Lanes of the first packet whose pairs are all omitted are not compared.
     #[inline]
     pub(crate) fn overlaps(self, instructions: InstructionSet) -> Overlaps {
         instructions.run(self)
     }
 
-    /// The same, where all lanes of either packet lie within one lane of another packet, the outer one: only those are
-    /// compared that overlap the outer lane of the other side. `rows` is not used.
+    /// Returns the same pairs if all lanes of each packet are within one lane of an outer packet. Only lanes that overlap the
+    /// outer lane of the other packet are compared. `rows` is not used.
     #[inline]
     pub(crate) fn overlaps_within(
         self,
@@ -199,7 +199,7 @@ impl Kernel for PacketPair<'_> {
     }
 }
 
-/// Two packets, and for each the packet and the lane whose AABB contains all of its own.
+/// Two packets, and for each the outer packet and the lane whose AABB contains all of its AABBs.
 struct NestedPacketPair<'p> {
     pair: PacketPair<'p>,
     outer: [(&'p Aabb8, usize); 2],
@@ -232,7 +232,7 @@ impl Aabb8 {
         !v.bits(v.or(v.or(x, y), z)) & 0xff
     }
 
-    /// The lanes that are apart from that of another packet along an axis.
+    /// Returns the lanes that are disjoint from a lane of another packet along an axis.
     #[inline(always)]
     fn beyond<V: Vectors>(&self, v: V, other: &Self, lane: usize, axis: usize) -> V::Mask {
         let (lower, upper) = (v.splat(other.lower[axis][lane]), v.splat(other.upper[axis][lane]));
@@ -240,7 +240,7 @@ impl Aabb8 {
     }
 }
 
-/// A set of lanes: bit i for lane i. As an iterator, the numbers of its lanes, ascending.
+/// A set of lanes: bit i for lane i. Its iterator returns the numbers of its lanes, ascending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Lanes(pub(crate) u32);
 
@@ -255,7 +255,7 @@ impl Iterator for Lanes {
     }
 }
 
-/// A set of pairs of lanes: bit `8 i + j` for the pair `(i, j)`. As an iterator, its pairs, ascending.
+/// A set of pairs of lanes: bit `8 i + j` for the pair `(i, j)`. Its iterator returns its pairs, ascending.
 #[derive(Clone, Copy)]
 pub(crate) struct PairsOfLanes(pub(crate) u64);
 

@@ -3,7 +3,7 @@
 use super::aabb8::LANES;
 use crate::filter::{PairFilter, Relation};
 
-/// Vertices with more triangles get no masks, since the number of pairs grows with the square. For these pairs the
+/// Vertices with more triangles have no masks, since the number of pairs grows with the square. For their pairs the
 /// narrow phase uses [`PairFilter`].
 const MAX_VERTEX_TRIANGLES: usize = 24;
 
@@ -11,21 +11,21 @@ const MAX_VERTEX_TRIANGLES: usize = 24;
 /// overlap share a vertex, so masks avoid most calls of the narrow phase (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct AdjacencyMasks {
-    /// For each packet the start of its masks, and the end of all.
+    /// For each packet the start of its masks, then the end of the last packet's.
     starts: Vec<u32>,
-    /// For each packet: the packets not before it, ascending, itself first, each with its mask.
+    /// For each packet the packets not before it, ascending and beginning with itself, each with its mask.
     masks: Vec<PacketMask>,
-    /// For each bucket the start of its neighbours, and the end of all.
+    /// For each bucket the start of its neighbours, then the end of the last bucket's.
     neighbour_starts: Vec<u32>,
-    /// For each bucket: the buckets after it that share a vertex class of few triangles with it, ascending.
+    /// For each bucket the buckets after it that share a vertex class of few triangles with it, ascending.
     neighbours: Vec<u32>,
-    /// For each bucket whether it has a vertex class of many triangles. Two such buckets may share it.
+    /// For each bucket whether it has a vertex class of many triangles. Two such buckets may share the class.
     has_large_class: Vec<bool>,
 }
 
 /// The triangles around each vertex class, as `8 packet + lane`.
 struct TrianglesAround {
-    /// For each class its first triangle, and the end of all.
+    /// For each class the start of its triangles, then the end of the last class's.
     starts: Vec<u32>,
     triangles: Vec<u32>,
 }
@@ -126,14 +126,15 @@ impl AdjacencyMasks {
             || right_or!(have_large_class, LargeClassForgotten, false)
     }
 
-    /// The pairs of two packets, without the masks of adjacent triangles: of one packet with itself those with `j <= i`.
+    /// Returns the masked pairs of two packets without those of adjacent triangles: for one packet with itself the pairs with
+    /// `j <= i`.
     #[inline]
     pub(crate) fn masked_without(first: usize, second: usize) -> u64 {
         if first == second { NOT_AFTER } else { 0 }
     }
 
-    /// The pairs of two packets, the first not after the second, that never count: bit `8 i + j` for lane i of the first
-    /// and lane j of the second. Of one packet with itself also those with `j <= i`, so that each pair counts once.
+    /// Returns the pairs of two packets, the first not after the second, that never count: bit `8 i + j` for lane i of the
+    /// first and lane j of the second. For one packet with itself also the pairs with `j <= i`, so that each pair counts once.
     #[inline]
     pub(crate) fn masked_pairs(&self, first: usize, second: usize) -> u64 {
         let all = &self.masks[self.starts[first] as usize..self.starts[first + 1] as usize];
@@ -146,14 +147,15 @@ mod tests {
     use super::*;
     use crate::ContactFilter;
 
-    /// A strip of triangles, and a fan of many around one vertex, in buckets of one to three packets of few triangles.
+    /// The mesh is a strip of triangles, and a fan of many triangles around one vertex, in buckets of one to three packets of
+    /// few triangles.
     #[test]
     fn buckets_that_share_a_vertex_are_neighbours() {
         let strip = (0..90).map(|i| [i, i + 1, i + 2]);
         let fan = (0..40).map(|i| [200, 201 + i, 202 + i]);
         let faces: Vec<[u32; 3]> = strip.chain(fan).collect();
         let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
-        // Every seventh triangle after each other, so that neighbours in the mesh are far apart in the order.
+        // The order has steps of seven triangles, so that neighbours in the mesh are far apart in it.
         let triangles: Vec<u32> = (0..130).map(|i| i * 7 % 130).collect();
         let mut slots = vec![0];
         while *slots.last().unwrap() < 130 {

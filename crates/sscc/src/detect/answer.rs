@@ -1,16 +1,16 @@
-//! The answer for one shape of a batch, its cost, and what proved it.
+//! The answer for one shape of a batch, its cost, and the kind of its proof.
 
 use super::search::Counters;
 use crate::Pair;
 
-/// What proved the answer of a query.
+/// The kind of proof of the answer of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Proof {
     /// The root's radius: one comparison.
     Radius,
     /// The root's local certificate: the strain of the whole shape.
     Local,
-    /// A search.
+    /// A search of the hierarchy.
     #[default]
     Search,
 }
@@ -26,17 +26,17 @@ pub struct Answer {
     pub statistics: Statistics,
 }
 
-/// The cost of an answer, and what proved it.
+/// The cost of an answer, and the kind of its proof.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// `|z| = |S (q - center)|`, rounded up, in the metric and about the centre of the query; of a continuous query the larger
-    /// one of start and end. 0 for a [`Detector`](crate::Detector), which has no q.
+    /// `|z| = |S (q - center)|`, rounded up, in the metric and about the centre of the query; for a continuous query the larger
+    /// norm of start and end. 0 for a [`Detector`](crate::Detector), which has no q.
     pub norm: f64,
     /// Whether the root's certificate alone proved the shape free, exceptions apart: its radius or its local certificate.
     pub root_certified: bool,
-    /// What proved the answer, exceptions apart.
+    /// The kind of proof of the answer, exceptions apart.
     pub proof: Proof,
-    /// Whether the search was complete: the pairs listed are all. False where a limit stopped the query, or an error.
+    /// Whether the search was complete, so that all pairs are listed. False if a limit or an error stopped the query.
     pub complete: bool,
     /// Nodes and node pairs that were opened.
     pub opened: u64,
@@ -46,7 +46,7 @@ pub struct Statistics {
     pub triangle_tests: u64,
     /// The cost of a detector's refitted hierarchy by the surface area heuristic; 0 for a query.
     pub tree_cost: f64,
-    /// How often a detector has built its hierarchy again since it was made; 0 for a query.
+    /// The number of times that a detector has rebuilt its hierarchy; 0 for a query.
     pub rebuilds: u64,
 }
 
@@ -64,13 +64,13 @@ impl Statistics {
         rebuilds: 0,
     };
 
-    /// Says what proved the answer.
+    /// Sets the kind of proof.
     pub(crate) fn set_proof(&mut self, proof: Proof) {
         self.proof = proof;
         self.root_certified = proof != Proof::Search;
     }
 
-    /// Takes over the counters of a search.
+    /// Copies the counters of a search.
     pub(crate) fn set_counters(&mut self, counters: &Counters) {
         let Counters { opened, box_tests, triangle_tests, .. } = *counters;
         (self.opened, self.box_tests, self.triangle_tests) = (opened, box_tests, triangle_tests);

@@ -12,34 +12,34 @@ use crate::parallel;
 use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 use glam::{DVec3, Vec4};
 
-/// Components of a mean and a growth.
+/// The number of components of a mean and a growth together.
 const COMPONENTS: usize = 6;
 
-/// Lanes of a vector beyond the components.
+/// The number of lanes of a vector beyond the components.
 const PADDING: usize = LANES - COMPONENTS;
 
-/// For the nodes that have a box, how it moves and grows with q:
+/// For each node with a BD-tree AABB the coefficients of its centre and half extents:
 /// `centre(q) = c + sum_k mean_k q_k`, `half(q) = h + sum_k growth_k |q_k|`.
 #[derive(Clone, Default)]
 pub(crate) struct BdTree {
-    /// The number of modes of a box, where they are not listed.
+    /// The number of modes of each box, if they are not listed.
     rank: usize,
-    /// For each node its index in the lists below; `u32::MAX` for none.
+    /// For each node its index in the lists below; `u32::MAX` for a node without a box.
     indices: Vec<u32>,
     /// The modes that move each box.
     moving: MovingModes,
-    /// `(c, h)`
+    /// `(c, h)` for each box.
     rest: Vec<(DVec3, DVec3)>,
-    /// Of each box `(mean, growth)` for each of its modes.
+    /// `(mean, growth)` for each mode of each box.
     rates: Vec<(DVec3, DVec3)>,
-    /// The same, quantized: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; and two more entries. Empty where
-    /// the modes of boxes are listed.
+    /// Quantized `rest` and `rates`: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; then two further entries.
+    /// Empty if the modes of boxes are listed.
     quantized: Vec<i16>,
     instructions: InstructionSet,
 }
 
 impl BdTree {
-    /// The boxes of the root and of all other nodes for which `is_wanted` holds.
+    /// Computes the boxes of the root and of all other nodes for which `is_wanted` holds.
     pub(crate) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,
@@ -75,15 +75,15 @@ impl BdTree {
         Self { rank, indices, moving, rest, rates, quantized, instructions: InstructionSet::default() }
     }
 
-    /// A box that contains the computed positions of all vertices of a node at each q, hence all between them, or none
-    /// where the node has none. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last
+    /// Returns a box that contains the computed positions of all vertices of a node at each q, hence all between them;
+    /// `None` if the node has no box. `margin` covers rounding, along each axis: at least `(4 r + 64)` units of the last
     /// place of the shape's reach.
     pub(crate) fn at<const E: usize>(&self, node: u32, q: [&[f64]; E], margin: DVec3) -> Option<Aabb> {
         let index = self.indices[node as usize] as usize;
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// The same in single precision, in the frame of the search; none where their modes are listed, too.
+    /// Returns the box in single precision, in the frame of the search; `None` also if the modes of boxes are listed.
     #[inline]
     pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
         let index = self.indices[node as usize] as usize;
@@ -93,9 +93,9 @@ impl BdTree {
         let start = index * (self.rank + 1) * COMPONENTS;
         let quantized = &self.quantized[start..][..(self.rank + 1) * COMPONENTS + PADDING];
         let sums = self.instructions.run(MoveBox { quantized, motion });
-        // Half extents are no less than at either end, since rounding is monotone; where a step is short, hardly more.
+        // Half extents are at least as large as at either end, since rounding is monotone, and hardly larger if the step is short.
         let half = sums.first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
-        // The error of the centre, and that of the half.
+        // Adds the error of the centre, and that of the half extents.
         let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
         let mut ends = sums.map(|[x, y, z, ..]| {
             let center = Vec4::new(x, y, z, 0.0);
@@ -108,13 +108,13 @@ impl BdTree {
         ends.into_iter().reduce(join)
     }
 
-    /// The same for the whole shape.
+    /// Returns the box of the whole shape.
     pub(crate) fn root<const E: usize>(&self, q: [&[f64]; E], margin: DVec3) -> Aabb {
         self.at_index(0, q, margin)
     }
 
-    /// An upper bound of the length of `sum_k U_k q_k` over all vertices of some nodes, up to rounding. Infinite where one of them
-    /// has no box, NaN where q is not finite.
+    /// Returns an upper bound of the length of `sum_k U_k q_k` over all vertices of some nodes, up to rounding. Infinite if one of
+    /// the nodes has no box, NaN if q is not finite.
     pub(crate) fn displacement_bound(&self, nodes: impl Iterator<Item = u32>, q: &[f64]) -> f64 {
         if !q.iter().all(|q| q.is_finite()) {
             return f64::NAN;
@@ -161,7 +161,7 @@ impl BdTree {
     }
 }
 
-/// Centre and half extents of the AABB of some vertices at rest, and how they move and grow with some modes.
+/// Returns centre and half extents of the AABB of some vertices at rest, and their mean and growth by each of some modes.
 fn rest_and_rates(
     model: &ReducedModel,
     vertices: &[u32],
@@ -198,7 +198,7 @@ impl<const E: usize> Kernel for MoveBox<'_, E> {
     #[inline(always)]
     fn run<V: Vectors>(self, v: V) -> Self::Output {
         let Self { quantized, motion } = self;
-        // Loops, because maps of arrays are not inlined.
+        // These are loops, because maps of arrays are not inlined.
         let mut sums = [v.splat(0.0); E];
         for end in 0..E {
             let shift = motion.shift[end];
@@ -206,7 +206,7 @@ impl<const E: usize> Kernel for MoveBox<'_, E> {
         }
         let mut components = quantized;
         for factors in &motion.node_factors {
-            // The last two components belong to what follows. A sum without a mode would be no AABB.
+            // The last two components belong to the next mode. If a mode is missing, NaN makes the box invalid.
             let Some(of_mode) = components.first_chunk::<LANES>() else { return [[f32::NAN; LANES]; E] };
             components = &components[COMPONENTS..];
             let of_mode = v.convert(of_mode);
@@ -230,13 +230,13 @@ mod tests {
     use crate::detect::vertex_store::VertexStore;
     use crate::{Modes, TriMesh};
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of fixed pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
     }
 
-    /// A wavy strip far from the origin, with modes of very different sizes, of which each moves one vertex in so many.
+    /// Returns a wavy strip far from the origin, with modes of very different sizes, each of which moves one of `every` vertices.
     fn model(rank: usize, every: usize, state: &mut u64) -> ReducedModel {
         let positions: Vec<DVec3> =
             (0..202).map(|i| DVec3::new(1e3 + (i / 2) as f64, (i % 2) as f64, random(state))).collect();
@@ -258,7 +258,7 @@ mod tests {
         boxes.iter().map(|b| bits(b).try_into().unwrap()).collect()
     }
 
-    /// From one q to another, of all sizes and directions.
+    /// The motions are from one q to another, of all sizes and directions.
     #[test]
     fn boxes_contain_the_positions_at_both_ends() {
         let (mut state, mut coarse) = (8, 0);
@@ -339,7 +339,7 @@ mod tests {
                             assert_eq!(inside.bitmask() & 0b111, 0b111, "rank {rank}, case {case}");
                         }
                     }
-                    // Hardly larger than in double precision.
+                    // Boxes in single precision are hardly larger than those in double precision.
                     if let Some(mapped) = mapped {
                         let larger = (frame.map(lower) - mapped.lower).max(mapped.upper - frame.map(upper));
                         wide = wide.max(larger.truncate().max_element() / motion.error);

@@ -1,4 +1,4 @@
-//! The memory of searches of one shape with itself, and how they begin.
+//! The memory of searches of one shape with itself, and the functions that begin them.
 
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ pub(crate) struct BroadPhase<const E: usize> {
 }
 
 impl<const E: usize> BroadPhase<E> {
-    /// Lazy searches compute boxes where the traversal visits nodes, others refit all of them first. `cones`: those of the
-    /// method, if it uses any.
+    /// Allocates the memory. Lazy searches compute boxes when the traversal visits nodes, others refit all boxes first.
+    /// `cones`: the normal cones of the method, if it uses any.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool, cones: Option<NormalCones>) -> Self {
         Self {
             volumes: NodeVolumes::new(layout, is_lazy),
@@ -30,7 +30,7 @@ impl<const E: usize> BroadPhase<E> {
         }
     }
 
-    /// Begins a search for at most `limit` hits: all boxes are those of this motion.
+    /// Begins a search of this motion for at most `limit` hits.
     pub(crate) fn search<'s, M: VertexMotion<E>, N: NarrowPhase<E>>(
         &'s mut self,
         context: &'s Context,
@@ -42,7 +42,7 @@ impl<const E: usize> BroadPhase<E> {
         self.search_begun(context, motion, narrow, limit)
     }
 
-    /// The same where the volumes have begun it.
+    /// Begins a search whose volumes have begun it already.
     pub(super) fn search_begun<'s, M: VertexMotion<E>, N: NarrowPhase<E>>(
         &'s mut self,
         context: &'s Context,

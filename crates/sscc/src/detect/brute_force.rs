@@ -1,4 +1,4 @@
-//! Every pair of triangles: the oracle for all other methods.
+//! Tests of every pair of triangles: the oracle for all other methods.
 
 use glam::DVec3;
 
@@ -10,10 +10,10 @@ use crate::geometry::Aabb;
 
 impl<const E: usize> BroadPhase<E> {
     /// Finds at most `limit` hits among all pairs of triangles, exceptions included, by the positions of vertices at each
-    /// configuration. No hierarchy, no certificates; only boxes of single triangles, compared exactly.
+    /// configuration. It uses no hierarchy and no certificates; only AABBs of single triangles, compared exactly.
     ///
     /// # Errors
-    /// When it was cancelled; then there are no hits.
+    /// When the search was cancelled; then there are no hits.
     pub(crate) fn brute_force<N: NarrowPhase<E>>(
         &mut self,
         context: &Context,

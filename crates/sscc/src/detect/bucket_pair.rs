@@ -10,7 +10,7 @@ use crate::filter::Relation;
 /// The pairs of lanes `(i, j)` with `j < i`, as in [`PacketPair`].
 const NOT_LATER: u64 = 0x7f3f_1f0f_0703_0100;
 
-/// A packet: its bucket and its lane there.
+/// A packet, by its bucket and its lane there.
 #[derive(Clone, Copy)]
 struct BucketLane {
     bucket: u32,
@@ -51,7 +51,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
     /// Tests two buckets.
     pub(crate) fn test_bucket_pair(&mut self, (n, m): (u32, u32)) {
         self.state.counters.opened += 1;
-        // Masks of adjacency are stored with the packet of the lower number.
+        // Masks of adjacent pairs are stored with the packet of the lower number.
         let (n, m) = if SIDES == 1 { (n.min(m), n.max(m)) } else { (n, m) };
         self.sides[0].open_bucket(n);
         self.sides[Self::LAST].open_bucket(m);
@@ -80,9 +80,9 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         }
     }
 
-    /// Tests two packets whose boxes overlap, of one side the second not before the first, or one packet against itself.
-    /// `share_no_vertex`: each two of their triangles count. Then neither masks nor vertex classes are read, which are far apart
-    /// in memory.
+    /// Tests two packets whose boxes overlap (with one side, the second is not before the first), or one packet against itself.
+    /// `share_no_vertex`: the two packets share no vertex, so that all their triangle pairs count. Then neither masks nor vertex
+    /// classes are read, which are far apart in memory.
     #[inline]
     fn test_packet_pair(&mut self, x: BucketLane, y: BucketLane, share_no_vertex: bool) {
         let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
@@ -92,7 +92,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         let (masked, has_adjacent) =
             if share_no_vertex { (0, true) } else { buckets[0].masked_pairs(packets[0], packets[1]) };
         let starts = [buckets[0].slots(packets[0]).start, buckets[1].slots(packets[1]).start];
-        // Most triangles of a packet stay clear of the whole other packet.
+        // Most triangles of a packet are separate from the whole other packet.
         let outer = [(first.packets(x.bucket), x.lane), (last.packets(y.bucket), y.lane)];
         let triangles = [first.triangles(packets[0]), last.triangles(packets[1])];
         let pair = PacketPair { first: triangles[0], second: triangles[1], rows: 0, masked };

@@ -1,4 +1,4 @@
-//! Buckets: the largest nodes of at most 64 triangles, at which traversals end, each cut into up to eight packets of up
+//! Buckets: the largest nodes of at most 64 triangles, at which traversals end. Each is cut into up to eight packets of up
 //! to eight triangles.
 
 use std::ops::Range;
@@ -14,19 +14,19 @@ use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy, Node, PACKET_TRIANGLES};
 
 const _: () = assert!(PACKET_TRIANGLES == LANES && BUCKET_TRIANGLES == LANES * LANES);
 
-/// The buckets of a hierarchy, as far as they do not depend on q.
+/// The data of the buckets of a hierarchy that do not depend on q.
 ///
 /// A bucket is cut into full packets, not into the leaves of the hierarchy, which fill only half of a packet
 /// (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct Buckets {
-    /// For each node the bucket that it is, or lies in.
+    /// For each node the bucket that it is, or that contains it.
     of_node: Vec<Option<u32>>,
     /// For each bucket its node.
     nodes: Vec<u32>,
-    /// For each bucket its first packet, and the end.
+    /// For each bucket its first packet, then the end.
     packets: Vec<u32>,
-    /// For each packet its first slot, and the end.
+    /// For each packet its first slot, then the end.
     slots: Vec<u32>,
     /// The triangle in each slot, and its vertices by their indices in the
     /// [`VertexStore`](super::vertex_store::VertexStore).
@@ -34,7 +34,7 @@ pub(crate) struct Buckets {
     corners: Vec<[u32; 3]>,
     /// For each slot the vertex classes of its triangle.
     classes: Vec<[u32; 3]>,
-    /// For each bucket its first vertex, and the end.
+    /// For each bucket its first vertex, then the end.
     vertex_starts: Vec<u32>,
     vertices: Vec<u32>,
     /// The triangle pairs that never count, once they have been computed.
@@ -42,8 +42,8 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// `order`: the triangles in the order of the hierarchy, those of each bucket packet by packet. `vertex_count`: that of
-    /// the mesh.
+    /// Cuts the nodes into buckets and packets. `order`: the triangles in the order of the hierarchy, those of each bucket
+    /// packet by packet. `vertex_count`: the number of vertices of the mesh.
     pub(crate) fn new(
         order: &[u32],
         hierarchy: &Hierarchy,
@@ -100,22 +100,22 @@ impl Buckets {
         }
     }
 
-    /// Computes the masks of adjacent triangles, unless they are known. They take as long as four searches and save nearly
-    /// half of each later one (docs/notes/queries.md#one-shot-detector).
+    /// Computes the masks of adjacent triangles, unless they have been computed. This takes as long as four searches, and saves
+    /// nearly half the time of each later one (docs/notes/queries.md#one-shot-detector).
     pub(crate) fn mask_adjacent(&self, filter: &PairFilter) {
         let masks = || AdjacencyMasks::new(&self.packets, &self.slots, &self.triangles, filter);
         self.adjacency.get_or_init(masks);
     }
 
-    /// Whether triangles of two buckets, the first before the second, may share a vertex class. Where masks are not known,
-    /// they may.
+    /// Whether triangles of two buckets, the first before the second, may share a vertex class. True if masks have not been
+    /// computed.
     #[inline]
     pub(crate) fn can_share_vertex(&self, first: u32, second: u32) -> bool {
         self.adjacency.get().is_none_or(|masks| masks.can_share_vertex(first, second))
     }
 
-    /// The pairs of two packets that need no test, see [`AdjacencyMasks::masked_pairs`]; and whether adjacent triangles are
-    /// among them.
+    /// Returns the pairs of two packets that need no test, see [`AdjacencyMasks::masked_pairs`], and whether they include the
+    /// pairs of adjacent triangles.
     #[inline]
     pub(crate) fn masked_pairs(&self, first: usize, second: usize) -> (u64, bool) {
         match self.adjacency.get() {
@@ -128,11 +128,11 @@ impl Buckets {
     #[inline]
     pub(crate) fn has_shared_vertex(&self, slots: [usize; 2]) -> bool {
         let ([a, b, c], other) = (self.classes[slots[0]], self.classes[slots[1]]);
-        // Without branches: most triangles whose boxes overlap share a vertex, but not the same one.
+        // The fold has no branches, because most triangles whose boxes overlap share a vertex, but not always in the same place.
         other.into_iter().fold(false, |shared, x| shared | (x == a) | (x == b) | (x == c))
     }
 
-    /// The bucket that a node is, or lies in; none for a larger node.
+    /// Returns the bucket that a node is, or that contains it; `None` for a larger node.
     #[inline]
     pub(crate) fn of_node(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]
@@ -198,7 +198,7 @@ impl Buckets {
         &self.vertices
     }
 
-    /// Replaces the number of each vertex.
+    /// Replaces the index of each vertex.
     pub(crate) fn renumber(&mut self, new: impl Fn(u32) -> u32) {
         self.vertices.iter_mut().chain(self.corners.as_flattened_mut()).for_each(|v| *v = new(*v));
     }
@@ -210,8 +210,8 @@ impl Buckets {
     }
 }
 
-/// The triangles in the order of the hierarchy, those of each bucket packet by packet, by `positions` of all vertices at some
-/// configuration.
+/// Returns the triangles in the order of the hierarchy, those of each bucket packet by packet. `positions`: those of all vertices
+/// at some configuration.
 pub(crate) fn packet_order(positions: &[DVec3], hierarchy: &Hierarchy, faces: &[[u32; 3]]) -> Vec<u32> {
     let centroid = |t: u32| {
         let [a, b, c] = faces[t as usize].map(|v| positions[v as usize] / 3.0);
@@ -234,7 +234,7 @@ pub(crate) fn packet_order(positions: &[DVec3], hierarchy: &Hierarchy, faces: &[
     order
 }
 
-/// Sorts triangles so that each eight in a row are close together: by halves along the longest axis, in whole packets.
+/// Sorts triangles so that each eight consecutive ones are close together, by halves along the longest axis, in whole packets.
 fn cut(triangles: &mut [(DVec3, u32)]) {
     let packets = triangles.len().div_ceil(LANES);
     if packets < 2 {

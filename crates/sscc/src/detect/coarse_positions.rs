@@ -12,7 +12,7 @@ use super::vertex_motion::{InWorld, VertexMotion};
 /// The coarse motion of a search, and the coarse positions of the vertices of open buckets.
 #[derive(Clone)]
 pub(crate) struct CoarsePositions<const E: usize> {
-    /// Whether this search uses coarse positions; else AABBs of triangles are computed from exact ones.
+    /// Whether this search uses coarse positions; otherwise AABBs of triangles are computed from exact ones.
     is_used: bool,
     motion: CoarseMotion<E>,
     positions: Vec<[Vec4; E]>,
@@ -60,18 +60,19 @@ impl<const E: usize> CoarsePositions<E> {
         self.motion.search_error()
     }
 
-    /// The BD-tree AABB of a node; None if this search uses exact positions, or the node has none.
+    /// Returns the BD-tree AABB of a node; `None` if this search uses exact positions, or the node has no such AABB.
     #[inline]
     pub(crate) fn node(&self, layout: &Layout, n: u32) -> Option<AabbF32> {
         if self.is_used { layout.bd_tree.coarse(n, &self.motion) } else { None }
     }
 
-    /// How much farther than coarse positions the vertices of a node may be, in the frame, rounded up.
+    /// Returns a bound of the distance of the vertices of a node from their coarse positions, apart from the error, in the frame, rounded
+    /// up.
     #[inline]
     pub(crate) fn slack<M: VertexMotion<E>>(n: u32, motion: &M, frame: &F32Frame) -> Vec4 {
         motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
             let slack = slack * (frame.scale() * (1.0 + 1e-5));
-            // Finite, as all corners of AABBs are that contain something.
+            // The slack must be finite, as are all corners of AABBs that are not empty.
             let slack = slack.as_vec3().extend(0.0).min(Vec4::MAX);
             right_or!(slack, CoarseSlackForgotten, Vec4::ZERO)
         })

@@ -14,7 +14,7 @@ use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 /// them, so that a bucket is read from contiguous memory (docs/notes/broad-phase.md#packets).
 #[derive(Default)]
 pub(crate) struct CoarseVertices {
-    /// For each bucket its first group of eight vertices, and the end.
+    /// For each bucket its first group of eight vertices, then the end.
     starts: Vec<u32>,
     /// `[group * (rank + 1) + mode][axis]`, see [`Quantization`]: one lane for each vertex.
     quantized: Vec<[[i16; LANES]; 3]>,
@@ -52,12 +52,12 @@ impl CoarseVertices {
         Self { starts, quantized, corners, instructions: InstructionSet::default() }
     }
 
-    /// Whether nothing is stored: then queries must use exact positions.
+    /// Whether no vertices are stored: then queries must use exact positions.
     pub(crate) fn is_empty(&self) -> bool {
         self.starts.is_empty()
     }
 
-    /// Memory for the coarse positions of all buckets.
+    /// Allocates memory for the coarse positions of all buckets.
     pub(crate) fn new_positions<const E: usize>(&self) -> Vec<[Vec4; E]> {
         vec![[Vec4::ZERO; E]; LANES * self.starts.last().map_or(0, |end| *end as usize)]
     }
@@ -81,7 +81,8 @@ impl CoarseVertices {
         self.instructions.run(MoveVertices { displacements, motion, positions });
     }
 
-    /// The positions of the vertices of a bucket that has been moved, in the frame, in the order of its vertices; then some more.
+    /// Returns the positions of the vertices of a bucket that has been moved, in the frame, in the order of its vertices, followed by
+    /// unused entries.
     pub(crate) fn of_bucket<'p, const E: usize>(
         &self,
         bucket: u32,
@@ -119,7 +120,7 @@ impl<const E: usize> Kernel for MoveVertices<'_, E> {
     #[inline(always)]
     fn run<V: Vectors>(self, v: V) {
         let Self { displacements, motion: CoarseMotion { factors, shift, maps, .. }, positions } = self;
-        // Loops, because maps of arrays are not inlined.
+        // These are loops, because maps of arrays are not inlined.
         let mut shifts = [[v.splat(0.0); 3]; E];
         for end in 0..E {
             let shift = shift[end];
@@ -163,8 +164,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
-    /// Also where modes have very different sizes, cancel each other, or move nothing, and far from the origin. That
-    /// the bound is not wasted is asserted, too.
+    /// The bound holds also if modes have very different sizes, cancel each other, or move no vertex, and far from the
+    /// origin. The test also asserts that the bound is not much too large.
     #[test]
     fn coarse_positions_are_within_their_error_bound() {
         let random = &mut Random(3);
@@ -202,7 +203,7 @@ mod tests {
             let rounding = rounding_bound(model.check_coordinates(&later).unwrap(), rank);
             let frame = F32Frame::around(layout.bd_tree.root(ends, DVec3::splat(rounding)));
             let (mut motion, mut positions) = (CoarseMotion::default(), layout.coarse.new_positions());
-            // Where most modes move nothing, vertices have lists of modes.
+            // If most modes move few vertices, vertices have lists of modes.
             if layout.coarse.is_empty() || !layout.quantization.begin(&mut motion, ends, &frame, rounding) {
                 unused += 1;
                 continue;

@@ -1,5 +1,5 @@
-//! All colliding pairs at one configuration, by the traditional method: to find exceptions, and for
-//! [`ContactFilter::ignoring_rest`].
+//! All colliding pairs at one configuration, by the traditional method. They serve to find exceptions and to ignore pairs
+//! ([`ContactFilter::ignoring_rest`]).
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ const MAX_PAIRS: usize = 1 << 24;
 /// All colliding pairs at q, sorted.
 ///
 /// # Errors
-/// When q is no configuration of the model, there are more than 2^24 pairs, or `progress` cancels.
+/// When q is not a configuration of the model, there are more than 2^24 pairs, or `progress` cancels.
 pub(crate) fn colliding_pairs(
     model: &ReducedModel,
     hierarchy: &Arc<Hierarchy>,
@@ -45,20 +45,21 @@ pub(crate) fn colliding_pairs(
 }
 
 impl ContactFilter {
-    /// The same filter, which also ignores the pairs that collide at rest (q = 0), and those within so many rings of them.
+    /// Returns the same filter, which also ignores the pairs that collide at rest (q = 0), and those within `rings` rings of
+    /// them.
     ///
     /// # Errors
-    /// When they are more than 2^24 at rest or 2^22 with the rings, or when the filter's groups are of another mesh.
+    /// When there are more than 2^24 pairs at rest or 2^22 with the rings, or when the filter's groups are of another mesh.
     pub fn ignoring_rest(self, model: &ReducedModel, rings: u32) -> Result<Self, Error> {
         let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;
         self.ignoring_around(model, pairs, rings, &())
     }
 
-    /// The same filter, which also ignores these pairs and those within so many rings of them.
+    /// Returns the same filter, which also ignores these pairs and those within `rings` rings of them.
     ///
     /// # Errors
-    /// When they are too many, or `progress` cancels.
+    /// When there are too many such pairs, or `progress` cancels.
     pub(crate) fn ignoring_around(
         self,
         model: &ReducedModel,

@@ -8,19 +8,19 @@ use crate::hierarchy::Hierarchy;
 use crate::{CancelToken, ContactFilter, Pair, ReducedModel};
 
 /// The hierarchy and layout of a mesh, the contact filter, the exceptions, and the token that may cancel a search. Clones share
-/// all of them.
+/// all this data.
 #[derive(Clone)]
 pub(crate) struct Context {
     pub(crate) hierarchy: Arc<Hierarchy>,
     pub(crate) filter: Arc<PairFilter>,
-    /// Exceptions, sorted: pairs that are tested one by one, so that traversals leave them out.
+    /// Exceptions, sorted: pairs that are tested one by one, so that traversals skip them.
     pub(crate) exceptions: Arc<[Pair]>,
     pub(crate) layout: Arc<Layout>,
     pub(crate) cancel: Option<CancelToken>,
 }
 
 impl Context {
-    /// `needs`: none for brute force, which uses no layout.
+    /// Creates the context. `needs`: `None` for brute force, which uses no layout.
     pub(crate) fn new(
         model: &ReducedModel,
         hierarchy: Arc<Hierarchy>,
@@ -40,7 +40,7 @@ impl Context {
         }
     }
 
-    /// Whether a search should end.
+    /// Whether the token cancels, so that a search should end.
     pub(crate) fn is_cancelled(&self) -> bool {
         self.cancel.as_ref().is_some_and(CancelToken::is_cancelled)
     }

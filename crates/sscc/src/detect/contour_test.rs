@@ -1,7 +1,7 @@
 //! The contour test: whether a boundary, projected to a plane, intersects itself.
 
 /// Rounding bound of a sum of two products of differences, relative to the sum of their magnitudes: each difference and
-/// product is rounded once, and they are added up.
+/// product is rounded once, and so is their sum.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Whether a closed polygon in the plane certainly does not intersect itself. Its coordinates are rounded once; `order` is
@@ -10,7 +10,7 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     let count = polygon.len();
     let next = |i: usize| if i + 1 == count { 0 } else { i + 1 };
     let end = |i: usize| polygon[next(i)];
-    // More than rounding may have moved any coordinate by.
+    // A bound of the rounding of any coordinate.
     let reach = polygon.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     let moved = right_or!(f64::EPSILON * reach, ContourCoordinatesExact, 0.0);
     let low = |i: usize, axis: usize| polygon[i][axis].min(end(i)[axis]);
@@ -45,11 +45,11 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
 
 /// The error bound of two products of differences, each difference with an error of at most `2 moved`.
 ///
-/// Let m be the largest magnitude of a coordinate and u = 2^-53, so that `moved = 2 u m`. Coordinates are off by `u m`,
-/// a difference of two by `moved`, and it is itself rounded by at most `moved`, since it is at most `2 m`. So two products
-/// are off by at most `2 moved reach + 8 moved^2`. The magnitudes of the products add up to at most `m reach`; rounding
-/// them and their sum adds `2 u m reach = moved reach`. The second term alone is a third larger than all of this: without
-/// the first the test would be right as well.
+/// Let m be the largest magnitude of a coordinate and u = 2^-53, so that `moved = 2 u m`. Coordinates have errors of `u m`,
+/// so a difference of two has an error of `moved`, and is itself rounded by at most `moved`, since it is at most `2 m`. So
+/// the error of two products is at most `2 moved reach + 8 moved^2`. The magnitudes of the products add up to at most
+/// `m reach`; rounding them and their sum adds `2 u m reach = moved reach`. The second term of the code alone is a third
+/// larger than this total: the test would be valid without the first term.
 fn error([ux, uy]: [f64; 2], [vx, vy]: [f64; 2], products: f64, moved: f64) -> f64 {
     let reach = ux.abs() + uy.abs() + vx.abs() + vy.abs();
     let products = right_or!(ROUNDING * products, ContourProductsExact, 0.0);
@@ -60,7 +60,7 @@ fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [b[0] - a[0], b[1] - a[1]]
 }
 
-/// The sign of the area of a triangle, where it is certain; else 0.
+/// Returns the sign of the area of a triangle if it is certain; otherwise 0.
 fn area_sign(a: [f64; 2], b: [f64; 2], c: [f64; 2], moved: f64) -> f64 {
     let (u, v) = (difference(a, b), difference(a, c));
     let (p, q) = (u[0] * v[1], u[1] * v[0]);
@@ -74,7 +74,7 @@ fn is_on_one_side(a: [f64; 2], b: [f64; 2], points: [[f64; 2]; 2], moved: f64) -
     x * y > 0.0
 }
 
-/// Whether two edges, a to b and b to c, certainly have b alone in common: c is off the line, or ahead.
+/// Whether two edges, a to b and b to c, certainly have only b in common: c is off the line of the first edge, or beyond b.
 fn has_one_common_point(a: [f64; 2], b: [f64; 2], c: [f64; 2], moved: f64) -> bool {
     let (u, v) = (difference(a, b), difference(b, c));
     let (p, q) = (u[0] * v[0], u[1] * v[1]);
@@ -100,17 +100,17 @@ mod tests {
                 let mut polygon = polygon.to_vec();
                 polygon.rotate_left(first);
                 assert!(!is_simple(&polygon), "{polygon:?}");
-                // Neither are they where rounding hides it.
+                // They are not simple either if rounding separates the touching points.
                 let moved = |[x, y]: &[f64; 2]| [x / 3.0 + 1e9, y / 3.0 + 1e9];
                 assert!(!is_simple(&polygon.iter().map(moved).collect::<Vec<_>>()), "{polygon:?}");
             }
         }
-        // Straight on is no way back.
+        // Collinear edges in the same direction do not overlap.
         assert!(is_simple(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]));
     }
 
     /// A corner lies exactly on the first edge; the coordinates are rounded once, also those of small polygons far from
-    /// the origin. Where rounding takes the corner off the edge the polygon would be simple.
+    /// the origin. If rounding moves the corner off the edge, the polygon of the rounded coordinates may be simple.
     #[test]
     fn rounding_separates_nothing_that_touches() {
         let mut state = 1_u64;
@@ -123,7 +123,7 @@ mod tests {
             let (size, far) = [(1 << 56, 0), (1 << 40, 1 << 70)][case % 2];
             let mut vector = |size| [integer(size), integer(size)];
             let (middle, step) = (vector(far), vector(size));
-            // Corners in units of the edge and of a vector askew to it.
+            // Corners in units of the edge and of an oblique vector.
             let up = [-step[1] + step[0] / 3, step[0] + step[1] / 5];
             let corners = [(0, 0), (4, 0), (5, 2), (1 + case as i128 / 2 % 3, 0), (-1, 3)];
             let polygon: Vec<[i128; 2]> = corners

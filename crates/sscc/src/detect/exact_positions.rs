@@ -29,8 +29,8 @@ impl<const E: usize> ExactPositions<E> {
         }
     }
 
-    /// Starts a search. Its number is the one after the last, or 1, with which counting begins again; `overall_aabb`
-    /// chooses the frame.
+    /// Starts a search. `search`: its number, which is that after the last one, or 1, with which counting restarts.
+    /// `overall_aabb` determines the frame.
     pub(crate) fn begin(&mut self, search: u32, overall_aabb: Aabb) {
         if search == 1 {
             self.searches.fill(0);
@@ -42,7 +42,7 @@ impl<const E: usize> ExactPositions<E> {
     /// Moves all vertices.
     pub(crate) fn move_all<M: VertexMotion<E>>(&mut self, layout: &Layout, motion: &M) {
         self.searches.fill(self.search);
-        // Four vertices side by side were no faster: this waits for memory.
+        // Moving four vertices side by side was not faster: memory limits the speed.
         for (v, (x, mapped)) in self.exact.iter_mut().zip(&mut self.mapped).enumerate() {
             *x = motion.positions(layout, v as u32);
             *mapped = x.map(|x| self.frame.map(x));
@@ -82,14 +82,14 @@ impl<const E: usize> ExactPositions<E> {
         std::array::from_fn(|end| corners.map(|x| x[end]))
     }
 
-    /// The same in the frame, corner by corner.
+    /// Returns the positions of three moved vertices in the frame, corner by corner.
     #[inline]
     pub(crate) fn mapped(&self, vertices: [u32; 3]) -> [[Vec4; E]; 3] {
         let [a, b, c] = vertices;
         [self.mapped[a as usize], self.mapped[b as usize], self.mapped[c as usize]]
     }
 
-    /// An AABB of moved vertices at all configurations, in the frame.
+    /// Returns an AABB of moved vertices at all configurations, in the frame.
     pub(crate) fn mapped_aabb(&self, vertices: &[u32]) -> AabbF32 {
         let ends = vertices.iter().flat_map(|v| self.mapped[*v as usize]);
         ends.fold(AabbF32::EMPTY, |all, x| AabbF32 { lower: all.lower.min(x), upper: all.upper.max(x) })

@@ -1,4 +1,4 @@
-//! A monotone map from f64 to f32 coordinates: AABBs that are disjoint after it are disjoint before it.
+//! A monotone map from f64 to f32 coordinates: AABBs with disjoint images are disjoint.
 
 use glam::{DVec3, Vec4};
 
@@ -8,8 +8,8 @@ use crate::geometry::Aabb;
 ///
 /// AABBs of exact positions need no error bound, because the map preserves the order of two coordinates along an axis: it
 /// subtracts a number, multiplies by a positive one, converts and clamps, each of them rounded to nearest, and every one of
-/// these steps is monotone. So where one mapped box ends strictly before another one begins, the exact boxes do, too:
-/// "disjoint" is a proof whatever centre and scale are. A bad choice only makes boxes seem to overlap, far from the centre (a
+/// these steps is monotone. So if one mapped box ends strictly before another one begins, the exact boxes do, too: disjoint
+/// images are a proof for any centre and scale. With a bad choice disjoint boxes may seem to overlap, far from the centre (a
 /// shape of size 1 at 1e8) or below the smallest normal numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct F32Frame {
@@ -18,10 +18,10 @@ pub(crate) struct F32Frame {
 }
 
 impl F32Frame {
-    /// The frame in which this box (its corners in any order) becomes about [-1, 1] along its longest side.
+    /// Returns the frame in which this box (its corners in any order) is about [-1, 1] along its longest side.
     pub(crate) fn around(Aabb { lower, upper }: Aabb) -> Self {
         let half = (upper * 0.5 - lower * 0.5).abs().max_element();
-        // A finite scale, so that 0 times it is a number.
+        // The scale is finite, so that its product with 0 is not NaN.
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).min(f64::MAX) }
     }
 
@@ -30,9 +30,9 @@ impl F32Frame {
         self.scale
     }
 
-    /// An upper bound, along each axis, of the distance from a mapped point to its exact image, where the box of the
-    /// frame contains all points. `rounding` bounds the error of the points themselves. At least 14 units of 2^-24, on
-    /// which the separating-axis test counts, and four times the rounding, on which sweeps count.
+    /// Returns an upper bound, along each axis, of the distance from a mapped point to its exact image, if the box of the
+    /// frame contains all points. `rounding` bounds the error of the points themselves. The bound is at least the sum of
+    /// 14 units of 2^-24, which the separating-axis test assumes, and four times the rounding, which sweeps assume.
     pub(crate) fn error_bound(&self, rounding: f64) -> f32 {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let error = 16.0 * unit + 4.1 * rounding * self.scale;
@@ -49,8 +49,8 @@ impl F32Frame {
         (x - self.center) * self.scale
     }
 
-    /// Whether a mapped point can be the image of a point of the frame's box: the assumption of [`Self::error_bound`]. Images
-    /// are in [-1, 1] up to rounding; where the box is only a few units in the last place wide, in [-2, 2].
+    /// Whether a mapped point can be the image of a point of the frame's box, as [`Self::error_bound`] assumes. Images are in
+    /// [-1, 1] up to rounding, or in [-2, 2] if the box is only a few units in the last place wide.
     pub(crate) fn can_contain(mapped: Vec4) -> bool {
         (mapped.abs().cmple(Vec4::splat(2.001)).bitmask() & 0b111) == 0b111
     }
@@ -71,12 +71,12 @@ mod tests {
     use super::*;
     use crate::limits;
 
-    /// Along each axis, over all magnitudes and in frames that fit badly.
+    /// The map keeps the order along each axis, for all magnitudes and in badly fitting frames.
     #[test]
     fn order_is_kept() {
         let mut numbers: Vec<f64> = (-1074..=200)
             .flat_map(|e| {
-                // 2^-1074 is no normal number: in two steps.
+                // 2^-1074 is subnormal, so it is computed as a product.
                 let x = 2.0_f64.powi(e / 2) * 2.0_f64.powi(e - e / 2);
                 [x, x.next_up(), x.next_down(), x * 1.5].map(|x| x.min(limits::LARGEST))
             })
@@ -99,9 +99,9 @@ mod tests {
         }
     }
 
-    /// The separating-axis test counts on 14 units of 2^-24: its own sums need 20 of the 28 that two error bounds
-    /// beyond those of both positions have. Sweeps count on eight rounding bounds in the same two. And mapped points
-    /// are within a part of it of their exact images.
+    /// The separating-axis test assumes an error bound of at least 14 units of 2^-24. It grants four error bounds; two of
+    /// them cover the positions of both triangles, and its own sums need 20 of the 28 units of the other two. Sweeps
+    /// assume that the same two contain eight rounding bounds. Mapped points are within the bound of their exact images.
     #[test]
     fn the_error_bound_is_what_its_users_count_on() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
@@ -116,7 +116,7 @@ mod tests {
                 for j in 0..100 {
                     let x = center + half * (f64::from(j) / 50.0 - 1.0);
                     let mapped = exact(f64::from(frame.map(DVec3::splat(x)).x));
-                    // Where the point itself is wrong by the rounding.
+                    // The point itself has the error `rounding`.
                     for by in [rounding, -rounding] {
                         let image = (exact(x) + exact(by) - exact(frame.center.x)) * exact(frame.scale);
                         assert!((&mapped - image).abs() <= exact(error), "{half} {rounding} {j}");
@@ -126,7 +126,7 @@ mod tests {
         }
     }
 
-    /// It uses the precision that there is.
+    /// The frame uses the full range of single precision.
     #[test]
     fn positions_in_its_box_keep_their_precision() {
         for (center, half) in [(0.0, 1.0), (1e-200, 1e-210), (-1e50, 1e45), (0.0, 1e-300)] {

@@ -1,4 +1,4 @@
-//! Coarse positions of shapes in the world: from a frame in axes of the model to the frame of a search.
+//! The map of coarse positions of shapes in the world, from a frame in axes of the model to the frame of a search.
 
 use glam::{DMat3, DVec3, Vec4};
 
@@ -21,14 +21,14 @@ pub(crate) struct FrameMap {
 const MAX_ERROR: f64 = 1.0 / 512.0;
 
 impl FrameMap {
-    /// The map of a shape with this rotation (any matrix) and translation, from `own`, whose box contains its positions in
-    /// axes of the model, to `world`, whose box contains them in the world. `error` is the bound of coarse positions in `own`, and
-    /// `rounding` that of exact positions in the world. None if the error would be too large.
+    /// Returns the map of a shape with this rotation (any matrix) and translation, from `own`, whose box contains its positions in
+    /// axes of the model, to `world`, whose box contains them in the world. `error` is the error bound of coarse positions in `own`,
+    /// and `rounding` that of exact positions in the world. `None` if the error would be too large.
     ///
     /// Error bound. Let u = 2^-24 and r the largest sum of magnitudes of a row of the matrix. Images in either frame are in
-    /// [-2.001, 2.001], so the shift is at most 2.001 (1 + r). Entries, shift, three products and three sums err by at most 8 u of
-    /// the sum of all magnitudes, 2.1 r + 2.001 (1 + r); centres and half extents of AABBs, their products and ends, by 20 u (1 + r)
-    /// more. Exact positions are mapped with the error of the frame.
+    /// [-2.001, 2.001], so the shift is at most 2.001 (1 + r). The error of entries, shift, three products and three sums is at most
+    /// 8 u times the sum of all magnitudes, 2.1 r + 2.001 (1 + r); centres and half extents of AABBs, their products and ends add at
+    /// most 20 u (1 + r). Exact positions are mapped with the error of the frame.
     pub(crate) fn new(
         [own, world]: [&F32Frame; 2],
         (rotation, translation): (DMat3, DVec3),
@@ -44,7 +44,7 @@ impl FrameMap {
         let rounded = 64.0 * unit * (1.0 + row);
         let turned = right_or!(row * f64::from(error), FrameMapOfExactPositions, 0.0);
         let all = 1.01 * (turned + rounded) + f64::from(world.error_bound(rounding));
-        // A comparison that NaN fails.
+        // NaN fails this comparison.
         (all <= MAX_ERROR * row).then(|| Self {
             columns: [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|column| column.as_vec3().extend(0.0)),
             shift: shift.as_vec3().extend(0.0),
@@ -52,7 +52,7 @@ impl FrameMap {
         })
     }
 
-    /// See [`FrameMap::error`](Self).
+    /// Returns the error bound of the map, see the field `error`.
     pub(crate) fn error(&self) -> f32 {
         self.error
     }
@@ -71,7 +71,7 @@ impl FrameMap {
         images
     }
 
-    /// An AABB of the images of all positions of an AABB, and of the exact ones where the AABB contains coarse positions.
+    /// Returns an AABB of the images of all points of an AABB. If the AABB contains coarse positions, the result contains the exact ones.
     #[inline]
     pub(super) fn apply_to_aabb(&self, AabbF32 { lower, upper }: AabbF32) -> AabbF32 {
         let (center, half) = ((lower + upper) * 0.5, (upper - lower) * 0.5);

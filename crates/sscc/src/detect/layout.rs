@@ -1,5 +1,5 @@
 //! All data of the detector that does not depend on q, in the order in which searches read it. Searches and their
-//! clones share it.
+//! clones share the layout.
 
 use super::bd_tree::BdTree;
 use super::buckets::{Buckets, packet_order};
@@ -14,22 +14,22 @@ use crate::hierarchy::Hierarchy;
 /// The parts of a layout that only some searches need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Needs {
-    /// BD-tree AABBs of all nodes down to buckets; else of the root alone.
+    /// BD-tree AABBs of all nodes down to buckets; otherwise only of the root.
     pub(crate) bd_tree: bool,
-    /// Quantized vertices, unless modes are listed for each; without them boxes are computed from exact positions.
+    /// Quantized vertices, unless each vertex has a list of modes; without them boxes are computed from exact positions.
     pub(crate) coarse: bool,
     /// The boundaries of nodes, for the contour test of normal cones.
     pub(crate) boundaries: bool,
 }
 
 impl Needs {
-    /// For searches that compute boxes where the traversal visits nodes.
+    /// The needs of searches that compute boxes when the traversal visits nodes.
     pub(crate) const LAZY: Self = Self { bd_tree: true, coarse: true, boundaries: false };
 
-    /// For searches that refit all boxes first.
+    /// The needs of searches that refit all boxes first.
     pub(crate) const REFIT: Self = Self { bd_tree: false, coarse: true, boundaries: false };
 
-    /// For searches that refit all boxes and compute normals, from exact positions.
+    /// The needs of searches that refit all boxes and compute normals, from exact positions.
     pub(crate) const NORMALS: Self = Self { bd_tree: false, coarse: false, boundaries: true };
 }
 
@@ -66,8 +66,8 @@ impl Layout {
         } else {
             NodeBoundaries::default()
         };
-        // The error of coarse positions grows with the factors of all modes, and where few modes move a vertex, its exact position takes no
-        // longer.
+        // The error of coarse positions grows with the factors of all modes. If few modes move each vertex, exact positions take no longer than
+        // coarse ones.
         let coarse = if needs.coarse && !vertices.moving_modes().are_listed() {
             CoarseVertices::new(&quantization, &buckets, &vertices)
         } else {
@@ -76,7 +76,7 @@ impl Layout {
         Self { vertices, quantization, coarse, buckets, bd_tree, boundaries }
     }
 
-    /// The layout for given positions. The order of the hierarchy has the triangles of each bucket packet by packet.
+    /// Returns the layout for given positions. The order of the hierarchy has the triangles of each bucket packet by packet.
     pub(crate) fn of_positions(vertex_count: usize, hierarchy: &Hierarchy, filter: &PairFilter) -> Self {
         let mut buckets = Buckets::new(hierarchy.order(), hierarchy, filter, vertex_count);
         let vertices = VertexStore::without_modes(vertex_count, buckets.all_vertices());

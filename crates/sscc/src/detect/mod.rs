@@ -3,10 +3,10 @@
 //! The broad phase ([`search`], [`traversal`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed for the
 //! nodes that a traversal visits (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64
 //! triangles ([`buckets`]), whose boxes are compared eight at a time ([`aabb8`]). The narrow phase ([`narrow_phase`]) is exact.
-//! Where vertices come from is a static parameter ([`vertex_motion`]).
+//! The source of vertex positions is a static parameter ([`vertex_motion`]).
 //!
 //! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here. The traversals that use
-//! certificates are in `query/`, by the same tests of nodes and buckets.
+//! certificates are in `query/`; they use the same tests of nodes and buckets.
 
 pub(crate) mod aabb8;
 mod adjacency_masks;

@@ -1,27 +1,27 @@
-//! Which modes move each vertex or node. A bone moves few vertices of a skin, so that most displacements are zero, and terms of a sum
-//! that are zero can be left out.
+//! The modes that move each vertex or node. A bone moves few vertices of a skin, so that most displacements are zero, and sums can skip
+//! them.
 
 use std::ops::Range;
 
 use crate::parallel;
 
-/// For each item the modes that move it, ascending, and where its numbers are in an array with one number for each mode of each
+/// For each item the modes that move it, ascending, and the range of its numbers in an array with one number for each mode of each
 /// item.
 #[derive(Clone, Default)]
 pub(crate) struct MovingModes {
     rank: usize,
-    /// Where the modes of each item start, and the end; nothing where each item has all modes.
+    /// The start of the modes of each item, then the end; empty if each item has all modes.
     starts: Vec<usize>,
     modes: Vec<u32>,
 }
 
 impl MovingModes {
-    /// All modes for each item.
+    /// Returns all modes for each item.
     pub(crate) fn all(rank: usize) -> Self {
         Self { rank, ..Self::default() }
     }
 
-    /// Listed modes, a list for each item.
+    /// Returns listed modes, a list for each item.
     pub(crate) fn listed(rank: usize, lists: impl IntoIterator<Item = Vec<u32>>) -> Self {
         let (mut starts, mut modes) = (vec![0], Vec::new());
         for list in lists {
@@ -31,7 +31,7 @@ impl MovingModes {
         Self { rank, starts, modes }
     }
 
-    /// New items: the modes that move any of these items, for each group of them.
+    /// Returns the modes of groups as new items: for each group the modes that move any of its items.
     pub(crate) fn of_groups(&self, groups: &[Vec<u32>]) -> Self {
         if !self.are_listed() {
             return Self::all(self.rank);
@@ -47,12 +47,12 @@ impl MovingModes {
         Self::listed(self.rank, lists)
     }
 
-    /// Whether modes are listed: else each item has all modes.
+    /// Whether modes are listed; otherwise each item has all modes.
     pub(crate) fn are_listed(&self) -> bool {
         !self.starts.is_empty()
     }
 
-    /// Where the numbers of an item are.
+    /// Returns the range of the numbers of an item.
     #[inline]
     pub(crate) fn range(&self, item: u32) -> Range<usize> {
         let item = item as usize;
@@ -63,7 +63,7 @@ impl MovingModes {
         }
     }
 
-    /// The listed modes of an item; none where it has all modes.
+    /// Returns the listed modes of an item; `None` if it has all modes.
     #[inline]
     pub(crate) fn list(&self, item: u32) -> Option<&[u32]> {
         self.are_listed().then(|| &self.modes[self.range(item)])

@@ -1,4 +1,4 @@
-//! Boundaries of nodes: for each node that is one manifold patch with one boundary, the vertices around it.
+//! Boundaries of nodes: for each node that is one manifold patch with one boundary, the vertices around this boundary.
 
 use super::vertex_store::VertexStore;
 use crate::TriMesh;
@@ -8,13 +8,13 @@ use crate::hierarchy::Hierarchy;
 /// The boundaries of nodes.
 #[derive(Default)]
 pub(crate) struct NodeBoundaries {
-    /// For each node the start of its boundary, and the end of all.
+    /// For each node the start of its boundary, then the end of the last node's.
     starts: Vec<u32>,
     vertices: Vec<u32>,
 }
 
 impl NodeBoundaries {
-    /// The boundaries of the nodes for which `is_wanted` holds; each vertex by its index in the layout.
+    /// Finds the boundaries of the nodes for which `is_wanted` holds, with vertices by their index in the layout.
     pub(crate) fn new(
         mesh: &TriMesh,
         hierarchy: &Hierarchy,
@@ -22,7 +22,7 @@ impl NodeBoundaries {
         store: &VertexStore,
         is_wanted: impl Fn(u32) -> bool,
     ) -> Self {
-        // A class may be named after a vertex that no triangle has.
+        // The number of a class may be that of a vertex without triangles.
         let mut index_of_class = vec![0; filter.class_count()];
         for (t, face) in mesh.faces().iter().enumerate() {
             let classes = filter.vertex_classes(t as u32);
@@ -43,14 +43,14 @@ impl NodeBoundaries {
         Self { starts, vertices }
     }
 
-    /// The vertices around the boundary of a node that is one oriented manifold patch with a single boundary; none for
-    /// other nodes.
+    /// Returns the vertices around the boundary of a node that is one oriented manifold patch with a single boundary; an empty
+    /// slice for other nodes.
     pub(crate) fn of_node(&self, n: u32) -> &[u32] {
         &self.vertices[self.starts[n as usize] as usize..self.starts[n as usize + 1] as usize]
     }
 }
 
-/// The vertices around the boundary of faces that are an oriented manifold with a single boundary, closed pieces apart.
+/// Returns the vertices around the boundary of faces that are an oriented manifold with a single boundary, closed pieces apart.
 fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
     // (i, j, k): the edge of a face from i to j, and its third corner.
     let mut edges = Vec::new();
@@ -66,7 +66,7 @@ fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
     }
     let is_boundary =
         |(i, j, _): &(u32, u32, u32)| edges.binary_search_by_key(&(*j, *i), |e| (e.0, e.1)).is_err();
-    // The faces at each vertex are one fan: going from one to the next visits all of them.
+    // Checks that the faces at each vertex are one fan: steps from one face to the next visit all of them.
     for around in edges.chunk_by(|a, b| a.0 == b.0) {
         let start = around.iter().find(|e| is_boundary(e)).unwrap_or(&around[0]).1;
         let (mut at, mut count) = (start, 0);
@@ -82,7 +82,7 @@ fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
             return None;
         }
     }
-    // One fan: at most one of these edges starts at each vertex, and as many end there.
+    // Since the faces at each vertex are one fan, at most one boundary edge starts there, and as many end there.
     let boundary: Vec<_> = edges.iter().filter(|e| is_boundary(e)).collect();
     let mut around = vec![boundary.first()?.0];
     let mut at = boundary[0].1;
@@ -107,7 +107,7 @@ mod tests {
         let no_patches: [&[[u32; 3]]; 7] = [
             &[],
             &[[0, 1, 1]],
-            // Oriented differently; three at an edge; two at a vertex alone; two pieces; closed.
+            // Faces of different orientations; three faces at an edge; two faces that share only a vertex; two pieces; a closed mesh.
             &[[0, 1, 2], [1, 2, 3]],
             &[[0, 1, 2], [1, 0, 3], [0, 1, 4]],
             &[[0, 1, 2], [0, 3, 4]],
@@ -119,7 +119,7 @@ mod tests {
         let ring: Vec<[u32; 3]> =
             (0..4).flat_map(|i| [[i, (i + 1) % 4, i + 4], [(i + 1) % 4, (i + 1) % 4 + 4, i + 4]]).collect();
         assert_eq!(of(&ring), None);
-        // Two fans around one vertex, closed both.
+        // Two closed fans around one vertex.
         let both: Vec<[u32; 3]> =
             fan.into_iter().chain(fan.map(|f| f.map(|v| if v == 0 { 0 } else { v + 3 }))).collect();
         assert_eq!(of(&both), None);

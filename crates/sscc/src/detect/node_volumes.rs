@@ -2,9 +2,9 @@
 //!
 //! All are AABBs in the single precision of an [`F32Frame`](super::f32_frame::F32Frame). In a search between two
 //! configurations each AABB is a swept AABB. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
-//! 2004), computed where the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
-//! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode whether modes cancel
-//! or not. The traditional method refits everything first, as certified searches do once loose pairs abound; detectors refit nodes.
+//! 2004), computed when the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
+//! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode even if modes cancel.
+//! The traditional method refits all AABBs first, as certified searches do after many loose pairs; detectors refit nodes.
 
 use std::sync::Arc;
 
@@ -24,8 +24,8 @@ use crate::vectors::InstructionSet;
 // The children of a node are compared as the first four lanes of a packet.
 const _: () = assert!(BRANCHING <= LANES / 2);
 
-/// The AABBs of one search and the positions from which they are computed. Each entry has the number of the search for
-/// which it is current.
+/// The AABBs of one search and the positions from which they are computed. Each entry contains the number of the search
+/// for which it is current.
 #[derive(Clone)]
 pub(crate) struct NodeVolumes<const E: usize> {
     pub(crate) layout: Arc<Layout>,
@@ -36,7 +36,7 @@ pub(crate) struct NodeVolumes<const E: usize> {
     closed_buckets: usize,
     positions: ExactPositions<E>,
     coarse: CoarsePositions<E>,
-    /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
+    /// An upper bound, along each axis, of the error of corners in the frame; infinite if there is no bound.
     corner_error: f32,
     /// The AABB of each node that is a bucket or larger.
     nodes: Vec<AabbF32>,
@@ -52,7 +52,7 @@ pub(crate) struct NodeVolumes<const E: usize> {
 }
 
 impl<const E: usize> NodeVolumes<E> {
-    /// Lazy volumes are computed where a traversal visits nodes, others all at the start of each search.
+    /// Allocates the volumes. Lazy volumes are computed when a traversal visits nodes, others at the start of each search.
     pub(crate) fn new(layout: &Arc<Layout>, is_lazy: bool) -> Self {
         let (nodes, buckets) = (layout.buckets.visited_node_count(), layout.buckets.count());
         Self {
@@ -74,7 +74,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Starts a new search: forgets all AABBs, or, where they are not lazy, refits all of them.
+    /// Starts a new search: invalidates all AABBs and, if they are not lazy, refits all of them.
     pub(crate) fn begin<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         self.begin_closed(motion);
         if !self.is_lazy {
@@ -82,7 +82,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Starts a new search with exact positions, and refits all nodes; AABBs within buckets are computed where they are opened.
+    /// Starts a new search with exact positions, and refits all nodes; AABBs within buckets are computed when buckets are opened.
     pub(super) fn begin_nodes<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         self.begin_closed(motion);
         let layout = Arc::clone(&self.layout);
@@ -95,7 +95,7 @@ impl<const E: usize> NodeVolumes<E> {
         self.refit_larger(hierarchy);
     }
 
-    /// Starts a new search: forgets all AABBs.
+    /// Starts a new search: invalidates all AABBs.
     fn begin_closed<M: VertexMotion<E>>(&mut self, motion: &M) {
         let layout = Arc::clone(&self.layout);
         self.search = self.search.wrapping_add(1);
@@ -116,12 +116,12 @@ impl<const E: usize> NodeVolumes<E> {
         } else {
             frame.error_bound(rounding)
         };
-        // Corners may be as much nearer to each other.
+        // Triangles must be separate by this clearance, too, so that the bound includes it.
         let margin = motion.margin_beside_rounding() * frame.scale() * (1.0 + 1e-5);
         self.corner_error += right_or!(margin, SeparatedWithoutClearance, 0.0) as f32;
     }
 
-    /// Computes all AABBs from all vertices, bottom-up; those of open buckets are current.
+    /// Computes all AABBs from all vertices, bottom-up, except those within open buckets, which are current.
     pub(crate) fn refit<M: VertexMotion<E>>(&mut self, hierarchy: &Hierarchy, motion: &M) {
         let layout = Arc::clone(&self.layout);
         if !self.coarse.are_used() {
@@ -145,19 +145,19 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// By how much AABBs of exact positions are widened, in the frame.
+    /// Returns the distance by which AABBs of exact positions are widened, in the frame.
     fn margin<M: VertexMotion<E>>(&self, motion: &M) -> Vec4 {
         if motion.margin() == 0.0 {
             return Vec4::ZERO;
         }
         let margin = motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5);
-        // Coordinates in the frame are rounded, and once more when they are moved: by less than four units of 2^-24 within [-4, 4].
+        // Coordinates in the frame are rounded when they are mapped and when AABBs are widened: by less than four units of 2^-24 within [-4, 4].
         let rounding = right_or!(4.0 * f64::from(f32::EPSILON), MarginExact, 0.0);
         Vec4::splat((margin + rounding) as f32)
     }
 
-    /// The cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
-    /// nodes relative to the root's, a bucket counting once for each of its packets. 0 where the root has no area.
+    /// Returns the cost of a traversal by the surface area heuristic (Goldsmith and Salmon 1987), for refitted boxes: the areas of
+    /// nodes relative to the root's; a bucket counts once for each of its packets. 0 if the root has no area.
     pub(crate) fn surface_area_cost(&self) -> f64 {
         let area = |n: usize| {
             let size = self.nodes[n].upper - self.nodes[n].lower;
@@ -245,7 +245,7 @@ impl<const E: usize> NodeVolumes<E> {
                 self.set_node(n, aabb.widened(CoarsePositions::slack(n, motion, frame)));
                 return;
             }
-            // A node without an AABB of its own overlaps everything.
+            // A node without a BD-tree AABB gets the AABB that overlaps all others.
             let aabb = motion.node_aabb(&self.layout, n).map_or(AabbF32::ALL, |Aabb { lower, upper }| {
                 AabbF32 { lower: frame.map(lower), upper: frame.map(upper) }
             });
@@ -253,7 +253,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// Computes all AABBs of a bucket; where exact positions are needed, its vertices have been moved.
+    /// Computes all AABBs of a bucket. If exact positions are used, its vertices must have been moved.
     fn refit_bucket<M: VertexMotion<E>>(&mut self, bucket: u32, motion: &M) {
         let buckets = &self.layout.buckets;
         let n = buckets.node(bucket);
@@ -321,12 +321,12 @@ impl<const E: usize> NodeVolumes<E> {
         self.layout.buckets.vertices(bucket).iter().enumerate().map(at)
     }
 
-    /// An upper bound, along each axis, of the error of corners in the frame; infinite where none is known.
+    /// Returns an upper bound, along each axis, of the error of corners in the frame; infinite if there is no bound.
     pub(crate) fn corner_error(&self) -> f32 {
         self.corner_error
     }
 
-    /// Prefetches the rest positions and modes of three vertices, of those that have not been moved.
+    /// Prefetches the rest positions and modes of those of three vertices that have not been moved.
     #[inline]
     pub(crate) fn prefetch_corners(&self, vertices: [u32; 3]) {
         for vertex in vertices {
@@ -355,8 +355,8 @@ impl<const E: usize> NodeVolumes<E> {
     }
 }
 
-/// Whether two triangles certainly have no point in common, as far as single precision can tell. Each is given by volumes and a
-/// slot of an open bucket; both volumes are in the same frame, or the same.
+/// Whether a test in single precision proves that two triangles have no point in common. Each is given by volumes and a
+/// slot of an open bucket; both volumes are in the same frame, or identical.
 #[inline]
 pub(crate) fn are_slots_separated<const E: usize>(
     (x, a): (&NodeVolumes<E>, BucketSlot),
@@ -366,7 +366,7 @@ pub(crate) fn are_slots_separated<const E: usize>(
     are_separated(&x.mapped_corners(a.bucket, a.slot), &y.mapped_corners(b.bucket, b.slot), error)
 }
 
-/// A slot and the bucket that it belongs to.
+/// A slot and its bucket.
 #[derive(Clone, Copy)]
 pub(crate) struct BucketSlot {
     pub(crate) bucket: u32,

@@ -30,7 +30,7 @@ const fn corner(x: f64, y: f64, z: f64) -> Direction {
     Direction { v: DVec3::new(x, y, z), onto: [DVec3::new(x, -y, 0.0), DVec3::new(0.0, y, -z)] }
 }
 
-/// Face centres and corners of a cube.
+/// Directions to the face centres and corners of a cube.
 const DIRECTIONS: [Direction; 14] = [
     face(DVec3::X, DVec3::Y, DVec3::Z),
     face(DVec3::NEG_X, DVec3::Y, DVec3::Z),
@@ -51,7 +51,8 @@ const DIRECTIONS: [Direction; 14] = [
 /// The normals of all nodes down to buckets at the current q.
 #[derive(Clone)]
 pub(crate) struct NormalCones {
-    /// Without it, cones cull a node by its normals alone, which may miss collisions.
+    /// Whether nodes are culled only with the contour test. Without it, cones cull a node by its normals alone, which may miss
+    /// collisions.
     has_contour_test: bool,
     /// For each node the directions on whose positive side all of its normals are, one bit each.
     positive: Vec<u16>,
@@ -61,17 +62,17 @@ pub(crate) struct NormalCones {
 }
 
 impl NormalCones {
-    /// Cones of so many nodes.
+    /// Creates the cones of this number of nodes.
     pub(crate) fn new(nodes: usize) -> Self {
         Self { has_contour_test: true, positive: vec![0; nodes], projected: Vec::new(), order: Vec::new() }
     }
 
-    /// The same cones without the contour test: the approximate ones of the paper's section 7.
+    /// Returns the same cones without the contour test: the approximate cones of the paper's section 7.
     pub(crate) fn without_contour_test(self) -> Self {
         Self { has_contour_test: false, ..self }
     }
 
-    /// Makes normals current; all exact positions are.
+    /// Updates the normals from the exact positions, which must be current.
     pub(super) fn update<const E: usize>(&mut self, hierarchy: &Hierarchy, volumes: &NodeVolumes<E>) {
         let buckets = &volumes.layout.buckets;
         for (n, node) in hierarchy.nodes().iter().enumerate().rev() {
@@ -85,14 +86,14 @@ impl NormalCones {
                         all & positive_sides(a, b, c)
                     })
                 }
-                // Visited with its bucket.
+                // Traversals do not visit nodes within a bucket.
                 Some(_) => 0,
                 None => node.children().fold(!0, |all, child| all & self.positive[child as usize]),
             };
         }
     }
 
-    /// Whether the cones cull a node: with the contour test a proof that it does not collide with itself.
+    /// Whether the cones cull a node. With the contour test this is a proof that it does not collide with itself.
     pub(super) fn cull<const E: usize>(&mut self, n: u32, volumes: &NodeVolumes<E>) -> bool {
         let positive = self.positive[n as usize];
         if positive == 0 || !self.has_contour_test {
@@ -108,8 +109,8 @@ impl NormalCones {
     }
 }
 
-/// The directions on whose positive side the normal of a triangle certainly is. The corners come one by one, not in
-/// an array (docs/notes/broad-phase.md#normal-cones).
+/// Returns the directions on whose positive side the normal of a triangle certainly is. The corners are separate arguments
+/// in place of an array for speed (docs/notes/broad-phase.md#normal-cones).
 #[inline]
 fn positive_sides(a: DVec3, b: DVec3, c: DVec3) -> u16 {
     let (e, f) = (b - a, c - a);
@@ -129,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn normals_are_sorted_by_side() {
+    fn positive_sides_are_those_of_the_normal() {
         let up = positive_sides(DVec3::ZERO, DVec3::X, DVec3::Y);
         for (k, direction) in DIRECTIONS.iter().enumerate() {
             assert_eq!(up >> k & 1 == 1, direction.v.z > 0.0);
@@ -142,7 +143,7 @@ mod tests {
         assert_eq!(positive_sides(DVec3::ZERO, DVec3::X * 1e-200, DVec3::Y * 1e-200), 0);
     }
 
-    /// Needles whose normals are all rounding, against integers.
+    /// The triangles are needles whose computed normals consist of rounding; the exact sides are computed with integers.
     #[test]
     fn certain_sides_are_right() {
         let mut seed = 7_u64;

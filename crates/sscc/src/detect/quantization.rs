@@ -1,6 +1,6 @@
 //! Displacements quantized to 16 bits: a quarter of the bytes of double precision.
 //!
-//! They are moved in single precision, eight vertices side by side, with a bound of the error.
+//! Vertices are moved in single precision, eight side by side, with a bound of the error.
 
 use glam::{DVec3, Vec4};
 
@@ -11,8 +11,8 @@ use crate::ReducedModel;
 use crate::geometry::Aabb;
 use crate::vectors::LANES;
 
-/// How displacements are quantized: as multiples of the largest displacement by the same mode. The rest pose is one more
-/// mode, the first, whose coordinate is 1.
+/// The scales of quantized displacements, which are shares of the largest displacement by the same mode. The rest pose is
+/// an additional first mode, whose coordinate is 1.
 #[derive(Default)]
 pub(crate) struct Quantization {
     /// The centre of the rest pose's box, and the largest distance from it along an axis.
@@ -22,7 +22,7 @@ pub(crate) struct Quantization {
     sizes: Vec<f64>,
 }
 
-/// The quantized value of the largest displacement.
+/// The integer that stands for the largest displacement.
 const WHOLE: f64 = 32767.0;
 
 /// With a larger error bound, in the coordinates of the frame, exact positions are used: too many boxes would overlap.
@@ -35,12 +35,12 @@ pub(crate) struct CoarseMotion<const E: usize> {
     pub(crate) shift: [Vec4; E],
     /// For each mode its factor.
     pub(crate) factors: Vec<[f32; E]>,
-    /// For each mode the factors of the six components of a BD-tree AABB: of its centre the factor, of its half extents
-    /// the larger magnitude of the factors at both configurations. Two lanes are 0.
+    /// For each mode the factors of the six components of a BD-tree AABB: the factor of the mode for its centre, and the larger
+    /// magnitude of the factors at both configurations for its half extents. Two lanes are 0.
     pub(crate) node_factors: Vec<[[f32; LANES]; E]>,
     /// An upper bound, along each axis, of the distance from coarse positions to the exact ones mapped to the frame.
     pub(crate) error: f32,
-    /// For shapes in the world: from the frame in axes of the model, which all of the above is about, to that of the search.
+    /// For shapes in the world the maps to the frame of the search. The fields above then refer to a frame in axes of the model.
     pub(crate) maps: Option<[FrameMap; E]>,
 }
 
@@ -111,8 +111,8 @@ impl Quantization {
     /// - Shift, mapped position and widening add u (3 + d).
     /// - Quantization adds d / (2 WHOLE): half a unit of each mode.
     ///
-    /// A sum of the larger magnitudes at the start and the end of a motion is at most 2 d, and none of its terms is
-    /// less than at either.
+    /// A sum of the larger magnitudes at the start and the end of a motion is at most 2 d, and each of its terms is at
+    /// least as large as at either end.
     pub(crate) fn begin<const E: usize>(
         &self,
         motion: &mut CoarseMotion<E>,

@@ -1,4 +1,4 @@
-//! One search: its sides, its narrow phase, and what it counts. It hands triangle pairs with overlapping AABBs to the
+//! One search: its sides, its narrow phase, and its counters. It passes triangle pairs with overlapping AABBs to the
 //! [`NarrowPhase`], and tests the exceptions.
 //!
 //! A search has one side, a shape that is tested against itself, or two, shapes that are tested against each other
@@ -45,7 +45,7 @@ pub(crate) struct Side<'s, const E: usize, M> {
 }
 
 impl<const E: usize, M: VertexMotion<E>> Side<'_, E, M> {
-    /// The bucket of a node that is one, or within one.
+    /// Returns the bucket that a node is, or that contains it; `None` for a larger node.
     #[inline]
     pub(crate) fn bucket(&self, node: u32) -> Option<u32> {
         self.volumes.layout.buckets.of_node(node)
@@ -90,20 +90,20 @@ impl<const E: usize, M: VertexMotion<E>> Side<'_, E, M> {
     }
 }
 
-/// What a search counts, and its memory.
+/// The counters and the memory of a search.
 #[derive(Clone, Default)]
 pub(crate) struct SearchState {
     /// Nodes `(n, n)` of one side and node pairs `(n, m)` still to be visited: see [`traversal`](super::traversal).
     pub(super) stack: Vec<NodePair>,
     visits: u32,
-    /// Tested pairs of buckets whose own AABBs do not overlap, although those by which they were found do.
+    /// Tested pairs of buckets whose tight AABBs do not overlap, although the AABBs by which the traversal found them do.
     pub(crate) loose_pairs: usize,
     is_cancelled: bool,
     pub(crate) counters: Counters,
 }
 
 impl SearchState {
-    /// Forgets the last search.
+    /// Resets the state of the last search.
     #[inline]
     pub(super) fn begin(&mut self) {
         self.is_cancelled = false;
@@ -127,8 +127,10 @@ impl SearchState {
         self.is_cancelled
     }
 
+    /// Ends the search.
+    ///
     /// # Errors
-    /// When it was cancelled; then there are no hits.
+    /// When the search was cancelled; then there are no hits.
     pub(super) fn end<const E: usize>(&self, narrow: &mut impl NarrowPhase<E>) -> Result<(), Error> {
         if !self.is_cancelled {
             return Ok(());
@@ -143,7 +145,7 @@ pub(crate) struct Search<'s, const SIDES: usize, const E: usize, M, N> {
     pub(crate) sides: [Side<'s, E, M>; SIDES],
     /// The normal cones of methods that use them.
     pub(super) cones: Option<&'s mut NormalCones>,
-    /// Of two sides: the groups that hold between them.
+    /// For two sides the groups of both.
     pub(super) groups: Option<GroupsBetween<'s>>,
     pub(crate) state: &'s mut SearchState,
     pub(crate) narrow: &'s mut N,
@@ -181,7 +183,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         self.state.check_cancelled(self.sides[0].context, self.narrow);
     }
 
-    /// Counts a visit of a node, and checks for cancellation now and then. Returns false if the search is to end.
+    /// Counts a visit of a node, and regularly checks for cancellation. Returns false if the search is to end.
     #[inline]
     pub(crate) fn count_visit(&mut self) -> bool {
         self.state.visits = self.state.visits.wrapping_add(1);
@@ -191,7 +193,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         !self.narrow.hits().note_if_full()
     }
 
-    /// Counts a test of two triangles, and checks now and then.
+    /// Counts a test of two triangles, and regularly checks for cancellation.
     #[inline]
     fn count_triangle_test(&mut self) {
         self.state.counters.triangle_tests += 1;
@@ -200,15 +202,15 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         }
     }
 
-    /// The end of a search.
+    /// Ends the search.
     ///
     /// # Errors
-    /// When it was cancelled; then there are no hits.
+    /// When the search was cancelled; then there are no hits.
     pub(crate) fn end(self) -> Result<(), Error> {
         self.state.end(self.narrow)
     }
 
-    /// Tests two triangles that are not adjacent, whose relation is known.
+    /// Tests two triangles that are not adjacent, with the given relation.
     #[inline]
     pub(super) fn test_related_triangles(
         &mut self,

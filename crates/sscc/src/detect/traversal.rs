@@ -1,9 +1,9 @@
-//! The traversal of the bounding volume test tree (BVTT): which nodes and node pairs are opened. This one uses no
-//! certificates, but normal cones where the method has them. `query/` has the traversals with certificates; they use
-//! the same tests.
+//! The traversal of the bounding volume test tree (BVTT), which opens nodes and node pairs whose AABBs overlap. This one
+//! uses no certificates, but the normal cones of the method, if any. The traversals with certificates are in `query/`; they
+//! use the same tests.
 //!
-//! One box is always compared with up to eight. The stack holds nodes `(n, n)` of one side, and pairs `(n, m)` of nodes without
-//! common triangles whose boxes overlap.
+//! Each comparison is that of one box with up to eight boxes. The stack contains nodes `(n, n)` of one side, and pairs `(n, m)` of
+//! nodes without common triangles whose boxes overlap.
 
 use super::aabb8::LANES;
 use super::narrow_phase::NarrowPhase;
@@ -14,14 +14,14 @@ use crate::filter::GroupsBetween;
 use crate::hierarchy::NodePair;
 
 impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, SIDES, E, M, N> {
-    /// Takes the next node or node pair from the stack; none at the end of the search.
+    /// Takes the next node or node pair from the stack; `None` at the end of the search.
     #[inline]
     pub(crate) fn next_visit(&mut self) -> Option<NodePair> {
         let next = self.state.stack.pop()?;
         self.count_visit().then_some(next)
     }
 
-    /// Opens two nodes whose boxes overlap (Algorithm 1, lines 15 to 30), both at once, down to buckets.
+    /// Opens two nodes whose boxes overlap (Algorithm 1, lines 15 to 30): both at once if neither is a bucket; tests two buckets.
     #[inline]
     pub(crate) fn visit_node_pair(&mut self, (n, m): NodePair) {
         let buckets = [self.sides[0].bucket(n), self.sides[Self::LAST].bucket(m)];
@@ -30,7 +30,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         }
         self.state.counters.opened += 1;
         self.state.counters.box_tests += LANES as u64;
-        // A bucket is not opened before the other node is one.
+        // A bucket is opened only if the other node is a bucket, too.
         if buckets[0].is_some() {
             self.sides[Self::LAST].open_node(m);
             let first = self.sides[Self::LAST].first_child(m);
@@ -59,7 +59,7 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
 }
 
 impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, N> {
-    /// Finds all hits between two nodes, or within one, but exceptions; for nodes within a bucket, those of the bucket.
+    /// Finds all hits between two nodes, or within one, except exceptions; for nodes within a bucket, those of the bucket.
     pub(crate) fn traverse(&mut self, start: NodePair) {
         self.begin_traversal(start);
         while let Some((n, m)) = self.next_visit() {
@@ -72,7 +72,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         }
     }
 
-    /// Puts a node `(n, n)` or a node pair on the empty stack.
+    /// Clears the stack, and pushes a node `(n, n)` or a node pair.
     pub(crate) fn begin_traversal(&mut self, (n, m): NodePair) {
         let [side] = &mut self.sides;
         let buckets = &side.volumes.layout.buckets;
@@ -87,7 +87,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         self.cones.as_mut().is_some_and(|cones| cones.cull(n, self.sides[0].volumes))
     }
 
-    /// Opens a node (Algorithm 1, lines 1 to 14): tests a bucket, puts the children of a larger node on the stack. True if
+    /// Opens a node (Algorithm 1, lines 1 to 14): tests a bucket, or pushes the children of a larger node on the stack. True if
     /// the pairs of its children remain to be tested ([`Self::push_overlapping`]).
     #[inline]
     pub(crate) fn visit_node(&mut self, n: u32) -> bool {
@@ -102,7 +102,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         true
     }
 
-    /// Puts a pair of children of the open node n on the stack if their boxes overlap.
+    /// Pushes a pair of children of the open node n on the stack if their boxes overlap.
     #[inline]
     pub(crate) fn push_overlapping(&mut self, n: u32, first_child: u32, (a, b): NodePair) {
         self.state.counters.box_tests += 1;
@@ -115,9 +115,9 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
 }
 
 impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 2, E, M, N> {
-    /// Finds at most `limit` hits between two shapes, in pairs (triangle of the first, triangle of the second), not sorted. Their
-    /// volumes have begun the search, in the same frame. Every triangle of one is paired with every one of the other, apart from
-    /// those whose `groups` do not count: neither contact filter applies.
+    /// Finds at most `limit` hits between two shapes, as pairs (triangle of the first, triangle of the second), not sorted. The
+    /// volumes of both have begun the search, in the same frame. All pairs count, except those that `groups` exclude; the contact
+    /// filters do not apply.
     ///
     /// # Errors
     /// When the token of the first context cancels; then there are no hits.

@@ -1,6 +1,6 @@
 //! The motion of vertices in one search: the source of positions and AABBs, over which the detector is generic.
 //!
-//! A search has `E` configurations: one, or the start and the end of a motion. Sources are dispatched statically:
+//! A search has `E` configurations: one, or the start and the end of a motion. There are four sources, dispatched statically:
 //! positions deformed by modes ([`DeformedMotion`]), all positions in a capsule of configurations
 //! ([`CapsuleMotion`](crate::query)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
 //! given positions ([`Detector`](crate::Detector)).
@@ -16,51 +16,51 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// precision. Then [`Self::overall_aabb`] must contain all positions.
     const HAS_ERROR_BOUND: bool;
 
-    /// An upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
+    /// Returns an upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
     fn rounding(&self) -> f64;
 
-    /// The distance by which all AABBs are widened, to find near triangles. [`Self::rounding`] includes it.
+    /// Returns the distance by which all AABBs are widened, to find near triangles. [`Self::rounding`] includes it.
     fn margin(&self) -> f64 {
         0.0
     }
 
-    /// The part of [`Self::margin`] that [`Self::rounding`] does not include. Coarse positions have a bound of their error, which that
-    /// part would exceed by far: there [`Self::coarse_slack`] widens AABBs.
+    /// Returns the part of [`Self::margin`] that [`Self::rounding`] does not include. It would exceed the allowed error of coarse
+    /// positions by far, so that [`Self::coarse_slack`] widens their AABBs.
     fn margin_beside_rounding(&self) -> f64 {
         0.0
     }
 
-    /// The AABB that chooses the [`F32Frame`](super::f32_frame::F32Frame). It must contain the positions at
-    /// [`Self::coarse_coordinates`], and all positions where [`Self::HAS_ERROR_BOUND`]: the error bounds assume that. For
-    /// other sources any AABB is right, and affects speed only.
+    /// Returns the AABB that determines the [`F32Frame`](super::f32_frame::F32Frame). It must contain the positions at
+    /// [`Self::coarse_coordinates`], and all positions if [`Self::HAS_ERROR_BOUND`], because the error bounds assume that.
+    /// For other sources any AABB is valid, and affects speed only.
     fn overall_aabb(&self, layout: &Layout) -> Aabb;
 
-    /// The reduced coordinates from which coarse positions may be computed; none if positions must be exact.
+    /// Returns the reduced coordinates from which coarse positions may be computed; `None` if positions must be exact.
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]>;
 
-    /// The distance in z within which all configurations of the motion are around the segment between
-    /// [`Self::coarse_coordinates`]; none where positions are not those of the modes alone.
+    /// Returns the largest distance in z of configurations of the motion from the segment between
+    /// [`Self::coarse_coordinates`]; `None` if positions are not those of the modes alone.
     fn region_radius(&self) -> Option<f64> {
         None
     }
 
-    /// Where a shape in the world is; none for positions in axes of the model.
+    /// Returns the pose of a shape in the world; `None` for positions in axes of the model.
     fn in_world(&self) -> Option<InWorld<E>> {
         None
     }
 
-    /// How far, along each axis, the vertices of a node may be from their positions at these coordinates; none: not at
-    /// all.
+    /// Returns a bound, along each axis, of the distance of the vertices of a node from their positions at these
+    /// coordinates; `None` if the distance is 0.
     fn coarse_slack(&self, node: u32) -> Option<DVec3>;
 
-    /// The exact positions of a vertex, by its index in the layout.
+    /// Returns the exact positions of a vertex, by its index in the layout.
     fn positions(&self, layout: &Layout, vertex: u32) -> [DVec3; E];
 
-    /// An AABB of all positions of a node's vertices, computed without them; none for a node that has no such AABB.
+    /// Returns an AABB of all positions of a node's vertices, computed without these positions; `None` for a node without such an AABB.
     fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb>;
 }
 
-/// Where a shape is in the world.
+/// The pose of a shape in the world.
 pub(crate) struct InWorld<const E: usize> {
     /// At each configuration the matrix and the translation of `x -> matrix x + translation`.
     pub(crate) maps: [(DMat3, DVec3); E],
@@ -76,7 +76,7 @@ pub(crate) struct DeformedMotion<'q, const E: usize> {
 }
 
 impl<'q, const E: usize> DeformedMotion<'q, E> {
-    /// `reach`: an upper bound of the magnitude of every term of every position, at each configuration.
+    /// Creates the motion. `reach`: an upper bound of the magnitude of every term of every position, at each configuration.
     pub(crate) fn new(q: [&'q [f64]; E], reach: f64) -> Self {
         Self { q, rounding: rounding_bound(reach, q[0].len()) }
     }
@@ -121,7 +121,7 @@ impl<const E: usize> VertexMotion<E> for DeformedMotion<'_, E> {
     }
 }
 
-/// An upper bound of the rounding error of BD-tree AABBs and positions: well above the 2 (r + 1) roundings of each.
+/// Returns an upper bound of the rounding error of BD-tree AABBs and positions. It is well above the 2 (r + 1) roundings of each.
 pub(crate) fn rounding_bound(reach: f64, rank: usize) -> f64 {
     right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
 }

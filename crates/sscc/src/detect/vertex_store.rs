@@ -6,12 +6,12 @@ use super::moving_modes::MovingModes;
 use crate::ReducedModel;
 use crate::vectors::InstructionSet;
 
-/// Modes are listed for each vertex where at most one in so many displacements is not zero. With more of them, quantized displacements
-/// of all modes take less time.
+/// Modes are listed for each vertex if at most one of this many displacements is not zero. With more nonzero ones, quantized
+/// displacements by all modes take less time.
 const LISTED_SHARE: usize = 4;
 
-/// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket lie
-/// far apart in memory. A vertex is named by its index in this store, which is not its number in the mesh.
+/// Rest positions and modes of the used vertices, bucket by bucket. In the order of the mesh the vertices of a bucket would be
+/// far apart in memory. The index of a vertex in this store is not its number in the mesh.
 #[derive(Default)]
 pub(crate) struct VertexStore {
     /// For each vertex of the mesh its index here; `u32::MAX` for an unused vertex.
@@ -20,12 +20,12 @@ pub(crate) struct VertexStore {
     mesh_vertices: Vec<u32>,
     rest: Vec<DVec3>,
     moving: MovingModes,
-    /// Of each vertex the displacements by the modes that move it.
+    /// For each vertex the displacements by the modes that move it.
     modes: Vec<DVec3>,
 }
 
 impl VertexStore {
-    /// Stores vertices in the order of this list of mesh vertices, which may name a vertex more than once.
+    /// Stores vertices in the order of this list of mesh vertices, which may contain a vertex more than once.
     pub(crate) fn new(model: &ReducedModel, order: &[u32]) -> Self {
         let (all, rank) = (model.mesh().rest_positions(), model.rank());
         let Self { indices, mesh_vertices, .. } = Self::without_modes(all.len(), order);
@@ -36,7 +36,7 @@ impl VertexStore {
         let count = mesh_vertices.len() * rank;
         let moving = if (count - zeros) * LISTED_SHARE <= count {
             let lists = mesh_vertices.iter().map(|v| {
-                // A sum of zeros that begins with -0 ends with 0: then all modes count.
+                // A sum that begins with -0 becomes 0 when a zero is added, so that vertices with -0 need all modes.
                 let is_negative_zero = |x: f64| x == 0.0 && x.is_sign_negative();
                 let are_all = all[*v as usize].to_array().into_iter().any(is_negative_zero);
                 let modes = (0..rank as u32).zip(of_vertex(v));
@@ -57,7 +57,7 @@ impl VertexStore {
         Self { indices, mesh_vertices, rest, moving, modes }
     }
 
-    /// The same for vertices whose positions will be given: neither rest positions nor modes are stored. `all`: the number of
+    /// Stores the order of vertices whose positions will be given, without rest positions and modes. `all`: the number of
     /// vertices of the mesh.
     pub(crate) fn without_modes(all: usize, order: &[u32]) -> Self {
         let mut indices = vec![u32::MAX; all];
@@ -115,7 +115,7 @@ impl VertexStore {
         instructions.prefetch(self.modes(index));
     }
 
-    /// The position of a vertex at each q, bit for bit that of [`deformed_position`](crate::deformed_position).
+    /// Returns the position of a vertex at each q, bit for bit that of [`deformed_position`](crate::deformed_position).
     #[inline]
     pub(crate) fn position<const E: usize>(&self, index: u32, q: [&[f64]; E]) -> [DVec3; E] {
         let mut x = [self.rest(index); E];
@@ -129,7 +129,7 @@ impl VertexStore {
             return x;
         }
         let q = q.map(|q| &q[..modes.len()]);
-        // One pass over the modes serves both configurations.
+        // One pass over the modes computes the positions at both configurations.
         for (k, u) in modes.iter().enumerate() {
             for end in 0..E {
                 x[end] += *u * q[end][k];
@@ -145,8 +145,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{Modes, TriMesh, deformed_position};
 
-    /// Models in which none to most displacements are zero, vertices that nothing moves, and rest positions of both signs of
-    /// zero.
+    /// In the models none to most displacements are zero; some vertices are not moved by any mode, and some rest positions are 0
+    /// of either sign.
     #[test]
     fn positions_are_those_of_all_modes_bit_for_bit() {
         let random = &mut Random(41);

@@ -11,16 +11,16 @@ use glam::DVec3;
 
 use crate::{Metric, ReducedModel, random};
 
-/// How many numbers represent the modes of a triangle: sums of the scaled mode entries with fixed random signs
-/// (docs/notes/broad-phase.md#hierarchy).
+/// The number of features that represent the modes of a triangle: sums of the scaled mode entries with fixed random
+/// signs (docs/notes/broad-phase.md#hierarchy).
 const MODE_FEATURES: usize = 9;
 
 pub(super) const FEATURES: usize = 3 + MODE_FEATURES;
 
 pub(super) type ClusterFeature = [f64; FEATURES];
 
-/// One point for each triangle: its centroid in units of the mesh's AABB, and its mean scaled modes, projected, in units of
-/// their largest deviation from the mean.
+/// Returns one point for each triangle: its centroid in units of the mesh's AABB, and its mean scaled modes, projected, in
+/// units of their largest deviation from the mean.
 pub(super) fn cluster_features(model: &ReducedModel, metric: &Metric) -> Vec<ClusterFeature> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let p = mesh.rest_positions();
@@ -68,7 +68,7 @@ fn normalize(features: &mut [ClusterFeature], range: Range<usize>) {
     }
 }
 
-/// Fixed pseudo-random bits: number x of a generator that begins at 0.
+/// Returns fixed pseudo-random bits: number x of a generator that begins at 0.
 fn hash(x: u64) -> u64 {
     random::next_bits(&mut x.wrapping_mul(random::INCREMENT))
 }

@@ -1,4 +1,4 @@
-//! The BVH: nodes level by level, their triangles, and how node pairs are split.
+//! The BVH: nodes level by level, their triangles, and the splits of node pairs.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ impl Hierarchy {
         &self.nodes
     }
 
-    /// All triangles, sorted so that each node's are contiguous.
+    /// Returns all triangles, sorted so that the triangles of each node are contiguous.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
@@ -37,7 +37,7 @@ impl Hierarchy {
         vertices
     }
 
-    /// The range of node indices of each level, the root's first.
+    /// Returns the range of node indices of each level, beginning with the root.
     pub fn levels(&self) -> Vec<Range<usize>> {
         let mut levels = Vec::new();
         let mut level = 0..1;
@@ -50,12 +50,12 @@ impl Hierarchy {
     }
 
     /// Whether a node other than the root is a bucket or lies within one. Pairs within it have no certificates; pairs
-    /// of the root's children always do.
+    /// of the root's children always have certificates.
     pub(crate) fn is_bucket_below_root(&self, n: u32) -> bool {
         n != 0 && self.nodes[n as usize].fits_in_bucket()
     }
 
-    /// For each node whether it lies below a bucket that is not the root.
+    /// Returns for each node whether it lies below a bucket that is not the root.
     pub(crate) fn nodes_within_buckets(&self) -> Vec<bool> {
         let mut within = vec![false; self.nodes.len()];
         let buckets = (0..within.len()).filter(|n| self.is_bucket_below_root(*n as u32));
@@ -66,7 +66,7 @@ impl Hierarchy {
     }
 
     /// Splits a node pair: the node with more triangles (the first if equal) is replaced by its children, or the other
-    /// one if that is a leaf. None if both are leaves.
+    /// node if that is a leaf. `None` if both are leaves.
     #[inline]
     pub(crate) fn split(&self, n: u32, m: u32) -> Option<Split> {
         let (node_n, node_m) = (self.nodes[n as usize], self.nodes[m as usize]);
@@ -79,7 +79,7 @@ impl Hierarchy {
         }
     }
 
-    /// The same down to buckets, as far as the pair tree goes: none where both nodes are buckets.
+    /// Splits a node pair as [`Self::split`], but only down to buckets, as the pair tree does: `None` if both nodes are buckets.
     #[inline]
     pub(crate) fn split_above_buckets(&self, n: u32, m: u32) -> Option<Split> {
         let count = |n: u32| self.nodes[n as usize].triangle_count as usize;

@@ -35,7 +35,7 @@ pub(super) fn cluster(features: &[ClusterFeature], triangles: &mut [u32]) -> Vec
     sizes.into_iter().filter(|&size| size > 0).collect()
 }
 
-/// Cuts into four equal parts along the widest feature: for clusters that k-means splits too unevenly.
+/// Cuts triangles into four equal parts along the widest feature, where k-means would split them too unevenly.
 fn cut_evenly(features: &[ClusterFeature], triangles: &mut [u32]) -> Vec<u32> {
     let width = |i: usize| {
         let values = triangles.iter().map(|&a| features[a as usize][i]);
@@ -52,7 +52,7 @@ fn cut_evenly(features: &[ClusterFeature], triangles: &mut [u32]) -> Vec<u32> {
         .collect()
 }
 
-/// Starting centres: the triangle farthest from the mean, then always the one farthest from those chosen.
+/// Chooses starting centres: the triangle farthest from the mean, then repeatedly the one farthest from those chosen.
 fn find_starting_centers(features: &[ClusterFeature], triangles: &[u32]) -> [ClusterFeature; BRANCHING] {
     let mut mean = [0.0; FEATURES];
     for &a in triangles {
@@ -77,7 +77,7 @@ fn find_starting_centers(features: &[ClusterFeature], triangles: &[u32]) -> [Clu
     centers
 }
 
-/// The index of the nearest centre, the first of equals.
+/// Returns the index of the nearest centre, the first one among equals.
 fn find_nearest(centers: &[ClusterFeature; BRANCHING], feature: &ClusterFeature) -> u8 {
     let mut best = (f64::INFINITY, 0);
     for (i, center) in centers.iter().enumerate() {

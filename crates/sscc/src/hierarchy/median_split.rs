@@ -1,8 +1,8 @@
-//! The fast build of the hierarchy, top down by median splits: for detectors, which are often used once.
+//! The fast construction of the hierarchy, top down by median splits, for detectors, which are often used only once.
 //!
 //! Each node is split in half along the longest axis of its triangles' centroids, twice, so that it has up to four
-//! children. Sizes are multiples of a bucket's, so that all buckets but the last are full. Buckets are split the same way, and
-//! the triangles of each bucket are in the order of its packets. The k-means build gives stronger
+//! children. Sizes are multiples of a bucket's, so that all buckets except the last one are full. Buckets are split in the same
+//! way, and the triangles of each bucket are in the order of its packets. The construction by k-means gives stronger
 //! certificates and takes more than ten times as long (docs/notes/queries.md#one-shot-detector).
 
 use glam::{DVec3, Vec3};
@@ -51,8 +51,8 @@ struct SortKey {
     triangle: u32,
 }
 
-/// The triangles with their centroids, in single precision relative to the box of all positions: the tree need not be more
-/// precise, because boxes are computed from exact positions.
+/// Returns the triangles with their centroids, in single precision relative to the box of all positions. The tree need not be
+/// more precise, because boxes are computed from exact positions.
 fn sort_keys(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<SortKey> {
     let corners = faces.iter().flatten().map(|v| positions[*v as usize]);
     let Aabb { lower, upper } = Aabb::of_points(corners);
@@ -83,7 +83,7 @@ fn split_in_half(triangles: &mut [SortKey], unit: usize) -> usize {
         let (lower, upper) = triangles.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |all, key| {
             (all.0.min(key.centroid), all.1.max(key.centroid))
         });
-        // One integer comparison: coordinate first, then triangle.
+        // The key compares the coordinate first, then the triangle, by one integer comparison.
         let key = |coordinate: f32, triangle: u32| {
             u64::from(ascending_bits(coordinate)) << 32 | u64::from(triangle)
         };
@@ -96,7 +96,7 @@ fn split_in_half(triangles: &mut [SortKey], unit: usize) -> usize {
     middle
 }
 
-/// An integer for each number, in the same order, -0 before +0.
+/// Returns an integer for each number, in the same order, -0 before +0.
 fn ascending_bits(x: f32) -> u32 {
     let bits = x.to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
@@ -108,7 +108,7 @@ mod tests {
     use crate::TriMesh;
     use crate::test_models::Random;
 
-    /// Also where centroids coincide, are far away, or differ by less than single precision.
+    /// In some cases centroids coincide, are far away, or differ by less than single precision.
     #[test]
     fn every_triangle_is_in_one_bucket() {
         let random = &mut Random(5);

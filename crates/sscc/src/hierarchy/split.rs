@@ -5,21 +5,21 @@ use std::ops::Range;
 use super::node::Node;
 use super::node_pair::NodePair;
 
-/// A node pair (n, m) of which one node is split.
+/// A node pair (n, m) and the node of it that is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Split {
     /// The first node is split.
     First {
         /// The first node.
         node: Node,
-        /// The index of the second one.
+        /// The index of the second node.
         m: u32,
     },
     /// The second node is split.
     Second {
         /// The index of the first node.
         n: u32,
-        /// The second one.
+        /// The second node.
         node: Node,
     },
 }
@@ -33,7 +33,7 @@ impl Split {
         }
     }
 
-    /// The node pair with the child of that number (0 to 3).
+    /// Returns the node pair with the child of that number (0 to 3).
     #[inline]
     pub(crate) fn pair(&self, child: u32) -> NodePair {
         match self {
@@ -42,7 +42,7 @@ impl Split {
         }
     }
 
-    /// All node pairs, child by child.
+    /// Returns all node pairs, child by child.
     #[inline]
     pub(crate) fn pairs(self) -> impl Iterator<Item = NodePair> {
         (0..self.children().len() as u32).map(move |child| self.pair(child))

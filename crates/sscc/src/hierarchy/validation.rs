@@ -12,7 +12,7 @@ const MAX_LEAF_TRIANGLES: u32 = 64;
 const MAX_LEVELS: usize = 256;
 
 impl Hierarchy {
-    /// Takes a hierarchy from its parts, as read from a file.
+    /// Creates a hierarchy from its parts, as read from a file.
     ///
     /// # Errors
     /// When the parts are not a tree over exactly `triangles` triangles in the documented order.
@@ -49,7 +49,8 @@ fn check_order(order: &[u32], triangles: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// Checks that nodes are stored level by level, and that the triangles of each are the disjoint union of its children's.
+/// Checks that nodes are stored level by level, and that the triangles of each node are the disjoint union of those of its
+/// children.
 fn check_tree(nodes: &[Node], triangles: usize) -> Result<(), Error> {
     let Some(root) = nodes.first() else { return Err(damaged("it has no nodes")) };
     if (root.first_triangle, root.triangle_count as usize) != (0, triangles) {

@@ -20,11 +20,12 @@ pub struct TriMesh {
 }
 
 impl TriMesh {
-    /// Takes rest positions (model unit) and faces (indices into them).
+    /// Creates a mesh from rest positions (model unit) and faces (indices into them).
     ///
     /// # Errors
-    /// When this thread does not compute as IEEE 754 says ([`Error::Arithmetic`]), there is no face, a face names a vertex that does not exist, a coordinate is not finite or
-    /// larger than [`limits::LARGEST`], or there are more than `u32::MAX` vertices or faces.
+    /// When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]), there is no face, a face names a vertex that
+    /// does not exist, a coordinate is not finite or larger than [`limits::LARGEST`], or there are more than `u32::MAX` vertices or
+    /// faces.
     pub fn new(rest_positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, Error> {
         check_arithmetic()?;
         if faces.is_empty() {
@@ -46,9 +47,9 @@ impl TriMesh {
         Ok(Self { rest_positions, faces, has_split_vertices: false })
     }
 
-    /// The same mesh, of a format or a source that splits vertices along seams: adjacent triangles may share no vertex number,
-    /// only positions. Detectors and certificates weld its equal vertices by default
-    /// ([`ContactFilter::of`](crate::ContactFilter::of)). Readers of such formats call it.
+    /// Returns the same mesh, marked as from a format or a source that splits vertices along seams: adjacent triangles may share
+    /// positions, but no vertex numbers. Detectors and certificates weld its equal vertices by default
+    /// ([`ContactFilter::of`](crate::ContactFilter::of)). Functions that read such formats call it.
     #[must_use]
     pub fn with_split_vertices(mut self) -> Self {
         self.has_split_vertices = true;
@@ -60,10 +61,10 @@ impl TriMesh {
         self.has_split_vertices
     }
 
-    /// The same mesh at other rest positions, as many as it has vertices (model unit).
+    /// Returns the same mesh with other rest positions (model unit), one for each vertex.
     ///
     /// # Errors
-    /// When there are fewer or more, or one is not finite or beyond [`limits::LARGEST`].
+    /// When there are fewer or more positions than vertices, or one is not finite or beyond [`limits::LARGEST`].
     pub fn with_rest_positions(&self, rest_positions: Vec<DVec3>) -> Result<Self, Error> {
         let (found, vertices) = (rest_positions.len(), self.rest_positions.len());
         if found != vertices {
@@ -73,12 +74,12 @@ impl TriMesh {
         Ok(Self { has_split_vertices: self.has_split_vertices, ..mesh })
     }
 
-    /// Rest positions, one for each vertex of the file, unused ones included (model unit).
+    /// Returns the rest positions, one for each vertex of the file, including unused ones (model unit).
     pub fn rest_positions(&self) -> &[DVec3] {
         &self.rest_positions
     }
 
-    /// Faces: three vertex indices each, in the file's order.
+    /// Returns the faces, three vertex indices each, in the order of the file.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }

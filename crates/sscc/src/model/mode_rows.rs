@@ -6,10 +6,10 @@
 
 use glam::{DMat3, DVec3};
 
-/// Lengths of rows are multiples of this.
+/// Lengths of rows are multiples of this number.
 pub(crate) const LANES: usize = 4;
 
-/// The length of a row: `rank` rounded up to a multiple of [`LANES`].
+/// Returns the length of a row: `rank` rounded up to a multiple of [`LANES`].
 pub(crate) fn padded_rank(rank: usize) -> usize {
     rank.div_ceil(LANES) * LANES
 }
@@ -19,7 +19,7 @@ fn sum(lanes: [f64; LANES]) -> f64 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
-/// `a . b`
+/// Returns `a . b`.
 #[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
@@ -31,7 +31,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum(lanes)
 }
 
-/// `|a - b|^2`
+/// Returns `|a - b|^2`.
 #[inline(always)]
 pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
@@ -44,7 +44,7 @@ pub(crate) fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     sum(lanes)
 }
 
-/// `out = A' dir` for the modes `A` of a point (three rows: x, y, z).
+/// Computes `out = A' dir` for the modes `A` of a point (three rows: x, y, z).
 #[inline(always)]
 pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
     let row_len = out.len();
@@ -55,13 +55,13 @@ pub(crate) fn project(modes: &[f64], dir: DVec3, out: &mut [f64]) {
     }
 }
 
-/// `out += weight * a`
+/// Computes `out += weight * a`.
 #[inline(always)]
 pub(crate) fn add_scaled(out: &mut [f64], weight: f64, a: &[f64]) {
     out.iter_mut().zip(a).for_each(|(o, a)| *o += weight * a);
 }
 
-/// The 3 x 3 Gram matrix `B B'` of three rows.
+/// Returns the 3 x 3 Gram matrix `B B'` of three rows.
 #[inline(always)]
 pub(crate) fn gram(rows: &[f64]) -> DMat3 {
     let row_len = rows.len() / 3;

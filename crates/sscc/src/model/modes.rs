@@ -5,19 +5,19 @@ use glam::DVec3;
 use crate::{Error, TriMesh, limits};
 
 /// Deformation modes `U` (3V x r): the displacement of each vertex for a unit of each reduced
-/// coordinate (model unit per unit of q). Any rank r >= 1; modes may vanish, repeat or depend on each other.
+/// coordinate (model unit per unit of q). Any rank r >= 1 is valid; modes may be 0, equal or linearly dependent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
     rank: usize,
-    /// `displacements[vertex * rank + mode]`
+    /// The displacement of a vertex by a mode is `displacements[vertex * rank + mode]`.
     displacements: Vec<DVec3>,
 }
 
 impl Modes {
-    /// Takes displacements in vertex-major order: `displacements[vertex * rank + mode]`.
+    /// Creates modes from displacements in vertex-major order: `displacements[vertex * rank + mode]`.
     ///
     /// # Errors
-    /// When `rank` is 0, the length is no multiple of it, or an entry is not finite or larger than
+    /// When `rank` is 0, the number of displacements is not a multiple of it, or an entry is not finite or larger than
     /// [`limits::LARGEST`].
     pub fn new(rank: usize, displacements: Vec<DVec3>) -> Result<Self, Error> {
         if rank == 0 {
@@ -32,7 +32,7 @@ impl Modes {
         Ok(Self { rank, displacements })
     }
 
-    /// Takes a matrix by its entry function: `entry(3 * vertex + component, mode)`.
+    /// Creates modes from a matrix, given by its entries `entry(3 * vertex + component, mode)`.
     ///
     /// # Errors
     /// As [`Modes::new`].
@@ -48,12 +48,12 @@ impl Modes {
         Self::new(rank, displacements)
     }
 
-    /// Number of modes r.
+    /// Returns the number of modes r.
     pub fn rank(&self) -> usize {
         self.rank
     }
 
-    /// Number of vertices V.
+    /// Returns the number of vertices V.
     pub fn vertices(&self) -> usize {
         self.displacements.len() / self.rank
     }
@@ -63,6 +63,8 @@ impl Modes {
         &self.displacements[vertex as usize * self.rank..][..self.rank]
     }
 
+    /// Checks that the modes are for the vertices of a mesh.
+    ///
     /// # Errors
     /// When the mesh has another number of vertices.
     pub(crate) fn check_mesh(&self, mesh: &TriMesh) -> Result<(), Error> {
@@ -70,13 +72,13 @@ impl Modes {
         if modes == mesh { Ok(()) } else { Err(Error::VertexCount { modes, mesh }) }
     }
 
-    /// All displacements in vertex-major order: `[vertex * rank + mode]`.
+    /// Returns all displacements in vertex-major order: `[vertex * rank + mode]`.
     pub fn displacements(&self) -> &[DVec3] {
         &self.displacements
     }
 }
 
-/// The deformed position of one vertex: `x = p`, then `x += U_k q_k` for k = 0 .. r-1 in this order, each
+/// Returns the deformed position of one vertex: `x = p`, then `x += U_k q_k` for k = 0 .. r-1 in this order, each
 /// product and sum rounded once (no fused multiply-add). This function **defines** the shape: all methods, tests and
 /// certificates refer to these f64 positions.
 #[inline]

@@ -7,8 +7,7 @@ use glam::DVec3;
 use crate::model::check_scaled_modes;
 use crate::{Error, Metric, Modes, TriMesh, deformed_position, limits};
 
-/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the metric of certificates that name no other. Clones share
-/// one memory.
+/// A reduced deformable model `x = p + U q`: a mesh, its modes, and the default metric of certificates. Clones share their data.
 #[derive(Clone, Debug)]
 pub struct ReducedModel(Arc<Contents>);
 
@@ -17,7 +16,7 @@ struct Contents {
     mesh: TriMesh,
     modes: Modes,
     metric: Metric,
-    /// Largest magnitude of a rest coordinate.
+    /// The largest magnitude of a rest coordinate.
     rest_reach: f64,
     /// For each mode, the largest magnitude of an entry.
     mode_reach: Vec<f64>,
@@ -64,7 +63,7 @@ impl ReducedModel {
         &self.0.metric
     }
 
-    /// Number of modes r.
+    /// Returns the number of modes r.
     pub fn rank(&self) -> usize {
         self.0.modes.rank()
     }
@@ -74,7 +73,7 @@ impl ReducedModel {
         deformed_position(self.0.mesh.rest_positions()[vertex as usize], self.0.modes.of_vertex(vertex), q)
     }
 
-    /// All deformed positions at `q` (V, model unit).
+    /// Returns all deformed positions at `q` (V, model unit).
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or a vertex would leave the range of [`limits`].
@@ -83,16 +82,16 @@ impl ReducedModel {
         Ok((0..self.0.mesh.rest_positions().len() as u32).map(|i| self.position(i, q)).collect())
     }
 
-    /// An upper bound (rounded to nearest) of every coordinate of `|p| + sum_k |U_k q_k|`.
+    /// Returns an upper bound (rounded to nearest) of every coordinate of `|p| + sum_k |U_k q_k|`.
     pub(crate) fn reach(&self, q: &[f64]) -> f64 {
         self.0.rest_reach + self.displacement_bound(q)
     }
 
-    /// An upper bound (rounded to nearest) of every coordinate of `sum_k |U_k q_k|`. Not finite where an entry of q is
-    /// not.
+    /// Returns an upper bound (rounded to nearest) of every coordinate of `sum_k |U_k q_k|`. It is not finite if an entry
+    /// of q is not finite.
     #[inline]
     pub(crate) fn displacement_bound(&self, q: &[f64]) -> f64 {
-        // Four partial sums.
+        // There are four partial sums.
         let mut lanes = [0.0; 4];
         let (reaches, rest) = self.0.mode_reach.as_chunks::<4>();
         let (coordinates, last) = q.as_chunks::<4>();
@@ -105,13 +104,13 @@ impl ReducedModel {
         (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]) + last
     }
 
-    /// An upper bound (rounded to nearest) of every coordinate of `|U_k q_k|`, for one mode k.
+    /// Returns an upper bound (rounded to nearest) of every coordinate of `|U_k q_k|`, for one mode k.
     pub(crate) fn mode_displacement_bound(&self, k: usize, q_k: f64) -> f64 {
         self.0.mode_reach[k] * q_k.abs()
     }
 
-    /// Refuses a q that is not a configuration of this model. Returns an upper bound (rounded to nearest) of every
-    /// coordinate of `|p| + sum_k |U_k q_k|`, which rounding bounds are multiples of.
+    /// Checks that q is a configuration of this model. Returns an upper bound (rounded to nearest) of every coordinate of
+    /// `|p| + sum_k |U_k q_k|`; rounding bounds are multiples of it.
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or the reach is beyond [`limits::LARGEST`].

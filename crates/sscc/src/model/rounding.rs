@@ -8,14 +8,14 @@ pub(crate) const ROUND_UP: f64 = 1.0 + 16.0 * f64::EPSILON;
 /// Rounds down a quotient of two numbers.
 pub(crate) const ROUND_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
 
-/// The root of a sum of squares of at most `terms` numbers, rounded up.
+/// Returns the root of a sum of squares of at most `terms` numbers, rounded up.
 #[inline]
 pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
     sum_of_squares.sqrt() * right_or!(1.0 + (terms as f64 + 16.0) * f64::EPSILON, NormUpToNearest, 1.0)
 }
 
-/// A quotient of two non-negative numbers, rounded down. Below the normal numbers, where rounding is not relative, it is
-/// 0, and so is NaN.
+/// Returns a quotient of two non-negative numbers, rounded down; 0 in place of NaN and of subnormal numbers, whose rounding is
+/// not relative.
 #[inline]
 pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
     let quotient = numerator / denominator;
@@ -23,21 +23,21 @@ pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
     if is_normal { quotient * right_or!(ROUND_DOWN, QuotientToNearest, 1.0) } else { 0.0 }
 }
 
-/// The radius at which a gap closes at a rate, rounded down: 0 unless the gap is positive (NaN included), infinite where
-/// the rate is 0.
+/// Returns the radius at which a gap closes at a rate, rounded down. It is 0 unless the gap is positive (also for NaN), and
+/// infinite if the rate is 0.
 #[inline]
 pub(crate) fn radius_down(gap: f64, rate: f64) -> f64 {
     if gap > 0.0 && rate >= 0.0 { quotient_down(gap, rate) } else { 0.0 }
 }
 
-/// The larger one of two numbers; NaN if one of them is NaN, which `max` ignores.
+/// Returns the larger one of two numbers; NaN if one of them is NaN, which `max` ignores.
 #[inline(always)]
 pub(crate) fn larger_or_nan<T: PartialOrd>(a: T, b: T) -> T {
     let is_nan = right_or!(b.partial_cmp(&b).is_none(), MaximumIgnoresNan, false);
     if a < b || is_nan { b } else { a }
 }
 
-/// A radius in single precision, rounded down; 0 for NaN.
+/// Converts a radius to single precision, rounded down; 0 for NaN.
 pub(crate) fn to_f32_down(radius: f64) -> f32 {
     let rounded = radius as f32;
     let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn nan_is_no_bound() {
         for (a, b) in [(0.0, f64::INFINITY), (f64::INFINITY, 0.0)] {
-            // One of them is infinity times zero.
+            // One of these quotients contains the product of infinity and zero.
             assert_eq!(quotient_down(a * b, 1.0), 0.0);
         }
         assert_eq!(quotient_down(f64::INFINITY, f64::INFINITY), 0.0);

@@ -1,5 +1,5 @@
-//! The rounding bound of a gap: by how much the computed gap of two points of the shape along a direction may be smaller
-//! than the gap in exact arithmetic.
+//! The rounding bound of a gap: an upper bound of the amount by which the computed gap of two points of the shape along a
+//! direction may be smaller than the gap in exact arithmetic.
 //!
 //! For a direction dir and the exact gap `dir.(d + B z)` the bound is `at_rest(dir) + per_norm(dir) |z|`. It covers two
 //! errors:
@@ -21,9 +21,9 @@ use super::rounding::ROUND_UP;
 /// A rounding bound for all points of a model, along any direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundingBound {
-    /// For each axis, independent of z.
+    /// The part for each axis that does not depend on z.
     at_rest: DVec3,
-    /// For each axis, per unit of `|z|`.
+    /// The part for each axis per unit of `|z|`.
     per_norm: DVec3,
 }
 
@@ -35,19 +35,19 @@ pub(crate) struct LeastGap {
 }
 
 impl LeastGap {
-    /// The sum of two.
+    /// Returns the sum of two gaps.
     #[inline]
     pub(crate) fn plus(self, other: Self) -> Self {
         Self { at_rest: self.at_rest + other.at_rest, per_norm: self.per_norm + other.per_norm }
     }
 }
 
-/// Roundings granted beside the r of the positions: those of scaling, differences, midpoints, dot products
-/// and norms in the bounds, none of which chains more than a third of this many.
+/// Roundings that the bound allows in addition to the r roundings of positions: those of scaling, differences, midpoints, dot
+/// products and norms in the bounds. No bound has a chain of more than a third of this many roundings.
 const EXTRA_ROUNDINGS: usize = 96;
 
 impl RoundingBound {
-    /// From the largest magnitudes, for each axis, of positions and of rows of scaled modes.
+    /// Computes the bound from the largest magnitudes, for each axis, of positions and of rows of scaled modes.
     pub(crate) fn new(rest_reach: DVec3, mode_reach: DVec3, rank: usize) -> Self {
         let n = (2 * rank + EXTRA_ROUNDINGS) as f64 * (f64::EPSILON / 2.0);
         let gamma = n / (1.0 - n);
@@ -58,8 +58,8 @@ impl RoundingBound {
         }
     }
 
-    /// The rounding bound of gaps measured at one z and used at another, both of at most this norm. The gap is rounded
-    /// at both; another factor of two covers the evaluation.
+    /// Returns the rounding bound of gaps that are measured at one z and used at another, both of at most this norm. The gap
+    /// is rounded at both; another factor of two covers the evaluation.
     ///
     /// (A factor of 1 would do. Two positions are rounded by `2 (r + 1)` units of 2^-53 of the reach, at both z by
     /// `4 r + 4`. The bound has `4 r + 2 EXTRA_ROUNDINGS`, and evaluation needs less than a third of the latter.)
@@ -74,19 +74,19 @@ impl RoundingBound {
         dir.abs().dot(self.at_rest) * ROUND_UP + f64::MIN_POSITIVE
     }
 
-    /// The part of the bound per unit of `|z|`, along a direction, rounded up; 0 only when no mode moves anything.
+    /// Returns the part of the bound per unit of `|z|`, along a direction, rounded up; 0 only if all modes are 0.
     pub(crate) fn per_norm(&self, dir: DVec3) -> f64 {
         dir.abs().dot(self.per_norm) * ROUND_UP
     }
 
-    /// Both parts along a direction.
+    /// Returns both parts along a direction.
     #[inline]
     pub(crate) fn along(&self, dir: DVec3) -> LeastGap {
         LeastGap { at_rest: self.at_rest(dir), per_norm: self.per_norm(dir) }
     }
 }
 
-/// A direction scaled so that its largest component is 1 (none when it is 0 or not finite). Rounding bounds assume such
+/// Scales a direction so that its largest component is 1; `None` if it is 0 or not finite. Rounding bounds assume such
 /// directions: products with them do not underflow.
 pub(crate) fn scale_direction(dir: DVec3) -> Option<DVec3> {
     let dir = dir / dir.abs().max_element();

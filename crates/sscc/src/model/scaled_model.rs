@@ -19,14 +19,14 @@ pub(crate) struct ScaledModel {
     /// For each vertex three rows (x, y, z).
     modes: Vec<f64>,
     pub(crate) rounding: RoundingBound,
-    /// The gap that a clearance needs beside the rounding bound; 0 without one.
+    /// The gap that a clearance needs in addition to the rounding bound; 0 without a clearance.
     pub(crate) required: RequiredGap,
     /// The largest length of a row of scaled modes.
     mode_reach: f64,
 }
 
 impl ScaledModel {
-    /// About the configuration `center`, from which z and radii are measured.
+    /// Scales a model about the configuration `center`, from which z and radii are measured.
     pub(crate) fn new(model: &ReducedModel, metric: &Metric, center: &[f64]) -> Self {
         let mesh = model.mesh();
         let rank = model.rank();
@@ -52,8 +52,8 @@ impl ScaledModel {
             let norm = |axis: usize| norm_up(magnitudes.iter().map(|m| m[axis] * m[axis]).sum(), row_len);
             mode_reach = mode_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
-        // A component in which nothing moves still needs a positive rounding bound if others move: squares of numbers
-        // below 2^-537 underflow, and the largest mode is above 2^-200.
+        // A component without displacements still needs a positive rounding bound if others have displacements: squares of
+        // numbers below 2^-537 underflow, and the largest mode is above 2^-200.
         let floor = right_or!(mode_reach.max_element() * f64::EPSILON, ModeReachWithoutFloor, 0.0);
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());
@@ -62,7 +62,8 @@ impl ScaledModel {
         Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding, required, mode_reach }
     }
 
-    /// The same model, whose parts must keep a clearance. `error`: that of computed distances, as a share of the size of two triangles.
+    /// Returns the same model, whose parts must keep a clearance. `error`: the error of computed distances, as a share of the size of two
+    /// triangles.
     pub(crate) fn keeping(mut self, clearance: f64, error: f64) -> Self {
         let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for i in self.faces.as_flattened() {
@@ -74,14 +75,14 @@ impl ScaledModel {
         self
     }
 
-    /// The gap along a direction that proves two points apart, by more than the clearance where there is one.
+    /// Returns the gap along a direction that proves two points separate, by more than the clearance if there is one.
     #[inline]
     pub(crate) fn least_gap(&self, dir: DVec3) -> LeastGap {
         let required = right_or!(self.required.along(dir), DirectionWithoutClearance, LeastGap::default());
         self.rounding.along(dir).plus(required)
     }
 
-    /// The modes of a vertex: three rows.
+    /// Returns the modes of a vertex: three rows.
     #[inline]
     pub(crate) fn modes(&self, vertex: u32) -> &[f64] {
         let width = 3 * self.row_len;

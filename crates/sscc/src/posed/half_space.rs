@@ -6,7 +6,7 @@ use super::posed_shape::PosedShape;
 use crate::detect::aabb8::AabbF32;
 
 impl PosedShape {
-    /// Adds the used vertices x with `normal . x < height` in the world, ascending; all of them up to rounding.
+    /// Appends the used vertices x with `normal . x < height` in the world to `found`, ascending; all of them up to rounding.
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();
         self.enter(self.whole);
@@ -14,7 +14,7 @@ impl PosedShape {
         let pose = self.motion.pose[0];
         let local = pose.rotation.transpose() * normal;
         let own_height = height - normal.dot(pose.translation);
-        // In the frame of the search. What is higher there, by more than the errors, is not below. All numbers there are finite.
+        // The plane in the frame of the search. Vertices higher by more than the errors are not below it. All numbers there are finite.
         let frame = self.volumes.frame();
         let reach = normal.abs().element_sum();
         let error = reach * f64::from(self.volumes.corner_error()) * (1.0 + 1e-6);
@@ -43,7 +43,7 @@ impl PosedShape {
                 self.below.extend(self.context.hierarchy.nodes()[n as usize].children());
             }
         }
-        // Buckets have vertices in common.
+        // Buckets may have vertices in common, which are then found twice.
         found[first..].sort_unstable();
         let mut kept = first;
         for i in first..found.len() {
@@ -65,7 +65,7 @@ mod tests {
     use crate::test_models::Random;
     use crate::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
 
-    /// Planes through vertices, and a little above them.
+    /// The planes contain vertices, or are a little above them.
     #[test]
     fn vertices_just_below_a_plane_are_found() {
         let random = &mut Random(6);
@@ -86,7 +86,7 @@ mod tests {
             let pose = Pose { rotation, translation: random.vector() * [0.0, 1.0, 100.0][case % 3] };
             shape.place(&q, &pose).unwrap();
             let normal = random.vector().normalize();
-            // As the search computes them.
+            // The heights as the search computes them.
             let local = rotation.transpose() * normal;
             let heights: Vec<f64> = (0..302).map(|v| local.dot(model.position(v, &q))).collect();
             let height = heights[case % 302] + normal.dot(pose.translation) + [0.0, 1e-9, 1e-6][case / 3 % 3];

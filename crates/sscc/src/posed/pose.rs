@@ -1,16 +1,16 @@
-//! Where a shape is in the world.
+//! `Pose`: rotation and translation of a shape in the world.
 
 use glam::{DMat3, DVec3};
 
 use crate::geometry::Aabb;
 use crate::{Error, limits};
 
-/// Where a shape is: `x -> rotation x + translation`.
+/// The pose of a shape in the world: `x -> rotation x + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Any matrix; for a rigid motion a rotation.
+    /// The matrix: a rotation for a rigid motion, but any matrix is valid.
     pub rotation: DMat3,
-    /// Added after it (model unit).
+    /// The translation, which is added after the rotation (model unit).
     pub translation: DVec3,
 }
 
@@ -21,13 +21,13 @@ impl Default for Pose {
 }
 
 impl Pose {
-    /// The position in the world of a point of the shape: products and sums in f64, in a fixed order, none fused.
+    /// Returns the position in the world of a point of the shape, by f64 products and sums in a fixed order, none fused.
     #[inline]
     pub fn apply(&self, x: DVec3) -> DVec3 {
         self.rotation * x + self.translation
     }
 
-    /// An AABB of the world positions of all points of an AABB; `rounding` bounds the rounding error.
+    /// Returns an AABB of the world positions of all points of an AABB; `rounding` bounds the rounding error.
     #[inline]
     pub(super) fn apply_to_aabb(&self, Aabb { lower, upper }: Aabb, rounding: f64) -> Aabb {
         let [x, y, z] = [self.rotation.x_axis, self.rotation.y_axis, self.rotation.z_axis].map(DVec3::abs);
@@ -38,8 +38,8 @@ impl Pose {
         Aabb { lower: center - half, upper: center + half }
     }
 
-    /// Returns an upper bound (up to rounding) of every sum of magnitudes in a position in the world, where coordinates of the
-    /// shape are at most `own`, as of [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates).
+    /// Returns an upper bound (up to rounding) of every sum of magnitudes in a position in the world, if coordinates of the
+    /// shape are at most `own`, which [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates) returns.
     ///
     /// # Errors
     /// When the pose is not finite, or the bound is beyond [`limits::LARGEST`].
@@ -47,7 +47,7 @@ impl Pose {
         let r = &self.rotation;
         let row = r.x_axis.abs() + r.y_axis.abs() + r.z_axis.abs();
         let reach = row.max_element() * own + self.translation.abs().max_element();
-        // Rounding may carry a position a little beyond the exact reach. NaN is not seen in a maximum.
+        // Rounding may move a position a little beyond the exact reach. A maximum ignores NaN, which is therefore checked first.
         let is_finite = self.rotation.is_finite() && self.translation.is_finite();
         if is_finite && reach * 1.001 <= limits::LARGEST { Ok(reach) } else { Err(Error::CoordinatesRange) }
     }

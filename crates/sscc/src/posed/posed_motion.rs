@@ -1,4 +1,4 @@
-//! Deformed positions in the world: the vertex motion of posed shapes.
+//! `PosedMotion`: deformed positions in the world, the vertex motion of posed shapes.
 
 use glam::DVec3;
 
@@ -9,23 +9,23 @@ use crate::detect::vertex_motion::{InWorld, VertexMotion, rounding_bound};
 use crate::geometry::Aabb;
 use crate::{Error, ReducedModel};
 
-/// A shape at some q and pose, or on straight lines from one to another.
+/// A shape at some q and pose, or on straight lines from one configuration to another.
 #[derive(Clone)]
 pub(super) struct PosedMotion<const E: usize> {
     pub(super) q: [Vec<f64>; E],
     pub(super) pose: [Pose; E],
-    /// An AABB that contains both shapes compared.
+    /// An AABB that contains both compared shapes.
     pub(super) around: Aabb,
     /// An upper bound of the magnitude of every term of every position in the world.
     pub(super) reach: f64,
-    /// The same in axes of the model.
+    /// An upper bound of the magnitude of every term of every position in axes of the model.
     own_reach: f64,
     /// See [`VertexMotion::margin`].
     pub(super) margin: f64,
 }
 
 impl<const E: usize> PosedMotion<E> {
-    /// A shape of a model at q = 0 in its own axes.
+    /// Creates the shape of a model at q = 0 in its own axes.
     ///
     /// # Errors
     /// When the model is beyond the range of numbers.
@@ -92,7 +92,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
         self.around
     }
 
-    /// Near pairs are those of exact positions: they become contacts.
+    /// Returns `None` in a search for near pairs, which become contacts and must be those of exact positions.
     #[inline]
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
         (self.margin == 0.0).then(|| self.q.each_ref().map(|q| &**q))
@@ -141,8 +141,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{ContactFilter, Modes, TriMesh};
 
-    /// Shapes that are small and large in the frame, turned, sheared and moved far away; and that AABBs contain all exact
-    /// positions.
+    /// The shapes are small or large in the frame, rotated, sheared and moved far away. The test also checks that AABBs contain
+    /// all exact positions.
     #[test]
     fn coarse_positions_are_within_their_error_bound() {
         let random = &mut Random(4);

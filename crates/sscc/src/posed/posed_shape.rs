@@ -1,4 +1,5 @@
-//! A shape in the world, tested against others: BD-trees in their own axes, rotated and moved.
+//! A shape in the world, tested against others. The AABBs of BD-trees are computed in the axes of each model, then rotated and
+//! translated.
 
 use std::fmt;
 use std::sync::Arc;
@@ -16,9 +17,9 @@ use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, ContactFilter, Error, Pair, ReducedModel};
 
-/// A shape at some q, somewhere in the world, to be tested against others. All answers are about the f64 positions
-/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position), and exact for them. It owns its memory, so that
-/// repeated calls allocate nothing; clones share what does not change.
+/// A shape at some q and pose in the world, to be tested against others. All answers are exact for the f64 positions
+/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position). It owns its memory, so that repeated calls
+/// allocate nothing; clones share the data that does not change.
 #[derive(Clone)]
 pub struct PosedShape {
     pub(super) model: ReducedModel,
@@ -35,7 +36,7 @@ pub struct PosedShape {
     hits: DiscreteHits,
 }
 
-/// Its last answer alone.
+/// Shows the last answer only.
 impl fmt::Debug for PosedShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("PosedShape").field("whole", &self.whole).finish_non_exhaustive()
@@ -43,7 +44,7 @@ impl fmt::Debug for PosedShape {
 }
 
 impl PosedShape {
-    /// A shape at q = 0 in its own axes. Of the certificates only the hierarchy is used.
+    /// Creates a shape at q = 0 in its own axes. It uses only the hierarchy of the certificates.
     ///
     /// # Errors
     /// When the certificates were computed for another model.
@@ -52,7 +53,7 @@ impl PosedShape {
         Self::with_hierarchy(model, Arc::clone(&certificates.parts().hierarchy))
     }
 
-    /// A shape without certificates, which builds a hierarchy of its own: the same answers.
+    /// Creates a shape without certificates, which builds its own hierarchy. Its answers are the same.
     ///
     /// # Errors
     /// When the model is beyond the range of numbers.
@@ -93,8 +94,8 @@ impl PosedShape {
     }
 
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
-    /// Touching counts. `around` is an AABB of approximately all shapes compared. It affects speed only; while it stays
-    /// the same, AABBs are computed once after each [`PosedShape::place`].
+    /// Touching counts. `around` is an approximate AABB of all compared shapes. It affects speed only; while it stays the
+    /// same, AABBs are computed once after each [`PosedShape::place`].
     pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
         let first = found.len();
         // The error bounds of positions in single precision hold within this AABB.
@@ -112,8 +113,8 @@ impl PosedShape {
         found[first..].sort_unstable();
     }
 
-    /// An upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite or NaN
-    /// where q is. It costs O(r) for each 64 triangles.
+    /// Returns an upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite
+    /// or NaN if q is. It costs O(r) for each 64 triangles.
     ///
     /// # Errors
     /// When the length of q is not the number of modes.
@@ -123,7 +124,7 @@ impl PosedShape {
         Ok(layout.bd_tree.displacement_bound(layout.buckets.nodes(), q) * (1.0 + 1e-9))
     }
 
-    /// The corners of a triangle in the world, bit for bit those of all answers.
+    /// Returns the corners of a triangle in the world, bit for bit those to which all answers refer.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let face = self.model.mesh().faces()[triangle as usize];
         face.map(|v| self.motion.pose[0].apply(self.model.position(v, &self.motion.q[0])))
@@ -147,7 +148,7 @@ mod tests {
     use super::*;
     use crate::{CertifyOptions, Modes, TriMesh, intersect_triangle_triangle};
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of fixed pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
@@ -157,7 +158,7 @@ mod tests {
         DVec3::new(random(state), random(state), random(state))
     }
 
-    /// A crumpled ball of loose triangles, with modes.
+    /// Returns a crumpled ball of loose triangles, with modes.
     fn model(triangles: usize, state: &mut u64) -> ReducedModel {
         let positions: Vec<DVec3> = (0..triangles)
             .flat_map(|_| {
@@ -181,7 +182,7 @@ mod tests {
             models.iter().zip(&certificates).map(|(m, c)| PosedShape::new(m, c).unwrap()).collect();
         let (mut found, mut empty) = (0, 0);
         for case in 0..60 {
-            // From on top of each other to apart; sometimes far from the origin.
+            // The shapes coincide, overlap or are separate; in some cases they are far from the origin.
             let far = if case % 3 == 0 { DVec3::new(1e6, -3.0, 2e3) } else { DVec3::ZERO };
             for shape in &mut shapes {
                 let rotation = DMat3::from_quat(glam::DQuat::from_scaled_axis(vector(state) * 3.0));
@@ -193,7 +194,7 @@ mod tests {
                     let corners = shape.corners(t);
                     assert!(corners.iter().all(|x| x.cmpge(lower).all() && x.cmple(upper).all()));
                 }
-                // Half of it below.
+                // About half of the shape is below the plane.
                 let normal = vector(state).normalize();
                 let height = normal.dot(translation) + random(state);
                 let mut below = Vec::new();
@@ -202,7 +203,7 @@ mod tests {
                 let is_below = |v: &u32| normal.dot(pose.apply(shape.model.position(*v, &q))) < height;
                 assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());
             }
-            // Any box is right, also one turned round.
+            // Any AABB is valid, also one with lower and upper corner exchanged.
             let [a, b] = if case % 2 == 0 { [far - 2.0, far + 2.0] } else { [far + 2.0, far - 2.0] };
             let around = Aabb { lower: a, upper: b };
             for a in 0..shapes.len() {
@@ -222,7 +223,7 @@ mod tests {
                     assert_eq!(pairs, expected);
                     found += pairs.len();
                     empty += usize::from(pairs.is_empty());
-                    // Asked from the other side, with other boxes.
+                    // The same query from the other shape, with other AABBs.
                     let mut turned = vec![(0, 0)];
                     y.colliding(x, Aabb { lower: far - 1e3, upper: far + 1.0 }, &mut turned);
                     let mut turned: Vec<Pair> = turned.drain(1..).map(|(j, i)| (i, j)).collect();
@@ -234,7 +235,7 @@ mod tests {
         assert!(found > 200 && empty > 200, "{found} {empty}");
     }
 
-    /// A shape that is small in the world and far from its origin: what is rounded there are sums with the translation.
+    /// The shape is small in the world and far from its origin, where sums with the translation are rounded.
     #[test]
     fn aabbs_contain_positions_that_the_world_rounds() {
         let state = &mut 5;
@@ -321,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_place_is_refused() {
+    fn invalid_poses_are_refused() {
         let model = model(20, &mut 3);
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         let mut shape = PosedShape::new(&model, &certificates).unwrap();

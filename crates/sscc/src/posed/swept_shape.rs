@@ -14,9 +14,9 @@ use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
 use crate::{Error, Impact, Pair, ReducedModel};
 
-/// A shape whose vertices move on straight lines between two places in the world, to be tested against others. Its ends
-/// are the positions of a [`PosedShape`] at each place, bit for bit. It owns its memory, so that repeated calls allocate
-/// nothing; it shares what does not change with the posed shape.
+/// A shape whose vertices move on straight lines between two configurations in the world, to be tested against others. At both
+/// ends vertices have the positions of a [`PosedShape`], bit for bit. It owns its memory, so that repeated calls allocate
+/// nothing; it shares the data that does not change with the posed shape.
 #[derive(Clone)]
 pub struct SweptShape {
     model: ReducedModel,
@@ -32,7 +32,7 @@ pub struct SweptShape {
     near: NearHits,
 }
 
-/// Its last answer alone.
+/// Shows the last answer only.
 impl fmt::Debug for SweptShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SweptShape").field("whole", &self.whole).finish_non_exhaustive()
@@ -40,7 +40,7 @@ impl fmt::Debug for SweptShape {
 }
 
 impl SweptShape {
-    /// A shape that rests at q = 0 in its own axes.
+    /// Creates a shape that rests at q = 0 in its own axes.
     ///
     /// # Errors
     /// When the model is beyond the range of numbers.
@@ -70,8 +70,8 @@ impl SweptShape {
     }
 
     /// Appends to `found` an impact for each pair (triangle of this shape, triangle of the other) that has a point in
-    /// common during the motion, sorted by pair: the same promise as [`Query::continuous`](crate::Query::continuous).
-    /// `around` is an AABB of all shapes compared. It affects speed only; while it stays the same, AABBs are computed
+    /// common during the motion, sorted by pair, with the guarantee of [`Query::continuous`](crate::Query::continuous).
+    /// `around` is an AABB of all compared shapes. It affects speed only; while it stays the same, AABBs are computed
     /// once after each [`SweptShape::place`].
     pub fn impacts(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Impact>) {
         let first = found.len();
@@ -89,9 +89,8 @@ impl SweptShape {
         found[first..].sort_unstable_by_key(|impact| impact.pair);
     }
 
-    /// Appends to `found` pairs (triangle of this shape, triangle of the other), sorted: all that come within the distance
-    /// `margin` of each other during the motion, and some that do not; but at most `limit`. `around` is that of
-    /// [`SweptShape::impacts`].
+    /// Appends to `found` at most `limit` pairs (triangle of this shape, triangle of the other), sorted: all that come within
+    /// the distance `margin` of each other during the motion, and some others. `around` is that of [`SweptShape::impacts`].
     pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, limit: usize, found: &mut Vec<Pair>) {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
@@ -133,7 +132,7 @@ mod tests {
     use super::*;
     use crate::{Certificates, CertifyOptions, Modes, MovingTriangle, TriMesh, impact_triangle_triangle};
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of fixed pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
@@ -143,7 +142,7 @@ mod tests {
         DVec3::new(random(state), random(state), random(state))
     }
 
-    /// A crumpled ball of loose triangles, with modes.
+    /// Returns a crumpled ball of loose triangles, with modes.
     fn model(triangles: usize, state: &mut u64) -> ReducedModel {
         let positions: Vec<DVec3> = (0..triangles)
             .flat_map(|_| {
@@ -200,7 +199,7 @@ mod tests {
                     }
                 }
             }
-            // Any box is right, also one that is too small.
+            // Any AABB is valid, also one that is too small.
             for around in [Aabb::default(), Aabb { lower: far - 9.0, upper: far + 9.0 }] {
                 let mut impacts = Vec::new();
                 x.impacts(y, around, &mut impacts);

@@ -1,9 +1,10 @@
 //! Combinations of modes that move the whole shape by one affine map, above all its rotations within q.
 //!
-//! The ellipsoid of a local certificate bounds residuals by `|W f|`. Of handles, corners of a cage or bones a rotation needs all modes
-//! at once; each of them leaves residuals, which cancel. W, with few digits and a floor, does not see that. So f is split: take any vectors
-//! `n_j`, any numbers `a_j`, as computed, and `f' = f - sum_j a_j n_j`. For each j let `A_j` and `t_j` be any matrix and any vector, and
-//! `e_jv = U_v n_j - A_j p_v - t_j`. With the map `F' = I + G f' + sum_j a_j A_j` of the patch, in place of `I + G f`, two of its points differ by
+//! The ellipsoid of a local certificate bounds residuals by `|W f|`. A rotation of a shape with handles, corners of a cage or bones needs
+//! all modes at once; each of them has residuals, which cancel in the sum. W has few digits and a floor, so `|W f|` stays large. So f is
+//! split: take any vectors `n_j`, any numbers `a_j`, as computed, and `f' = f - sum_j a_j n_j`. For each j let `A_j` and `t_j` be any
+//! matrix and any vector, and `e_jv = U_v n_j - A_j p_v - t_j`. With the map `F' = I + G f' + sum_j a_j A_j` of the patch in place of
+//! `I + G f`, two of its points differ by
 //!
 //! ```text
 //! x_i - x_h = F' (p_i - p_h) + (E_i - E_h) f' + sum_j a_j (e_ji - e_jh)
@@ -24,16 +25,16 @@ use glam::{DMat3, DVec3};
 use crate::certificates::{MOST_MODES, PatchModel};
 use crate::model::rounding::larger_or_nan;
 
-/// Affine maps of a shape have so many dimensions. More combinations, of modes that move nothing, would gain nothing.
+/// The largest number of combinations: the dimension of the affine maps. Further ones consist of modes that move nothing.
 const MOST: usize = 12;
 
-/// A combination is one whose square of residuals is at most this share of the largest one of a mode.
+/// A combination counts as affine if the sum of its squared residuals is at most this share of the largest one of a mode.
 const TOLERANCE: f64 = 1e-13;
 
-/// Combinations whose residuals are larger, in units of half the shape's size, gain nothing.
+/// Combinations whose residuals are larger, in units of half the shape's size, are not used: they would gain nothing.
 const MOST_RESIDUAL: f64 = 1e-6;
 
-/// Vertices that combinations are searched with; their residuals are those of all vertices.
+/// The largest number of vertices by which combinations are fitted. Residuals are then computed for all vertices.
 const MOST_FITTED: usize = 1024;
 
 /// Rounds a sum of numbers that are not negative up.
@@ -56,13 +57,13 @@ struct Combination {
     residual: f64,
 }
 
-/// A configuration without its affine part; where nothing is taken away, `a` is zero.
+/// A configuration without its affine part; where nothing is subtracted, every `a_j` is 0.
 #[derive(Clone, Default)]
 pub(super) struct AffineFree {
     /// `f'`, as computed.
     pub(super) factors: Vec<f64>,
-    /// An upper bound of `sum_k |f'_k - computed f'_k|` where something is taken away, also for factors that err by two units in the last place;
-    /// elsewhere the conversion to single precision errs by more than they do.
+    /// An upper bound of `sum_k |f'_k - computed f'_k|` where an affine part is subtracted, also for factors with errors of two units in the
+    /// last place. Elsewhere the error of the conversion to single precision is larger than that of the factors.
     pub(super) error: f64,
     /// `sum_j a_j A_j`, as computed.
     pub(super) map: DMat3,
@@ -73,21 +74,21 @@ pub(super) struct AffineFree {
 }
 
 impl AffineFree {
-    /// Sets all factors, with nothing taken away.
+    /// Sets all factors, with nothing subtracted.
     pub(super) fn set(&mut self, factors: impl Iterator<Item = f64>) {
         self.factors.clear();
         self.factors.extend(factors);
         (self.error, self.map, self.map_error, self.length) = (0.0, DMat3::ZERO, 0.0, 0.0);
     }
 
-    /// The sum of the magnitudes of the factors as computed.
+    /// Returns the sum of the magnitudes of the computed factors.
     pub(super) fn sum(&self) -> f64 {
         self.factors.iter().map(|f| f.abs()).sum()
     }
 }
 
 impl AffineModes {
-    /// The combinations of a model's modes that move it by affine maps; none where there are none.
+    /// Returns the combinations of a model's modes that move it by affine maps; `None` if there are no such combinations.
     pub(super) fn new(model: &PatchModel<'_>) -> Option<Self> {
         let fits = (model.rank() <= MOST_MODES).then(|| Fits::new(model, MOST_FITTED))??;
         let mut units: Vec<Vec<f64>> = Vec::new();
@@ -108,14 +109,14 @@ impl AffineModes {
         (!combinations.is_empty()).then_some(Self { combinations })
     }
 
-    /// Any combinations, each with any map and a bound of its residuals.
+    /// Returns the given combinations, each with its map and a bound of its residuals. Nothing is checked.
     #[cfg(test)]
     pub(super) fn of_parts(parts: Vec<(Vec<f64>, DMat3, f64)>) -> Self {
         let combination = |(factors, map, residual)| Combination { factors, map, residual };
         Self { combinations: parts.into_iter().map(combination).collect() }
     }
 
-    /// These combinations, whatever they do.
+    /// Returns combinations of these factors with their fitted maps and residuals, also if they are not affine.
     fn with_directions(model: &PatchModel<'_>, fits: &Fits, directions: Vec<Vec<f64>>) -> Self {
         let combination = |factors: Vec<f64>| {
             let fit = fits.of(&factors);
@@ -125,7 +126,7 @@ impl AffineModes {
         Self { combinations: directions.into_iter().map(combination).collect() }
     }
 
-    /// Takes the affine part away from a configuration that has all of its factors.
+    /// Subtracts the affine part from a configuration that has all of its factors.
     pub(super) fn take_from(&self, free: &mut AffineFree) {
         let (mut terms, mut map_terms) = (free.sum(), 0.0);
         for Combination { factors, map, residual } in &self.combinations {
@@ -136,7 +137,7 @@ impl AffineModes {
             map_terms += norm(map) * a.abs();
             free.length += right_or!(2.0, LocalAffineResidualOnce, 1.0) * residual * a.abs();
         }
-        // Each of the differences rounds by a unit of what is left or of its product, and all of these are terms of the sum.
+        // Each difference is rounded by a unit of its result or of its product; the sum contains both.
         let rounding = (2 * self.combinations.len() + 4) as f64 * f64::EPSILON;
         free.error = right_or!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
         free.map_error = rounding * map_terms * ROUND_UP;
@@ -144,7 +145,7 @@ impl AffineModes {
     }
 }
 
-/// An upper bound of the length of `U_v n - A p_v - t` of every used vertex.
+/// Returns an upper bound of the length of `U_v n - A p_v - t` for every used vertex.
 fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3)) -> f64 {
     let mut most = 0.0_f64;
     for v in model.used_vertices() {
@@ -153,14 +154,14 @@ fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3
         let left = (moved - map * model.position(v) - shift).length();
         most = larger_or_nan(most, left);
     }
-    // Displacements in units of the largest one are at most 1 along each axis, and err by two units in the last place; so do their
-    // products and sums.
+    // Displacements in units of the largest one are at most 1 along each axis, and have errors of two units in the last place, as have
+    // their products and sums.
     let terms: f64 = factors.iter().map(|f| f.abs()).sum::<f64>() + norm(&map) + shift.length();
     let rounding = 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms;
     (most + right_or!(rounding, LocalAffineFitExact, 0.0)) * ROUND_UP
 }
 
-/// The Gram matrix of what the best affine map leaves of each mode, and these maps.
+/// The best affine map of each mode, and the Gram matrix of the residuals of all modes.
 struct Fits {
     rank: usize,
     gram: Vec<f64>,
@@ -169,12 +170,11 @@ struct Fits {
 }
 
 impl Fits {
-    /// None where the shape has no volume of its own: positions that are all in one plane.
-    /// By at most so many vertices.
+    /// Fits maps by at most `most` vertices. `None` if all positions are in one plane.
     fn new(model: &PatchModel<'_>, most: usize) -> Option<Self> {
         let rank = model.rank();
         let mut gram = vec![0.0; rank * rank];
-        // Of the functions x, y, z and 1 of a position: their products, and those with displacements.
+        // Sums of products of the functions x, y, z and 1 of a position: with each other, and with displacements.
         let (mut products, mut with) = ([[0.0; 4]; 4], vec![[DVec3::ZERO; 4]; rank]);
         let mut own: Vec<(usize, DVec3)> = Vec::new();
         let vertices = model.used_vertices();
@@ -214,7 +214,7 @@ impl Fits {
         Some(Self { rank, gram, maps })
     }
 
-    /// The map of a combination.
+    /// Returns the map of a combination.
     fn of(&self, factors: &[f64]) -> (DMat3, DVec3) {
         let add = |(map, shift): (DMat3, DVec3), (f, own): (&f64, &(DMat3, DVec3))| {
             (map + own.0 * *f, shift + own.1 * *f)
@@ -222,14 +222,14 @@ impl Fits {
         factors.iter().zip(&self.maps).fold((DMat3::ZERO, DVec3::ZERO), add)
     }
 
-    /// Combinations that affine maps leave nothing of, by a Cholesky factorisation with pivots: each mode that is not one is a combination
-    /// of the pivots.
+    /// Returns combinations without residuals, by a Cholesky factorisation with pivots: the residuals of each mode that is not a pivot are
+    /// a combination of those of the pivots.
     fn null_vectors(&self) -> Vec<Vec<f64>> {
         let Self { rank, gram, .. } = self;
         let rank = *rank;
         let mut left: Vec<f64> = (0..rank).map(|k| gram[k * rank + k]).collect();
         let least = left.iter().fold(0.0, |most: f64, x| most.max(*x)) * TOLERANCE;
-        // Rows of the factor: of each mode its products with the pivots so far.
+        // Rows of the factor: for each mode its products with the pivots so far.
         let (mut pivots, mut rows) = (Vec::<usize>::new(), vec![Vec::<f64>::new(); rank]);
         loop {
             let next = (0..rank).filter(|k| !pivots.contains(k)).max_by(|a, b| left[*a].total_cmp(&left[*b]));
@@ -254,7 +254,7 @@ impl Fits {
             .map(|other| {
                 let mut vector = vec![0.0; rank];
                 vector[other] = 1.0;
-                // Backwards, because each pivot has products with the pivots before it alone.
+                // Backwards, because each pivot has products only with the pivots before it.
                 for (i, pivot) in pivots.iter().enumerate().rev() {
                     let later = pivots[i + 1..].iter();
                     let sum: f64 = later.map(|later| vector[*later] * rows[*later][i]).sum();
@@ -270,7 +270,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The Frobenius norm.
+/// Returns the Frobenius norm.
 fn norm(matrix: &DMat3) -> f64 {
     dot(&matrix.to_cols_array(), &matrix.to_cols_array()).sqrt()
 }

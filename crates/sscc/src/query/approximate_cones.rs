@@ -1,16 +1,16 @@
-//! Normal cones without the contour test, as the paper's section 7 compares with them. For benches alone: **queries may miss
+//! Normal cones without the contour test, with which the paper's section 7 compares. They serve benches only: **queries may miss
 //! collisions**.
 //!
-//! It is here, hidden from the documentation, because it is one line of a query's broad phase. In the crate of the benches it would
-//! need the traversal, the layout and the narrow phase to be public.
+//! The method is here, hidden from the documentation, because it is one line of a query's broad phase. In the crate of the benches it
+//! would need the traversal, the layout and the narrow phase to be public.
 
 use super::method::Method;
 use super::query::Query;
 use crate::{Certificates, Error, ReducedModel};
 
 impl Query {
-    /// A query by [`Method::NormalCones`] without its contour test. A patch whose normals are all on the positive side of one
-    /// direction can still meet itself (a ramp that winds over itself), so discrete queries may list too few pairs.
+    /// Returns a query by [`Method::NormalCones`] without its contour test. A patch whose normals are all on the positive side of
+    /// one direction can still meet itself (a ramp that winds over itself), so discrete queries may list too few pairs.
     /// Continuous queries are traditional, hence exact.
     ///
     /// # Errors

@@ -10,15 +10,15 @@ use crate::detect::answer::{Answer, Statistics};
 use crate::parallel::{map, map_with, on_threads};
 use crate::{Error, Progress};
 
-/// Progress is reported once for this many q, which costs the cheapest queries nothing.
+/// Progress is reported once for this many q, so that reports do not slow down the cheapest queries.
 const REPORT_INTERVAL: usize = 64;
 
 impl Query {
-    /// Answers every q of a batch as [`Query::discrete`] would, in the order given: the same answers for any number
-    /// of threads (none: all cores). `progress` may cancel it; the token of [`Query::cancelled_by`] does not.
+    /// Answers every q of a batch as [`Query::discrete`] would, in the order given. The answers are the same for any number
+    /// of threads (`None`: all cores). `progress` may cancel the batch; the token of [`Query::cancelled_by`] has no effect.
     ///
     /// # Errors
-    /// That of the first q that has one; when `progress` cancels.
+    /// The error of the first q that has one; when `progress` cancels.
     pub fn batch<Q: AsRef<[f64]> + Sync>(
         &self,
         batch: &[Q],
@@ -28,7 +28,7 @@ impl Query {
         self.batch_at_most(batch, usize::MAX, threads, progress)
     }
 
-    /// As [`Query::batch`], at most `limit` pairs of each q: see [`Query::discrete_at_most`].
+    /// Answers as [`Query::batch`], with at most `limit` pairs for each q: see [`Query::discrete_at_most`].
     ///
     /// # Errors
     /// As [`Query::batch`].
@@ -50,20 +50,20 @@ impl Query {
     }
 }
 
-/// The q of a batch, and how they are to be answered.
+/// The q of a batch, and the options of its queries.
 struct Batch<'b, Q> {
     rows: &'b [Q],
     limit: usize,
     progress: &'b dyn Progress,
-    /// How many answers are known.
+    /// The number of answers so far.
     done: AtomicUsize,
 }
 
 impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
-    /// Checks every q, and answers those that the root's certificate proves free; none for the others.
+    /// Checks every q, and answers those that the root's certificate proves free; `None` for the others.
     ///
     /// # Errors
-    /// That of the first q that has one; when it was cancelled.
+    /// The error of the first q that has one; when the batch was cancelled.
     fn answer_by_root(&self, query: &Query) -> Result<Vec<Option<Answer>>, Error> {
         let answer = |check: &mut ConfigurationCheck, (index, q): (usize, &Q)| {
             if self.progress.is_cancelled() {
@@ -83,10 +83,10 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         answers.into_iter().collect()
     }
 
-    /// Answers the q that have no answer.
+    /// Answers the q that have no answer yet.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When the batch was cancelled.
     fn answer_open(&self, query: &Query, answers: &mut [Option<Answer>]) -> Result<(), Error> {
         let open: Vec<_> = answers.iter_mut().zip(self.rows).filter(|(answer, _)| answer.is_none()).collect();
         self.done.fetch_max(self.rows.len() - open.len(), Ordering::Relaxed);
@@ -108,7 +108,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         map(open, answer).into_iter().collect()
     }
 
-    /// Reports that so many more answers are known.
+    /// Adds `more` to the number of answers, and reports it.
     fn report(&self, more: usize) {
         let before = self.done.fetch_add(more, Ordering::Relaxed);
         self.progress.report(before.min(self.rows.len()), self.rows.len());

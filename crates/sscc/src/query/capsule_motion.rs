@@ -9,8 +9,9 @@ use crate::hierarchy::Hierarchy;
 use crate::model::ScaledModel;
 use crate::model::rounding::norm_up;
 
-/// For each vertex and each node how fast positions can change with z. By Cauchy and Schwarz, a vertex moves along an axis
-/// by at most `|A| |dz|`, where A is its scaled row of that axis; the rounding of both computed positions is added.
+/// For each vertex and each node an upper bound of the change of positions for each unit of z. By Cauchy and Schwarz, a vertex
+/// moves along an axis by at most `|A| |dz|`, where A is its scaled row of that axis; the rounding of both computed positions is
+/// added.
 #[derive(Clone)]
 pub(crate) struct CapsuleRates {
     /// The norms of the three rows of each vertex, by its index in the layout, rounded up.
@@ -49,10 +50,10 @@ impl CapsuleRates {
     }
 }
 
-/// A capsule in z: all z within a radius of the segment between the z of two q, which are the same for a ball. Its two
-/// configurations have the lowest and the highest coordinates of each vertex.
+/// A capsule in z: all z within a radius of the segment between the z of two q, which are the same for a ball. As a motion it has
+/// two configurations: the lowest and the highest coordinates of each vertex.
 ///
-/// On the segment each position is a convex combination of the positions at its ends.
+/// At each point of the segment a position is a convex combination of the positions at the ends.
 #[derive(Clone, Copy)]
 pub(crate) struct CapsuleMotion<'q> {
     rates: &'q CapsuleRates,
@@ -80,14 +81,14 @@ impl<'q> CapsuleMotion<'q> {
         Self { rates, ends, radius, rounding, widening }
     }
 
-    /// An upper bound of the change of a vertex's coordinates within the radius.
+    /// Returns an upper bound of the change of a vertex's coordinates within the radius.
     #[inline]
     fn vertex_change(&self, vertex: u32) -> DVec3 {
         let radius = right_or!(self.radius, CapsuleVerticesHalfAsFar, 0.5 * self.radius);
         self.rates.vertices[vertex as usize] * radius + self.widening
     }
 
-    /// The same for all vertices of a node.
+    /// Returns an upper bound of the change of the coordinates of all vertices of a node within the radius.
     #[inline]
     fn node_change(&self, node: u32) -> DVec3 {
         let radius = right_or!(self.radius, CapsuleNodesHalfAsFar, 0.5 * self.radius);
@@ -144,8 +145,8 @@ mod tests {
     use crate::test_models::{Random, strips};
     use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
-    /// Vertices stay where the capsule says, about any point of its segment, also for the direction that moves them farthest; and
-    /// some nearly leave.
+    /// Vertices stay in their AABBs of the capsule for z about any point of its segment, also in the direction that moves them
+    /// farthest; some of them nearly leave their AABB.
     #[test]
     fn vertices_stay_in_the_capsule() {
         let (mut checked, mut farthest, mut longest) = (0, 0.0_f64, 0);

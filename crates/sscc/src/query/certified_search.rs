@@ -1,5 +1,5 @@
-//! Chooses the traversal at a norm: of the pair tree if it is complete there, else Algorithm 1 with the certificates of
-//! nodes, else without certificates.
+//! Chooses the traversal at a norm: that of the pair tree if it is complete there, else Algorithm 1 with the certificates of
+//! nodes, or without certificates if the method uses none.
 
 use super::certified_traversal::traverse_certified;
 use super::context::QueryContext;
@@ -26,7 +26,7 @@ pub(super) struct CertifiedSearch<const E: usize> {
 pub(super) enum Sought {
     /// All pairs that count.
     All,
-    /// Those that certificates may speak of: no exceptions.
+    /// All pairs that count, without exceptions, which no certificate covers.
     WithoutExceptions,
 }
 
@@ -40,10 +40,10 @@ impl<const E: usize> CertifiedSearch<E> {
     }
 
     /// Finds at most `limit` hits, in no particular order. `norm`: the largest `|z|` of the motion. A certificate holds during a
-    /// motion if it holds at start and end, since its region is convex. Returns what proved the answer, exceptions apart.
+    /// motion if it holds at start and end, since its region is convex. Returns the kind of proof of the answer, exceptions apart.
     ///
     /// # Errors
-    /// When it was cancelled; then there are no hits.
+    /// When the search was cancelled; then there are no hits.
     pub(super) fn find<M: VertexMotion<E>, N: NarrowPhase<E>>(
         &mut self,
         context: &QueryContext,

@@ -1,8 +1,8 @@
 //! Algorithm 1 of the paper: the traversal of the BVTT that opens no node, and no pair of the root's children, whose
 //! certificate holds.
 //!
-//! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets in vain, or local certificates leave most
-//! buckets open, all AABBs are refitted, as the traditional method does, and the traversal goes on with those.
+//! BD-tree AABBs are loose far from rest. Where they have led to many pairs of buckets without a hit, or most buckets stay
+//! open despite local certificates, all AABBs are refitted, as the traditional method does, and the traversal continues with those.
 
 use super::local_proofs::{LocalProofs, work};
 use super::local_tables::LocalTables;
@@ -11,12 +11,12 @@ use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;
 
-/// All AABBs are refitted once so many pairs of buckets were tested in vain for each bucket that is not open. Such a test takes
-/// about a tenth of the time in which a bucket is opened, so a search never loses much more than it can gain, and takes
+/// All AABBs are refitted once this many pairs of buckets were tested without a hit for each bucket that is not open. Such a test
+/// takes about a tenth of the time in which a bucket is opened, so a search never loses much more than it can gain, and takes
 /// little longer than the traditional method (docs/notes/traversal.md#loose-aabbs).
 pub(super) const LOOSE_PAIRS: usize = 2;
 
-/// Finds all hits but exceptions at a norm.
+/// Finds all hits except exceptions at a norm.
 pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     search: &mut Search<'_, 1, E, M, N>,
     mut locals: Option<(&mut LocalProofs<E>, &LocalTables)>,
@@ -86,7 +86,7 @@ mod tests {
     use crate::test_models::{self, Random};
     use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel};
 
-    /// A square of 1800 triangles, and two modes that cancel each other: AABBs of the BD-tree grow, the square does not move.
+    /// Returns a square of 1800 triangles with two modes that cancel each other: AABBs of the BD-tree grow, the square does not move.
     fn square() -> ReducedModel {
         let (mesh, random) = (test_models::square(30), &mut Random(77));
         let modes = (0..mesh.rest_positions().len()).flat_map(|_| {

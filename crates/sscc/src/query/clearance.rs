@@ -1,15 +1,15 @@
-//! Distances of triangles of a model at q. They are those of its positions. Certificates with a clearance shorten the search for near pairs.
+//! Distances between triangles of a model at q, at its deformed positions. Certificates with a clearance shorten the search for near
+//! pairs.
 
 use super::query::Query;
 use crate::detect::{Detector, detector_of_model};
 use crate::{Clearance, Error, NearPair};
 
 impl Query {
-    /// All pairs that count and are nearer than a clearance at q, as [`Detector::within`] finds them at the positions.
+    /// Returns all pairs that count and are nearer than a clearance at q, as [`Detector::within`] finds them at the positions.
     ///
-    /// Certificates that have this clearance or a larger one, beyond as many rings or fewer, prove most of them farther apart: below the
-    /// root's radius one comparison is the answer ([`Statistics::proof`](crate::Statistics::proof)). The pairs are the same with any
-    /// certificates.
+    /// Certificates with this clearance or a larger one, and as many rings or fewer, prove most pairs farther apart: below the root's
+    /// radius a query is one comparison ([`Statistics::proof`](crate::Statistics::proof)). The pairs are the same with any certificates.
     ///
     /// # Errors
     /// As [`Query::discrete`]; when there are more than [`Detector::MAX_PAIRS`].
@@ -21,7 +21,7 @@ impl Query {
         Ok(self.detector.as_ref().map_or(&[], |detector| detector.near_pairs()))
     }
 
-    /// The same by certificates.
+    /// Returns the pairs of [`Query::within`], found with the certificates.
     fn within_certified(&mut self, q: &[f64], clearance: &Clearance) -> Result<&[NearPair], Error> {
         self.forget();
         let Some(near) = &mut self.near else { return Ok(&[]) };
@@ -30,8 +30,8 @@ impl Query {
         Ok(near.pairs())
     }
 
-    /// The nearest two triangles at q that count and are farther apart on the surface than so many rings, as [`Detector::nearest`]
-    /// finds them at the positions; none where no pair counts.
+    /// Returns the nearest two triangles at q that count and are farther apart on the surface than `rings` rings, as
+    /// [`Detector::nearest`] finds them at the positions; `None` if no pair counts.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -39,7 +39,7 @@ impl Query {
         self.measure_distances(q, |detector, positions| detector.nearest(positions, rings))
     }
 
-    /// Asks the detector, which is made by the first question about distances.
+    /// Queries the detector, which the first query of distances creates.
     fn measure_distances<T>(
         &mut self,
         q: &[f64],

@@ -1,4 +1,4 @@
-//! The search at one configuration, or on the straight lines between two: by the method of the query.
+//! The search at one configuration, or on the straight lines between two, by the method of the query.
 
 use super::certified_search::{CertifiedSearch, Sought};
 use super::configuration::Configuration;
@@ -29,16 +29,16 @@ impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
         Self { certified: CertifiedSearch::new(context), narrow: N::default() }
     }
 
-    /// The counters of the last search.
+    /// Returns the counters of the last search.
     pub(super) fn counters(&self) -> &Counters {
         &self.certified.broad.state.counters
     }
 
-    /// Finds at most `limit` hits, in no particular order; all of them where the search is complete. It is for norms at which
-    /// [`QueryContext::is_proven_free`] is false.
+    /// Finds at most `limit` hits, in no particular order; all of them where the search is complete. The caller has checked that
+    /// [`QueryContext::is_proven_free`] is false at this norm.
     ///
     /// # Errors
-    /// When this thread does not compute as the proofs assume, or it was cancelled.
+    /// When this thread's floating-point arithmetic is not as the proofs assume, or the search was cancelled.
     #[inline]
     pub(super) fn find(
         &mut self,
@@ -77,7 +77,7 @@ impl DiscreteSearch {
     /// Finds at most `limit` colliding pairs at q, sorted.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When the search was cancelled.
     #[inline(never)] // so that a query that needs no search saves no registers
     pub(super) fn find_pairs(
         &mut self,
@@ -92,7 +92,7 @@ impl DiscreteSearch {
     }
 }
 
-/// The motion of vertices to a configuration, or from one to another.
+/// Returns the motion of vertices to a configuration, or from one to another.
 #[inline]
 pub(super) fn motion<const E: usize>(ends: [Configuration<'_>; E]) -> DeformedMotion<'_, E> {
     DeformedMotion::new(ends.map(|end| end.q), ends.iter().map(|end| end.reach).fold(0.0, f64::max))

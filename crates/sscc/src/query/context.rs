@@ -1,4 +1,4 @@
-//! State shared by all queries on one model: detector context, certificates, scope. It decides which certificates hold
+//! State shared by all queries on one model: detector context, certificates, scope. Its methods return which certificates hold
 //! at a norm.
 
 use std::sync::Arc;
@@ -20,16 +20,16 @@ pub(super) struct QueryContext {
     pub(super) certificates: Option<Certificates>,
     pub(super) scope: Arc<Scope>,
     pub(super) method: Method,
-    /// Hulls for the pair tree, if the method uses it.
+    /// Hulls for the pair tree, if the method uses the tree.
     pub(super) hulls: Option<Arc<PairHulls>>,
     /// Local certificates, if the method uses them.
     pub(super) locals: Option<Arc<LocalTables>>,
     /// From this `|z|` on, local certificates are evaluated.
     pub(super) local_norm: f64,
-    /// From this `|z|` on, all pairs of a tree that has nearly all pairs of nodes are reached; infinite for other trees.
+    /// From this `|z|` on, the radii of all pairs are reached, for a tree that has nearly all pairs of nodes; infinite for other trees.
     all_reached_norm: f64,
-    /// The root's radius where a certificate of the root alone answers a query: the method uses certificates and there are
-    /// no exceptions. 0 elsewhere.
+    /// The root's radius where the root's certificate alone answers a query: the method uses certificates and there are
+    /// no exceptions. Otherwise 0.
     proven_radius: f64,
 }
 
@@ -51,7 +51,7 @@ impl QueryContext {
         let locals = used.and_then(|used| {
             let (scales, center) = (FactorScales::new(model, used.center())?, used.center());
             let mut tables = LocalTables::new(&used.parts().local, used.hierarchy(), center, scales)?;
-            // Where few modes move a vertex, a bone moves most parts alone, and their own modes are affine.
+            // Where few modes move each vertex, most parts are moved by one bone alone, and their own modes are affine.
             if !detect.layout.vertices.moving_modes().are_listed()
                 && let Some(model) = PatchModel::new(model, center)
             {
@@ -84,8 +84,8 @@ impl QueryContext {
         }
     }
 
-    /// The context of questions about clearances, from that of questions about collisions: certificates with a clearance cull their
-    /// searches. Moving hulls and local certificates do not.
+    /// Returns the context of queries of clearances, from that of queries of collisions: certificates with a clearance cull their
+    /// searches; moving hulls and local certificates are not used.
     pub(super) fn of_clearance(&self, certificates: &Certificates) -> Self {
         let exceptions = certificates.exceptions();
         let buckets = self.detect.layout.buckets.count();
@@ -102,20 +102,20 @@ impl QueryContext {
         }
     }
 
-    /// The normal cones of the method, if it uses any.
+    /// Returns the normal cones of the method, if it uses any.
     pub(super) fn cones(&self) -> Option<NormalCones> {
         let nodes = self.detect.layout.buckets.node_count();
         (self.method == Method::NormalCones).then(|| NormalCones::new(nodes))
     }
 
-    /// The certificates, if the method uses them.
+    /// Returns the certificates, if the method uses them.
     #[inline]
     pub(super) fn used_certificates(&self) -> Option<&CertificateParts> {
         self.certificates.as_ref().filter(|_| self.method == Method::Certified).map(Certificates::parts)
     }
 
-    /// The pair tree, if the method uses it, and it is complete at this norm and leaves pairs out: then a pair that it does not
-    /// contain is certified.
+    /// Returns the pair tree, if the method uses it, and it is complete at this norm and some pairs are not reached: then a pair that
+    /// the tree does not contain is certified.
     pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&PairTree> {
         let tree = self.used_certificates().map(|parts| &parts.pair_tree);
         let tree = tree.filter(|_| norm < self.all_reached_norm);
@@ -126,7 +126,7 @@ impl QueryContext {
         )
     }
 
-    /// The norm at which [`Self::complete_pair_tree`] ends; infinite for a norm beyond it.
+    /// Returns the norm from which on [`Self::complete_pair_tree`] is `None`; infinite for a larger norm.
     pub(super) fn pair_tree_end(&self, norm: f64) -> f64 {
         self.complete_pair_tree(norm).map_or(f64::INFINITY, |tree| tree.limit().min(self.all_reached_norm))
     }
@@ -137,8 +137,8 @@ impl QueryContext {
         right_or!(norm < self.proven_radius, RootRadiusReached, norm <= self.proven_radius)
     }
 
-    /// Whether the root's certificate holds at this norm (exceptions are not covered). A norm equal to the radius
-    /// proves nothing: at radius 0 the shape may collide at the centre.
+    /// Whether the root's certificate holds at this norm (it does not cover exceptions). It does not hold at a norm equal to the
+    /// radius: with radius 0 the shape may collide at the centre.
     #[inline]
     pub(super) fn is_root_certified(&self, norm: f64) -> bool {
         let parts = self.used_certificates();
@@ -153,20 +153,20 @@ impl QueryContext {
 /// A search that opens a smaller share of all nodes ends before evaluating the root's local certificate would pay.
 const LOCAL_SHARE: f64 = 1.0 / 32.0;
 
-/// At so many times the root's radius local certificates are always evaluated: few nodes of a shape that turns within q may be reached
-/// there, but many pairs of nodes. With 2 in place of 6, queries of the dragon at 5% of its size, which radii nearly answer, took 1.08
-/// times as long, and continuous ones 1.13 times.
+/// From this many times the root's radius on, local certificates are always evaluated: on a shape whose parts rotate, few radii of nodes
+/// may be reached there, but those of many pairs of nodes. With 2 in place of 6, queries of the dragon at 5% of its size, most of which
+/// are culled by radii, took 1.08 times as long, and continuous ones 1.13 times.
 const LOCAL_ROOTS: f64 = 6.0;
 
-/// The `|z|` at which this share of some radii, and one more, is reached; infinite without radii.
+/// Returns the `|z|` at which this share of some radii, and one more, is reached; infinite without radii.
 fn norm_at(share: f64, mut radii: Vec<f64>) -> f64 {
     radii.sort_unstable_by(f64::total_cmp);
     let rank = (share * radii.len() as f64) as usize;
     radii.get(rank).copied().unwrap_or(f64::INFINITY)
 }
 
-/// The largest radius of a pair tree with at least as many pairs as pairs of buckets: that of a small mesh has nearly all pairs of
-/// nodes. Infinite for others.
+/// Returns the largest radius of a pair tree that has at least as many entries as there are pairs of buckets: the tree of a small mesh
+/// has nearly all pairs of nodes. Infinite for other trees.
 fn all_reached_norm(tree: &PairTree, buckets: usize) -> f64 {
     if tree.len() < buckets * buckets.saturating_sub(1) / 2 {
         return f64::INFINITY;
@@ -180,7 +180,7 @@ mod tests {
     use crate::certificates::PairTree;
 
     #[test]
-    fn the_share_of_radii_is_reached_there() {
+    fn the_share_of_radii_is_reached_at_norm_at() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
         for (radii, norm) in [
             (ten, 0.0),

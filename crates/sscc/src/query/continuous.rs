@@ -6,19 +6,19 @@ use crate::detect::answer::Statistics;
 use crate::{Error, Impact};
 
 impl Query {
-    /// All pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1`
-    /// (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time of
-    /// impact.
+    /// Returns all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at
+    /// `q_t1` (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time
+    /// of impact.
     ///
-    /// None is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with a
+    /// No pair is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with a
     /// time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times the
     /// size of the triangles. Only pairs that come that close without a contact can differ between methods. Triangles that
-    /// share exactly one vertex, where the contact filter includes them, are listed when the edge opposite to it of one of
-    /// them meets the other, which they must do to have another point in common.
+    /// share exactly one vertex, where the contact filter includes them, are listed if in one of them the edge opposite to
+    /// this vertex meets the other triangle; otherwise they have no other point in common.
     ///
     /// A certificate holds during the motion if it holds at start and end: its region is convex, and a radius contains the
     /// rounding bound at the radius itself, which covers positions between two rounded ones. So [`Statistics::norm`] is the
-    /// larger one of start and end.
+    /// larger norm of start and end.
     ///
     /// ```
     /// # use glam::DVec3;
@@ -46,8 +46,8 @@ impl Query {
         self.continuous_at_most(q_t0, q_t1, usize::MAX)
     }
 
-    /// As [`Query::continuous`], at most `limit` impacts; which ones is not fixed. Where the limit stopped the query,
-    /// [`Statistics::complete`] is false.
+    /// Returns impacts as [`Query::continuous`], at most `limit` of them; which ones is not fixed. Where the limit stopped
+    /// the query, [`Statistics::complete`] is false.
     pub(super) fn continuous_at_most(
         &mut self,
         q_t0: &[f64],
@@ -57,7 +57,7 @@ impl Query {
         self.forget();
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
         self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
-        // Its memory is made where it is needed.
+        // The memory of the swept search is allocated only where it is needed.
         if self.context.is_proven_free(self.norm) {
             self.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);
@@ -70,7 +70,7 @@ impl Query {
         Ok(impacts)
     }
 
-    /// The earliest [`Impact::time`] of all pairs between two configurations: the shape is free before.
+    /// Returns the earliest [`Impact::time`] of all pairs between two configurations: before this time the shape is free.
     ///
     /// # Errors
     /// As [`Query::continuous`].

@@ -10,8 +10,8 @@ use crate::hierarchy::{BUCKET_TRIANGLES, Hierarchy, Node, NodePair};
 use crate::{Certificates, Clearance, Detector, Error, Pair};
 
 impl Query {
-    /// The colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
-    /// but exceptions, found without certificates.
+    /// Returns the colliding pairs between the triangles of two nodes without common triangles, or within one node (n = m),
+    /// without exceptions. They are found without certificates.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -36,8 +36,8 @@ impl Query {
         Ok(&narrow.0.list)
     }
 
-    /// The pairs nearer than a clearance between the triangles of two nodes without common triangles, or within one node, found without
-    /// certificates: exceptions and pairs within the rings, too.
+    /// Returns the pairs nearer than a clearance between the triangles of two nodes without common triangles, or within one node,
+    /// including exceptions and pairs within the rings. They are found without certificates.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -82,7 +82,7 @@ mod tests {
     use crate::{Modes, ReducedModel, TriMesh};
     use glam::DVec3;
 
-    /// A crumpled strip, of which nearly everything meets.
+    /// Returns a crumpled strip, most of whose triangles meet others.
     fn model() -> ReducedModel {
         let mut state = 3_u64;
         let mut random = || {
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_of_nodes_of_every_size_are_theirs_alone() {
+    fn pairs_between_two_nodes_are_the_colliding_pairs_of_their_triangles() {
         let model = model();
         let query = |method| Query::without_certificates(&model, Scope::of(&model), method).unwrap();
         let all = query(Method::BruteForce).discrete(&[0.5]).unwrap().to_vec();
@@ -108,7 +108,7 @@ mod tests {
             for (m, y) in hierarchy.nodes().iter().enumerate().skip(n) {
                 let end = |node: &Node| node.first_triangle + node.triangle_count;
                 if n != m && x.first_triangle < end(y) && y.first_triangle < end(x) {
-                    continue; // one is within the other
+                    continue; // one node is within the other
                 }
                 let has = |node, t| hierarchy.triangles(node).contains(&t);
                 let mut expected = all.clone();

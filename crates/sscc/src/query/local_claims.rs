@@ -1,4 +1,4 @@
-//! What single local certificates claim, for audits.
+//! The pairs of nodes that a single local certificate proves free, for audits.
 
 use super::local_proofs::LocalProofs;
 use super::query::Query;
@@ -9,8 +9,8 @@ use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::NodePair;
 
 impl Query {
-    /// The pairs of nodes that the local certificate of this number proves free at q, or on straight lines from the first to the second q:
-    /// its node with itself, and with other nodes. None where the query uses no local certificates.
+    /// Returns the pairs of nodes that the local certificate of this number proves free at q, or on straight lines from the first to the
+    /// second q: its node with itself, and with other nodes. There are none if the query uses no local certificates.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -27,7 +27,7 @@ impl Query {
         Ok(LocalProofs::new(tables).claims(tables, &DeformedMotion::new(q, reach), index))
     }
 
-    /// The same during a motion, for tests of regions.
+    /// Returns the pairs of [`Query::local_claims`] during a motion, for tests of regions.
     #[cfg(test)]
     fn local_claims_during<const E: usize, M: VertexMotion<E>>(
         &self,

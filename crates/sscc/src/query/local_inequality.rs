@@ -1,4 +1,4 @@
-//! The inequality of local certificates at the configurations of a search: which ratios it allows.
+//! The inequality of local certificates at the configurations of a search, and the bound of the ratios that it allows.
 
 use glam::{DMat3, DVec3};
 
@@ -12,24 +12,24 @@ use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 /// The root of three, rounded up: errors are along each axis, gaps along any direction.
 const DIAGONAL: f64 = 1.7321;
 
-/// The affine part of a motion is taken away where less than this share of the factors is left.
+/// The affine part of a motion is subtracted if less than this share of the factors remains.
 const MOST_LEFT: f64 = 0.5;
 
 /// Rounds a sum of a handful of non-negative numbers up.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// The factors of one motion, and the errors of its positions.
+/// The factors of one motion, and the error of its positions.
 #[derive(Clone)]
 pub(super) struct LocalInequality<const E: usize> {
     instructions: InstructionSet,
     ends: [Factors; E],
     /// The radius of the region in z around the segment between the configurations.
     radius: f64,
-    /// `eta`
+    /// `eta`: an upper bound of the error of the difference of two positions, in the units of the certificates.
     error: f64,
 }
 
-/// The factors of one configuration, without its affine part where that is taken away (`affine_modes.rs`).
+/// The factors of one configuration, without its affine part where that is subtracted (`affine_modes.rs`).
 #[derive(Clone, Default)]
 struct Factors {
     exact: AffineFree,
@@ -40,7 +40,7 @@ struct Factors {
 }
 
 impl Factors {
-    /// Sets them for q, and takes the part of these modes away.
+    /// Sets the factors for q, and subtracts the part of the affine modes if given.
     fn set(&mut self, q: &[f64], tables: &LocalTables, affine: Option<&AffineModes>) {
         let offsets = q.iter().zip(&tables.center).map(|(q, c)| q - c);
         self.exact.set(offsets.zip(&tables.scales.sizes).map(|(offset, size)| offset * size));
@@ -56,7 +56,7 @@ impl Factors {
 }
 
 impl<const E: usize> LocalInequality<E> {
-    /// About no motion.
+    /// Creates the inequality without a motion.
     pub(super) fn new() -> Self {
         Self {
             instructions: InstructionSet::default(),
@@ -66,7 +66,7 @@ impl<const E: usize> LocalInequality<E> {
         }
     }
 
-    /// Sets the factors of a motion. False where its positions are not those of the modes alone, or certificates prove nothing about it.
+    /// Sets the factors of a motion. False if its positions are not those of the modes alone, or certificates prove nothing about it.
     pub(super) fn set_motion<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
         let (Some(coordinates), Some(radius)) = (motion.coarse_coordinates(), motion.region_radius()) else {
             return false;
@@ -75,12 +75,12 @@ impl<const E: usize> LocalInequality<E> {
         if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
             return false;
         }
-        // Not so far away that sums may overflow.
+        // The configurations must not be so far away that sums may overflow.
         let mut is_near = self.set_factors(tables, &coordinates, None);
         if let Some(affine) = &tables.affine {
             let whole = self.sum();
             is_near &= self.set_factors(tables, &coordinates, Some(affine));
-            // A part of the shape that moves alone has an affine part, too, by which other parts would seem to bend.
+            // If only a part of the shape moves, its motion has an affine part, too; subtracting it would make other parts seem to bend.
             if self.sum() >= MOST_LEFT * whole {
                 self.set_factors(tables, &coordinates, None);
             }
@@ -92,7 +92,7 @@ impl<const E: usize> LocalInequality<E> {
         self.error.is_finite() && is_near
     }
 
-    /// Sets the factors of all configurations. False where one is too far away.
+    /// Sets the factors of all configurations. False if one of them is too far away.
     fn set_factors(
         &mut self,
         tables: &LocalTables,
@@ -103,12 +103,12 @@ impl<const E: usize> LocalInequality<E> {
         self.ends.iter().all(|end| end.sum < 1e30)
     }
 
-    /// The sum of `T` over all configurations.
+    /// Returns the sum of `T` over all configurations.
     fn sum(&self) -> f64 {
         self.ends.iter().map(|end| end.sum).sum()
     }
 
-    /// The ratios that a certificate allows: those below this.
+    /// Returns the bound of the ratios that a certificate allows: it allows those below this.
     pub(super) fn allowed(&self, tables: &LocalTables, index: usize) -> f32 {
         let all = &*tables.certificates;
         let bounds = &all.bounds[index];
@@ -119,7 +119,7 @@ impl<const E: usize> LocalInequality<E> {
         let ellipsoid =
             &all.ellipsoids.as_chunks().0[ellipsoid..][..EllipsoidBlocks(modes.len()).len() / LANES];
         let is_dense = modes.len() == tables.center.len();
-        // What the numbers may change within the radius.
+        // The largest changes of the sum, the map and the strain within the radius.
         let [more_sum, more_map, more_strain] = match &tables.rates {
             Some(rates) if self.radius > 0.0 => {
                 let of_certificate = rates.certificates[index];
@@ -132,7 +132,7 @@ impl<const E: usize> LocalInequality<E> {
             }
             _ => [0.0; 3],
         };
-        // The error of sums of products in single precision, and of the factors.
+        // The relative error of sums of products in single precision, and of the factors.
         let single = 2.0 * (modes.len() as f64 + 4.0) * f64::from(f32::EPSILON);
         let at = |end: usize| {
             let Factors { exact, single: factors, sum } = &self.ends[end];
@@ -178,7 +178,7 @@ impl<const E: usize> LocalInequality<E> {
         if bounds.flatness == f64::INFINITY {
             return (plain as f32).next_down();
         }
-        // The error of the map is one of its part across, too, and the new map is rounded.
+        // The error of the map is also an error of its image of the direction across. The new map is rounded, too.
         let (maps, turned) = flat_maps(&maps, DVec3::from_array(bounds.across));
         let lost = std::array::from_fn(|end| {
             (bounds.flatness + 1e-14)
@@ -186,18 +186,18 @@ impl<const E: usize> LocalInequality<E> {
                 * ROUND_UP
         });
         let flat = allowed(stretches_of(&maps), right_or!(lost, LocalPlaneTurnsAlong, [0.0; E]));
-        // NaN allows nothing.
+        // If the result is NaN, no ratio is allowed.
         (if flat > plain { flat } else { plain } as f32).next_down()
     }
 }
 
-/// The stretches of maps, as [`stretches_between`].
+/// Returns lower bounds of the smallest stretches of maps, as [`stretches_between`].
 fn stretches_of<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     if E == 1 { maps.map(|map| smallest_stretch(&map)) } else { stretches_between(maps) }
 }
 
-/// Maps of a flat patch with another image of the direction across it: the same for all, a unit vector across the image of the plane by
-/// their mean. Also how far that is from their own images of the direction.
+/// Replaces the image of the direction across a flat patch in all maps by the same unit vector, which is perpendicular to the image of
+/// the plane by the mean of the maps. Also returns the distances of this vector from the original images.
 fn flat_maps<const E: usize>(maps: &[DMat3; E], across: DVec3) -> ([DMat3; E], [f64; E]) {
     let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map);
     let (x, y) = across.any_orthonormal_pair();
@@ -207,15 +207,15 @@ fn flat_maps<const E: usize>(maps: &[DMat3; E], across: DVec3) -> ([DMat3; E], [
     (maps.map(|map| map + outer(image - map * across, across)), turned)
 }
 
-/// The smaller of two numbers, and NaN where one is NaN: it allows nothing.
+/// Returns the smaller of two numbers, and NaN if one is NaN, which allows no ratio.
 fn smaller(a: f64, b: f64) -> f64 {
     right_or!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
 }
 
-/// Vectors of the longest column of W.
+/// The number of SIMD vectors in the longest column of W.
 const MOST_VECTORS: usize = MOST_MODES.div_ceil(LANES);
 
-/// `G f`, and the norm of `W f` as computed, for the numbers of one certificate.
+/// Computes `G f`, and the norm of `W f` up to the rounding of single precision, for the numbers of one certificate.
 struct Sums<'c> {
     gradients: &'c [[f32; LANES]],
     ellipsoid: &'c [[u16; LANES]],

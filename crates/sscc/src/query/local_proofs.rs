@@ -1,8 +1,8 @@
-//! Which local certificates hold in one search.
+//! The local certificates that hold in one search.
 //!
-//! Where some buckets are reached, a search evaluates the root's certificate first. If that fails, and the search has done some
-//! work, it evaluates those of other nodes from the root down, and stops at the nodes whose certificate holds: these are
-//! *proven*. From then on the traversal skips proven nodes, and pairs of nodes that a certificate proves.
+//! If the radii of some buckets are reached, a search evaluates the root's certificate first. If that does not hold, and the search
+//! has done some work, it evaluates the certificates of other nodes from the root down, and stops at the nodes whose certificate
+//! holds: these are *proven*. From then on the traversal skips proven nodes, and pairs of nodes that a certificate proves.
 
 use super::local_inequality::LocalInequality;
 use super::local_tables::LocalTables;
@@ -10,29 +10,29 @@ use crate::certificates::LocalCertificates;
 use crate::detect::vertex_motion::VertexMotion;
 use crate::hierarchy::{Hierarchy, NodePair};
 
-/// A search stops evaluating certificates from the root down once it has evaluated more than [`MOST_LOST`], one for so many
-/// buckets, and one for each proven bucket. Only the time of queries depends on that.
+/// A search stops evaluating certificates from the root down once it has evaluated more than the sum of [`MOST_LOST`], one for this
+/// many buckets, and one for each proven bucket. Only the time of queries depends on that.
 const BUCKETS_OF_EVALUATION: usize = 16;
 
-/// Certificates that a search may evaluate in vain.
+/// Certificates that a search may always evaluate, also if none of them holds.
 const MOST_LOST: usize = 32;
 
-/// Certificates are tried for pairs of nodes if they prove at least one of so many buckets for which they were evaluated.
+/// Certificates are evaluated for pairs of nodes if they prove at least one of this many buckets for which they were evaluated.
 const LEAST_SHARE: usize = 3;
 
-/// Most buckets are open if more than one of so many is. Only the time of queries depends on that.
+/// Most buckets count as open if more than one of this many is. Only the time of queries depends on that.
 const MOST_OPEN: usize = 2;
 
-/// Work of a search, in visits and packets of AABBs, after which it finds proven nodes: at least this, and one for so many buckets.
-/// Finding them takes about twice as long, and longer in large shapes, so short searches end before it would pay. It does not depend on
-/// earlier searches, so that one q always gives the same statistics.
+/// Work of a search, in visits and packets of AABBs, after which it finds proven nodes: at least this, and at least one for
+/// [`BUCKETS_OF_WORK`] buckets. Finding them takes about twice as long, and longer in large shapes, so short searches end before it
+/// would pay. It does not depend on earlier searches, so that one q always gives the same statistics.
 const WORK_BEFORE: u64 = 192;
 const BUCKETS_OF_WORK: u64 = 4;
 
-/// AABBs that are compared at once.
+/// The number of AABBs that are compared at once.
 const PACKET: u64 = crate::vectors::LANES as u64;
 
-/// The work of a search of so many visits and tests of AABBs.
+/// Returns the work of a search, from its numbers of visits and of tests of AABBs.
 #[inline]
 pub(super) fn work(visits: u64, box_tests: u64) -> u64 {
     visits + box_tests / PACKET
@@ -43,9 +43,9 @@ pub(super) fn work(visits: u64, box_tests: u64) -> u64 {
 pub(super) struct LocalProofs<const E: usize> {
     inequality: LocalInequality<E>,
     search: u32,
-    /// For each certificate the search in which it was evaluated last, and the ratios that it allowed: those below this.
+    /// For each certificate the search in which it was evaluated last, and the bound below which it allowed ratios.
     allowed: Vec<(u32, f32)>,
-    /// For each bucket, by its position, the search in which it was proven last, and by which node.
+    /// For each bucket, by its position, the search in which it was proven last, and the node whose certificate proved it.
     proven: Vec<(u32, u32)>,
     stack: Vec<u32>,
     is_usable: bool,
@@ -53,7 +53,7 @@ pub(super) struct LocalProofs<const E: usize> {
     work_before: u64,
     /// Whether this search finds no more proven nodes.
     is_complete: bool,
-    /// How many certificates the search evaluated from the root down, how many buckets they proved, and how many they left open.
+    /// The numbers of certificates that the search evaluated from the root down, of buckets that they proved, and of open buckets.
     evaluated: usize,
     proven_buckets: usize,
     open_buckets: usize,
@@ -63,7 +63,7 @@ impl<const E: usize> LocalProofs<E> {
     pub(super) fn new(tables: &LocalTables) -> Self {
         Self {
             inequality: LocalInequality::new(),
-            // None of the marks below is of this search.
+            // The marks below have the number 0, which is that of no search.
             search: 1,
             allowed: vec![(0, 0.0); tables.certificates.nodes.len()],
             proven: vec![(0, 0); tables.buckets[0].end as usize],
@@ -83,24 +83,25 @@ impl<const E: usize> LocalProofs<E> {
         tables.certificates.bounds[index].ratio < f64::from(self.allowed(tables, index))
     }
 
-    /// The work, as [`work`] counts it, after which a search finds proven nodes; never where it has done so, or cannot.
+    /// Returns the work, as [`work`] counts it, after which this search finds proven nodes; `u64::MAX` if it has found them, or cannot.
     pub(super) fn work_before(&self) -> u64 {
         if self.is_usable && !self.is_complete { self.work_before } else { u64::MAX }
     }
 
-    /// Whether nodes and pairs of nodes may be proven: [`Self::prove`] has found proven nodes.
+    /// Whether [`Self::prove`] has found the proven nodes of this search.
     pub(super) fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// Whether most buckets are open after [`Self::prove`]. Those that it did not try count as open. This is so far from rest, where AABBs
-    /// of the BD-tree are loose.
+    /// Whether most buckets are open after [`Self::prove`]. Those whose certificates it did not evaluate count as open. Most are open far
+    /// from rest, where AABBs of the BD-tree are loose.
     pub(super) fn leaves_most_open(&self) -> bool {
         self.open_buckets * MOST_OPEN > self.proven.len()
     }
 
-    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. Where few of their buckets
-    /// are proven, the search tries no pairs: those of the others are seldom proven, and trying each takes longer.
+    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. If few of their buckets
+    /// are proven, the search evaluates no certificates of pairs: few pairs of the other buckets would be proven, and each evaluation
+    /// takes time.
     pub(super) fn prove(
         &mut self,
         tables: &LocalTables,
@@ -138,8 +139,8 @@ impl<const E: usize> LocalProofs<E> {
         self.open_buckets += self.stack.iter().map(|n| tables.buckets[*n as usize].len()).sum::<usize>();
     }
 
-    /// The pairs of nodes that one certificate proves free during a motion, in a search of its own: its node with itself, and with
-    /// nodes of its list.
+    /// Returns the pairs of nodes that one certificate proves free during a motion: its node with itself, and with nodes of its list.
+    /// It begins a new search.
     pub(super) fn claims<M: VertexMotion<E>>(
         &mut self,
         tables: &LocalTables,
@@ -159,7 +160,7 @@ impl<const E: usize> LocalProofs<E> {
         own.into_iter().chain(others).map(|m| (nodes[index], m)).collect()
     }
 
-    /// Begins a new search: forgets what the last one proved. False where certificates prove nothing about the motion.
+    /// Begins a new search, without the proofs of the last one. False if certificates prove nothing about the motion.
     pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
         self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
         if self.search == 0 {
@@ -175,13 +176,13 @@ impl<const E: usize> LocalProofs<E> {
         self.is_usable
     }
 
-    /// Whether no two triangles of a node collide.
+    /// Whether a certificate proves that no two triangles of a node collide.
     #[inline]
     pub(super) fn is_node_proven(&self, tables: &LocalTables, n: u32) -> bool {
         self.proven_node(tables, n).is_some()
     }
 
-    /// The node whose certificate proves a node.
+    /// Returns the node whose certificate proves a node.
     #[inline]
     fn proven_node(&self, tables: &LocalTables, n: u32) -> Option<u32> {
         let range = &tables.buckets[n as usize];
@@ -190,8 +191,8 @@ impl<const E: usize> LocalProofs<E> {
         (search == self.search && right_or!(is_within, LocalProofOfOnePart, true)).then_some(by)
     }
 
-    /// Whether no triangle of one node collides with one of the other, by the certificate that proves one of them. One that does not
-    /// prove its node proves no pair either: the ratios of its list are at least that of its node.
+    /// Whether the certificate that proves one of two nodes also proves that no triangle of one collides with one of the other. A
+    /// certificate that does not prove its node proves no pair either: the ratios of its list are at least that of its node.
     #[inline]
     pub(super) fn is_pair_proven(&mut self, tables: &LocalTables, (n, m): (u32, u32)) -> bool {
         if !(self.is_usable && self.is_complete) {
@@ -221,7 +222,7 @@ impl<const E: usize> LocalProofs<E> {
         false
     }
 
-    /// The ratios that a certificate allows: those below this.
+    /// Returns the bound below which a certificate allows ratios.
     #[inline]
     fn allowed(&mut self, tables: &LocalTables, index: usize) -> f32 {
         let (search, allowed) = self.allowed[index];

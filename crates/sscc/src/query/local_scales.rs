@@ -1,7 +1,7 @@
-//! How far along a line from the centre local certificates prove nodes and pairs of nodes free.
+//! The scales along a line from the centre up to which local certificates prove nodes and pairs of nodes free.
 //!
 //! A certificate that holds during the straight motion from the centre to some point of the line proves its pairs free at all
-//! points before it. This is evaluated at a few scales only: what they leave open is bounded by radii and by conservative advancement.
+//! points before it. Certificates are evaluated at a few scales only; radii and conservative advancement bound all other pairs.
 
 use super::configuration_check::ConfigurationCheck;
 use super::context::QueryContext;
@@ -11,13 +11,13 @@ use crate::certificates::Certificates;
 use crate::detect::vertex_motion::DeformedMotion;
 use crate::hierarchy::NodePair;
 
-/// Scales at which certificates are evaluated, at most.
+/// The largest number of scales at which certificates are evaluated.
 const MOST_SCALES: usize = 6;
 
-/// The quotient of one scale and the next smaller one. Only the time depends on it.
+/// The quotient of a scale and the next smaller one. Only the time depends on it.
 const STEP: f64 = 1.5;
 
-/// What local certificates prove up to some scales of one line.
+/// The proofs of local certificates up to some scales of one line.
 pub(super) struct LocalScales<'a> {
     tables: &'a LocalTables,
     /// The scales, the largest first.
@@ -25,8 +25,8 @@ pub(super) struct LocalScales<'a> {
 }
 
 impl<'a> LocalScales<'a> {
-    /// At scales from `largest` down to that at which the root's radius is reached. `norm`: `|z|` at scale 1. None where the query uses
-    /// no local certificates.
+    /// Evaluates certificates at scales from `largest` down to that at which the root's radius is reached. `norm`: `|z|` at scale 1.
+    /// `None` if the query uses no local certificates.
     pub(super) fn new(
         context: &'a QueryContext,
         check: &mut ConfigurationCheck,
@@ -43,7 +43,7 @@ impl<'a> LocalScales<'a> {
         while proofs.len() < MOST_SCALES && scale > root_scale && scale.is_finite() {
             let end: Vec<f64> = center.iter().zip(q).map(|(c, q)| c + scale * (q - c)).collect();
             if let Ok(configuration) = check.measure(context, &end) {
-                // It bounds rounding at both ends. Points between them, with their own rounding, have no larger one.
+                // This reach bounds the rounding at both ends, and at points between them.
                 let reach = configuration.reach.max(context.model.reach(center));
                 let mut all = LocalProofs::new(tables);
                 let start = right_or!(center, LocalScaleOfEnd, &end[..]);
@@ -57,7 +57,8 @@ impl<'a> LocalScales<'a> {
         Some(Self { tables, proofs })
     }
 
-    /// A scale up to which no triangle of one node collides with one of the other, or no two of a node paired with itself.
+    /// Returns a scale up to which no triangle of one node collides with one of the other (for n = m: no two triangles of the node
+    /// collide).
     pub(super) fn of_pair(&mut self, (n, m): NodePair) -> f64 {
         let Self { tables, proofs } = self;
         let is_proven = |proofs: &mut LocalProofs<2>| {

@@ -1,4 +1,4 @@
-//! Where the numbers of local certificates are: by node, by list, and by bucket.
+//! The positions of the numbers of local certificates, by node, by list, and by bucket.
 
 use std::sync::Arc;
 
@@ -12,28 +12,28 @@ use crate::vectors::LANES;
 /// No certificate.
 const NONE: u32 = u32::MAX;
 
-/// Local certificates, and where those of a node are.
+/// Local certificates, and the positions of the numbers of each node's certificate.
 #[derive(Clone)]
 pub(super) struct LocalTables {
     pub(super) certificates: Arc<LocalCertificates>,
     pub(super) center: Vec<f64>,
     pub(super) scales: FactorScales,
-    /// For each node its certificate; [`NONE`] for none.
+    /// For each node its certificate; [`NONE`] if it has none.
     of_node: Vec<u32>,
-    /// For each certificate where its gradients and its ellipsoid start, in vectors.
+    /// For each certificate the positions at which its gradients and its ellipsoid start, in SIMD vectors.
     pub(super) starts: Vec<[u32; 2]>,
-    /// By how much numbers of certificates change in regions; none before [`Self::add_region_rates`], and for dense metrics.
+    /// Bounds of the changes of numbers of certificates in regions; `None` before [`Self::add_region_rates`], and for dense metrics.
     pub(super) rates: Option<RegionRates>,
-    /// Combinations of modes that move the whole shape by affine maps; none before [`Self::add_affine_modes`].
+    /// Combinations of modes that move the whole shape by affine maps; `None` before [`Self::add_affine_modes`].
     pub(super) affine: Option<AffineModes>,
-    /// For each certificate the [bits](list_bit) of the nodes of its list: most nodes are on none.
+    /// For each certificate the [bits](list_bit) of the nodes of its list: most nodes are on no list.
     list_bits: Vec<u64>,
     /// For each node its buckets, as a range of positions in the order of triangles.
     pub(super) buckets: Vec<std::ops::Range<u32>>,
 }
 
 impl LocalTables {
-    /// None where there are no certificates.
+    /// Returns the tables; `None` if there are no certificates.
     pub(super) fn new(
         certificates: &Arc<LocalCertificates>,
         hierarchy: &Hierarchy,
@@ -73,7 +73,7 @@ impl LocalTables {
         })
     }
 
-    /// Adds the rates that proofs in regions need. A dense metric has none: its factor may be nearly singular.
+    /// Adds the rates that proofs in regions need. There are none for a dense metric: its factor may be nearly singular.
     pub(super) fn add_region_rates(&mut self, metric: &Metric) {
         let rates = || RegionRates::new(&self.certificates, &self.scales, &metric.scales());
         self.rates = metric.dense_factor().is_none().then(rates);
@@ -90,7 +90,7 @@ impl LocalTables {
         (index != NONE).then_some(index as usize)
     }
 
-    /// The ratio of the pairs of a certificate's node with another one.
+    /// Returns the ratio of the pairs of a certificate's node with another node.
     #[inline]
     pub(super) fn ratio_with(&self, certificate: usize, node: u32) -> Option<f32> {
         if self.list_bits[certificate] & list_bit(node) == 0 {
@@ -103,13 +103,13 @@ impl LocalTables {
     }
 }
 
-/// One of 64 bits for each node. Multiplied by an odd number, numbers that follow each other have other upper bits (Knuth).
+/// Returns one of 64 bits for each node. Multiplication by an odd number gives consecutive numbers different upper bits (Knuth).
 #[inline]
 fn list_bit(node: u32) -> u64 {
     1 << (node.wrapping_mul(0x9e37_79b9) >> 26)
 }
 
-/// For each node the positions of its buckets in the order of triangles; for a node within a bucket that of the bucket.
+/// Returns for each node the positions of its buckets in the order of triangles; for a node within a bucket that of the bucket.
 fn bucket_ranges(hierarchy: &Hierarchy) -> Vec<std::ops::Range<u32>> {
     let nodes = hierarchy.nodes();
     let within = hierarchy.nodes_within_buckets();
@@ -125,8 +125,8 @@ fn bucket_ranges(hierarchy: &Hierarchy) -> Vec<std::ops::Range<u32>> {
     nodes.iter().map(range).collect()
 }
 
-/// For tests: the tables of certificates of a shape of one bucket, in units of its size and of the largest displacements, and its
-/// hierarchy.
+/// Returns, for tests, the tables of certificates of a shape of one bucket, in units of its size and of the largest displacements, and
+/// its hierarchy.
 #[cfg(test)]
 pub(super) fn tables_of(
     local: &LocalCertificates,

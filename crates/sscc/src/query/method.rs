@@ -16,7 +16,7 @@ pub enum Method {
     /// the contour test, Volino and Magnenat-Thalmann 1994). Normals at the start and the end of a motion prove nothing in between, so
     /// continuous queries are traditional.
     NormalCones,
-    /// Every pair of triangles. The oracle: quadratic.
+    /// Tests of every pair of triangles, in quadratic time: the oracle of the other methods.
     BruteForce,
 }
 
@@ -29,7 +29,7 @@ names! { Method, "method":
 }
 
 impl Method {
-    /// The parts of the layout that the method needs; none for brute force.
+    /// Returns the parts of the layout that the method needs; `None` for brute force.
     pub(super) fn needs(self) -> Option<Needs> {
         match self {
             Self::Certified | Self::BdTree => Some(Needs::LAZY),
@@ -39,7 +39,7 @@ impl Method {
         }
     }
 
-    /// Whether boxes are computed where the traversal visits nodes.
+    /// Whether AABBs are computed only when the traversal visits their nodes.
     pub(super) fn is_lazy(self) -> bool {
         matches!(self, Self::Certified | Self::BdTree)
     }

@@ -1,8 +1,9 @@
 //! The search for near triangles at q with certificates of a clearance.
 //!
-//! Below a radius no pair of its part is nearer than the clearance of the certificates, hence than any smaller one. The traversals are
-//! those of collisions: they open node pairs whose radius is reached, down to AABBs that are wider by half of the clearance
-//! ([`WidenedMotion`]). Moving hulls and local certificates prove that parts do not collide, not how far apart they are: they are not used.
+//! While `|z|` is below the radius of a node or node pair, none of its triangle pairs is nearer than the clearance of the certificates,
+//! hence than any smaller one. The traversals are those of collisions: they open node pairs whose radius is reached, down to AABBs that
+//! are wider by half of the clearance ([`WidenedMotion`]). Moving hulls and local certificates are not used: they prove that parts do
+//! not collide, but no distance between them.
 
 use super::certified_search::{CertifiedSearch, Sought};
 use super::configuration::Configuration;
@@ -23,14 +24,14 @@ pub(super) struct NearSearch {
     check: ConfigurationCheck,
     search: CertifiedSearch<1>,
     narrow: ClearanceHits,
-    /// The last rings, and how many.
+    /// The number of rings of the last search, and these rings.
     rings: Option<(u32, Rings)>,
     /// `|z|` of the last search, rounded up.
     pub(super) norm: f64,
 }
 
 impl NearSearch {
-    /// `context`: that of questions about collisions of the same model.
+    /// Creates the search. `context`: the context of queries of collisions of the same model.
     pub(super) fn new(context: &QueryContext, certificates: &Certificates) -> Self {
         let context = context.of_clearance(certificates);
         Self {
@@ -43,20 +44,20 @@ impl NearSearch {
         }
     }
 
-    /// Whether the certificates prove triangles farther apart than a clearance.
+    /// Whether the certificates prove pairs farther apart than a clearance: their clearance is at least as large.
     pub(super) fn is_for(&self, clearance: &Clearance) -> bool {
         self.context.certificates.as_ref().is_some_and(|certified| certified.is_within_clearance(clearance))
     }
 
-    /// The near pairs that were found last.
+    /// Returns the near pairs of the last search.
     pub(super) fn pairs(&self) -> &[NearPair] {
         &self.narrow.hits.list
     }
 
-    /// Finds all near pairs at q, sorted. [`Self::is_for`] is true for the clearance.
+    /// Finds all near pairs at q, sorted. [`Self::is_for`] must be true for the clearance.
     ///
     /// # Errors
-    /// When q is no configuration of the model, there are more than [`Detector::MAX_PAIRS`], or the token cancels.
+    /// When q is not a configuration of the model, there are more than [`Detector::MAX_PAIRS`] pairs, or the token cancels.
     pub(super) fn find(
         &mut self,
         q: &[f64],
@@ -88,6 +89,8 @@ impl NearSearch {
         Ok(statistics)
     }
 
+    /// Removes the pairs within the rings.
+    ///
     /// # Errors
     /// When the token cancels; then there are no pairs.
     fn leave_out_rings(&mut self, rings: u32) -> Result<(), Error> {
@@ -98,7 +101,7 @@ impl NearSearch {
         self.rings = self.rings.take().filter(|(count, _)| *count == rings);
         let (_, own) = self.rings.get_or_insert_with(|| (rings, Rings::new(&detect.filter, rings)));
         let list = &mut self.narrow.hits.list;
-        // Fast where the first triangle is that of the pair before.
+        // The test of rings is faster if the first triangle is that of the pair before.
         list.sort_unstable_by_key(|near| near.pair);
         let mut is_cancelled = false;
         list.retain(|NearPair { pair: (a, b), .. }| {

@@ -1,7 +1,7 @@
 //! Moving hulls for the pair tree: for each stored node pair a direction that separates its hulls at the centre.
 //!
-//! A query turns this direction with the two nodes, and tests the plane across it. Node pairs that nothing separates at the
-//! centre are opened without a test of hulls: only the time of queries depends on that.
+//! A query rotates this direction with the two nodes, and tests the plane across it. Node pairs whose hulls are not separate at
+//! the centre are opened without a test of hulls: only the time of queries depends on that.
 
 use super::hulls::{MovedHulls, NodeHulls};
 use crate::ReducedModel;
@@ -16,15 +16,15 @@ use glam::Vec3;
 /// The hulls of nodes, and a direction for each entry of the pair tree.
 pub(super) struct PairHulls {
     pub(super) nodes: NodeHulls,
-    /// The components of the directions in units of 1 / [`WHOLE`]; all 0 for none.
+    /// The components of the directions in units of 1 / [`WHOLE`]; all 0 if an entry has no direction.
     directions: Vec<[i16; 3]>,
 }
 
-/// The component 1 of a direction.
+/// The integer that stands for the component 1 of a direction.
 const WHOLE: f32 = 32767.0;
 
 impl PairHulls {
-    /// About the centre of the certificates; none where the pair tree is empty or the shape too large.
+    /// Computes hulls and directions about the centre of the certificates; `None` if the pair tree is empty or the shape too large.
     pub(super) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,
@@ -47,7 +47,7 @@ impl PairHulls {
         Some(Self { nodes, directions })
     }
 
-    /// The direction of an entry, if it has one.
+    /// Returns the direction of an entry, if it has one.
     #[inline]
     pub(super) fn direction(&self, entry: u32) -> Option<Vec3> {
         let dir = self.directions[entry as usize];
@@ -55,7 +55,7 @@ impl PairHulls {
     }
 }
 
-/// The node pair of each entry, by its index.
+/// Returns the node pair of each entry, by its index.
 fn node_pairs(hierarchy: &Hierarchy, tree: &PairTree) -> Vec<NodePair> {
     let mut pairs = vec![(0, 0); tree.len()];
     let mut stack = Vec::new();
@@ -86,7 +86,7 @@ mod tests {
         TriMesh,
     };
 
-    /// A coil of a flat band, whose turns swing against each other, and bend and widen.
+    /// Returns a coil of a flat band, whose turns swing against each other, and bend and widen.
     fn coil(turns: u32, rank: usize) -> ReducedModel {
         let around = 24 * turns;
         let at = |i: u32, j: u32| {
@@ -107,7 +107,7 @@ mod tests {
     }
 
     /// Pairs, impacts and kinetic answers are those without hulls, in states where hulls separate most node pairs, and in
-    /// others far beyond them, about centres and in a dense metric.
+    /// states far beyond them, about several centres and in a dense metric.
     #[test]
     fn hulls_change_no_answer() {
         let (mut free, mut colliding, mut tests) = (0, 0, 0);
@@ -116,7 +116,7 @@ mod tests {
             let model = coil(8 + case as u32, 6);
             let center = (case % 2 == 1).then(|| (0..6).map(|_| 0.02 * random.signed()).collect());
             let metric = (case % 3 == 2).then(|| {
-                // Not far from the unit matrix, so positive definite.
+                // The matrix is close to the unit matrix, hence positive definite.
                 let entry = |i: usize, j: usize| if i == j { 1.0 } else { 0.1 };
                 Metric::from_matrix(
                     MetricKind::Given,

@@ -1,4 +1,4 @@
-//! The traversal of the certified pair tree: only node pairs whose radius is reached are opened.
+//! The traversal of the certified pair tree, which opens only node pairs whose radius is reached.
 //!
 //! Traversals end at buckets and pairs of buckets. The larger node is always split first, so every descent reaches
 //! exactly one of them (docs/notes/traversal.md#end-at-buckets).
@@ -27,24 +27,25 @@ struct Visit {
     entry: u32,
 }
 
-/// So many visits of stored pairs take as long as a pair of buckets that is tested in vain ([`LOOSE_PAIRS`]).
+/// This many visits of stored pairs take as long as the test of a pair of buckets without a hit ([`LOOSE_PAIRS`]).
 const VISITS_OF_LOOSE_PAIR: usize = 8;
 
-/// Whether boxes or proofs would now save work is asked once in so many visits: asked at each, it takes 3% of a short search.
+/// Visits between two checks whether refitted AABBs or local proofs would now save work: a check at each visit takes 3% of a short
+/// search.
 const VISITS_OF_CHECK: usize = 8;
 
-/// The entry of a node.
+/// The value of [`Visit::entry`] for a node.
 const NODE: u32 = u32::MAX;
 
-/// Whether `|z|` has reached the radius of a stored pair: equality is no proof. A macro keeps the plain comparison of the
-/// release build, see docs/notes/traversal.md#end-at-buckets.
+/// Whether `|z|` has reached the radius of a stored pair: the pair is not certified at equality. It is a macro so that the release
+/// build has a plain comparison, see docs/notes/traversal.md#end-at-buckets.
 macro_rules! is_entry_reached {
     ($entry:expr, $norm:expr) => {
         right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)
     };
 }
 
-/// Finds all hits but exceptions at a norm below the tree's limit.
+/// Finds all hits except exceptions at a norm below the tree's limit.
 pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>>(
     search: &mut Search<'_, 1, E, M, N>,
     mut hulls: Option<(&mut MovedHulls<E>, &PairHulls)>,
@@ -159,8 +160,8 @@ mod tests {
     use crate::detect::vertex_motion::DeformedMotion;
     use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel, test_models};
 
-    /// A square of 3200 triangles, and two modes that cancel each other: where both coordinates are the same, AABBs of the BD-tree
-    /// grow, and the square does not move. The mean of a mode over each triangle is 0, so the hierarchy is that of the positions.
+    /// Returns a square of 3200 triangles with two modes that cancel each other: at equal coordinates AABBs of the BD-tree grow, and
+    /// the square does not move. The mean of a mode over each triangle is 0, so the hierarchy is that of the positions.
     fn square() -> ReducedModel {
         let mesh = test_models::square(40);
         let colours = [DVec3::new(4.0, 0.0, 0.0), DVec3::new(-2.0, 2.0, 1.0), DVec3::new(-2.0, -2.0, -1.0)];
@@ -171,7 +172,7 @@ mod tests {
         ReducedModel::new(mesh, Modes::new(2, modes.collect()).unwrap()).unwrap()
     }
 
-    /// Below the limit of a tree that stores all node pairs, at norms that reach the radii of all of them, where no hull separates
+    /// The norms are below the limit of a tree that stores all node pairs, and reach the radii of all of them; no hull separates
     /// nodes.
     #[test]
     fn loose_boxes_are_refitted_before_all_node_pairs_are_opened() {
@@ -201,7 +202,7 @@ mod tests {
                 (broad.state.counters.opened, broad.state.loose_pairs, broad.volumes.closed_buckets())
             });
             let ((tight, ..), (opened, loose, closed)) = (tight, found);
-            // Without refitting 1,033 against 343, and 108 loose pairs.
+            // Without refitting, 1,033 nodes are opened in place of 343, and there are 108 loose pairs.
             let buckets = context.layout.buckets.count();
             assert!(
                 closed == 0 && opened < 2 * tight && loose < buckets,

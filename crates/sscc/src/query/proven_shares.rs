@@ -1,26 +1,26 @@
-//! Which share of a shape each kind of proof covers at q.
+//! The share of a shape that each kind of proof covers at q.
 
 use super::local_proofs::LocalProofs;
 use super::query::Query;
 use crate::Error;
 use crate::detect::vertex_motion::DeformedMotion;
 
-/// Shares of the triangles, by what proves at some q that no two triangles of their patch collide. A patch is a bucket of the
-/// hierarchy (at most 64 triangles), or a larger node that is proven as a whole. The three add up to 1.
+/// Shares of the triangles, by the kind of proof at some q that no two triangles of their patch collide. A patch is a bucket of the
+/// hierarchy (at most 64 triangles), or a larger node that is proven as a whole. The three shares add up to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ProvenShares {
-    /// By a radius, which `|z|` does not reach.
+    /// Triangles of patches that are proven by a radius, which `|z|` does not reach.
     pub radius: f64,
-    /// Of the rest, by a local certificate that a query evaluates.
+    /// Triangles of patches that are proven only by a local certificate, which a query evaluates.
     pub local: f64,
-    /// By none: a query searches these patches.
+    /// Triangles of patches without a proof: a query searches these patches.
     pub search: f64,
 }
 
 impl ProvenShares {
-    /// The share of the triangles that each kind of proof of a query covers at q, each patch with itself. Pairs of patches have
-    /// proofs of their own, which are not counted. It takes no longer than a query, and allocates.
+    /// Returns the share of the triangles that each kind of proof of a query covers at q, for each patch with itself. Pairs of
+    /// patches have proofs of their own, which are not counted. It takes no longer than a query, and allocates.
     ///
     /// # Errors
     /// As [`Query::discrete`].

@@ -1,4 +1,4 @@
-//! The query: collisions of one reduced model with itself at q.
+//! `Query`: collisions of one reduced model with itself at q.
 
 use std::fmt;
 use std::sync::Arc;
@@ -28,22 +28,22 @@ use crate::{CancelToken, Certificates, Detector, Error, Pair, ReducedModel};
 #[derive(Clone)]
 pub struct Query {
     pub(super) context: QueryContext,
-    /// Has the last answer, of continuous queries the pairs.
+    /// Contains the last answer; after a continuous query only its pairs.
     pub(super) discrete: DiscreteSearch,
-    /// Made by the first continuous query.
+    /// Created by the first continuous query.
     pub(super) swept: Option<Box<SweptSearch<SweptHits>>>,
-    /// Made by the first sweep.
+    /// Created by the first sweep.
     pub(super) candidates: Option<Box<SweptSearch<AabbHits>>>,
-    /// Made by the first question about distances that certificates do not answer.
+    /// Created by the first query of distances that certificates do not answer.
     pub(super) detector: Option<Box<Detector>>,
-    /// The search for near triangles, where the certificates have a clearance.
+    /// The search for near triangles, if the certificates have a clearance.
     pub(super) near: Option<Box<NearSearch>>,
     pub(super) norm: f64,
     pub(super) statistics: Statistics,
     pub(super) check: ConfigurationCheck,
 }
 
-/// Its last answer alone.
+/// Shows the last answer only.
 impl fmt::Debug for Query {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Query")
@@ -55,9 +55,9 @@ impl fmt::Debug for Query {
 }
 
 impl Query {
-    /// A query that uses certificates; those with a [clearance](Certificates::clearance) serve [`Query::within`] alone, and all other
-    /// questions are answered without certificates. First it fits the moving hulls of nodes, in less than a fifth of the time that the
-    /// certificates took. Clones share them.
+    /// Creates a query that uses certificates. Those with a [clearance](Certificates::clearance) are used by [`Query::within`] only; all
+    /// other queries are then answered without certificates. This function fits the moving hulls of nodes, in less than a fifth of the
+    /// time that the certificates took. Clones share the hulls.
     ///
     /// # Errors
     /// When the certificates were computed for another model.
@@ -65,7 +65,7 @@ impl Query {
         Self::with_method(model, certificates, Method::Certified)
     }
 
-    /// A query by the given method, with the hierarchy and the scope of the certificates.
+    /// Creates a query by the given method, with the hierarchy and the scope of the certificates.
     ///
     /// # Errors
     /// When the certificates were computed for another model.
@@ -80,8 +80,8 @@ impl Query {
         Ok(Self::build(model, Some(certificates), Arc::clone(scope), Arc::clone(hierarchy), method))
     }
 
-    /// A query without certificates, for the pairs that count in that scope ([`Scope::of`] is the default).
-    /// [`Method::Certified`] becomes [`Method::BdTree`].
+    /// Creates a query without certificates, for the pairs that count in that scope ([`Scope::of`] is the default).
+    /// [`Method::Certified`] is replaced by [`Method::BdTree`].
     ///
     /// # Errors
     /// When the scope's metric or centre is of another rank than the model, or its groups are of another mesh.
@@ -136,7 +136,7 @@ impl Query {
         }
     }
 
-    /// A clone without the memory of continuous queries, sweeps and distances.
+    /// Returns a clone without the memory of continuous queries, sweeps and distances.
     pub(super) fn discrete_alone(&self) -> Self {
         Self {
             context: self.context.clone(),
@@ -151,23 +151,23 @@ impl Query {
         }
     }
 
-    /// The same query, which checks now and then whether the token cancels it; without one, no longer.
+    /// Returns the same query, which checks regularly whether the token cancels it; with `None` it no longer checks.
     #[must_use]
     pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
         self.context.detect.cancel = token.into();
         self
     }
 
-    /// All colliding pairs at q: triangle indices `i < j` of the file's order, sorted.
+    /// Returns all colliding pairs at q, sorted: indices `i < j` of triangles in the order of the file.
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or q moves vertices beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when it was cancelled.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when the query was cancelled.
     pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
         self.discrete_at_most(q, usize::MAX)
     }
 
-    /// At most `limit` colliding pairs at q, sorted; which ones is not fixed. Where the limit stopped the query,
+    /// Returns at most `limit` colliding pairs at q, sorted; which ones is not fixed. Where the limit stopped the query,
     /// [`Statistics::complete`] is false: there may be more.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl Query {
         Ok(self.pairs())
     }
 
-    /// One colliding pair at q, if there is any; which one is not fixed.
+    /// Returns one colliding pair at q, if there is any; which one is not fixed.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -187,7 +187,7 @@ impl Query {
         Ok(self.discrete_at_most(q, 1)?.first().copied())
     }
 
-    /// The number of colliding pairs at q.
+    /// Returns the number of colliding pairs at q.
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -211,7 +211,7 @@ impl Query {
     /// Finds at most `limit` colliding pairs at a configuration, after [`Self::forget`].
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When the query was cancelled.
     #[inline(always)]
     pub(super) fn find_pairs(&mut self, configuration: Configuration<'_>, limit: usize) -> Result<(), Error> {
         self.norm = configuration.norm;
@@ -224,25 +224,25 @@ impl Query {
         discrete.find_pairs(context, configuration, limit, statistics)
     }
 
-    /// The pairs that the last query found; of [`Query::continuous`] those of its impacts.
+    /// Returns the pairs that the last query found; after [`Query::continuous`] those of its impacts.
     pub fn pairs(&self) -> &[Pair] {
         &self.discrete.narrow.0.list
     }
 
-    /// The cost of the last query.
+    /// Returns the cost of the last query.
     pub fn statistics(&self) -> Statistics {
         Statistics { norm: self.norm, ..self.statistics }
     }
 
-    /// `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; of a
-    /// continuous query the larger one of start and end.
+    /// Returns `|z| = |S (q - center)|` of the last query, rounded up, in the metric and about the centre of its scope; for a
+    /// continuous query the larger norm of start and end.
     pub(crate) fn norm(&self) -> f64 {
         self.norm
     }
 }
 
 impl Scope {
-    /// The scope of a query: metric and centre of its norms ([`Statistics::norm`]), and which pairs count.
+    /// Returns the scope of a query: metric and centre of its norms ([`Statistics::norm`]), and which pairs count.
     pub fn of_query(query: &Query) -> &Self {
         &query.context.scope
     }

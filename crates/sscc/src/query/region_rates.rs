@@ -1,21 +1,21 @@
-//! How fast the numbers of local certificates change with z, for proofs that hold at all z of a region.
+//! Bounds of the changes of the numbers of local certificates with z, for proofs that hold at all z of a region.
 
 use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, gradient_len};
 use crate::vectors::LANES;
 
-/// More modes have a coarser bound, which takes less time.
+/// Certificates with more modes have a coarser bound, which takes less time.
 const MOST_MODES: usize = 64;
 
 /// Covers rounding: eighth powers of singular values that sum up to more than 1e-8 err by less than 1e-12.
 const ROUND_UP: f64 = 1.0 + 1e-6;
 
-/// Squares of smaller norms lose digits.
+/// The squares of smaller norms lose digits to underflow.
 const SMALLEST: f64 = 1e-140;
 
 /// Upper bounds of changes of the numbers of local certificates for each unit of `|z|`.
 #[derive(Clone)]
 pub(super) struct RegionRates {
-    /// Of the sum of the magnitudes of all factors.
+    /// The rate of the sum of the magnitudes of all factors.
     pub(super) sum: f64,
     pub(super) certificates: Vec<CertificateRates>,
 }
@@ -23,14 +23,14 @@ pub(super) struct RegionRates {
 /// The rates of one certificate. Infinite ones prove nothing.
 #[derive(Clone, Copy)]
 pub(super) struct CertificateRates {
-    /// Of F, in the Frobenius norm.
+    /// The rate of F, in the Frobenius norm.
     pub(super) map: f64,
-    /// Of `W f`.
+    /// The rate of `W f`.
     pub(super) strain: f64,
 }
 
 impl RegionRates {
-    /// The rates in a diagonal metric. `scales`: its factor, for each mode.
+    /// Computes the rates in a diagonal metric. `scales`: the factor of the metric for each mode.
     pub(super) fn new(local: &LocalCertificates, factors: &FactorScales, scales: &[f64]) -> Self {
         // A unit of z in mode k changes the factor by this.
         let units: Vec<f64> = factors.sizes.iter().zip(scales).map(|(size, scale)| size / scale).collect();
@@ -53,7 +53,7 @@ impl RegionRates {
     }
 }
 
-/// Nine rows: an entry of G for each mode, times the mode's unit.
+/// Returns nine rows: an entry of G for each mode, times the mode's unit.
 fn gradient_rows(gradient: &[f32], units: &[f64]) -> Vec<f64> {
     let count = units.len();
     let entry =
@@ -61,7 +61,7 @@ fn gradient_rows(gradient: &[f32], units: &[f64]) -> Vec<f64> {
     (0..=LANES).flat_map(|e| (0..count).map(move |k| f64::from(entry(e, k)) * units[k])).collect()
 }
 
-/// The rows of W, each column times the mode's unit.
+/// Returns the rows of W, each column times the mode's unit.
 fn ellipsoid_rows(ellipsoid: &[u16], units: &[f64]) -> Vec<f64> {
     let count = units.len();
     let mut rows = vec![0.0; count * count];
@@ -76,8 +76,8 @@ fn ellipsoid_rows(ellipsoid: &[u16], units: &[f64]) -> Vec<f64> {
     rows
 }
 
-/// An upper bound of the largest singular value of a matrix of rows of this length; infinite where one is no number. Its
-/// eighth power is at most the trace of the fourth power of the Gram matrix.
+/// Returns an upper bound of the largest singular value of a matrix of rows of this length; infinite if an entry is not finite.
+/// The eighth power of the singular value is at most the trace of the fourth power of the Gram matrix.
 fn singular_value_bound(rows: &[f64], len: usize) -> f64 {
     let frobenius = norm(rows);
     if !(frobenius > SMALLEST && frobenius < f64::INFINITY) {
@@ -86,7 +86,7 @@ fn singular_value_bound(rows: &[f64], len: usize) -> f64 {
     if len > MOST_MODES {
         return frobenius;
     }
-    // Numbers of at most 1.
+    // Scales all entries to magnitudes of at most 1.
     let rows: Vec<f64> = rows.iter().map(|x| x / frobenius).collect();
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
     // The Gram matrix of the rows has the same eigenvalues as that of the columns, apart from zeros.
@@ -101,7 +101,7 @@ fn singular_value_bound(rows: &[f64], len: usize) -> f64 {
     trace.sqrt().sqrt().sqrt() * frobenius * ROUND_UP
 }
 
-/// The Euclidean norm, rounded up.
+/// Returns the Euclidean norm, rounded up.
 fn norm(numbers: &[f64]) -> f64 {
     numbers.iter().map(|x| x * x).sum::<f64>().sqrt() * ROUND_UP
 }
@@ -112,7 +112,7 @@ mod tests {
 
     use super::*;
 
-    /// Of matrices of both kinds of shapes, of rank one and of more, large, small and out of range.
+    /// The matrices are wide or tall, of rank one or more, with large, small and out-of-range entries.
     #[test]
     fn singular_values_are_bounded() {
         let random = &mut Numbers(8);
@@ -128,7 +128,7 @@ mod tests {
                     row.iter_mut().zip(&y).for_each(|(out, y)| *out += x * y * scale);
                 }
             }
-            // The power iteration finds it from below.
+            // The power iteration approximates the largest singular value from below.
             let mut way: Vec<f64> = (0..len).map(|_| random.signed()).collect();
             let mut longest = 0.0;
             for _ in 0..300 {

@@ -1,5 +1,5 @@
-//! The safe scale: how far along the line from the centre to q the shape is proven free. Best-first search over the
-//! hierarchy; triangle pairs by conservative advancement.
+//! The safe scale: how far along the line from the centre to q the shape is proven free. It is found by a best-first search
+//! over the hierarchy, with conservative advancement of triangle pairs.
 
 use std::collections::BinaryHeap;
 
@@ -17,12 +17,11 @@ use crate::min_heap::MinHeapEntry;
 use crate::{Certificates, Error, Pair};
 
 impl Query {
-    /// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for certificates
-    /// about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, and close to the
-    /// largest possible one. Nodes and node pairs are bounded by their certified radii, and triangle pairs beyond these by
-    /// conservative advancement along the line. At most the scale at which radii are capped
-    /// ([`Certificates::global_radius`]). 0 if the shape collides at the centre (ignored pairs apart); infinite if nothing
-    /// moves.
+    /// Returns a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for
+    /// certificates about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, close to the
+    /// largest possible one, and at most the scale at which radii are capped ([`Certificates::global_radius`]). Nodes and
+    /// node pairs are bounded by their certified radii, and triangle pairs beyond these by conservative advancement along
+    /// the line. The scale is 0 if the shape collides at the centre (ignored pairs apart), and infinite if no vertex moves.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///
@@ -56,7 +55,7 @@ impl Query {
         let local = locals.as_mut().map_or(0.0, |locals| locals.of_pair((0, 0)));
         let local = local * right_or!(DOWN, SafeScaleToNearest, 1.0);
         waiting.push(MinHeapEntry { key: self.certified_scale(0).max(local), order: (0, 0), item: NONE });
-        // Best first: a pair is advanced only a little farther than the scale up to which all others are free.
+        // In best-first order a pair is advanced only a little farther than the scale up to which all others are free.
         while let Some(MinHeapEntry { key: lower, order: (n, m), item: index }) = waiting.pop() {
             if lower >= best {
                 break;
@@ -92,7 +91,7 @@ impl Query {
                 let goal = (lower * LOOK_AHEAD).max(best * MIN_GOAL).min(best);
                 let triangles = |node| self.context.detect.hierarchy.triangles(node);
                 for (i, &x) in triangles(&node_n).iter().enumerate() {
-                    // Most triangles of a leaf stay clear of the whole other leaf.
+                    // Most triangles of a leaf are separate from the whole other leaf.
                     let aabb_x = &aabbs.triangles[x as usize];
                     if n != m && line.aabbs_separated_until(aabb_x, &aabbs.nodes[m as usize]) >= goal {
                         continue;
@@ -133,7 +132,7 @@ impl Query {
         Ok(best)
     }
 
-    /// The scale up to which a node's own radius certifies it.
+    /// Returns the scale up to which a node's own radius certifies it.
     fn certified_scale(&self, node: u32) -> f64 {
         self.context
             .certificates
@@ -141,8 +140,8 @@ impl Query {
             .map_or(0.0, |certificates| self.scale(certificates.node_radius(node)))
     }
 
-    /// For each of some sibling node pairs its entry in the pair tree and the scale up to which it is certified; for those
-    /// that are not stored the scale of the tree's limit.
+    /// Returns for each of some sibling node pairs its entry in the pair tree and the scale up to which it is certified; for
+    /// pairs that are not stored the scale of the tree's limit.
     fn certified_pairs(
         &self,
         tree: Option<&PairTree>,
@@ -155,7 +154,7 @@ impl Query {
         all
     }
 
-    /// The scale at which a radius is reached; `Query::norm` is that of scale 1.
+    /// Returns the scale at which a radius is reached; `Query::norm` is the norm at scale 1.
     fn scale(&self, radius: f64) -> f64 {
         let scale = radius / self.norm;
         if radius > 0.0 && scale >= f64::MIN_POSITIVE {
@@ -165,8 +164,8 @@ impl Query {
         }
     }
 
-    /// Advances two triangles that do not collide before `t`. Infinite if they do not collide before `goal` or do not
-    /// count; else a scale below which they do not collide, close to the contact.
+    /// Advances two triangles that do not collide before `t`. Returns infinity if they do not collide before `goal` or do
+    /// not count; otherwise a scale below which they do not collide, close to the contact.
     fn advance(&self, line: &ConfigurationLine, (x, y): Pair, t: f64, goal: f64) -> f64 {
         if self.context.detect.filter.is_excluded(x, y) {
             return f64::INFINITY;
@@ -191,13 +190,13 @@ const LOOK_AHEAD: f64 = 1.5;
 /// Leaf pairs are advanced at least up to this share of the best known scale.
 const MIN_GOAL: f64 = 1.0 / 64.0;
 
-/// No entry: a node, or a node pair that is certified up to the limit of the pair tree.
+/// The index of a node, or of a node pair that is certified up to the limit of the pair tree: they have no entry.
 const NONE: u32 = u32::MAX;
 
-/// Outside the pair tree: a node pair within a bucket, or below a pair of buckets.
+/// The index of a node pair outside the pair tree: within a bucket, or below a pair of buckets.
 const UNKNOWN: u32 = u32::MAX - 1;
 
-/// A node has at most four children, hence six pairs of them.
+/// The largest number of pairs of children of a node, which has at most four children.
 const MAX_SIBLINGS: usize = 6;
 
 /// For each node and each triangle the AABBs of its vertices at the centre and of their velocities.
@@ -228,7 +227,7 @@ impl LineAabbs {
         Self { nodes, triangles }
     }
 
-    /// A scale below which one axis separates the two nodes.
+    /// Returns a scale below which one axis separates the two nodes.
     fn separated_until(&self, line: &ConfigurationLine, (n, m): NodePair) -> f64 {
         line.aabbs_separated_until(&self.nodes[n as usize], &self.nodes[m as usize])
     }

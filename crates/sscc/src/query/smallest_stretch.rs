@@ -1,31 +1,31 @@
-//! Lower bounds of the smallest singular value of a 3 x 3 matrix: how little the map stretches any direction.
+//! Lower bounds of the smallest singular value of a 3 x 3 matrix, which is the smallest stretch of any direction by the map.
 
 use glam::DMat3;
 
 use crate::model::rounding::larger_or_nan;
 
-/// A lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
+/// Returns a lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
 pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
     let gram = map.transpose() * *map;
     smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
 }
 
-/// A lower bound of the smallest eigenvalue of the symmetric part of a matrix, which is at most its smallest singular value.
-/// It is concave, so what it is at least at two matrices it is at least between them. The rotation by which the
-/// matrix was multiplied is one up to rounding, which the share of the norm covers.
+/// Returns a lower bound of the smallest eigenvalue of the symmetric part of a matrix, which is at most its smallest singular
+/// value. The eigenvalue is concave in the matrix, so a lower bound at two matrices holds between them. The matrix was
+/// multiplied by a rotation that is orthogonal up to rounding; the share of the norm covers this rounding.
 pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
     let least = smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12);
-    // The part that is not symmetric is rounded, too.
+    // The symmetric part is rounded, too.
     let lost = 1e-14 * norm(map);
     if lost.is_finite() { least - lost } else { f64::NEG_INFINITY }
 }
 
-/// A lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity where none was found. `error`: that of its
-/// entries, relative to the sum of their magnitudes.
+/// Returns a lower bound of the smallest eigenvalue of a symmetric matrix; minus infinity if none was found. `error`: the error of
+/// the entries, relative to the sum of their magnitudes.
 fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let size = [x, y, z].iter().map(|x| x.abs().element_sum()).sum::<f64>();
-    // The closed form; any candidate would do.
+    // The candidate comes from the closed form. Any candidate would be valid, since it is verified below.
     let mean = (x.x + y.y + z.z) / 3.0;
     let [a, b, c] = [x.x - mean, y.y - mean, z.z - mean];
     let spread = ((a * a + b * b + c * c + 2.0 * (x.y * x.y + x.z * x.z + y.z * y.z)) / 6.0).sqrt();
@@ -37,7 +37,7 @@ fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     } else {
         mean
     };
-    // The candidate has an error, and rounding of the closed form may be as large as the root of that of its numbers.
+    // The rounding error of the closed form may be as large as the root of that of its numbers.
     for slack in [2e-7, 2e-6] {
         let shift = candidate - slack * size;
         if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
@@ -59,7 +59,8 @@ const ROOT: [f64; 8] = [
     -0.000_545_020_9,
 ];
 
-/// The u in [0, 1] for which `x = -1 - u` is the least root of `x^3 - 3 x = 2 h`, up to 1e-7: `u^2 (3 + u) = 2 (1 - h) = 3 v^2`.
+/// Returns the u in [0, 1] for which `x = -1 - u` is the least root of `x^3 - 3 x = 2 h`, up to 1e-7. It solves
+/// `u^2 (3 + u) = 2 (1 - h) = 3 v^2`.
 fn least_root_below_one(h: f64) -> f64 {
     let v = (2.0 / 3.0 * (1.0 - h)).sqrt();
     v * ROOT.iter().rev().fold(0.0, |sum, c| sum * v + c)
@@ -73,19 +74,19 @@ fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
     let (b, c) = (x.y / first, x.z / first);
     let second = (y.y - shift) - b * x.y;
     let e = y.z - b * x.z;
-    // The square alone may underflow.
+    // The quotient comes first, because the square of e may underflow.
     let third = (z.z - shift) - c * x.z - e * (e / second);
     first > 0.0 && second > 0.0 && third > 0.0
 }
 
-/// A motion is short where maps are at most this far from their mean, in Frobenius norms.
+/// A motion is short if its maps are at most this far from their mean, in the Frobenius norm.
 const SHORT: f64 = 1.0 / 16.0;
 
-/// For each of some maps a lower bound of its smallest singular value; the mean of the bounds with any weights is one of the mean of
-/// the maps with these weights. 0 where none was found.
+/// Returns for each of some maps a lower bound of its smallest singular value; 0 if none was found. For any weights, the weighted mean
+/// of the bounds is a lower bound for the weighted mean of the maps.
 ///
-/// Near their mean all maps stretch by at most their distance from it less than the mean does. Others are turned by one
-/// rotation, and have the smallest eigenvalues of their symmetric parts.
+/// If the maps are near their mean, the stretch of each is that of the mean, less at most the distance from it. Otherwise all maps
+/// are multiplied by one rotation, and the bounds are the smallest eigenvalues of their symmetric parts.
 pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map) * (1.0 / E as f64);
     let distance = maps.iter().map(|map| norm(&(*map - mean))).fold(0.0, larger_or_nan);
@@ -96,13 +97,13 @@ pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     }
     let Some(turn) = nearest_rotation(&mean) else { return [0.0; E] };
     let turn = turn.transpose();
-    // Any rotation will do, but the same one for all.
+    // Any rotation is valid, if it is the same one for all maps.
     let bounds = maps
         .map(|map| right_or!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map)));
     if bounds.iter().all(|bound| *bound > 0.0) { bounds } else { [0.0; E] }
 }
 
-/// The Frobenius norm.
+/// Returns the Frobenius norm.
 fn norm(map: &DMat3) -> f64 {
     map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
 }
@@ -110,26 +111,26 @@ fn norm(map: &DMat3) -> f64 {
 /// Steps of the iteration towards the rotation.
 const STEPS: usize = 8;
 
-/// A rotation is orthogonal up to this: more than rounding leaves of two vectors that were orthogonal before, and far less than
+/// The largest cosine between two columns of a rotation: more than the rounding of two orthogonal vectors, and far less than
 /// [`smallest_eigenvalue`] covers.
 const ORTHOGONAL: f64 = 1e-15;
 
-/// The rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; none near a singular
-/// one.
+/// Returns the rotation of the polar decomposition, by Newton's iteration (Higham 1986), as an orthogonal matrix; `None` if the
+/// map is nearly singular.
 pub(super) fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let mut next = *map;
     for _ in 0..STEPS {
         let inverse = next.inverse().transpose();
-        // Scaled towards the rotation: singular values become close to 1.
+        // The factor brings the singular values close to 1.
         let size = |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>();
         let factor = (size(&inverse) / size(&next)).sqrt().sqrt();
         next = (next * factor + inverse * (1.0 / factor)) * 0.5;
     }
-    // Orthogonal to rounding, whatever the iteration did.
+    // The columns are made orthogonal up to rounding, also if the iteration did not converge.
     let x = next.x_axis.try_normalize()?;
     let y = (next.y_axis - x * x.dot(next.y_axis)).try_normalize()?;
     let y = (y - x * x.dot(y)).try_normalize()?;
-    // Of a map that is nearly singular the iteration may leave two columns along one line.
+    // If the map is nearly singular, two columns may be parallel after the iteration.
     let cosine = x.dot(y).abs();
     if cosine.is_nan() || cosine > ORTHOGONAL {
         return None;

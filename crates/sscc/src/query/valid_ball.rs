@@ -24,7 +24,7 @@ impl ValidBall {
         else {
             return none;
         };
-        // How far a mode alone moves vertices at |z| = 1.
+        // The largest displacement by one mode alone at |z| = 1.
         let unit = |(k, scale): (usize, f64)| model.mode_displacement_bound(k, UP / scale);
         let rate = scope.metric.scales().into_iter().enumerate().map(unit).map(|x| x * x).sum::<f64>().sqrt();
         let radius = parts.node_radii[0];
@@ -43,7 +43,7 @@ mod tests {
         Certificates, CertifyOptions, Error, Metric, MetricKind, Modes, Query, ReducedModel, TriMesh,
     };
 
-    /// Two triangles one apart; modes of very different lengths.
+    /// Returns two triangles at a distance of 1, with modes of very different lengths.
     fn model(scales: Vec<f64>) -> ReducedModel {
         let corners = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);
         let mesh = TriMesh::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn no_q_in_the_ball_reaches_farther() {
+    fn every_q_in_the_ball_is_within_its_reach() {
         for center in [vec![0.0; 3], vec![1e-3, -2e-5, 1e-7]] {
             let model = model(vec![1.0, 1e3, 3e6]);
             let options = CertifyOptions::default().center(center.clone());

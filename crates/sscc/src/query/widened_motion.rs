@@ -6,7 +6,7 @@ use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::{DeformedMotion, VertexMotion};
 use crate::geometry::Aabb;
 
-/// A motion to q, whose AABBs are so wide that those of triangles nearer than a clearance overlap.
+/// A motion to q with widened AABBs: those of triangles nearer than a clearance overlap.
 #[derive(Clone, Copy)]
 pub(super) struct WidenedMotion<'q> {
     motion: DeformedMotion<'q, 1>,
@@ -14,12 +14,12 @@ pub(super) struct WidenedMotion<'q> {
     margin: f64,
 }
 
-/// Distances are computed within 2^-40 of the size of two triangles, and coordinates in the frame of a search are rounded to a few
-/// units of 2^-24 of the extent: boxes are wider by this share of it. Single precision moves them by as much anyway.
+/// AABBs are widened by this share of the extent. Distances are computed within 2^-40 of the size of two triangles, and coordinates in
+/// the frame of a search are rounded to a few units of 2^-24 of the extent. Rounding to single precision moves AABBs by as much.
 const ROUNDING_SHARE: f64 = 4.0 * f32::EPSILON as f64;
 
 impl<'q> WidenedMotion<'q> {
-    /// For a distance of triangles: each AABB is wider by half of it, but no farther than all overlap.
+    /// Widens each AABB by half of `distance`, but by no more than the extent, at which all AABBs overlap.
     pub(super) fn new(motion: DeformedMotion<'q, 1>, layout: &Layout, distance: f64) -> Self {
         let whole = motion.overall_aabb(layout);
         let extent = (whole.upper - whole.lower).max_element();

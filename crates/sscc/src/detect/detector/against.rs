@@ -8,9 +8,9 @@ use super::given_motion::GivenMotion;
 use crate::{Error, Impact, Pair};
 
 impl Detector {
-    /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a point in
-    /// common, sorted. Every pair counts, unless groups hold between both meshes
-    /// ([`TriangleGroups::of_meshes`](crate::TriangleGroups::of_meshes)): nothing else of a contact filter does.
+    /// Returns all pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that have a
+    /// point in common, sorted. Every pair counts, unless there are groups of both meshes
+    /// ([`TriangleGroups::of_meshes`](crate::TriangleGroups::of_meshes)); no other part of a contact filter applies.
     ///
     /// ```
     /// use sscc::glam::DVec3;
@@ -30,7 +30,7 @@ impl Detector {
     /// ```
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for the positions of both meshes.
     pub fn against(
         &mut self,
         positions: &[DVec3],
@@ -42,11 +42,11 @@ impl Detector {
         Ok(&self.discrete.narrow.0.list)
     }
 
-    /// At most `limit` pairs of [`Detector::against`], sorted; which ones is not fixed. Where the limit stopped the search,
-    /// [`Statistics::complete`](crate::Statistics::complete) is false.
+    /// Returns at most `limit` pairs of [`Detector::against`], sorted; which ones is not fixed. Where the limit stopped the
+    /// search, [`Statistics::complete`](crate::Statistics::complete) is false.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for the positions of both meshes.
     pub fn against_at_most(
         &mut self,
         positions: &[DVec3],
@@ -66,8 +66,8 @@ impl Detector {
         Ok(&self.discrete.narrow.0.list)
     }
 
-    /// All pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a straight
-    /// line, sorted by pair, each with its time of impact: the same promise as
+    /// Returns all pairs (triangle of this mesh, triangle of the other) that collide while every vertex of both moves on a
+    /// straight line, sorted by pair, each with its time of impact, with the same guarantee as
     /// [`Query::continuous`](crate::Query::continuous). Pairs count as for [`Detector::against`].
     ///
     /// # Errors
@@ -91,7 +91,7 @@ impl Detector {
     }
 }
 
-/// Two motions in the frame of the AABB of both.
+/// Returns two motions in the frame of the AABB of both.
 pub(super) fn in_common_frame<'x, const E: usize>(
     motions: [GivenMotion<'x, E>; 2],
 ) -> [GivenMotion<'x, E>; 2] {

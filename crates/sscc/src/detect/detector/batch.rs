@@ -1,4 +1,4 @@
-//! Batches: many frames in parallel.
+//! Batches: many sets of positions (frames) in parallel.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,11 +9,11 @@ use crate::{Error, Pair, Progress};
 use glam::DVec3;
 
 impl Detector {
-    /// Answers every frame as [`Detector::discrete`] would, in the order given: the same pairs for any number of threads
-    /// (none: all cores). `progress` may cancel it; that of [`Detector::cancelled_by`] is not used.
+    /// Answers every frame as [`Detector::discrete`] would, in the order given. The pairs are the same for any number of
+    /// threads (`None`: all cores). `progress` may cancel the batch; the token of [`Detector::cancelled_by`] is not used.
     ///
     /// # Errors
-    /// That of the first frame that has one; when `progress` cancels.
+    /// The error of the first frame that has one; when `progress` cancels.
     pub fn batch<X: AsRef<[DVec3]> + Sync>(
         &self,
         frames: &[X],
@@ -23,7 +23,7 @@ impl Detector {
         self.answer_all(frames, threads, progress, |detector, x| detector.discrete(x).map(<[Pair]>::to_vec))
     }
 
-    /// As [`Detector::batch`], at most `limit` pairs of each frame: see [`Detector::discrete_at_most`].
+    /// Answers as [`Detector::batch`], with at most `limit` pairs for each frame: see [`Detector::discrete_at_most`].
     ///
     /// # Errors
     /// As [`Detector::batch`].

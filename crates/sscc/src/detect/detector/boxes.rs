@@ -32,7 +32,7 @@ impl<'x> Boxes<'x> {
         self.context.filter.faces()[triangle as usize].map(|v| self.positions[v as usize])
     }
 
-    /// The children of a node, or itself where it has none.
+    /// Returns the children of a node, or the node itself if it is a leaf.
     pub fn parts(&self, n: u32) -> std::ops::Range<u32> {
         let node = &self.context.hierarchy.nodes()[n as usize];
         if node.is_leaf() { n..n + 1 } else { node.children() }

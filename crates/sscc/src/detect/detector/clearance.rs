@@ -1,4 +1,4 @@
-//! Clearance: which triangles are nearer than a distance, of one mesh or between two.
+//! Clearance queries: the triangle pairs of one mesh, or between two meshes, that are nearer than a distance.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use crate::detect::vertex_motion::VertexMotion;
 use crate::filter::Rings;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
-/// A distance that triangles should keep, and which neighbours need not keep it.
+/// A distance that triangles should keep, and the number of rings of neighbours that need not keep it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
     distance: f64,
@@ -20,10 +20,10 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// Pairs nearer than this distance (model unit), but triangles with a common vertex.
+    /// Returns the clearance for pairs nearer than this distance (model unit), except triangles with a common vertex.
     ///
     /// # Errors
-    /// When it is not positive and finite.
+    /// When the distance is not positive and finite.
     pub fn new(distance: f64) -> Result<Self, Error> {
         if distance > 0.0 && distance.is_finite() {
             return Ok(Self { distance, rings: 1 });
@@ -31,8 +31,8 @@ impl Clearance {
         Err(Error::Option { name: "clearance", value: distance, wanted: "positive and finite" })
     }
 
-    /// The same, but triangles of one mesh within so many rings of each other on the surface need not keep it: 1 for triangles
-    /// with a common vertex (these never count), 2 for those that have a common neighbour, too, and so on.
+    /// Returns the same clearance for triangles of one mesh that are not within `rings` rings of each other on the surface: 1 for
+    /// triangles with a common vertex (these never count), 2 also for triangles with a common neighbour, and so on.
     #[must_use]
     pub fn beyond_rings(self, rings: u32) -> Self {
         Self { rings, ..self }
@@ -43,7 +43,7 @@ impl Clearance {
         self.distance
     }
 
-    /// How many rings need not keep it.
+    /// Returns the number of rings of neighbours that need not keep the distance.
     pub fn rings(&self) -> u32 {
         self.rings
     }
@@ -55,7 +55,8 @@ const MAX_PAIRS_OF_MODEL: usize = 1 << 24;
 /// All pairs of a model that count and are nearer than a clearance at q, sorted.
 ///
 /// # Errors
-/// When q is no configuration of the model, there are more than 2^24 such pairs, those within the rings included, or `progress` cancels.
+/// When q is not a configuration of the model, there are more than 2^24 such pairs (including those within the rings), or
+/// `progress` cancels.
 pub(crate) fn near_pairs_of_model(
     model: &ReducedModel,
     filter: &ContactFilter,
@@ -70,8 +71,8 @@ pub(crate) fn near_pairs_of_model(
 }
 
 impl Detector {
-    /// All pairs that count and are nearer than a clearance at these positions, sorted by pair: `distance < clearance` for the
-    /// distances listed, which have the error of [`distance_triangle_triangle`](crate::distance_triangle_triangle). Pairs that
+    /// Returns all pairs that count and are nearer than a clearance at these positions, sorted by pair. The listed distances are less
+    /// than the clearance, and have the error of [`distance_triangle_triangle`](crate::distance_triangle_triangle). Pairs that
     /// collide have distance 0. Triangles with a common vertex never count here.
     ///
     /// ```
@@ -97,7 +98,7 @@ impl Detector {
         Ok(self.near_pairs())
     }
 
-    /// Finds all near pairs, if they are at most `most` before those within the rings are left out.
+    /// Finds all near pairs, if there are at most `most` of them, including those within the rings, which are then removed.
     fn within_at_most(
         &mut self,
         positions: &[DVec3],
@@ -115,7 +116,7 @@ impl Detector {
         if clearance.rings > 1 && result.is_ok() {
             let mut rings = Rings::new(&context.filter, clearance.rings);
             list.retain(|NearPair { pair: (a, b), .. }| {
-                // Rings of one triangle may take as long as all others.
+                // The rings of one triangle may take as long as those of all others.
                 if context.is_cancelled() {
                     result = Err(Error::Cancelled);
                 }
@@ -126,11 +127,11 @@ impl Detector {
         self.check_complete().map_err(|_| Error::TooManyNearPairs { most })
     }
 
-    /// All pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) nearer than a clearance, sorted.
-    /// Pairs count as for [`Detector::against`]; rings mean nothing between meshes.
+    /// Returns all pairs (triangle of this mesh at `positions`, triangle of the other at `other_positions`) nearer than a clearance,
+    /// sorted. Pairs count as for [`Detector::against`]; the rings of the clearance have no effect between meshes.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for the positions of both meshes.
     pub fn within_against(
         &mut self,
         positions: &[DVec3],
@@ -153,12 +154,12 @@ impl Detector {
         Ok(self.near_pairs())
     }
 
-    /// The pairs of the last search for near ones.
+    /// Returns the pairs of the last search for near pairs.
     pub(crate) fn near_pairs(&self) -> &[NearPair] {
         self.clearance.as_ref().map_or(&[], |near| &near.search.narrow.hits.list)
     }
 
-    /// Starts a search for near pairs; builds the hierarchy again, by these positions, where it has become bad.
+    /// Starts a search for near pairs; rebuilds the hierarchy by these positions if its cost has grown too much.
     fn begin_clearance(
         &mut self,
         motion: &GivenMotion<'_, 1>,
@@ -168,7 +169,7 @@ impl Detector {
     ) {
         for is_last in [false, true] {
             let margin = motion.margin();
-            // The cost of a hierarchy grows with the margin, so that of another one says nothing.
+            // The cost of a hierarchy grows with the margin, so costs are compared for equal margins only.
             let near = self.clearance.take().filter(|near| near.margin == margin);
             let mut near = near
                 .unwrap_or_else(|| Box::new(ClearanceSearch { margin, search: DetectorSearch::default() }));

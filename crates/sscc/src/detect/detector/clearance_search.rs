@@ -3,10 +3,10 @@
 use super::detector_search::DetectorSearch;
 use crate::detect::narrow_phase::ClearanceHits;
 
-/// Its frames and its list.
+/// The search for near pairs, and its margin.
 #[derive(Clone)]
 pub(super) struct ClearanceSearch {
-    /// That of the frames in which boxes were widened.
+    /// The distance by which AABBs were widened.
     pub(super) margin: f64,
     pub(super) search: DetectorSearch<1, ClearanceHits>,
 }

@@ -1,9 +1,9 @@
 //! The largest ball inside of two closed meshes, by branch and bound over boxes.
 //!
-//! The distance of a point from a surface changes by no more than the point moves. So a box whose centre is a distance r
-//! inside of both has no point that is farther inside than r and its half diagonal. The distance from a triangle is a convex function,
-//! which is largest at a corner of the box; so is the mean of the distances from the nearest triangle of each mesh, and the smaller one
-//! of two is at most their mean.
+//! The *depth* of a point is its distance from the surfaces if it is inside of both meshes. The distance of a point from a surface
+//! changes by no more than the point moves. So if the centre of a box has depth r, no point of the box has a depth of more than r plus
+//! half of the diagonal. The distance from a triangle is a convex function, hence largest at a corner of the box. So is the mean of the
+//! distances from the nearest triangle of each mesh, and the smaller one of two distances is at most their mean.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -15,10 +15,10 @@ use super::enclosed::Side;
 use crate::Error;
 use crate::geometry::{Aabb, distance_point_triangle};
 
-/// The largest accepted difference of the bounds of the radius, as a share of it.
+/// The largest accepted difference between the bounds of the radius, as a share of the radius.
 const TOLERANCE: f64 = 1e-3;
 
-/// Radii below this share of the size of the meshes are 0: touching bodies share no ball.
+/// Radii below this share of the size of the meshes count as 0: touching bodies share no ball.
 const SMALLEST: f64 = 1e-9;
 
 /// Number of boxes after which the search ends with the bounds that it has: about a second of work.
@@ -27,7 +27,7 @@ const MAX_CELLS: usize = 1 << 16;
 struct Cell {
     center: DVec3,
     half: DVec3,
-    /// No point of the box is farther inside.
+    /// An upper bound of the depth of all points of the box.
     bound: f64,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn largest_common_ball(sides: [&Side<'_>; 2]) -> Result<(f64, f64), E
         if bound <= best * (1.0 + TOLERANCE) + smallest {
             return Ok((best, bound.max(best)));
         }
-        // In half across its longest side: boxes keep the shape of a thin overlap along the axes.
+        // Halves the box across its longest side, so that boxes keep the shape of a thin overlap along the axes.
         let axis = half.max_position();
         let mut part = half;
         part[axis] *= 0.5;
@@ -97,7 +97,7 @@ fn corners(center: DVec3, half: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Bounds how far inside the points of a box are, and takes its centre.
+/// Bounds the depth of the points of a box; updates `best` by the depth of its centre.
 fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) -> Result<Cell, Error> {
     let near = sides.map(|side| nearest(&side.boxes, center));
     let mut inside = f64::INFINITY;
@@ -145,7 +145,7 @@ fn nearest(boxes: &Boxes<'_>, point: DVec3) -> (f64, u32) {
         }
         let start = open.len();
         open.extend(boxes.parts(n).map(|part| (distance(part), part)));
-        // The nearest part is next.
+        // The nearest part is visited next.
         open[start..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
     }
     found

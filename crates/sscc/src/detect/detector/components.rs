@@ -14,14 +14,14 @@ pub(super) struct Components {
 
 #[derive(Clone, Debug)]
 struct Component {
-    /// One of its triangles.
+    /// One triangle of the component.
     triangle: u32,
-    /// Whether its triangles run along each edge as often in one direction as in the other: it has an inside.
+    /// Whether its triangles run along each edge as often in one direction as in the other, so that it has an inside.
     is_closed: bool,
 }
 
 impl Components {
-    /// Those of triangles whose corners have these numbers.
+    /// Finds the components of triangles whose corners have these numbers.
     pub fn new(corners: &[[u32; 3]]) -> Self {
         let triangles = 0..corners.len() as u32;
         let count = corners.iter().flatten().max().map_or(0, |most| *most as usize + 1);
@@ -40,7 +40,7 @@ impl Components {
                 })
             })
             .collect();
-        // Edges with their direction, and a triangle. An edge of one vertex cancels.
+        // Edges with their direction, and a triangle. The direction of an edge from a vertex to itself cancels.
         let mut edges: Vec<([u32; 2], i32, u32)> = triangles
             .flat_map(|t| {
                 let [a, b, c] = corners[t as usize];
@@ -61,7 +61,7 @@ impl Components {
         self.all.len()
     }
 
-    /// A triangle of each component.
+    /// Returns one triangle of each component.
     pub fn triangles(&self) -> impl Iterator<Item = u32> {
         self.all.iter().map(|component| component.triangle)
     }
@@ -75,7 +75,7 @@ impl Components {
         self.all.iter().any(|component| component.is_closed)
     }
 
-    /// Whether there are components, all of them closed.
+    /// Whether there are components, and all of them are closed.
     pub fn are_closed(&self) -> bool {
         !self.all.is_empty() && self.all.iter().all(|component| component.is_closed)
     }

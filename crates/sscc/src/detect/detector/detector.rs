@@ -20,8 +20,8 @@ use crate::hierarchy::Hierarchy;
 use crate::{CancelToken, ContactFilter, Error, Impact, Pair, ReducedModel, TriMesh, limits};
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
-/// for each answer; where the hierarchy has become bad, it builds it again. It owns its memory, so that repeated answers
-/// allocate nothing. One detector serves one thread; clones share what does not change.
+/// for each answer; if the cost of the hierarchy has grown too much, it rebuilds it. It owns its memory, so that repeated answers
+/// allocate nothing. One detector serves one thread; clones share the data that does not change.
 ///
 /// Two triangles are listed exactly when they count under the contact filter (by default when they share no vertex) and have a
 /// point in common at the given f64 positions. Touching counts. See `docs/guarantees.md`.
@@ -52,16 +52,16 @@ pub struct Detector {
     vertex_count: usize,
     pub(super) discrete: DetectorSearch<1, DiscreteHits>,
     pub(super) swept: DetectorSearch<2, SweptHits>,
-    /// Made by the first search for near pairs.
+    /// Created by the first search for near pairs.
     pub(super) clearance: Option<Box<ClearanceSearch>>,
-    /// Connected ones, of welded vertices; found by the first question for enclosed ones.
+    /// The connected components of the mesh with welded vertices; found by the first query of enclosed components.
     pub(super) components: Option<Arc<Components>>,
     pub(super) statistics: Statistics,
     /// Whether the hierarchy has been searched for self-collisions.
     is_used: bool,
 }
 
-/// Its last answer alone.
+/// Shows the last answer only.
 impl fmt::Debug for Detector {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Detector")
@@ -72,15 +72,15 @@ impl fmt::Debug for Detector {
 }
 
 impl Detector {
-    /// A detector for a mesh, under its default contact filter ([`ContactFilter::of`]): pairs count that share no vertex, where
-    /// equal vertices of formats that split them are welded. Otherwise the rest positions choose the hierarchy and nothing else.
-    /// About as much work as two answers.
+    /// Creates a detector for a mesh, with its default contact filter ([`ContactFilter::of`]): pairs count that share no vertex;
+    /// equal vertices are welded if the file format splits vertices. Apart from that, the rest positions determine only the
+    /// hierarchy. It takes about as long as two answers.
     pub fn new(mesh: &TriMesh) -> Self {
         Self::welded(mesh, &ContactFilter::of(mesh))
     }
 
-    /// A detector under the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position,
-    /// also where they move apart later: then triangles that meet there at rest are adjacent and never count.
+    /// Creates a detector with the given contact filter. [`ContactFilter::weld`] welds vertices of exactly equal rest position,
+    /// also if they move apart later: triangles that meet there at rest are adjacent and never count.
     ///
     /// # Errors
     /// When the filter's groups are of another mesh.
@@ -118,7 +118,7 @@ impl Detector {
         }
     }
 
-    /// The same detector, which checks now and then whether the token cancels it; without one, no longer.
+    /// Returns the same detector, which checks regularly whether the token cancels it; with `None` it no longer checks.
     #[must_use]
     pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
         self.context.cancel = token.into();
@@ -129,19 +129,20 @@ impl Detector {
     /// A mesh of n triangles that collapses to a point has about n^2 / 2 pairs.
     pub const MAX_PAIRS: usize = 1 << 26;
 
-    /// All colliding pairs at these positions (one for each vertex of the mesh, model unit): triangle indices `i < j`, sorted.
+    /// Returns all colliding pairs at these positions (one for each vertex of the mesh, model unit), sorted: triangle indices
+    /// `i < j`.
     ///
     /// # Errors
     /// When there are not as many positions as vertices, or one is not finite or beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when there are more than [`Detector::MAX_PAIRS`] pairs; when it was
-    /// cancelled.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when there are more than [`Detector::MAX_PAIRS`] pairs; when the search
+    /// was cancelled.
     pub fn discrete(&mut self, positions: &[DVec3]) -> Result<&[Pair], Error> {
         self.discrete_at_most(positions, Self::MAX_PAIRS)?;
         self.check_complete()?;
         Ok(&self.discrete.narrow.0.list)
     }
 
-    /// At most `limit` colliding pairs, sorted; which ones is not fixed. Where the limit stopped the search,
+    /// Returns at most `limit` colliding pairs, sorted; which ones is not fixed. Where the limit stopped the search,
     /// [`Statistics::complete`] is false: there may be more.
     ///
     /// # Errors
@@ -157,7 +158,7 @@ impl Detector {
         Ok(&self.discrete.narrow.0.list)
     }
 
-    /// One colliding pair, if there is any; which one is not fixed.
+    /// Returns one colliding pair, if there is any; which one is not fixed.
     ///
     /// # Errors
     /// As [`Detector::discrete`].
@@ -173,11 +174,11 @@ impl Detector {
         Ok(self.discrete(positions)?.len())
     }
 
-    /// All pairs that collide while every vertex moves on a straight line from its position at the start to that at the end,
-    /// sorted by pair, each with its time of impact: the same promise as [`Query::continuous`](crate::Query::continuous).
+    /// Returns all pairs that collide while every vertex moves on a straight line from its position at the start to that at the
+    /// end, sorted by pair, each with its time of impact, with the guarantee of [`Query::continuous`](crate::Query::continuous).
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both; when the filter has [`Neighbours::IncludeFolded`](crate::Neighbours).
+    /// As [`Detector::discrete`], for both sets of positions; when the filter has [`Neighbours::IncludeFolded`](crate::Neighbours).
     pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
         check_continuous(self.context.filter.neighbours())?;
         let motion = self.check([x_t0, x_t1])?;
@@ -196,7 +197,7 @@ impl Detector {
         self.statistics
     }
 
-    /// Forgets the last answer and checks positions.
+    /// Clears the last answer and checks positions.
     ///
     /// # Errors
     /// As [`Detector::discrete`].
@@ -215,7 +216,7 @@ impl Detector {
         Ok(GivenMotion::new(positions, &self.context.layout))
     }
 
-    /// Starts a discrete search; builds the hierarchy again, by these positions, where it has become bad.
+    /// Starts a discrete search; rebuilds the hierarchy by these positions if its cost has grown too much.
     pub(super) fn begin_discrete(&mut self, motion: &GivenMotion<'_, 1>, positions: &[DVec3], refit: Refit) {
         if !self.discrete.begin(&self.context, motion, refit) {
             self.rebuild(positions);
@@ -223,7 +224,7 @@ impl Detector {
         }
     }
 
-    /// The same for a swept search.
+    /// Starts a swept search; rebuilds the hierarchy by the positions at the start if its cost has grown too much.
     pub(super) fn begin_swept(&mut self, motion: &GivenMotion<'_, 2>, x_t0: &[DVec3], refit: Refit) {
         if !self.swept.begin(&self.context, motion, refit) {
             self.rebuild(x_t0);
@@ -231,14 +232,16 @@ impl Detector {
         }
     }
 
+    /// Checks that the last search was complete.
+    ///
     /// # Errors
     /// When the maximum number of pairs stopped the last search.
     pub(super) fn check_complete(&self) -> Result<(), Error> {
         if self.statistics.complete { Ok(()) } else { Err(Error::TooManyPairs { most: Self::MAX_PAIRS }) }
     }
 
-    /// Computes the masks of adjacent triangles at the second search with a hierarchy: a detector that is used once does not
-    /// pay for them.
+    /// Computes the masks of adjacent triangles at the second search with a hierarchy, so that a detector that is used once saves
+    /// the time.
     fn mask_adjacent(&mut self) {
         if self.is_used {
             self.context.layout.buckets.mask_adjacent(&self.context.filter);
@@ -246,7 +249,7 @@ impl Detector {
         self.is_used = true;
     }
 
-    /// Builds the hierarchy again, by these positions.
+    /// Rebuilds the hierarchy by these positions.
     pub(super) fn rebuild(&mut self, positions: &[DVec3]) {
         let filter = &self.context.filter;
         let hierarchy = Hierarchy::build_by_median(filter.faces(), positions);
@@ -261,8 +264,8 @@ impl Detector {
     }
 }
 
-/// A detector whose vertices are welded by the given classes: vertices with the same number are one vertex for adjacency,
-/// as in skinned meshes, where equal rest positions may move apart.
+/// Creates a detector whose vertices are welded by the given classes: vertices with the same number are one vertex for
+/// adjacency, as in skinned meshes, where vertices of equal rest position may move apart.
 ///
 /// # Errors
 /// When there are not as many classes as vertices, or the filter's groups are of another mesh.
@@ -273,14 +276,14 @@ pub fn detector_with_weld_classes(
 ) -> Result<Detector, Error> {
     check_count(classes.len(), mesh.rest_positions().len())?;
     filter.check_groups(mesh.faces().len())?;
-    // Class numbers are numbers of vertices, which bounds the memory of tables by class.
+    // Classes are numbered by vertices, which bounds the memory of tables by class.
     let mut first = HashMap::new();
     let vertices = classes.iter().enumerate();
     let classes: Vec<u32> = vertices.map(|(v, class)| *first.entry(*class).or_insert(v as u32)).collect();
     Ok(Detector::build(mesh, Some(&classes), filter))
 }
 
-/// A detector for positions of a model, which welds vertices as queries do: those of equal rest position and modes.
+/// Creates a detector for positions of a model, which welds vertices as queries do: those of equal rest position and modes.
 ///
 /// # Errors
 /// When the filter's groups are of another mesh.
@@ -290,6 +293,8 @@ pub(crate) fn detector_of_model(model: &ReducedModel, filter: &ContactFilter) ->
     Ok(Detector::build(model.mesh(), classes.as_deref(), filter))
 }
 
+/// Checks the number of positions.
+///
 /// # Errors
 /// When the number of positions is not that of the vertices.
 fn check_count(found: usize, vertices: usize) -> Result<(), Error> {
@@ -301,7 +306,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_answer_without_a_limit_is_complete_or_an_error() {
+    fn more_pairs_than_the_maximum_are_an_error() {
         let corners = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::new(0.2, 0.7, z)];
         let mesh = TriMesh::new([corners(0.0), corners(0.1)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let mut detector = Detector::new(&mesh);

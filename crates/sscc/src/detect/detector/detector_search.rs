@@ -1,4 +1,4 @@
-//! The searches of a detector, one after the other, and the cost of its hierarchy in them.
+//! The successive searches of a detector, and the cost of its hierarchy in them.
 
 use super::given_motion::GivenMotion;
 use crate::Error;
@@ -7,22 +7,22 @@ use crate::detect::context::Context;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::{Counters, Search, SearchState, Side};
 
-/// The hierarchy is built again when its cost has grown by this factor (docs/notes/queries.md#one-shot-detector).
+/// The hierarchy is rebuilt when its cost has grown by this factor (docs/notes/queries.md#one-shot-detector).
 const MAX_COST_GROWTH: f64 = 2.0;
 
-/// Which boxes are refitted before a search.
+/// The boxes that are refitted before a search.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refit {
-    /// Those of all triangles: a search of a mesh with itself opens nearly all buckets.
+    /// The boxes of all nodes and triangles: a search of a mesh with itself opens nearly all buckets.
     All,
-    /// Those of nodes: most buckets are far from another mesh.
+    /// The boxes of nodes only: most buckets are far from another mesh.
     Nodes,
 }
 
 /// Searches of `E` configurations each.
 #[derive(Clone)]
 pub(super) struct DetectorSearch<const E: usize, N> {
-    /// Made by the first search with a hierarchy.
+    /// Created by the first search with a hierarchy.
     broad: Option<Box<BroadPhase<E>>>,
     /// The state of searches in two meshes.
     between: SearchState,
@@ -41,7 +41,7 @@ impl<const E: usize, N: Default> Default for DetectorSearch<E, N> {
 }
 
 impl<const E: usize, N: NarrowPhase<E>> DetectorSearch<E, N> {
-    /// Refits the boxes that a search needs. False if the hierarchy should be built again.
+    /// Refits the boxes that a search needs. False if the hierarchy should be rebuilt.
     pub(super) fn begin(&mut self, context: &Context, motion: &GivenMotion<'_, E>, refit: Refit) -> bool {
         let is_first = self.broad.is_none();
         let broad = self.broad.get_or_insert_with(|| Box::new(BroadPhase::new(&context.layout, false, None)));
@@ -59,7 +59,7 @@ impl<const E: usize, N: NarrowPhase<E>> DetectorSearch<E, N> {
     /// Finds at most `limit` hits of the mesh with itself, not sorted, after [`Self::begin`].
     ///
     /// # Errors
-    /// When it was cancelled; then there are no hits.
+    /// When the search was cancelled; then there are no hits.
     pub(super) fn find(
         &mut self,
         context: &Context,

@@ -1,4 +1,4 @@
-//! Which parts of a mesh lie inside another one.
+//! The number of connected components of a mesh that lie inside another one.
 
 use std::sync::Arc;
 
@@ -10,26 +10,26 @@ use super::detector::Detector;
 use crate::Error;
 use crate::geometry::crossing;
 
-/// How many connected components of a mesh lie inside another mesh.
+/// The number of connected components of a mesh that lie inside another mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Enclosed {
-    /// Number of the connected components of the mesh.
+    /// The number of connected components of the mesh.
     pub components: usize,
-    /// How many of them lie inside.
+    /// The number of components that lie inside the other mesh.
     pub inside: usize,
 }
 
 impl Detector {
-    /// How many connected components of this mesh lie inside the other one, and of the other inside this one, at positions at which
-    /// [`Detector::against`] finds no pair: then each component is inside or outside as a whole.
+    /// Counts the connected components of this mesh that lie inside the other one, and those of the other mesh inside this one, at
+    /// positions at which [`Detector::against`] finds no pair: then each component is inside or outside as a whole.
     ///
     /// Only closed components have an inside: those whose triangles run along every edge as often in one direction as in the other. A
-    /// component, closed or not, is inside where the closed ones of the other mesh wind about it, which is computed exactly.
-    /// Vertices that the contact filter welds are one, as long as all of them are at one position.
+    /// component, closed or not, is inside if the winding number of the closed components of the other mesh about it is not 0, which is
+    /// computed exactly. Vertices that the contact filter welds are one vertex if they are all at one position.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for the positions of both meshes.
     pub fn enclosed(
         &mut self,
         positions: &[DVec3],
@@ -48,7 +48,7 @@ impl Detector {
         Ok([two.enclose(&one)?, one.enclose(&two)?])
     }
 
-    /// The connected components. Where welded vertices are apart, those of vertices that are not welded.
+    /// Returns the connected components. If welded vertices have different positions, no vertices are welded.
     pub(super) fn components_at(&mut self, positions: &[DVec3]) -> Arc<Components> {
         let filter = &self.context.filter;
         let triangles = 0..filter.faces().len() as u32;
@@ -93,7 +93,7 @@ impl Side<'_> {
         self.winding_number_of(point, |triangle| self.components.is_closed(triangle))
     }
 
-    /// The winding number about a point of the triangles that count.
+    /// Returns the winding number about a point of the triangles for which `is_counted` holds.
     pub(super) fn winding_number_of(
         &self,
         point: DVec3,

@@ -5,12 +5,12 @@ use glam::DVec3;
 use super::enclosed::Side;
 use crate::Error;
 
-/// Rounding errors of a component's volume, in units of the sum of the absolute values of its terms.
+/// A bound of the rounding errors of a component's volume for each triangle, in units of the sum of the absolute values of its terms.
 const ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// Returns 1 for a mesh that faces outward, -1 for one that faces inward; None where some of its components wind about a place in
-/// one direction and others in the other one, so that it has no inside. Components without volume do not count, and of one that
-/// crosses itself its volume tells how it faces. `triangles`: the corners of all triangles.
+/// Returns 1 for a mesh that faces outward, -1 for one that faces inward. Returns `None` if the winding number about some points has
+/// the opposite sign, so that the mesh has no inside. Components without volume do not count. The sign of its volume determines how
+/// a component that crosses itself faces. `triangles`: the corners of all triangles.
 ///
 /// # Errors
 /// When the token cancels.

@@ -1,8 +1,8 @@
-//! Given positions: the vertex motion of a [`Detector`](crate::Detector).
+//! `GivenMotion`: given positions as the vertex motion of a [`Detector`](crate::Detector).
 //!
-//! Given positions are exact, so that the error in single precision is that of the map to the frame alone: the centre of the
+//! Given positions are exact, so that the error in single precision is only that of the map to the frame: the centre of the
 //! frame lies in the AABB of all positions, so mapped coordinates are within [-2, 2], and each is rounded by at most 2 units
-//! of 2^-24. The separating-axis test allows for more.
+//! of 2^-24. The separating-axis test allows for larger errors.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub(super) struct GivenMotion<'x, const E: usize> {
 }
 
 impl<'x, const E: usize> GivenMotion<'x, E> {
-    /// The caller has checked the number of vertices and that positions are within limits.
+    /// Creates the motion. The caller has checked the number of vertices and that positions are within limits.
     pub(super) fn new(positions: [&'x [DVec3]; E], layout: &Layout) -> Self {
         let used = layout.vertices.mesh_vertices();
         let of = |x: &[DVec3]| Aabb::of_points(used.iter().map(|v| x[*v as usize]));
@@ -33,13 +33,13 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
         self.whole
     }
 
-    /// The same motion, in the frame of a larger AABB.
+    /// Returns the same motion, in the frame of a larger AABB.
     pub(super) fn in_frame_of(self, whole: Aabb) -> Self {
         Self { whole, ..self }
     }
 
-    /// The same motion, whose boxes are widened so that those of triangles overlap that are nearer than a distance: by half of it, but no
-    /// farther than all overlap.
+    /// Returns the same motion with widened boxes, so that those of triangles nearer than a distance overlap: by half of the distance,
+    /// but by no more than the extent, at which all boxes overlap.
     pub(super) fn widened(self, distance: f64) -> Self {
         let extent = (self.whole.upper - self.whole.lower).max_element();
         Self { margin: right_or!((distance / 2.0).min(extent), ClearanceHalved, distance / 4.0), ..self }
@@ -49,7 +49,7 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
 impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
     const HAS_ERROR_BOUND: bool = true;
 
-    /// Given positions are exact.
+    /// Returns 0, because given positions are exact.
     #[inline]
     fn rounding(&self) -> f64 {
         right_or!(self.margin, ClearanceOfBoxesAlone, 0.0)
@@ -81,7 +81,7 @@ impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
         self.positions.map(|x| x[vertex])
     }
 
-    /// Boxes of nodes are refitted.
+    /// Returns `None`, because boxes of nodes are refitted.
     #[inline]
     fn node_aabb(&self, _: &Layout, _: u32) -> Option<Aabb> {
         None

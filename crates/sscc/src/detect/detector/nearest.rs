@@ -1,5 +1,5 @@
-//! The smallest distance of a mesh from itself or from another one: pairs of nodes, the nearer boxes first, while their boxes are
-//! nearer than the nearest triangles so far.
+//! The smallest distance between two triangles of a mesh, or of two meshes. The search visits pairs of nodes, the nearer boxes first,
+//! while their boxes are nearer than the nearest triangles so far.
 
 use glam::DVec3;
 
@@ -14,18 +14,19 @@ use crate::{Error, distance_triangle_triangle};
 /// Pairs of nodes visited between two checks whether the search was cancelled.
 const VISITS_PER_CHECK: u64 = 1024;
 
-/// The distance of two boxes, not more than that of points in them, up to rounding.
+/// Returns the distance of two boxes: a lower bound of that of points in them, up to rounding.
 fn distance_between(a: &Aabb, b: &Aabb) -> f64 {
     let gaps = (b.lower - a.upper).max(a.lower - b.upper).max(DVec3::ZERO);
-    // No square overflows or vanishes.
+    // Scaling prevents overflow and underflow of squares.
     let largest = gaps.max_element();
     if largest > 0.0 { (gaps / largest).length() * largest } else { 0.0 }
 }
 
 impl Detector {
-    /// The nearest two triangles at these positions that count and are farther apart on the surface than so many rings (1: than a common
-    /// vertex; see [`Clearance::beyond_rings`](crate::Clearance::beyond_rings)), with their distance: within the error of
-    /// [`distance_triangle_triangle`] of the smallest one, and 0 if any of them collide. None where no pair counts.
+    /// Returns the nearest two triangles at these positions that count and are not within `rings` rings of each other on the surface (1:
+    /// have no common vertex; see [`Clearance::beyond_rings`](crate::Clearance::beyond_rings)), with their distance. It differs from the
+    /// smallest distance by at most the error of [`distance_triangle_triangle`], and is 0 if any such pair collides. `None` if no pair
+    /// counts.
     ///
     /// # Errors
     /// As [`Detector::discrete`].
@@ -45,11 +46,11 @@ impl Detector {
         found
     }
 
-    /// The nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that count, as for
-    /// [`Detector::against`].
+    /// Returns the nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that count as
+    /// for [`Detector::against`].
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for both.
+    /// As [`Detector::discrete`], for the positions of both meshes.
     pub fn nearest_against(
         &mut self,
         positions: &[DVec3],
@@ -68,10 +69,10 @@ impl Detector {
     }
 }
 
-/// The nearest pair of triangles that counts, of one mesh with itself (`is_self`: both are the same) or of two.
+/// Returns the nearest pair of triangles that counts, of one mesh with itself (`is_self`: both arguments are the same mesh) or of two.
 ///
 /// # Errors
-/// When the token of the first one cancels.
+/// When the token of the first mesh cancels.
 fn nearest(
     boxes: [&Boxes<'_>; 2],
     is_self: bool,
@@ -79,7 +80,7 @@ fn nearest(
 ) -> Result<Option<NearPair>, Error> {
     let [one, two] = boxes;
     let mut best: Option<NearPair> = None;
-    // A box farther away has nothing nearer. The bounds of boxes are rounded, by less than the share that is added here.
+    // Boxes farther apart than this contain no nearer pair. The added share covers the rounding of distances of boxes.
     let mut most = f64::INFINITY;
     let bound = |(n, m): NodePair| distance_between(&one.of_nodes[n as usize], &two.of_nodes[m as usize]);
     let mut open = vec![((0, 0), bound((0, 0)))];
@@ -95,7 +96,7 @@ fn nearest(
         if !(one.is_leaf(n) && two.is_leaf(m)) {
             parts.clear();
             let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
-            // Of one mesh each two nodes once.
+            // With one mesh each pair of nodes is visited once.
             let pairs = pairs.filter(|(i, j)| !(is_self && n == m && i > j));
             parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= most));
             parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
@@ -103,7 +104,7 @@ fn nearest(
             continue;
         }
         for &a in one.triangles(n) {
-            // Rings of one triangle may take as long as all others.
+            // The rings of one triangle may take as long as those of all others.
             if one.context.is_cancelled() {
                 return Err(Error::Cancelled);
             }
@@ -117,7 +118,7 @@ fn nearest(
                 if distance_between(&of(&corners), &of(&others)) > most || !counts(a, b) {
                     continue;
                 }
-                // Rounding depends on the order of two triangles.
+                // The rounding of a distance depends on the order of the two triangles, so that the order is fixed.
                 let is_turned = is_self && a > b;
                 let (x, y) = if is_turned { (&others, &corners) } else { (&corners, &others) };
                 let distance = distance_triangle_triangle(x, y);

@@ -1,4 +1,4 @@
-//! How deep two closed meshes are in each other.
+//! The penetration of two closed meshes: their shared volume, and the largest ball inside of both.
 
 use super::boxes::Boxes;
 use super::common_ball::largest_common_ball;
@@ -9,29 +9,30 @@ use super::shared_volume::shared_volume;
 use crate::Error;
 use glam::DVec3;
 
-/// How deep two closed meshes are in each other, as bodies.
+/// The penetration of two closed meshes, as solid bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BodyPenetration {
-    /// The volume that both have inside, within `volume_error`. A mesh that crosses itself counts where it overlaps as often as it winds about
-    /// the place.
+    /// The volume that is inside of both meshes, within `volume_error`. If a mesh crosses itself, volume counts as often as its winding
+    /// number.
     pub volume: f64,
     /// Bound of the rounding error of the volume.
     pub volume_error: f64,
-    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 where there is none. Of two plates that overlap,
-    /// or two balls, it is how far one must move to leave the other.
+    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 if there is none. For two
+    /// overlapping plates or balls, it is the distance by which one must move to separate them.
     pub depth: f64,
-    /// No such ball has a larger diameter than `depth + depth_error`, up to 1e-9 of the size of the meshes: at most a thousandth more,
-    /// unless what both share is thinner, across all axes, than about a hundredth of its width.
+    /// No such ball has a larger diameter than `depth + depth_error`, up to 1e-9 of the size of the meshes. The error is at most a
+    /// thousandth of the depth, unless the shared volume is thinner, across all axes, than about a hundredth of its width.
     pub depth_error: f64,
 }
 
-/// The volume that two meshes share, and the largest ball inside of both, each at its positions. Costs the pairs of triangles whose
-/// projections along z overlap, and a search that takes longer the flatter what they share is. The token of the first detector cancels it.
+/// Returns the volume that two meshes share, and the diameter of the largest ball inside of both, each mesh at its positions. The cost
+/// is that of the pairs of triangles whose projections along z overlap, and of a search that takes longer for a flatter shared volume.
+/// The token of the first detector cancels it.
 ///
 /// # Errors
-/// As [`Detector::discrete`], for both; when a mesh is open, or some of its parts face inward that are not within others, so that it
-/// has no inside.
+/// As [`Detector::discrete`], for the positions of both meshes; when a mesh is open, or has parts that face inward and are not within
+/// others, so that it has no inside.
 pub fn body_penetration(
     [one, two]: [&mut Detector; 2],
     [positions, other_positions]: [&[DVec3]; 2],
@@ -57,7 +58,7 @@ pub fn body_penetration(
     }
     let sign = f64::from(directions[0] * directions[1]);
     let (volume, volume_error) = shared_volume(triangles.each_ref().map(Vec::as_slice), sign, cancel)?;
-    // A ball is not larger than what both share. Where that may be nothing, as where they only touch, none is searched.
+    // The volume of the ball is at most the shared volume. If that may be 0, as for meshes that only touch, no ball is searched.
     let largest = (0.75 * (volume + volume_error) / std::f64::consts::PI).cbrt();
     let (radius, bound) = if volume <= volume_error { (0.0, largest) } else { largest_common_ball(sides)? };
     let bound = bound.min(largest).max(radius);

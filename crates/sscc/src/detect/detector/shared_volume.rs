@@ -5,10 +5,11 @@ use glam::DVec3;
 use crate::geometry::{Aabb, overlap_integral};
 use crate::{CancelToken, Error};
 
-/// Pairs between two questions whether the search is cancelled.
+/// Pairs between two checks whether the search was cancelled.
 const PAIRS: usize = 1 << 12;
 
-/// Returns the volume that two closed meshes share, and a bound of its rounding error. `sign`: -1 where one of them faces inward, else 1.
+/// Returns the volume that two closed meshes share, and a bound of its rounding error. `sign`: -1 if exactly one of them faces inward,
+/// otherwise 1.
 ///
 /// # Errors
 /// When the token cancels.
@@ -24,7 +25,7 @@ pub(super) fn shared_volume(
     let shared =
         Aabb { lower: aabbs[0].lower.max(aabbs[1].lower), upper: aabbs[0].upper.min(aabbs[1].upper) };
     let center = shared.center();
-    // Only triangles over the shared box have a partner.
+    // Only triangles over the shared box can overlap triangles of the other mesh.
     let [a, b] = meshes.map(|mesh| spans(mesh, &shared, center));
     let (mut sum, mut error, mut pairs) = (0.0_f64, 0.0, 0_usize);
     let (mut open_a, mut open_b): (Vec<&Span>, Vec<&Span>) = (Vec::new(), Vec::new());

@@ -5,12 +5,12 @@ use crate::detect::answer::Statistics;
 use crate::detect::narrow_phase::NarrowPhase;
 
 impl Statistics {
-    /// Those of a detector that has no answer.
+    /// Returns the statistics of a detector without an answer.
     pub(super) fn forget(self) -> Self {
         Self { rebuilds: self.rebuilds, ..Self::default() }
     }
 
-    /// Takes over those of a search.
+    /// Copies the statistics of a search.
     pub(super) fn set_search<const E: usize, N: NarrowPhase<E>>(
         &mut self,
         search: &mut DetectorSearch<E, N>,

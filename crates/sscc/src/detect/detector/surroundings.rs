@@ -5,13 +5,13 @@ use crate::filter::{surroundings, surroundings_between};
 use crate::{Error, Pair};
 
 impl Detector {
-    /// These pairs of triangles and all that count within so many rings of them: one triangle within the rings around the first one
-    /// of a pair, the other one within those around its second. Triangles with a common vertex are one ring apart. Sorted. To
-    /// leave out what touches at rest, give them to [`ContactFilter::ignoring`](crate::ContactFilter::ignoring).
+    /// Returns these pairs of triangles and all pairs that count within `rings` rings of them, sorted: one triangle is within the
+    /// rings around the first triangle of a pair, the other one within those around the second. Triangles with a common vertex are
+    /// one ring apart. Pass them to [`ContactFilter::ignoring`](crate::ContactFilter::ignoring) to ignore parts that touch at rest.
     ///
     /// # Errors
-    /// When a pair names a triangle that the mesh does not have; when they are more than 2^22; when it was
-    /// cancelled.
+    /// When a pair names a triangle that the mesh does not have; when the result has more than 2^22 pairs; when the
+    /// search was cancelled.
     pub fn surroundings(&self, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
         let larger = pairs.iter().map(|(a, b)| *a.max(b));
         check_triangles(larger, self.context.filter.faces().len())?;
@@ -19,8 +19,8 @@ impl Detector {
     }
 }
 
-/// As [`Detector::surroundings`], of pairs (triangle of the first detector's mesh, triangle of the second's). All pairs between two
-/// meshes count.
+/// Returns the surroundings of pairs (triangle of the first detector's mesh, triangle of the second's), as
+/// [`Detector::surroundings`]. All pairs between two meshes count.
 ///
 /// # Errors
 /// As [`Detector::surroundings`]; when the first detector was cancelled.

@@ -10,13 +10,13 @@ use crate::{Pair, distance_triangle_triangle};
 /// Two triangles and their distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearPair {
-    /// The triangles, of one mesh the lower number first.
+    /// The triangles; of one mesh, the lower number first.
     pub pair: Pair,
-    /// Their distance (model unit), with the error of [`distance_triangle_triangle`]; 0 exactly where they collide.
+    /// Their distance (model unit), with the error of [`distance_triangle_triangle`]; it is 0 exactly if they collide.
     pub distance: f64,
 }
 
-/// The pairs of a search that are nearer than a distance. Triangles with a common vertex never are.
+/// The pairs of a search that are nearer than a distance, except triangles with a common vertex.
 #[derive(Clone, Default)]
 pub(crate) struct ClearanceHits {
     pub(crate) distance: f64,

@@ -1,6 +1,6 @@
 //! The hits of one search, up to a limit.
 
-/// A limit that is there for memory alone ends hardly any search.
+/// Limits of at least this bound only the memory, and end hardly any search.
 const PRACTICALLY_UNLIMITED: usize = 1 << 24;
 
 /// Hits, and whether the limit stopped the search.
@@ -18,7 +18,7 @@ impl<T> Default for Hits<T> {
 }
 
 impl<T> Hits<T> {
-    /// Forgets all hits and starts a search for at most `limit` of them.
+    /// Clears all hits and starts a search for at most `limit` of them.
     #[inline]
     pub(crate) fn begin(&mut self, limit: usize) {
         self.list.clear();
@@ -26,14 +26,14 @@ impl<T> Hits<T> {
         self.is_full = false;
     }
 
-    /// Whether the limit is reached. Call it only if a test is left: it records that the answer is incomplete.
+    /// Whether the limit is reached. Call it only if there is another test: it records that the answer is incomplete.
     #[inline]
     pub(crate) fn note_if_full(&mut self) -> bool {
         self.is_full |= self.list.len() >= self.limit;
         self.is_full
     }
 
-    /// Whether no number of hits ends the search.
+    /// Whether the limit is so large that hardly any search ends at it.
     pub(crate) fn is_unlimited(&self) -> bool {
         self.limit >= PRACTICALLY_UNLIMITED
     }
@@ -44,7 +44,7 @@ impl<T> Hits<T> {
         !self.is_full
     }
 
-    /// Makes the next call of [`Self::note_if_full`] end the search.
+    /// Sets the limit so that the next call of [`Self::note_if_full`] ends the search.
     pub(crate) fn stop(&mut self) {
         self.limit = 0;
     }

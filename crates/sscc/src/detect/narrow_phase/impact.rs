@@ -1,4 +1,4 @@
-//! `Impact`: two triangles that collide during a motion, and when.
+//! `Impact`: two triangles that collide during a motion, and the time of impact.
 
 use crate::Pair;
 
@@ -13,7 +13,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// How close two triangles must come to be listed though they do not touch: this share (2^-40, about 1e-12) of
-    /// their size, see [`impact_triangle_triangle`](crate::impact_triangle_triangle). Well above the rounding error.
+    /// Triangles that do not touch may be listed if they come closer than this share (2^-40, about 1e-12) of their
+    /// size, see [`impact_triangle_triangle`](crate::impact_triangle_triangle). It is well above the rounding error.
     pub const TOLERANCE: f64 = 1.0 / (1_u64 << 40) as f64;
 }

@@ -1,10 +1,10 @@
-//! The narrow phase: the test of two triangles whose boxes overlap. There are five:
+//! The narrow phase: the test of two triangles whose boxes overlap. There are five kinds:
 //!
 //! - discrete ([`DiscreteHits`]): whether they have a point in common at one configuration;
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
 //! - AABB ([`AabbHits`]): whether their AABBs, around all positions in a region of z or between two configurations, overlap;
 //! - clearance ([`ClearanceHits`]): whether they are nearer than a distance at one configuration;
-//! - near ([`NearHits`]): none; all pairs whose widened boxes overlap.
+//! - near ([`NearHits`]): no test; it keeps all pairs whose widened boxes overlap.
 
 mod aabb;
 mod clearance;

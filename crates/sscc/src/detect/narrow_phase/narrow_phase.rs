@@ -8,12 +8,12 @@ use crate::filter::{PairFilter, Relation};
 
 /// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
 /// queries, and `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All
-/// methods share them, so that all give the same answers.
+/// methods of queries share these tests, so that all give the same answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;
 
-    /// Tests two triangles, the lower number first, that are not adjacent: by their corners at each configuration.
+    /// Tests two triangles that are not adjacent, the lower number first, by their corners at each configuration.
     fn test(
         &self,
         filter: &PairFilter,

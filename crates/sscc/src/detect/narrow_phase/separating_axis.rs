@@ -3,7 +3,7 @@
 use glam::{Vec3A, Vec4};
 
 /// Whether two triangles certainly have no point in common at either end, nor on the straight lines between: one direction
-/// separates them at both. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
+/// separates them at both ends. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
 #[inline]
 pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
     if !error.is_finite() {
@@ -23,7 +23,7 @@ pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 
             .separate(&a, &b, error)
 }
 
-/// The corners relative to an origin. A loop, because nested maps of arrays are not inlined.
+/// Returns the corners relative to an origin. It is a loop, because nested maps of arrays are not inlined.
 #[inline(always)]
 fn relative_to<const E: usize>(corners: &[[Vec4; E]; 3], origin: &[Vec4; E]) -> [[Vec3A; E]; 3] {
     let mut relative = [[Vec3A::ZERO; E]; 3];
@@ -53,9 +53,9 @@ impl Directions {
     }
 
     /// Whether one of the directions separates the triangles in every configuration, by more than the error of
-    /// positions and sums. In units of the direction's 1-norm: positions err by 2 `error`; differences, products and
-    /// sums by about 20 units of 2^-24 in [-1, 1], where `error` is at least 14. Coordinates beyond 1 occur only where given
-    /// positions are mapped: all errors together are then at most 40 units, and the slack is at least 56.
+    /// positions and sums. In units of the direction's 1-norm, positions contribute an error of 2 `error`, and differences,
+    /// products and sums one of about 20 units of 2^-24 in [-1, 1], where `error` is at least 14 units. Coordinates beyond 1
+    /// occur only where given positions are mapped: then the total error is at most 40 units, and the slack is at least 56.
     #[inline]
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
@@ -84,8 +84,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{MovingTriangle, impact_triangle_triangle, intersect_triangle_triangle};
 
-    /// With positions that are off by nearly the error bound, triangles are separated only if the exact ones are. These touch,
-    /// or are a few error bounds apart or inside each other, or farther.
+    /// If positions have errors of nearly the bound, triangles are separated only if the exact ones are. The exact triangles touch,
+    /// or have a distance or an overlap of a few error bounds or more.
     #[test]
     fn only_separated_triangles_are_reported() {
         let random = &mut Random(5);
@@ -100,7 +100,7 @@ mod tests {
                 // A common corner, or an edge and a corner on it.
                 0 => b[0] = a[1],
                 1 => b[0] = a[0] * 0.25 + a[1] * 0.75,
-                // In one plane, side by side.
+                // Triangles in one plane, side by side.
                 2 => b = [a[1], a[2], a[1] + a[2] - a[0]],
                 // Needles and points.
                 3 => a[2] = a[0] + (a[1] - a[0]) * random.signed(),
@@ -124,12 +124,12 @@ mod tests {
         assert!(apart > 20_000 && missed < apart / 8 && met > 20_000, "{apart} {missed} {met}");
     }
 
-    /// Triangles with a common corner. Each is moved away from the other by the whole error bound, along the normal
+    /// The triangles have a common corner. Each is moved away from the other by the whole error bound, along the normal
     /// that makes the error largest; sums are rounded as well.
     #[test]
     fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
         let random = &mut Random(9);
-        // Exact in single precision, as are the margins and what they move.
+        // The positions, the margins and the moved positions are exact in single precision.
         let grid = |x: DVec3| (x * 2.0_f64.powi(20)).round() / 2.0_f64.powi(20);
         let mut used = 0;
         for case in 0..20_000 {
@@ -153,7 +153,7 @@ mod tests {
         assert!(used > 4000, "{used}");
     }
 
-    /// The same for triangles that move.
+    /// Moving triangles are separated only if they do not collide during the motion.
     #[test]
     fn only_triangles_that_stay_separated_are_reported() {
         let random = &mut Random(6);

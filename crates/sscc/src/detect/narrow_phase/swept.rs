@@ -27,7 +27,7 @@ impl NarrowPhase<2> for SweptHits {
         let a = MovingTriangle { t0: *a_t0, t1: *a_t1 };
         let b = MovingTriangle { t0: *b_t0, t1: *b_t1 };
         let time = |a: &MovingTriangle, b: &MovingTriangle| {
-            // Boxes in single precision overlap more often than exact ones: the answer must not depend on them.
+            // Boxes in single precision overlap more often than exact ones, and the answer must not depend on them.
             if a.is_swept_aabb_overlapping(b) {
                 impact_triangle_triangle(a, b, Impact::TOLERANCE)
             } else {

@@ -7,8 +7,8 @@ use super::metric::Metric;
 use crate::{Error, Modes, TriMesh};
 
 impl Metric {
-    /// Each mode by its largest displacement of a vertex that some face uses. A mode that moves nothing
-    /// gets the smallest scale of the others, or 1.
+    /// Returns the displacement metric: it scales each mode by its largest displacement of a vertex that some face uses. A
+    /// mode that moves no such vertex has the smallest scale of the others, or 1.
     ///
     /// # Errors
     /// When the modes are for another number of vertices.
@@ -23,8 +23,8 @@ impl Metric {
         Ok(Self::diagonal(MetricKind::Displacement, fill_zeros(scales)))
     }
 
-    /// Each mode by the surface it moves: `sqrt(sum_i area_i |U_i|^2)`, with [`vertex_areas`]. A mode that moves
-    /// nothing gets the smallest scale of the others, or 1.
+    /// Returns the mass metric: it scales each mode by the surface that it moves, `sqrt(sum_i area_i |U_i|^2)`, with
+    /// [`vertex_areas`]. A mode that moves no surface has the smallest scale of the others, or 1.
     ///
     /// # Errors
     /// When the modes are for another number of vertices.
@@ -42,7 +42,7 @@ impl Metric {
     }
 }
 
-/// A third of the area of each face at each of its corners (unit squared), unused vertices 0.
+/// Returns for each vertex a third of the area of its faces (unit squared); 0 for unused vertices.
 pub fn vertex_areas(mesh: &TriMesh) -> Vec<f64> {
     let p = mesh.rest_positions();
     let mut areas = vec![0.0; p.len()];
@@ -56,13 +56,13 @@ pub fn vertex_areas(mesh: &TriMesh) -> Vec<f64> {
     areas
 }
 
-/// The length of a vector without overflow or underflow of the squares.
+/// Returns the length of a vector without overflow or underflow of the squares.
 fn length(x: DVec3) -> f64 {
     let largest = x.abs().max_element();
     if largest == 0.0 { 0.0 } else { largest * (x / largest).length() }
 }
 
-/// Replaces zero scales (modes that move nothing) by the smallest positive one, or 1.
+/// Replaces scales of 0 (of modes without displacements) by the smallest positive one, or by 1.
 fn fill_zeros(mut scales: Vec<f64>) -> Vec<f64> {
     let smallest = scales.iter().copied().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
     let fill = if smallest.is_finite() { smallest } else { 1.0 };

@@ -1,17 +1,17 @@
 //! The kinds of metrics, and their names on the command line and in files.
 
-/// Where the factor of a [`Metric`](crate::Metric) comes from.
+/// The origin of the factor of a [`Metric`](crate::Metric).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MetricKind {
-    /// All weights 1.
+    /// All weights are 1.
     Identity,
-    /// Each mode by its largest vertex displacement, so that `|z|` is a length (paper, section 6).
+    /// Each mode is scaled by its largest vertex displacement, so that `|z|` is a length (paper, section 6).
     Displacement,
-    /// Each mode by the root of `sum_i area_i |U_i|^2`: how much surface it moves (paper, section 6).
+    /// Each mode is scaled by the root of `sum_i area_i |U_i|^2`, which measures the surface that it moves (paper, section 6).
     Mass,
-    /// Each mode by the strain energy of a unit of it (paper, section 6).
+    /// Each mode is scaled by the strain energy of its unit displacement (paper, section 6).
     Energy,
-    /// Weights or a matrix from the caller.
+    /// Weights or a matrix are given by the caller.
     Given,
 }
 

@@ -1,4 +1,4 @@
-//! The metric of q-space by its factor, diagonal or triangular (paper, section 6: the scaling matrix M).
+//! The metric of q-space, stored as its diagonal or triangular factor (paper, section 6: the scaling matrix M).
 
 use glam::DVec3;
 
@@ -20,17 +20,17 @@ pub struct Metric {
 pub(super) enum Factor {
     /// One positive number for each mode.
     Diagonal(Vec<f64>),
-    /// Upper triangular, with a positive diagonal.
+    /// An upper triangular matrix with a positive diagonal.
     Triangular(Triangular),
 }
 
 impl Metric {
-    /// All weights 1.
+    /// Returns the metric whose weights are all 1.
     pub fn identity(rank: usize) -> Self {
         Self::diagonal(MetricKind::Identity, vec![1.0; rank])
     }
 
-    /// A metric with the given factor: `scales[k]` is the root of the weight of mode k.
+    /// Creates a metric with the given factor: `scales[k]` is the root of the weight of mode k.
     ///
     /// # Errors
     /// When a scale is not positive and finite.
@@ -44,7 +44,7 @@ impl Metric {
         }
     }
 
-    /// A metric with the given weights, the diagonal of `M` (paper, section 4).
+    /// Creates a metric with the given weights, the diagonal of `M` (paper, section 4).
     ///
     /// # Errors
     /// When a weight is not positive and finite.
@@ -55,7 +55,7 @@ impl Metric {
         Self::from_scales(kind, weights.iter().map(|w| w.sqrt()).collect())
     }
 
-    /// A metric with the given dense matrix `M` (r x r, by rows): its factor is Cholesky's, transposed.
+    /// Creates a metric with the given dense matrix `M` (r x r, by rows). Its factor is the transposed Cholesky factor.
     ///
     /// # Errors
     /// When M is not square, not symmetric up to rounding (1e-9) or not positive definite, or as
@@ -65,12 +65,12 @@ impl Metric {
         Ok(Self { kind, factor })
     }
 
-    /// A metric with the given upper triangular factor `S` (r x r, by rows, zeros below the diagonal).
+    /// Creates a metric with the given upper triangular factor `S` (r x r, by rows, zeros below the diagonal).
     ///
     /// # Errors
     /// When there are more than 1024 modes, the factor is not square or not upper triangular, an entry is beyond
     /// 2^200, a diagonal entry is not positive or below 2^-200, or the factor is nearly singular (condition beyond
-    /// about 1e13, its square for M).
+    /// about 1e13; about 1e26 for M).
     pub fn from_factor(kind: MetricKind, rank: usize, factor: Vec<f64>) -> Result<Self, Error> {
         Ok(Self { kind, factor: Factor::Triangular(Triangular::new(rank, factor)?) })
     }
@@ -79,12 +79,12 @@ impl Metric {
         Self { kind, factor: Factor::Diagonal(scales) }
     }
 
-    /// Where the factor comes from.
+    /// Returns the origin of the factor.
     pub fn kind(&self) -> MetricKind {
         self.kind
     }
 
-    /// Number of modes r.
+    /// Returns the number of modes r.
     pub fn rank(&self) -> usize {
         match &self.factor {
             Factor::Diagonal(scales) => scales.len(),
@@ -100,7 +100,7 @@ impl Metric {
         }
     }
 
-    /// The factor `S` of a dense metric (r x r, by rows); none where it is diagonal.
+    /// Returns the factor `S` of a dense metric (r x r, by rows); `None` if it is diagonal.
     pub fn dense_factor(&self) -> Option<&[f64]> {
         match &self.factor {
             Factor::Diagonal(_) => None,
@@ -108,16 +108,16 @@ impl Metric {
         }
     }
 
-    /// `q = S^-1 z`, rounded to nearest.
+    /// Returns `q = S^-1 z`, rounded to nearest.
     ///
     /// # Errors
-    /// When z has not one entry for each mode.
+    /// When the length of z is not the number of modes.
     pub fn unscaled(&self, z: &[f64]) -> Result<Vec<f64>, Error> {
         self.check_len(z)?;
         Ok(self.unscale(z))
     }
 
-    /// The same for a z known to have an entry for each mode.
+    /// Returns `S^-1 z` as [`Metric::unscaled`], for a z that has one entry for each mode.
     pub(crate) fn unscale(&self, z: &[f64]) -> Vec<f64> {
         match &self.factor {
             Factor::Diagonal(scales) => z.iter().zip(scales).map(|(z, s)| z / s).collect(),
@@ -125,7 +125,7 @@ impl Metric {
         }
     }
 
-    /// `z = S q`, rounded to nearest.
+    /// Returns `z = S q`, rounded to nearest.
     pub(crate) fn scaled(&self, q: &[f64]) -> Vec<f64> {
         match &self.factor {
             Factor::Diagonal(scales) => q.iter().zip(scales).map(|(q, s)| q * s).collect(),
@@ -133,7 +133,7 @@ impl Metric {
         }
     }
 
-    /// The scaled modes of one vertex, `A = U S^-1`: one vector for each mode, written to `out`. Errors are within
+    /// Writes the scaled modes of one vertex, `A = U S^-1`, to `out`: one vector for each mode. Errors are within
     /// `gamma_r |A||S||S^-1|`.
     pub(crate) fn scaled_modes(&self, modes: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
@@ -144,8 +144,8 @@ impl Metric {
         }
     }
 
-    /// An upper bound of `|A||S||S^-1|`, mode by mode (`|A|` if the factor is diagonal). Positions at z err by at most
-    /// `gamma |z|` times this, component by component.
+    /// Computes an upper bound of `|A||S||S^-1|`, mode by mode (`|A|` if the factor is diagonal). The error of positions at z
+    /// is at most `gamma |z|` times this bound, component by component.
     pub(crate) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(_) => out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
@@ -157,7 +157,7 @@ impl Metric {
         }
     }
 
-    /// `|S e_k|`, the length of a unit of mode k, rounded to nearest.
+    /// Returns `|S e_k|`, the length of a unit of mode k, rounded to nearest.
     pub(crate) fn mode_length(&self, k: usize) -> f64 {
         match &self.factor {
             Factor::Diagonal(scales) => scales[k],

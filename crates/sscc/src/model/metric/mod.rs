@@ -1,4 +1,4 @@
-//! Metrics of q-space: how long a deformation is (paper, section 6).
+//! Metrics of q-space, which define the length of a deformation (paper, section 6).
 
 mod defaults;
 mod kind;

@@ -1,11 +1,11 @@
 //! The length `|S q|` of q, rounded up.
 //!
-//! Squares overflow or underflow where entries are extreme; only there is the largest entry divided out first.
+//! Squares of extreme entries overflow or underflow; only in that case all entries are first divided by the largest one.
 
 use super::metric::{Factor, Metric};
 use crate::Error;
 
-/// Where the largest number lies in this range, squares do not overflow, and their underflow is negligible: the largest
+/// If the largest number is in this range, squares do not overflow, and their underflow is negligible: the largest
 /// square is at least 1e-280, and the others lose at most r 2^-1074.
 const SAFE_TO_SQUARE: std::ops::Range<f64> = 1e-140..1e140;
 
@@ -13,17 +13,17 @@ const SAFE_TO_SQUARE: std::ops::Range<f64> = 1e-140..1e140;
 const SAFE_SUM: std::ops::Range<f64> = 1e-280..1e280;
 
 impl Metric {
-    /// `|S q|`, rounded up: never less than the exact length of the given q. Infinite where it overflows or is NaN. (For
+    /// Returns `|S q|`, rounded up: never less than the exact length of the given q. Infinite if it overflows or is NaN. (For
     /// radii about a centre see [`Certificates::norm`](crate::Certificates::norm).)
     ///
     /// # Errors
-    /// When q has not one entry for each mode.
+    /// When the length of q is not the number of modes.
     pub fn norm(&self, q: &[f64]) -> Result<f64, Error> {
         self.check_len(q)?;
         Ok(self.length(q))
     }
 
-    /// The same for a q known to have an entry for each mode.
+    /// Returns the norm as [`Metric::norm`], for a q that has one entry for each mode.
     pub(crate) fn length(&self, q: &[f64]) -> f64 {
         debug_assert_eq!(q.len(), self.rank(), "one number for each mode");
         match &self.factor {
@@ -32,14 +32,16 @@ impl Metric {
         }
     }
 
+    /// Checks the length of q.
+    ///
     /// # Errors
-    /// When there is not one number for each mode.
+    /// When the length of q is not the number of modes.
     pub(crate) fn check_len(&self, q: &[f64]) -> Result<(), Error> {
         let (found, rank) = (q.len(), self.rank());
         if found == rank { Ok(()) } else { Err(Error::CoordinatesLength { found, rank }) }
     }
 
-    /// `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once,
+    /// Returns `|S (q - center)|`, rounded up; `offset` is scratch of r entries. The difference is rounded once,
     /// relative to itself; the 16 units in the last place of [`up`] cover that.
     pub(crate) fn norm_from(&self, q: &[f64], center: &[f64], offset: &mut [f64]) -> f64 {
         offset.iter_mut().zip(q).zip(center).for_each(|((d, q), c)| *d = q - c);
@@ -53,7 +55,7 @@ fn up(count: usize) -> f64 {
 }
 
 fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
-    // Four partial sums; [`up`] covers any order of summation.
+    // There are four partial sums; [`up`] covers any order of summation.
     let mut lanes = [0.0_f64; 4];
     let (scale_chunks, scale_rest) = scales.as_chunks::<4>();
     let (chunks, rest) = q.as_chunks::<4>();
@@ -76,13 +78,13 @@ fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
     norm_by_largest(scales.iter().zip(q).map(scaled), q.len())
 }
 
-/// The norm of non-negative numbers. `numbers` may be called twice.
+/// Returns the norm of non-negative numbers. `numbers` may be called twice.
 fn norm_of<I: Iterator<Item = f64> + Clone>(numbers: impl Fn() -> I, count: usize) -> f64 {
     let (sum, largest) = numbers().fold((0.0, 0.0_f64), |(sum, l), z| (sum + z * z, l.max(z)));
     if SAFE_TO_SQUARE.contains(&largest) { sum.sqrt() * up(count) } else { norm_by_largest(numbers(), count) }
 }
 
-/// The norm where squares would overflow or underflow: all numbers are divided by the largest one.
+/// Returns the norm if squares would overflow or underflow: all numbers are divided by the largest one.
 #[cold]
 fn norm_by_largest(numbers: impl Iterator<Item = f64> + Clone, count: usize) -> f64 {
     let largest = numbers.clone().fold(0.0, f64::max);
@@ -112,14 +114,14 @@ mod tests {
         let dense = Metric::from_factor(MetricKind::Given, 2, vec![1.0, 2.0, 0.0, 4.0]).unwrap();
         let norm = dense.length(&[1.0, 1.0]);
         assert!(norm >= exact && norm <= exact * (1.0 + 1e-13), "{norm}");
-        // Products that cancel are covered: the exact sum is 2^-52.
+        // Products cancel here: the exact sum is 2^-52.
         let tiny = 2.0_f64.powi(-40);
         let factor = vec![1.0, 1.0, 0.0, tiny];
         let dense = Metric::from_factor(MetricKind::Given, 2, factor).unwrap();
         assert!(dense.length(&[1.0 + f64::EPSILON, -1.0]) >= f64::EPSILON);
     }
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns a generator of fixed pseudo-random numbers in [-1, 1).
     fn random() -> impl FnMut() -> f64 {
         let mut state = 1_u64;
         move || {
@@ -128,7 +130,7 @@ mod tests {
         }
     }
 
-    /// The norm against the sum of squares in exact arithmetic, with dense factors whose products cancel.
+    /// The norm is compared with the sum of squares in exact arithmetic, with dense factors whose products cancel.
     #[test]
     fn norm_is_at_least_the_exact_one() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
@@ -159,7 +161,7 @@ mod tests {
             } else {
                 match Metric::from_factor(MetricKind::Given, rank, factor.clone()) {
                     Ok(metric) => metric,
-                    // Nearly singular.
+                    // The factor is nearly singular.
                     Err(_) => continue,
                 }
             };

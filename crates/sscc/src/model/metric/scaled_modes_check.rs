@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::metric::Metric;
 use crate::{Error, Modes, TriMesh, limits};
 
-/// Refuses a metric in which the rounding bounds do not hold for modes.
+/// Checks that the rounding bounds hold for modes in a metric.
 ///
 /// # Errors
 /// When the metric is of another rank, or the modes divided by its factor leave the range in which the proofs hold.
@@ -13,8 +13,8 @@ pub fn check_metric(metric: &Metric, mesh: &TriMesh, modes: &Modes) -> Result<()
     check_scaled_modes(mesh, modes, metric).map(|_| ())
 }
 
-/// The largest magnitude of an entry of `A = U S^-1` over the used vertices. It is 0 (no mode moves anything) or within
-/// [`limits::SMALLEST`] and [`limits::LARGEST`].
+/// Returns the largest magnitude of an entry of `A = U S^-1` over the used vertices. It is 0 (if no mode moves a used vertex)
+/// or between [`limits::SMALLEST`] and [`limits::LARGEST`].
 ///
 /// # Errors
 /// When the metric has another rank, or the scaled modes are out of range.
@@ -36,7 +36,7 @@ pub(crate) fn check_scaled_modes(mesh: &TriMesh, modes: &Modes, metric: &Metric)
             moves |= *u != DVec3::ZERO;
         }
     }
-    // Modes that move something must not underflow when scaled: a radius would become infinite.
+    // Nonzero modes must not underflow when they are scaled: a radius would become infinite.
     if !moves || (limits::SMALLEST..=limits::LARGEST).contains(&largest) {
         Ok(largest)
     } else {

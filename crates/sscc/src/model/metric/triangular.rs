@@ -1,14 +1,15 @@
-//! The upper triangular factor of a dense metric, and an upper bound of how its inverse magnifies rounding errors.
+//! The upper triangular factor of a dense metric, and an upper bound of the factor by which its inverse magnifies rounding
+//! errors.
 
 use glam::DVec3;
 
 use crate::{Error, limits};
 
-/// The factor of more modes than this takes gigabytes and minutes; reduced models have far fewer.
+/// The largest number of modes. The factor of more modes takes gigabytes and minutes; reduced models have far fewer.
 const MAX_MODES: usize = 1024;
 
-/// A matrix counts as symmetric when no entry differs by more than this from its mirror image, in units of the diagonal:
-/// far above the rounding of a matrix that was computed in another order, far below a mistake.
+/// A matrix counts as symmetric if no entry differs by more than this from its mirror image, in units of the diagonal. The
+/// tolerance is far above the rounding of a matrix that was computed in another order, and far below the error of a wrong matrix.
 const ASYMMETRY: f64 = 1e-9;
 
 /// An upper triangular factor S with a positive diagonal.
@@ -57,7 +58,7 @@ impl Triangular {
         Ok(this)
     }
 
-    /// The factor of a symmetric positive definite matrix, `M = S'S`.
+    /// Computes the factor of a symmetric positive definite matrix, `M = S'S`.
     pub(super) fn cholesky(rank: usize, matrix: &[f64]) -> Result<Self, Error> {
         let wrong = |what: &'static str| Error::MetricMatrix { what };
         if rank > MAX_MODES {
@@ -109,13 +110,13 @@ impl Triangular {
         largest * column().map(|s| (s / largest) * (s / largest)).sum::<f64>().sqrt()
     }
 
-    /// `S q`, rounded to nearest.
+    /// Returns `S q`, rounded to nearest.
     pub(super) fn product(&self, q: &[f64]) -> Vec<f64> {
         let row = |i: usize| self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x).sum();
         (0..self.rank).map(row).collect()
     }
 
-    /// `S^-1 z` by back substitution, rounded to nearest.
+    /// Computes `S^-1 z` by back substitution, rounded to nearest.
     pub(super) fn solve(&self, z: &[f64]) -> Vec<f64> {
         let mut q = z.to_vec();
         for i in (0..self.rank).rev() {
@@ -126,8 +127,8 @@ impl Triangular {
         q
     }
 
-    /// `A = U S^-1` by forward substitution: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. The backward error of a triangular
-    /// solve is at most `gamma_r |A||S|`, so the error of A is at most that times `|S^-1|`.
+    /// Computes `A = U S^-1` by forward substitution: `A_k = (U_k - sum_j A_j S_jk) / S_kk`. The backward error of a
+    /// triangular solve is at most `gamma_r |A||S|`, so the error of A is at most that times `|S^-1|`.
     pub(super) fn divide(&self, modes: &[DVec3], out: &mut [DVec3]) {
         out.copy_from_slice(modes);
         for j in 0..self.rank {
@@ -140,7 +141,7 @@ impl Triangular {
         }
     }
 
-    /// An upper bound of `|A||S||S^-1|`.
+    /// Computes an upper bound of `|A||S||S^-1|`.
     pub(super) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         out.fill(DVec3::ZERO);
         for (a, row) in scaled.iter().zip(self.growth.chunks_exact(self.rank)) {
@@ -148,20 +149,20 @@ impl Triangular {
         }
     }
 
-    /// An upper bound of `|S q|_i` for each row i.
+    /// Returns an upper bound of `|S q|_i` for each row i.
     pub(super) fn products_up(&self, q: &[f64]) -> impl Iterator<Item = f64> + Clone {
         let gamma = right_or!((self.rank as f64 + 8.0) * f64::EPSILON, DenseProductsExact, 0.0);
         (0..self.rank).map(move |i| {
             let products = self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x);
             let (sum, size) = products.fold((0.0_f64, 0.0_f64), |(sum, size), p| (sum + p, size + p.abs()));
             let moves = self.row(i)[i..].iter().zip(&q[i..]).any(|(s, x)| *s != 0.0 && *x != 0.0);
-            // A sum that overflows gives infinity; products that underflow count as the smallest normal number.
+            // The bound of a sum that overflows is infinite; products that underflow count as the smallest normal number.
             let bound = sum.abs() + gamma * size + if moves { f64::MIN_POSITIVE } else { 0.0 };
             if bound.is_nan() { f64::INFINITY } else { bound }
         })
     }
 
-    /// An upper bound of `|S||S^-1|`; none where S is so nearly singular that the computed inverse proves nothing.
+    /// Returns an upper bound of `|S||S^-1|`; `None` if S is so nearly singular that the computed inverse proves nothing.
     ///
     /// With a computed inverse T and `R = I - S T`: `S^-1 = T (I - R)^-1`, so where the row sums of `|R|` are at most
     /// `rho < 1`, `|S^-1| <= |T| + rho / (1 - rho) times the row sums of |T|`.

@@ -14,7 +14,7 @@ fn vector(random: &mut Numbers) -> DVec3 {
     DVec3::new(random.signed(), random.signed(), random.signed())
 }
 
-/// A cloud of triangles, and three handles of twelve modes, whose weights add up to 1.
+/// Returns a cloud of triangles with three handles of twelve modes each, whose weights add up to 1.
 fn handles(random: &mut Numbers) -> ReducedModel {
     let positions: Vec<DVec3> = (0..90).map(|_| vector(random)).collect();
     let places = [(); HANDLES].map(|()| vector(random));
@@ -30,7 +30,7 @@ fn handles(random: &mut Numbers) -> ReducedModel {
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap()
 }
 
-/// The q that moves each handle by a map.
+/// Returns the q that moves each handle by a map.
 fn coordinates(map: impl Fn(usize) -> (DMat3, DVec3)) -> Vec<f64> {
     (0..HANDLES)
         .flat_map(|handle| {
@@ -42,7 +42,7 @@ fn coordinates(map: impl Fn(usize) -> (DMat3, DVec3)) -> Vec<f64> {
 }
 
 #[test]
-fn affine_motions_of_all_handles_are_taken_away() {
+fn affine_motion_of_all_handles_is_subtracted() {
     let random = &mut Numbers(4);
     for _ in 0..20 {
         let model = handles(random);
@@ -68,12 +68,12 @@ fn affine_motions_of_all_handles_are_taken_away() {
         assert!(left.sum() < 1e-8 * sum(&whole), "{} {}", left.sum(), sum(&whole));
         let map = turn.0 - DMat3::IDENTITY;
         assert!(norm(&(left.map - map)) < 1e-8 * norm(&map), "{} {map}", left.map);
-        // What bends the shape stays.
+        // Motions that bend the shape are not subtracted.
         let bent =
             factors(coordinates(|handle| if handle == 0 { turn } else { (DMat3::IDENTITY, DVec3::ZERO) }));
         assert!(free(&bent).sum() > 0.05 * sum(&bent));
     }
-    // Modes that have no such combination, and a shape in one plane.
+    // There are no combinations for modes without affine motions, or for a shape in one plane.
     let positions: Vec<DVec3> = (0..30).map(|_| vector(random)).collect();
     let faces: Vec<[u32; 3]> = (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let modes = || Modes::new(2, (0..60).map(|i| DVec3::splat((i as f64).sin())).collect()).unwrap();
@@ -84,8 +84,8 @@ fn affine_motions_of_all_handles_are_taken_away() {
     }
 }
 
-/// A cloud of triangles whose other half is its mirror image in the origin, and so are the modes: residuals of mirrored vertices are
-/// opposite.
+/// Returns a cloud of triangles of which one half is the mirror image of the other in the origin, with mirrored modes: residuals of
+/// mirrored vertices are opposite.
 fn mirrored(random: &mut Numbers) -> ReducedModel {
     let half: Vec<(DVec3, Vec<DVec3>)> =
         (0..45).map(|_| (vector(random), (0..RANK).map(|_| vector(random)).collect())).collect();
@@ -98,7 +98,7 @@ fn mirrored(random: &mut Numbers) -> ReducedModel {
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap()
 }
 
-/// For any combination and any map, here those that fit best.
+/// The bound holds for any combination and any map; this test takes random combinations with the maps that fit best.
 #[test]
 fn residuals_of_combinations_are_within_their_bounds() {
     let random = &mut Numbers(9);
@@ -114,7 +114,7 @@ fn residuals_of_combinations_are_within_their_bounds() {
         let mut free = AffineFree::default();
         free.set(factors.iter().copied());
         modes.take_from(&mut free);
-        // What the affine part moves a vertex beside its map and translation.
+        // The displacement of a vertex by the affine part, apart from its map and translation.
         let taken: Vec<f64> = factors.iter().zip(&free.factors).map(|(f, rest)| f - rest).collect();
         let left = |v: u32| {
             let mut moved = DVec3::ZERO;
@@ -130,8 +130,8 @@ fn residuals_of_combinations_are_within_their_bounds() {
     assert!(tight > 0.9, "{tight}");
 }
 
-/// Of combinations that move the shape by affine maps rounding is all that is left. Also about another centre, and of vertices with which no
-/// combination was searched.
+/// Residuals of combinations that move the shape by affine maps consist of rounding. The test also has other centres, and a vertex by
+/// which no combination was fitted.
 #[test]
 fn residuals_include_their_rounding() {
     let random = &mut Numbers(21);
@@ -139,7 +139,7 @@ fn residuals_include_their_rounding() {
     for case in 0..12 {
         let mut model = handles(random);
         if case % 3 == 2 {
-            // One vertex moves by itself: of 45 that are fitted it is none.
+            // One vertex moves alone. It is not among the 45 vertices by which maps are fitted.
             let mut modes: Vec<DVec3> = (0..90).flat_map(|v| model.modes().of_vertex(v).to_vec()).collect();
             modes[RANK] += DVec3::X * 1e-3;
             let modes = Modes::new(RANK, modes).unwrap();
@@ -151,7 +151,7 @@ fn residuals_include_their_rounding() {
         let fits = Fits::new(&patch, 45).unwrap();
         let modes = AffineModes::with_directions(&patch, &fits, fits.null_vectors());
         assert!(modes.combinations.len() >= 12);
-        // All lengths are multiplied by the sizes of the modes, so that they have no quotients.
+        // All lengths are multiplied by the sizes of the modes, so that they contain no quotients.
         let moving: Vec<usize> = (0..RANK).filter(|k| model.mode_displacement_bound(*k, 1.0) > 0.0).collect();
         let sizes: Vec<Dyadic> =
             moving.iter().map(|k| exact(model.mode_displacement_bound(*k, 1.0))).collect();
@@ -195,7 +195,7 @@ fn the_rest_of_factors_is_within_its_error() {
         let mut free = AffineFree::default();
         free.set(factors.iter().copied());
         modes.take_from(&mut free);
-        // The same numbers `a` once more.
+        // Computes the numbers `a_j` again.
         let mut rest = factors.clone();
         let amounts = modes.combinations.iter().map(|one| {
             let a = dot(&rest, &one.factors);

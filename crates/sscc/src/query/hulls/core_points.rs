@@ -5,12 +5,12 @@ use glam::DVec3;
 use crate::geometry::nearest_within;
 use crate::model::rounding::larger_or_nan;
 
-/// Core points of each hull. With 24, hulls leave more node pairs open; more points hardly make them tighter, and take longer
+/// Core points of each hull. With 24, hulls separate fewer node pairs; more points hardly make hulls tighter, and take longer
 /// (docs/notes/traversal.md#moving-hulls).
 pub(super) const CORE_POINTS: usize = 32;
 
-/// Directions in which the first core points are extreme: the corners, edge midpoints and face centres of a cube, one
-/// of each two opposite ones.
+/// Directions in which the first core points are extreme: to the corners, edge midpoints and face centres of a cube, one
+/// of each two opposite directions.
 const DIRECTIONS: [[f64; 3]; 13] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -30,7 +30,7 @@ const DIRECTIONS: [[f64; 3]; 13] = [
 /// Points are added until all points are this close to the hull, as a share of the largest norm.
 const TOLERANCE: f64 = 0.01;
 
-/// A distance that needs not be known more exactly.
+/// The computation of a distance ends once the distance is at most this.
 const CLOSE: f64 = TOLERANCE / 2.0;
 
 /// Rounding of a distance, as a share of the largest norm: differences and sums of 32 products of numbers of at most 2, less
@@ -67,7 +67,7 @@ pub(super) fn choose(points: &[DVec3]) -> CorePoints {
         let hull = hull_of(points, &chosen);
         far.retain_mut(|(i, distance)| {
             *distance = distance_bound(points[*i], &hull);
-            // NaN is close, and stays.
+            // NaN counts as close: it is no longer improved, and makes the bound NaN.
             let is_far = *distance > TOLERANCE;
             if !is_far {
                 close = larger_or_nan(close, *distance);
@@ -92,12 +92,12 @@ pub(super) fn choose(points: &[DVec3]) -> CorePoints {
     CorePoints { points: all, distance }
 }
 
-/// The chosen points in single precision, the first one repeated.
+/// Returns the chosen points in single precision; the first one fills the remaining entries.
 fn hull_of(points: &[DVec3], chosen: &[usize]) -> [DVec3; CORE_POINTS] {
     std::array::from_fn(|i| points[*chosen.get(i).unwrap_or(&chosen[0])].as_vec3().as_dvec3())
 }
 
-/// An upper bound, up to [`ROUNDING`], of the distance of a point from a hull: that from one point of the hull.
+/// Returns an upper bound, up to [`ROUNDING`], of the distance of a point from a hull: its distance from one point of the hull.
 fn distance_bound(point: DVec3, hull: &[DVec3; CORE_POINTS]) -> f64 {
     let nearest = nearest_within(&hull.map(|d| d - point), CLOSE);
     let weights = nearest.weights.iter().zip(hull);

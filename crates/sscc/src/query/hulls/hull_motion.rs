@@ -6,10 +6,10 @@ use super::node_hulls::NodeHulls;
 use crate::detect::f32_frame::F32Frame;
 use crate::detect::vertex_motion::rounding_bound;
 
-/// With a larger error bound, in the coordinates of the frame, too few nodes would be apart.
+/// With a larger error bound, in the coordinates of the frame, too few node pairs would be separated.
 const MAX_ERROR: f64 = 1.0 / 64.0;
 
-/// Length of the diagonal of a cube, rounded up: errors here are along each axis, radii are not.
+/// Length of the diagonal of the unit cube, rounded up: errors here are along each axis, radii are lengths in any direction.
 const DIAGONAL: f64 = 1.7321;
 
 /// The factors of one search, in the coordinates of its frame.
@@ -38,7 +38,7 @@ impl<const E: usize> Default for HullMotion<E> {
 
 impl<const E: usize> HullMotion<E> {
     /// Sets the factors at each q. `rounding` bounds the error of the shape's positions. False if the error bound is
-    /// too large for hulls to be of use.
+    /// so large that hulls would prove nothing.
     ///
     /// Error bound. Let u = 2^-24, and T the sum of the magnitudes of all terms of a coordinate of any core point: the
     /// factors times [`NodeHulls::weights`], and the shift.
@@ -95,7 +95,7 @@ impl<const E: usize> HullMotion<E> {
         error <= MAX_ERROR
     }
 
-    /// A displacement along each axis as a distance in the frame, rounded up.
+    /// Converts displacements along the axes to a distance in the frame, rounded up.
     pub(super) fn distance(&self, displacement: DVec3) -> f32 {
         // Scaled first: in the units of a tiny model squares would underflow.
         let scaled = (displacement * self.scale).length();
@@ -108,7 +108,7 @@ impl<const E: usize> HullMotion<E> {
 mod tests {
     use super::*;
 
-    /// In the units of tiny and huge models, whose squares are no normal numbers.
+    /// Tests the units of tiny and huge models, whose squares are not normal floating-point numbers.
     #[test]
     fn displacements_are_never_short_in_the_frame() {
         for size in [1e-300, 1e-165, 1e-160, 1e-157, 1.0, 1e157, 1e165] {

@@ -18,7 +18,7 @@
 //! precision and of the computed shape. Between two configurations, a plane that separates the hulls at both ends
 //! separates the motion on straight lines, because each position there is a convex combination of positions at the ends.
 //!
-//! The plane is found in any way, in any precision ([`separation`]). Only the last comparison must be safe.
+//! The plane may be found by any method, in any precision ([`separation`]). Only the last comparison must be safe.
 
 mod core_points;
 mod hull_motion;

@@ -10,15 +10,15 @@ use crate::detect::vertex_motion::VertexMotion;
 use crate::model::rounding::larger_or_nan;
 use crate::vectors::InstructionSet;
 
-/// A gap at the centre of less than so many radii seldom stays open: such pairs are not tested.
+/// Pairs whose gap at the centre is less than this many radii are not tested: such gaps seldom stay open.
 const MIN_GAP: f32 = 2.0;
 
-/// The hulls of one search. Each entry has the number of the search for which it is current.
+/// The hulls of one search. Each entry contains the number of the search for which it is current.
 #[derive(Clone)]
 pub(crate) struct MovedHulls<const E: usize> {
     motion: HullMotion<E>,
     instructions: InstructionSet,
-    /// Whether the motion is that of this search: it is set by the first test.
+    /// Whether the motion of this search is set: the first test sets it.
     has_begun: bool,
     /// Whether a test may succeed in this search.
     is_useful: bool,
@@ -32,7 +32,7 @@ pub(super) struct MovedHull<const E: usize> {
     /// Moves the core points.
     maps: [AffineMap; E],
     pub(super) radius: f32,
-    /// Turns a direction at rest into one at the first configuration.
+    /// Maps a direction at rest to one at the first configuration.
     cofactors: Mat3,
 }
 
@@ -110,7 +110,7 @@ impl<const E: usize> MovedHulls<E> {
         }
     }
 
-    /// The core points of a current hull, with the maps that move them.
+    /// Returns the core points of a current hull, with the maps that move them.
     #[inline]
     pub(super) fn points<'t>(&'t self, hulls: &'t NodeHulls, index: usize) -> MovedPoints<'t, E> {
         MovedPoints { points: &hulls.shape(index).core, maps: &self.hulls[index].maps }
@@ -171,7 +171,7 @@ impl<const E: usize> MovedHulls<E> {
 }
 
 impl MovedHulls<1> {
-    /// The normal of the plane with the widest gap between two current hulls, from the first to the second. None where
+    /// Returns the normal of the plane with the widest gap between two current hulls, from the first to the second. `None` if
     /// the gap is narrow, or a node has no hull.
     pub(crate) fn separating_direction(&self, hulls: &NodeHulls, (n, m): (u32, u32)) -> Option<Vec3> {
         let [Some(i), Some(j)] = [n, m].map(|n| hulls.index_of(n)) else { return None };
@@ -182,10 +182,10 @@ impl MovedHulls<1> {
     }
 }
 
-/// An upper bound of the norm of F: the root of the largest absolute row sum of F'F.
+/// Returns an upper bound of the norm of F: the root of the largest absolute row sum of F'F.
 ///
-/// An entry of F'F is wrong by at most 5 u times the largest one of the diagonal, also where its terms cancel. So the largest row
-/// sum, which is at least as large as that entry, is wrong by less than 20 u of itself, and its root by less than 1e-6.
+/// The error of an entry of F'F is at most 5 u times the largest one of the diagonal, also where its terms cancel. So the relative
+/// error of the largest row sum, which is at least as large as that entry, is less than 20 u, and that of its root less than 1e-6.
 /// Underflow is part of [`HullMotion::error`].
 fn norm_bound(columns: &Mat3) -> f32 {
     let gram = columns.transpose() * *columns;
@@ -196,10 +196,10 @@ fn norm_bound(columns: &Mat3) -> f32 {
     larger_or_nan(larger_or_nan(x, y), z).sqrt() * (1.0 + 1e-5)
 }
 
-/// The radius of a hull whose core points this map moves; infinite where a number is not finite.
+/// Returns the radius of a hull whose core points this map moves; infinite where a number is not finite.
 ///
-/// A maximum of numbers ignores NaN, and so does the extent of points along a direction. A hull of NaN would be a
-/// proof; one of infinite radius proves nothing.
+/// The maximum of numbers ignores NaN, and so does the extent of points along a direction. So hulls with NaN would seem
+/// separated; one of infinite radius proves nothing.
 #[inline]
 fn radius_or_infinity(map: &AffineMap, radius: f32) -> f32 {
     let is_finite = radius.is_finite() && map.iter().all(|row| row.is_finite());
@@ -217,8 +217,8 @@ mod tests {
     use crate::test_models::Random;
     use crate::{Modes, ReducedModel, TriMesh};
 
-    /// Against the lengths of moved vectors: no unit vector becomes longer than the bound. The matrices stretch mostly
-    /// along a diagonal, where the entries of F'F are alike.
+    /// No unit vector that F moves becomes longer than the bound. The matrices stretch mostly along a diagonal, where the
+    /// entries of F'F are alike.
     #[test]
     fn no_vector_is_stretched_by_more_than_the_bound() {
         let random = &mut Random(17);
@@ -233,7 +233,7 @@ mod tests {
             let exact = DMat3::from_cols(x.as_dvec3(), y.as_dvec3(), z.as_dvec3());
             let mut longest = 0.0_f64;
             for dir in std::iter::once(along).chain((0..20).map(|_| random.vector())) {
-                // Powers of F'F turn a vector to where F stretches most.
+                // Powers of F'F rotate a vector to the direction in which F stretches most.
                 let dir = exact.transpose() * (exact * dir.normalize() / size) / size;
                 longest = longest.max((exact * dir.normalize_or(DVec3::X)).length());
             }
@@ -241,8 +241,7 @@ mod tests {
         }
     }
 
-    /// Where a number is infinite or NaN at either end of a motion, a hull is apart from nothing, and so are all
-    /// others from it.
+    /// Where a number is infinite or NaN at either end of a motion, no plane separates the hull from any other one.
     #[test]
     fn hulls_that_are_no_numbers_prove_nothing() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];

@@ -1,4 +1,4 @@
-//! The hull of one node: its centre, the affine map fitted to its modes, core points, and bounds of all else.
+//! The hull of one node: its centre, the affine map fitted to its modes, core points, and bounds of the residuals.
 
 use glam::{DMat3, DVec3, Vec4};
 
@@ -36,7 +36,8 @@ pub(super) struct HullShape {
     pub(super) remainder: f32,
 }
 
-/// Vertices nearly in a plane do not determine the gradient across it: this share of the trace keeps that part small.
+/// Vertices nearly in a plane do not determine the gradient across it: this share of the trace, added to the diagonal, keeps that
+/// part of the gradient small.
 const REGULARIZATION: f64 = 1e-4;
 
 /// Rounding of a residual, relative to the terms of the map: four products and their sums (7 eps), a difference, and the scaled
@@ -51,7 +52,7 @@ impl NodeHull {
         let position = |i: &u32| vertices.positions[*i as usize];
         let center = (indices.iter().map(position).sum::<DVec3>() / count).as_vec3().as_dvec3();
         let most = indices.iter().map(|i| (position(i) - center).length()).fold(0.0, f64::max);
-        // A power of two is not needed: this number is the exact size of the identity's part of the frame.
+        // The number need not be a power of two: the frame contains it exactly, as the identity's part.
         let size = f64::from(((most * (1.0 + 1e-6)) as f32).next_up().max(f32::MIN_POSITIVE));
         let offsets: Vec<DVec3> = indices.iter().map(|i| (position(i) - center) / size).collect();
         let mean = offsets.iter().sum::<DVec3>() / count;

@@ -1,4 +1,4 @@
-//! The hulls of all nodes of a hierarchy that are worth one.
+//! The hulls of the nodes of a hierarchy that are small enough for one.
 
 use super::node_hull::{FrameRate, HullShape, NodeHull, Vertices};
 use crate::ReducedModel;
@@ -7,13 +7,13 @@ use crate::model::rounding::larger_or_nan;
 use crate::parallel;
 use glam::DVec3;
 
-/// Nodes of more triangles have no hull: they are seldom convex enough to be apart from others.
+/// Nodes of more triangles have no hull: a plane seldom separates them from others.
 const MAX_TRIANGLES: u32 = 1024;
 
-/// The hulls of a model's nodes, and what places them in a query. No metric matters to them.
+/// The hulls of a model's nodes, and the data by which a query places them. They do not depend on a metric.
 pub(crate) struct NodeHulls {
     pub(super) rank: usize,
-    /// For each node its hull; [`NONE`] for none.
+    /// For each node its hull; [`NONE`] if it has none.
     indices: Vec<u32>,
     frames: Vec<FrameRate>,
     shapes: Vec<HullShape>,
@@ -26,14 +26,14 @@ pub(crate) struct NodeHulls {
     pub(super) half: f64,
     /// The largest displacement by each mode.
     pub(super) sizes: Vec<f64>,
-    /// For the rest and each mode, how much of its factor may be in a coordinate of any core point of any hull.
+    /// For the shape at rest and each mode an upper bound of the coefficient of its factor in a coordinate of any core point of any hull.
     pub(super) weights: Vec<f64>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl NodeHulls {
-    /// The hulls of all nodes in these pairs that are small enough for one, about a configuration; none where the shape
+    /// Computes the hulls of all nodes in these pairs that are small enough for one, about a configuration; `None` if the shape
     /// leaves the range of numbers.
     pub(crate) fn new(
         model: &ReducedModel,
@@ -91,25 +91,25 @@ impl NodeHulls {
         Some(Self { rank, indices, frames, shapes, configuration, reach, center, half, sizes, weights })
     }
 
-    /// The number of hulls.
+    /// Returns the number of hulls.
     pub(crate) fn count(&self) -> usize {
         self.shapes.len()
     }
 
-    /// All nodes that have a hull, and its index.
+    /// Returns all nodes that have a hull, each with the index of its hull.
     pub(super) fn all(&self) -> impl Iterator<Item = (u32, usize)> {
         let nodes = self.indices.iter().zip(0..).filter(|(index, _)| **index != NONE);
         nodes.map(|(index, node)| (node, *index as usize))
     }
 
-    /// The hull of a node.
+    /// Returns the index of the hull of a node.
     #[inline]
     pub(super) fn index_of(&self, node: u32) -> Option<usize> {
         let index = self.indices[node as usize];
         (index != NONE).then_some(index as usize)
     }
 
-    /// The frame of a hull: at rest, then for each mode.
+    /// Returns the frame of a hull: at rest, then for each mode.
     #[inline]
     pub(super) fn frame(&self, index: usize) -> &[FrameRate] {
         &self.frames[index * (self.rank + 1)..][..self.rank + 1]

@@ -16,11 +16,11 @@ use glam::DVec3;
 
 use crate::model::rounding::larger_or_nan;
 
-/// Vectors that the residuals are split into.
+/// The number of vectors w_j.
 pub(super) const VECTORS: usize = 3;
 
-/// Rounds of the search for the vectors.
-const ROUNDS: usize = 3;
+/// Steps of the power iteration for each vector.
+const STEPS: usize = 3;
 
 /// Rounding of remainders in double precision, for each mode. Entries of H_v are at most 1, so the norm of a row of H_v or L_v
 /// is at most about `sqrt(r)`. h_vj is used as computed, so only its product with w_j and the difference round, by at most
@@ -53,7 +53,7 @@ impl Residuals {
         // The errors are covered elsewhere, too. With the terms T_k of the map, the error of a residual is less than
         // 16 eps (e_k + 2 T_k). 16 eps e_k is less than what `up` adds, here and to the remainder, whose constant is
         // larger than 16 eps; 32 eps T_k is less than 2^-24 T_k, of which the error of single precision has 14 to
-        // spare (`HullMotion::begin`).
+        // reserve (`HullMotion::begin`).
         for (rate, error) in rates.iter_mut().zip(error) {
             rate[0] = up(f64::from(rate[0]) + right_or!(*error, HullResidualErrorForgotten, 0.0));
         }
@@ -69,8 +69,8 @@ impl Residuals {
             principal_vector(residuals, &mut vector);
             for (rate, w) in rates.iter_mut().zip(&mut vector) {
                 rate[1 + j] = (*w as f32) * rate[0];
-                // As it is stored, so that nothing of it is lost. (Its two roundings, `2^-23 |w_jk| t_k`, would also be
-                // within the relative error of sums, of which `HullMotion::relative` has 21 such units to spare; and
+                // The stored number is used, so that its rounding needs no bound. (Its two roundings, `2^-23 |w_jk| t_k`, would
+                // also be within the relative error of sums, of which `HullMotion::relative` has 21 such units in reserve; and
                 // underflow is far below the constant of `HullMotion::error`, since factors are below 1e13.)
                 let stored = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };
                 *w = right_or!(stored, HullVectorsUnrounded, *w);
@@ -84,8 +84,8 @@ impl Residuals {
             along[j] = up(most);
         }
         let largest = residuals.chunks_exact(rank).map(spectral_bound).fold(0.0, larger_or_nan);
-        // The residual of mode k may be wrong by error_k, so its H_v by error_k / e_k, and the remainder by the norm of all of
-        // these: the h_vj are those computed here.
+        // The error of the residual of mode k is at most error_k, so that of its H_v is at most error_k / e_k, and that of the
+        // remainder at most the norm of all these quotients: the computed h_vj are used.
         let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
         let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
         let own = right_or!(error, HullResidualErrorForgotten, 0.0);
@@ -94,10 +94,10 @@ impl Residuals {
     }
 }
 
-/// The unit vector over the modes along which the rows of all vertices are largest, approximately.
+/// Computes approximately the unit vector over the modes along which the rows of all vertices are largest.
 fn principal_vector(rows: &[DVec3], vector: &mut [f64]) {
     let rank = vector.len();
-    // The row that is largest.
+    // The largest row.
     let norm = |h: &[DVec3]| h.iter().map(|h| h.length_squared()).sum::<f64>();
     let rows_of = || rows.chunks_exact(rank);
     let first =
@@ -108,7 +108,7 @@ fn principal_vector(rows: &[DVec3], vector: &mut [f64]) {
     vector.iter_mut().zip(row).for_each(|(w, h)| *w = h[axis]);
     normalize(vector);
     let mut next = vec![0.0; rank];
-    for _ in 0..ROUNDS {
+    for _ in 0..STEPS {
         next.fill(0.0);
         for of_vertex in rows_of() {
             let h = of_vertex.iter().zip(&*vector).map(|(h, w)| *h * *w).sum::<DVec3>();
@@ -124,8 +124,8 @@ fn normalize(vector: &mut [f64]) {
     vector.iter_mut().for_each(|w| *w = if norm > 0.0 { *w / norm } else { 0.0 });
 }
 
-/// At least the largest singular value of the three rows: the root of the largest absolute row sum of their Gram
-/// matrix.
+/// Returns an upper bound of the largest singular value of the three rows: the root of the largest absolute row sum of
+/// their Gram matrix.
 fn spectral_bound(rows: &[DVec3]) -> f64 {
     let mut gram = [DVec3::ZERO; 3];
     for l in rows {

@@ -1,8 +1,8 @@
 //! A plane between two sets of points: the test of one plane, and the search for the plane with the widest gap by the
 //! algorithm of Gilbert, Johnson and Keerthi (GJK, 1988).
 //!
-//! Whatever plane is tried, two sets are apart only where the test says so. The error of the test is part of the radii
-//! ([`HullMotion::error`](super::hull_motion::HullMotion)).
+//! The search may propose any plane: two sets count as separated only if the test of the plane succeeds. The error of the test is
+//! part of the radii ([`HullMotion::error`](super::hull_motion::HullMotion)).
 
 use std::ops::Range;
 
@@ -25,8 +25,8 @@ pub(super) struct MovedPoints<'t, const E: usize> {
 }
 
 impl<const E: usize> MovedPoints<'_, E> {
-    /// The largest coordinate of any moved point along a direction. No point is moved: the transposed map turns the
-    /// direction back, at the cost of moving one point.
+    /// Returns the largest coordinate of any moved point along a direction. No point is moved: the transposed map is applied to
+    /// the direction, at the cost of moving one point.
     #[inline(always)]
     pub(super) fn extent<V: Vectors>(&self, vectors: V, dir: Vec3) -> f32 {
         let mut most = f32::NEG_INFINITY;
@@ -36,13 +36,13 @@ impl<const E: usize> MovedPoints<'_, E> {
         most
     }
 
-    /// A point, moved by the first map.
+    /// Returns a point, moved by the first map.
     pub(super) fn point(&self, i: usize) -> Vec3 {
         let point = Vec3::from_array(self.points.each_ref().map(|axis| axis[i])).extend(1.0);
         Vec3::from_array(self.maps[0].map(|row| row.dot(point)))
     }
 
-    /// The moved point that is farthest along a direction at the first configuration.
+    /// Returns the moved point that is farthest along a direction at the first configuration.
     fn support(&self, dir: Vec3) -> Vec3 {
         let dir = turned_back(&self.maps[0], dir);
         let extent = extent(Baseline, self.points, dir);
@@ -52,14 +52,14 @@ impl<const E: usize> MovedPoints<'_, E> {
     }
 }
 
-/// The product of a direction with the transposed matrix of a map, then the shift along the direction.
+/// Returns the product of a direction with the transposed matrix of a map, then the shift along the direction.
 #[inline(always)]
 fn turned_back(map: &AffineMap, dir: Vec3) -> Vec4 {
     map[0] * dir.x + map[1] * dir.y + map[2] * dir.z
 }
 
-/// The largest coordinate of any point along a direction, and the shift. Closures would not be compiled for the instruction
-/// set of the vectors.
+/// Returns the largest coordinate of any point along a direction, plus the shift. It has no closures, because they would not be
+/// compiled for the instruction set of the vectors.
 #[inline(always)]
 fn extent<V: Vectors>(v: V, [x, y, z]: &Points, turned: Vec4) -> f32 {
     let (dir_x, dir_y, dir_z) = (v.splat(turned.x), v.splat(turned.y), v.splat(turned.z));
@@ -79,14 +79,14 @@ const ROUND_UP: f32 = 1.0 + 1e-5;
 
 const _: () = assert!(CORE_POINTS.is_multiple_of(LANES));
 
-/// The squares of lengths of normals that are tested.
+/// The range of squared lengths of normals: others are not tested.
 const SQUARES: Range<f32> = 1e-6..1e18;
 
 /// Steps of a search, and the share of the distance at which it ends.
 const STEPS: usize = 32;
 const TOLERANCE: f32 = 1e-3;
 
-/// Whether a plane separates two sets of points by more than a distance, the first one below.
+/// Tests whether a plane separates two sets of points by more than a distance, with the first set below the plane.
 ///
 /// The gap along the normal is compared with the distance times the normal's length, both squared. Squares are within the
 /// range of numbers: coordinates are below 1e4 and distances above 1e-15, by the bound of their errors
@@ -94,7 +94,7 @@ const TOLERANCE: f32 = 1e-3;
 pub(super) struct PlaneTest<'t, const E: usize> {
     pub(super) points: [MovedPoints<'t, E>; 2],
     pub(super) distance: f32,
-    /// Of any length.
+    /// The normal of the plane, of any length.
     pub(super) normal: Vec3,
 }
 
@@ -116,7 +116,7 @@ impl<const E: usize> Kernel for PlaneTest<'_, E> {
     }
 }
 
-/// The unit normal of the plane with the widest gap between two sets of points, and the gap; none where it is 0.
+/// Returns the unit normal of the plane with the widest gap between two sets of points, and the gap; `None` if the gap is 0.
 pub(super) fn widest_gap(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> Option<(Vec3, f32)> {
     let middle = |points: &MovedPoints<'_, 1>| (0..CORE_POINTS).map(|i| points.point(i)).sum::<Vec3>();
     let mut normal = unit(middle(b) - middle(a)).unwrap_or(Vec3::X);
@@ -145,7 +145,7 @@ pub(super) fn widest_gap(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> Opti
     best
 }
 
-/// The direction at unit length; none where that is no number.
+/// Returns the direction at unit length; `None` if the result is not finite.
 #[inline]
 fn unit(dir: Vec3) -> Option<Vec3> {
     let dir = (dir / dir.abs().max_element()).normalize();

@@ -1,4 +1,4 @@
-//! Attacks on hulls: every vertex of every node, at its computed position, is within the radius of the hull.
+//! Checks that every vertex of every node, at its computed position, is within the radius of the hull, in adverse cases.
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ use crate::test_models::Random;
 use crate::vectors::{Baseline, InstructionSet};
 use crate::{ContactFilter, Modes, ReducedModel, TriMesh, intersect_triangle_triangle};
 
-/// A model with all that its hulls need.
+/// A model with its hierarchy, layout and hulls.
 struct Case {
     model: ReducedModel,
     hierarchy: Hierarchy,
@@ -40,8 +40,8 @@ impl Case {
         Self { model, hierarchy, layout, hulls }
     }
 
-    /// Checks that all vertices at each q are in the hulls of one motion. Returns the largest share of a radius that a
-    /// distance takes, and the smallest radius; none where the error bound is too large for hulls.
+    /// Checks that all vertices at each q are in the hulls of one motion. Returns the largest quotient of a distance and its
+    /// radius, and the smallest radius; `None` if the error bound is too large for hulls.
     fn check<const E: usize>(
         &self,
         motion: &impl VertexMotion<E>,
@@ -103,8 +103,8 @@ impl Case {
     }
 }
 
-/// A rolled sheet of `2 (side - 1)^2` triangles. `place`: the position of each vertex, from its place on the unit sheet and on
-/// the rolled one. `modes`: its displacements, from its place on the unit sheet and its position.
+/// Returns a rolled sheet of `2 (side - 1)^2` triangles. `place`: the position of each vertex, from its coordinates on the unit
+/// sheet and on the rolled one. `modes`: its displacements, from its coordinates on the unit sheet and its position.
 fn sheet(
     side: u32,
     size: f64,
@@ -129,8 +129,8 @@ fn sheet(
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(rank, rows).unwrap()).unwrap()
 }
 
-/// Smooth, affine, rigid, planar and noisy modes of any size, on a rolled sheet, a plane curve, a line, or a sheet of which a
-/// part is a point.
+/// Returns a rolled sheet, a plane curve, a line, or a sheet of which a part is a point, with smooth, affine, rigid, planar and
+/// noisy modes of any size.
 fn random_sheet(random: &mut Random, case: usize) -> ReducedModel {
     let rank = [1, 2, 3, 7, 20][case % 5];
     let size = [1.0, 1e-60, 1e40, 1e-165][case / 5 % 4];
@@ -191,7 +191,7 @@ fn vertices_are_within_the_radius_of_their_hull() {
                 (0..rank).map(|k| along(k) / most).collect()
             })
             .collect();
-        // Each mode moves the shape by up to about so many times its size.
+        // Each mode moves the shape by up to about `most` times its size.
         let mut q = |most: f64| -> Vec<f64> {
             sizes.iter().map(|s| random.signed() * most * size / s.max(f64::MIN_POSITIVE)).collect()
         };
@@ -219,12 +219,12 @@ fn vertices_are_within_the_radius_of_their_hull() {
     assert!(checked > 1400 && tight > 400, "{checked} {tight}");
 }
 
-/// Residuals that no affine map describes and that cancel over the modes, down to the rounding of their factors to single
-/// precision.
+/// The model has residuals that no affine map describes and that cancel over the modes, down to the rounding of their factors to
+/// single precision.
 #[test]
 fn radii_cover_sums_that_cancel() {
     let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
-    // Corners of a square, up and down in turn. Four modes, so that the vector of the residuals is exact.
+    // Corners of a square move up and down alternately. There are four modes, so that the vector of the residuals is exact.
     let rows =
         (0..4).flat_map(|v| (0..4).map(move |k| if (v + k) % 2 == 0 { DVec3::Z } else { DVec3::NEG_Z }));
     let mesh = TriMesh::new(positions.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
@@ -239,7 +239,7 @@ fn radii_cover_sums_that_cancel() {
     assert!(farthest > 0.01, "{farthest}");
 }
 
-/// With as many core points as vertices and affine modes nothing but rounding is left. Modes that cancel make it large.
+/// With as many core points as vertices and affine modes, radii consist of rounding alone. Modes that cancel make it large.
 #[test]
 fn radii_cover_single_precision() {
     let (mut farthest, mut checked) = (0.0_f64, 0);
@@ -281,7 +281,7 @@ fn radii_cover_the_rounding_of_the_shape() {
     assert!(farthest > 0.001, "{farthest}");
 }
 
-/// At both ends of a motion, and anywhere in a capsule.
+/// Vertices are in the hulls at both ends of a motion, and anywhere in a capsule.
 #[test]
 fn motions_and_capsules_are_covered() {
     let (mut balls, mut capsules, mut farthest) = (0, 0, 0.0_f64);
@@ -386,9 +386,9 @@ fn only_gaps_wider_than_the_radii_separate() {
     assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
 }
 
-/// Two flat sheets, one above the other, whose vertices move up and down in turn: no affine map describes that, so
-/// each hull is the sheet at rest and a radius. Half of the gap is one radius, and where vertices of both go half of
-/// the way, they meet.
+/// Two flat sheets are one above the other, and their vertices move up and down alternately. No affine map describes that, so
+/// each hull is the sheet at rest and a radius. Half of the gap is one radius, and the sheets meet where vertices of both
+/// move by half of the gap.
 #[test]
 fn hulls_are_apart_only_where_their_triangles_are() {
     let (side, gap) = (9_u32, 2.5);
@@ -435,7 +435,7 @@ fn hulls_are_apart_only_where_their_triangles_are() {
             met += usize::from(meet);
         }
     }
-    // Of pairs that meet soon, the radii still leave a tenth of the gap.
+    // At 0.9 of the way to contact the radii fill nine tenths of the gap.
     assert!(apart > 20 && met > 100, "{apart} of {}, {met}", pairs.len());
 }
 

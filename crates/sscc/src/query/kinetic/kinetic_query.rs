@@ -30,29 +30,32 @@ const RETRY_STEPS: u64 = 16;
 /// Safe distances computed between two checks whether the query was cancelled.
 const DISTANCES_PER_CHECK: u64 = 1024;
 
-/// A search may find at most this many pairs for each triangle, and [`MAX_MORE_PAIRS`].
+/// A search may find at most this many pairs for each triangle, and [`MAX_MORE_PAIRS`] more.
 const MAX_PAIRS_PER_TRIANGLE: usize = 8;
 
-/// See [`MAX_PAIRS_PER_TRIANGLE`].
+/// Pairs that a search may find in addition to [`MAX_PAIRS_PER_TRIANGLE`].
 const MAX_MORE_PAIRS: usize = 1024;
 
-/// A search may find at most so many pairs more than its cost allows.
+/// Pairs that a search may find in addition to those that its cost allows.
 const CHEAP_PAIRS: usize = 64;
 
 /// A motion is a jump where a step is longer than this share of `|z|`.
 const MAX_STEP: f64 = 0.25;
 
-/// The cost, in AABBs compared, of opening a node, of comparing two hulls, of computing the safe distance of two
-/// triangles, of testing them, and of finding them in a region.
+/// The cost of opening a node, in AABBs compared.
 const OPEN_COST: u64 = 50;
+/// The cost of comparing two hulls, in AABBs compared.
 const HULL_COST: u64 = 30;
+/// The cost of computing the safe distance of two triangles, in AABBs compared.
 const DISTANCE_COST: u64 = 150;
+/// The cost of testing two triangles, in AABBs compared.
 const TEST_COST: u64 = 20;
+/// The cost of finding two triangles in a region, in AABBs compared.
 const FIND_COST: u64 = 150;
 
-/// As [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers are
-/// the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Unrelated q
-/// cost the same as in a [`Query`]. Takes three times its memory.
+/// Answers as a [`Query`] with certificates, for a q that changes little from query to query, as in a simulation. The answers
+/// are the same for any sequence of q, but after a small step only the pairs that may have changed are tested. Queries at
+/// unrelated q cost the same as those of a [`Query`]. A kinetic query takes three times as much memory.
 ///
 /// ```
 /// # use glam::DVec3;
@@ -85,11 +88,11 @@ pub struct KineticQuery {
     pub(super) region: Region,
     pub(super) region_pairs: RegionPairs,
     pub(super) control: RegionControl,
-    /// The motion of q where the root's certificate does not hold.
+    /// The last steps of q where the root's certificate does not hold.
     history: StepHistory,
     /// The end of the last motion that a continuous query found free; empty if there was none.
     pub(super) free_q: Vec<f64>,
-    /// The cost of the region's search, with which the counters of its first step begin.
+    /// The cost of the region's search, which is added to the cost of the first step in the region.
     region_counters: Counters,
     /// Scratch for differences of q.
     offset: Vec<f64>,
@@ -97,7 +100,7 @@ pub struct KineticQuery {
     pending: Vec<Pair>,
 }
 
-/// Its last answer alone.
+/// Shows the last answer only.
 impl fmt::Debug for KineticQuery {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("KineticQuery").field("query", &self.query).finish_non_exhaustive()
@@ -105,7 +108,7 @@ impl fmt::Debug for KineticQuery {
 }
 
 impl KineticQuery {
-    /// A query that has answered nothing, so that its first answer has no region.
+    /// Creates a query without a region.
     ///
     /// # Errors
     /// When the certificates were computed for another model, or their metric does not fit it.
@@ -135,14 +138,14 @@ impl KineticQuery {
         })
     }
 
-    /// The same query, which checks now and then whether the token cancels it; without one, no longer.
+    /// Returns the same query, which checks regularly whether the token cancels it; with `None` it no longer checks.
     #[must_use]
     pub fn cancelled_by(mut self, token: impl Into<Option<CancelToken>>) -> Self {
         self.query = self.query.cancelled_by(token);
         self
     }
 
-    /// All colliding pairs at q, as [`Query::discrete`].
+    /// Returns all colliding pairs at q, as [`Query::discrete`].
     ///
     /// # Errors
     /// As [`Query::discrete`].
@@ -158,11 +161,11 @@ impl KineticQuery {
         Ok(self.query.pairs())
     }
 
-    /// All pairs that collide between two configurations, as [`Query::continuous`]. Where `q_t0` is the q of the last
-    /// discrete query that the root's certificate did not answer, and the region around it proves all pairs free until
-    /// `q_t1`, and there are no exceptions, only the active pairs are tested; from any other start, and all other
-    /// times, it is a plain continuous query. Only pairs that come as close as [`Impact::TOLERANCE`] without a contact
-    /// can make a difference. Answers of [`KineticQuery::discrete`] do not depend on this query.
+    /// Returns all pairs that collide between two configurations, as [`Query::continuous`]. Only the active pairs are
+    /// tested if `q_t0` is the q of the last discrete query that the root's certificate did not answer, the region around
+    /// it proves all pairs free until `q_t1`, and there are no exceptions; otherwise this is a plain continuous query.
+    /// Only pairs that come as close as [`Impact::TOLERANCE`] without a contact can make a difference. Answers of
+    /// [`KineticQuery::discrete`] do not depend on this query.
     ///
     /// # Errors
     /// As [`Query::discrete`], for start and end.
@@ -185,7 +188,7 @@ impl KineticQuery {
             self.free_q.extend_from_slice(q_t1);
         }
         let Some(swept) = &self.query.swept else { return Ok(&[]) };
-        // The cost of exceptions alone is no estimate of a plain query's.
+        // The cost of testing only the exceptions is no estimate of the cost of a plain query.
         if !self.query.statistics.root_certified {
             self.control.plain_cost = plain_cost(swept.counters());
         }
@@ -196,12 +199,12 @@ impl KineticQuery {
     /// from its position at the last q to that at another one.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When the query was cancelled.
     pub(super) fn is_free_within_region(&mut self, [t0, t1]: [Configuration<'_>; 2]) -> Result<bool, Error> {
         let context = &self.query.context;
-        // No region has the exceptions.
+        // No region contains exceptions.
         let has_exceptions = !context.detect.exceptions.is_empty();
-        // Region and safe distances say where the motion may go from the last q, and nothing of a start elsewhere.
+        // Region and safe distances bound motions that start at the last q; they prove nothing about other starts.
         let is_start_known = right_or!(t0.q == self.history.last_q, MotionStartUnchecked, true);
         if !is_start_known || right_or!(has_exceptions, KineticExceptionsForgotten, false) {
             return Ok(false);
@@ -227,7 +230,7 @@ impl KineticQuery {
         Ok(swept.narrow.hits().list.is_empty())
     }
 
-    /// The pairs that the last query found.
+    /// Returns the pairs that the last query found.
     pub fn pairs(&self) -> &[Pair] {
         self.query.pairs()
     }
@@ -271,17 +274,17 @@ impl KineticQuery {
             self.control.plain_cost = plain_cost(self.query.discrete.counters());
             return Ok(());
         }
-        // After an error nothing is known of any pair.
+        // After an error no pair is proven free.
         self.find_active(configuration, step).inspect_err(|_| self.region_pairs.forget())
     }
 
-    /// Sets a region that contains this z. False if no region would pay; then the region has no meaning, as before the first
-    /// search.
+    /// Sets a region that contains this z. False if no region would cost less than plain queries; then the region is invalid, as
+    /// before the first search.
     fn choose_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> bool {
         let context = &self.query.context;
         let metric = &context.scope.metric;
         let norm = start.norm;
-        // Where the pair tree is complete, it should be so in the whole region: beyond its limit a search takes longer.
+        // Where the pair tree is complete, it should be complete in the whole region: beyond its limit a search takes longer.
         let limit = context.pair_tree_end(norm);
         let least = 2.0 * MIN_STEPS;
         let steps = (self.control.capsules.share * norm / step).max(least);
@@ -317,7 +320,7 @@ impl KineticQuery {
         true
     }
 
-    /// Searches a region around this z; false if no region would pay.
+    /// Searches a region around this z; false if no region would cost less than plain queries.
     fn begin_region(&mut self, start: Configuration<'_>, step: f64, is_jump: bool) -> Result<bool, Error> {
         let is_chosen = self.choose_region(start, step, is_jump);
         self.control.count_pause();
@@ -350,7 +353,7 @@ impl KineticQuery {
         Ok(true)
     }
 
-    /// Tests the active pairs, after computing the safe distances that are used up.
+    /// Tests the active pairs, after computing new safe distances for the pairs whose safe distance is used up.
     fn find_active(&mut self, configuration: Configuration<'_>, step: f64) -> Result<(), Error> {
         let Query { context, discrete, statistics, .. } = &mut self.query;
         let (context, region_pairs) = (&context.detect, &mut self.region_pairs);
@@ -398,12 +401,12 @@ impl KineticQuery {
     }
 }
 
-/// The cost of a plain query.
+/// Returns the cost of a plain query.
 fn plain_cost(counters: &Counters) -> u64 {
     node_cost(counters) + TEST_COST * counters.triangle_tests
 }
 
-/// The cost of all nodes that a search visited.
+/// Returns the cost of all nodes that a search visited.
 fn node_cost(counters: &Counters) -> u64 {
     counters.box_tests + OPEN_COST * counters.opened + HULL_COST * counters.hull_tests
 }

@@ -1,4 +1,4 @@
-//! Kinetic queries: one query's results are used again in the next ones, as long as q stays near.
+//! Kinetic queries: the results of one query are used in the next ones, as long as q stays near.
 //!
 //! A search with the volumes and radii of all z in a region finds every pair that can collide anywhere in the region. Each
 //! of them gets a safe distance: two triangles that are separated stay so until z has travelled their gap over the rate at

@@ -1,4 +1,4 @@
-//! The region of z in which the pairs of a search are known.
+//! The region of z for which a search found all pairs that can collide.
 
 use crate::Metric;
 use crate::query::configuration::Configuration;
@@ -11,7 +11,7 @@ const MAX_DETOUR: f64 = 1.1;
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     pub(super) start: Vec<f64>,
-    /// Where the motion is expected to leave the region. Any q of finite numbers.
+    /// The q at which the motion is expected to leave the region; any finite q is valid.
     pub(super) end: Vec<f64>,
     /// `|S (end - start)|`, rounded up.
     length: f64,
@@ -54,12 +54,12 @@ impl Region {
         (self.norm, self.reach) = (up(start.norm.max(norm) + radius), 2.0 * reach);
     }
 
-    /// The radius of a ball, the length of a capsule.
+    /// Returns the radius of a ball, or the length of a capsule.
     pub(super) fn size(&self) -> f64 {
         if self.length > 0.0 { self.length } else { self.radius }
     }
 
-    /// The distance after which the region ends, even if z stays in it.
+    /// Returns the distance of travel after which the region ends, even if z stays in it.
     pub(super) fn largest_travel(&self) -> f64 {
         MAX_DETOUR * self.length + self.radius
     }
@@ -95,7 +95,7 @@ mod tests {
     use crate::MetricKind;
     use crate::test_models::Random;
 
-    /// Points at known distances from segments, in diagonal and dense metrics.
+    /// Tests points at given distances from segments, in diagonal and dense metrics.
     #[test]
     fn points_within_the_radius_are_contained_and_no_others() {
         for case in 0..300 {
@@ -123,7 +123,7 @@ mod tests {
             let mut region = Region::new(rank);
             region.end.copy_from_slice(&end);
             let first = Configuration { q: &start, norm: metric.length(&start), reach: 1.0 };
-            // The end has the larger reach, 1.5, or the start.
+            // The larger reach, 1.5, is that of the end or of the start.
             let (reach_t0, reach_t1) = if case % 3 == 0 { (1.0, 1.5) } else { (1.5, 0.5) };
             let first = Configuration { reach: reach_t0, ..first };
             region.set_capsule(&metric, first, (metric.length(&end), reach_t1), 0.5);

@@ -1,45 +1,50 @@
-//! Chooses the size of the next region, and whether regions pay: whether they cost less than plain queries, those without a
-//! region, at the same steps.
+//! Chooses the size of the next region, and measures whether regions pay: whether they cost less than plain queries (those without
+//! a region) at the same steps.
 
 /// A region of fewer steps does not pay: its search costs two or three plain queries.
 pub(super) const MIN_STEPS: f64 = 8.0;
 
-/// The size of a region in units of `|z|`: at first, at least, at most.
+/// The size of the first ball in units of `|z|`.
 const FIRST_BALL: f64 = 1.0 / 32.0;
+/// The size of the first capsule in units of `|z|`.
 const FIRST_CAPSULE: f64 = 1.0 / 8.0;
+/// The smallest size of a region in units of `|z|`.
 const MIN_SHARE: f64 = FIRST_BALL / 1024.0;
+/// The largest size of a ball in units of `|z|`.
 pub(super) const MAX_BALL: f64 = 0.25;
+/// The largest size of a capsule in units of `|z|`.
 pub(super) const MAX_CAPSULE: f64 = 1.0;
 
-/// The factors from one size to the next.
+/// The factor from one size to the next while sizes grow.
 const GROWTH: f64 = 1.25;
+/// The factor from one size to the next while sizes shrink.
 const SHRINKAGE: f64 = 1.0 / 1.5;
 
-/// A search may cost this share of the plain queries that it is expected to save, within [`LEAST_COST`] and [`MOST_COST`].
+/// A search may cost this share of the plain queries that it is expected to save, between [`LEAST_COST`] and [`MOST_COST`].
 const LARGEST_SHARE: f64 = 0.25;
 
-/// The least cost that a search may have, in plain queries.
+/// A search may always cost this many plain queries.
 const LEAST_COST: u64 = 8;
 
-/// The largest cost that a search may have, in plain queries.
+/// A search may never cost more than this many plain queries.
 const MOST_COST: u64 = 64;
 
-/// Where the cost of a ball for each step is not known, this share of a plain query is expected.
+/// The expected cost of a ball for each step, as a share of a plain query, where none was measured.
 const UNKNOWN_COST_PER_STEP: f64 = 0.2;
 
-/// A region that cost more than it saved delays the next one: by 2 queries for each plain query that was lost, after another one
-/// by 4, and so on, up to 2 to this power.
+/// A region that cost more than it saved delays the next one: by 2 queries for each plain query that it cost too much. After each
+/// further such region the delay is doubled, up to 2 to this power.
 const MAX_FAILURES: u32 = 5;
 
-/// The longest pause: the plain query by which a region is judged may be an unusual one.
+/// The longest pause, in queries. It is limited because the plain query with which a region is compared may be an unusual one.
 const MAX_PAUSE: u64 = 4096;
 
 /// The shape of regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RegionKind {
-    /// For motions that bend.
+    /// A ball, for motions that bend.
     Ball,
-    /// For motions that are nearly straight.
+    /// A capsule, for motions that are nearly straight.
     Capsule,
 }
 
@@ -56,7 +61,7 @@ pub(super) struct SizeControl {
     pub(super) pause: u64,
     /// Number of regions that cost more than they saved since the last one that did not.
     failures: u32,
-    /// The cost of the last region for each of its steps; none after one that did not pay.
+    /// The cost of the last region for each of its steps; `None` after one that did not pay.
     cost_per_step: Option<f64>,
 }
 
@@ -87,8 +92,8 @@ pub(super) struct RegionControl {
     pub(super) cost: u64,
     /// The last step within a motion.
     step: f64,
-    /// Whether the last region paid, over enough steps. A few steps prove nothing, since the plain query by which they are
-    /// judged may be long ago.
+    /// Whether the last region paid, over enough steps. A few steps are no evidence, since the plain query with which they are
+    /// compared may be old.
     pub(super) has_paid: bool,
 }
 
@@ -109,12 +114,12 @@ impl RegionControl {
         (self.kind, self.is_cut) = (kind, is_cut);
     }
 
-    /// The largest cost of a search for a region that is expected to last for so many steps.
+    /// Returns the largest cost of a search for a region that is expected to last for `steps` steps.
     pub(super) fn largest_cost(&self, steps: f64) -> u64 {
         self.plain_cost.saturating_mul(((LARGEST_SHARE * steps) as u64).clamp(LEAST_COST, MOST_COST))
     }
 
-    /// Whether a ball may cost less for each step than a capsule. Motions that return stay long in balls.
+    /// Whether a ball may cost less for each step than a capsule. Motions back and forth stay long in balls.
     pub(super) fn is_ball_better(&self) -> bool {
         let unknown = UNKNOWN_COST_PER_STEP * self.plain_cost as f64;
         self.balls.pause == 0
@@ -128,7 +133,7 @@ impl RegionControl {
         }
     }
 
-    /// Counts a query for which no region was known.
+    /// Counts a query without a region.
     pub(super) fn count_pause(&mut self) {
         for sizes in [&mut self.balls, &mut self.capsules] {
             sizes.pause = sizes.pause.saturating_sub(1);
@@ -140,14 +145,14 @@ impl RegionControl {
         self.step = step;
     }
 
-    /// The length to expect of the steps after a jump, once for each region that paid: the motion that begins there is
+    /// Returns the expected length of the steps after a jump, once for each region that paid: the motion that begins there is
     /// often like the last one.
     pub(super) fn step_after_jump(&mut self) -> Option<f64> {
         std::mem::take(&mut self.has_paid).then_some(self.step)
     }
 
-    /// Records a complete search. Sizes go on growing or shrinking while the cost per size falls; else the trend reverses. A
-    /// region that was cut has no influence.
+    /// Records a complete search. Sizes continue to grow or to shrink while the cost per size falls; otherwise the trend reverses.
+    /// A region that was cut has no influence.
     pub(super) fn record_search(&mut self, cost: u64, share: f64) {
         if self.is_cut {
             return;

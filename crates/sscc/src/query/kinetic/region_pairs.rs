@@ -9,11 +9,11 @@ use crate::Pair;
 use crate::min_heap::MinHeapEntry;
 use crate::model::rounding::ROUND_DOWN;
 
-/// Safe distances that are remembered from one region to the next, for each pair that a search finds.
+/// The number of safe distances that are kept from one region to the next, for each pair that a search finds.
 const MAX_REMEMBERED: usize = 8;
 
-/// A pair that stays free until z has travelled as far as its key. The next to expire comes first, equal ones by their
-/// triangles.
+/// A pair that stays free until z has travelled as far as its key. Pairs are ordered by their keys, the smallest first, then by
+/// their triangles.
 pub(super) type SafePair = MinHeapEntry<Pair>;
 
 /// All pairs that can collide in the region. All other pairs are free in the whole region.
@@ -21,7 +21,7 @@ pub(super) type SafePair = MinHeapEntry<Pair>;
 pub(super) struct RegionPairs {
     /// The distance that z has travelled since the last jump, rounded up.
     pub(super) travelled: f64,
-    /// The travelled distance at which the region ends; 0: there is no region.
+    /// The travelled distance at which the region ends; 0 if there is no region.
     end: f64,
     /// Queries that were answered in the region.
     pub(super) steps: u64,
@@ -35,7 +35,7 @@ pub(super) struct RegionPairs {
 }
 
 impl RegionPairs {
-    /// z moves by a step.
+    /// Adds a step of z.
     pub(super) fn advance(&mut self, step: f64) {
         self.travelled = right_or!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
     }
@@ -50,12 +50,12 @@ impl RegionPairs {
         self.end = 0.0;
     }
 
-    /// The travelled distance at which z may be that far from here, rounded down.
+    /// Returns the travelled distance after a further `distance`, rounded down.
     fn travelled_after(&self, distance: f64) -> f64 {
         (self.travelled + distance * ROUND_DOWN) * ROUND_DOWN
     }
 
-    /// Stores a pair with its safe distance; false if that vanishes in rounding.
+    /// Stores a pair with its safe distance; false if the distance vanishes in rounding.
     pub(super) fn store(&mut self, pair: Pair, distance: f64) -> bool {
         let until = self.travelled_after(distance);
         if until <= self.travelled {
@@ -69,7 +69,7 @@ impl RegionPairs {
         true
     }
 
-    /// Removes and returns a pair whose safe distance is used up; none if there is none.
+    /// Removes and returns a pair whose safe distance is used up; `None` if there is no such pair.
     #[inline]
     pub(super) fn next_expired(&mut self) -> Option<Pair> {
         // Equality would be a proof here, too: the key was rounded down, the travelled distance up.
@@ -89,7 +89,7 @@ impl RegionPairs {
         self.steps += 1;
     }
 
-    /// Forgets everything: z has jumped.
+    /// Removes the region and all safe distances, after a jump of z.
     pub(super) fn forget(&mut self) {
         (self.travelled, self.end) = (0.0, 0.0);
         if right_or!(true, SafeDistancesSurviveJumps, false) {
@@ -97,7 +97,7 @@ impl RegionPairs {
         }
     }
 
-    /// Whether z has not travelled as far as the region lasts.
+    /// Whether the travelled distance is less than that at which the region ends.
     pub(super) fn has_travel_left(&self) -> bool {
         self.travelled < self.end
     }
@@ -138,7 +138,7 @@ impl RegionPairs {
     }
 }
 
-/// A rounded sum of two numbers that are not negative, rounded up.
+/// Rounds a computed sum of two non-negative numbers up.
 pub(super) fn up(sum: f64) -> f64 {
     sum * (1.0 + 4.0 * f64::EPSILON)
 }
@@ -149,7 +149,7 @@ mod tests {
 
     use super::*;
 
-    /// The travelled distance against the sum of its steps in exact arithmetic.
+    /// The travelled distance is compared with the sum of its steps in exact arithmetic.
     #[test]
     fn the_travelled_distance_is_never_short() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
@@ -172,7 +172,7 @@ mod tests {
         for (pair, margin) in pending.iter().zip([4.0, 2.0, 9.0, 100.0, 1e-300]) {
             region_pairs.store(*pair, margin);
         }
-        // A distance that vanishes in rounding is none.
+        // A distance that vanishes in rounding is not stored.
         region_pairs.advance(1.0);
         assert!(!region_pairs.store((0, 5), 1e-18) && !region_pairs.store((0, 5), 0.0));
         region_pairs.end_step();
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(region_pairs.next_expired(), None);
         region_pairs.advance(0.5);
         assert_eq!(region_pairs.next_expired(), None);
-        // A margin used up exactly no longer holds.
+        // A safe distance that is used up exactly no longer holds.
         region_pairs.advance(0.5);
         assert_eq!(region_pairs.next_expired(), Some((0, 2)));
         region_pairs.advance(5.0);
@@ -188,7 +188,7 @@ mod tests {
         assert!(region_pairs.has_region() && region_pairs.has_travel_left());
         region_pairs.advance(1.0);
         assert!(!region_pairs.has_travel_left());
-        // In the next region (8 to 12) one of the others is known to stay apart; one only up to 9.
+        // In the next region (8 to 12) one of the other pairs is safe throughout, and one only up to 9.
         region_pairs.leave_region();
         region_pairs.begin_region(4.0);
         region_pairs.take(&[(0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
@@ -199,7 +199,7 @@ mod tests {
         region_pairs.begin_region(4.0);
         region_pairs.take(&[(0, 1), (0, 2), (0, 3), (0, 4), (1, 2)], &mut pending);
         assert_eq!(pending, [(0, 1)]);
-        // After a jump nothing is known.
+        // After a jump no safe distance is left.
         region_pairs.forget();
         assert!(!region_pairs.has_region());
         region_pairs.begin_region(4.0);

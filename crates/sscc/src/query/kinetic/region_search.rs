@@ -18,11 +18,11 @@ impl RegionSearch {
         Self { certified: CertifiedSearch::new(context), narrow: AabbHits::default() }
     }
 
-    /// Finds at most `limit` pairs, sorted, exceptions apart. `norm`: the largest `|z|` in the region. False if there are
-    /// more.
+    /// Finds at most `limit` pairs, sorted, without exceptions. `norm`: the largest `|z|` in the region. False if there are
+    /// more pairs.
     ///
     /// # Errors
-    /// When it was cancelled.
+    /// When the search was cancelled.
     pub(super) fn find(
         &mut self,
         context: &QueryContext,

@@ -16,7 +16,7 @@ use crate::model::{RoundingBound, ScaledModel, scale_direction};
 /// The proof needs no such cap. Let E be the rounding bound of a gap at `|z|`, `e0 + e1 |z|`, and let the distance D
 /// be about a z of at most the norm N: both ends together need `2 e0 + e1 (2 N + D)`.
 /// [`RoundingBound::between_configurations`] has `4 e0` and `12 N e1`, and [`bound_along`] adds `e1 D`, since e1 is
-/// part of the rate. The cap keeps distances, whatever the rates are, in the range of numbers that N is in.
+/// part of the rate. The cap keeps distances in the range of numbers that N is in, for any rates.
 const MAX_NORMS: f64 = 2.0;
 
 /// Computes safe distances, from the model in scaled coordinates.
@@ -24,7 +24,7 @@ const MAX_NORMS: f64 = 2.0;
 pub(super) struct SafeDistances {
     model: Arc<ScaledModel>,
     error: RoundingBound,
-    /// No distance is larger: the rounding bound holds that far.
+    /// The cap of distances: the rounding bound holds up to this distance.
     largest: f64,
     projections: CornerProjections,
 }
@@ -39,14 +39,14 @@ impl SafeDistances {
         }
     }
 
-    /// Safe distances are about z of at most this norm from now on.
+    /// Sets the largest norm of the z about which distances are computed from now on.
     pub(super) fn begin(&mut self, norm: f64) {
         self.largest = MAX_NORMS * norm;
         self.error = self.model.rounding.between_configurations((1.0 + MAX_NORMS) * norm);
     }
 
-    /// The safe distance of two triangles whose corners are at these computed positions: they stay apart until z has moved
-    /// by it.
+    /// Returns the safe distance of two triangles whose corners are at these computed positions: they stay separate until z has
+    /// moved by it.
     pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
         let mut distance = right_or!(self.largest, SafeDistanceUncapped, f64::INFINITY);
@@ -77,8 +77,8 @@ mod tests {
     use crate::test_models::{Random, strips};
     use crate::{ContactFilter, Neighbours};
 
-    /// No pair collides within its safe distance, in random directions and in those that close gaps fastest. And distances
-    /// are not much too small: many are reached up to a tenth.
+    /// No pair collides within its safe distance, in random directions and in those that close gaps fastest. Distances are not
+    /// much too small: many pairs collide within twice their distance.
     #[test]
     fn nothing_collides_within_a_safe_distance() {
         let (mut measured, mut reached) = (0, 0);

@@ -1,4 +1,4 @@
-//! The last steps of z: where they lead, and how much the motion bends.
+//! The last steps of z. They predict the next q, and how much the motion bends.
 
 use crate::Metric;
 
@@ -6,11 +6,12 @@ use crate::Metric;
 /// capsule is then about a quarter of its length.
 const MAX_BEND: f64 = 1.0;
 
-/// The radius of a capsule in units of the expected distance of z from its segment, and the part of its length that is added.
+/// The radius of a capsule in units of the expected distance of z from its segment.
 const RADIUS_FACTOR: f64 = 2.0;
+/// The share of a capsule's length that is added to its radius.
 const ADDED_RADIUS: f64 = 1.0 / 64.0;
 
-/// More steps are not predicted.
+/// At most this many steps are predicted.
 const MAX_STEPS: f64 = 1000.0;
 
 /// The last steps of discrete queries that the root's certificate does not answer.
@@ -33,7 +34,7 @@ impl StepHistory {
         Self { last_q: Vec::with_capacity(rank), step, change, count: 0, offset }
     }
 
-    /// The distance of z from the last one, rounded up; infinite if there was none.
+    /// Returns the distance of z from the last one, rounded up; infinite if there was none.
     pub(super) fn distance(&mut self, metric: &Metric, q: &[f64]) -> f64 {
         if self.last_q.is_empty() {
             return f64::INFINITY;
@@ -41,7 +42,7 @@ impl StepHistory {
         metric.norm_from(q, &self.last_q, &mut self.offset)
     }
 
-    /// Records the next q. After a jump nothing is known of the motion.
+    /// Records the next q. After a jump the history of the motion is empty.
     pub(super) fn record(&mut self, q: &[f64], is_jump: bool) {
         if is_jump {
             self.count = 0;
@@ -62,17 +63,17 @@ impl StepHistory {
         self.count == 2
     }
 
-    /// The number of steps, at most `steps`, for which the motion is expected to be nearly straight.
+    /// Returns the number of steps, at most `steps`, for which the motion is expected to be nearly straight.
     pub(super) fn straight_steps(&self, metric: &Metric, steps: f64) -> f64 {
         if !self.is_known() {
             return 0.0;
         }
         let bend = metric.length(&self.change) / metric.length(&self.step);
-        // No direction is known at rest.
+        // A motion at rest has no direction.
         if bend.is_finite() { steps.min(MAX_BEND / bend).min(MAX_STEPS).floor() } else { 0.0 }
     }
 
-    /// Predicts the q after so many steps. Returns the radius within which z is expected to stay of the straight line to it.
+    /// Predicts the q after `steps` steps. Returns the expected largest distance of z from the straight line to it.
     pub(super) fn predict(&self, metric: &Metric, steps: f64, end: &mut [f64]) -> f64 {
         let weight = 0.5 * steps * (steps + 1.0);
         for (((end, q), step), change) in end.iter_mut().zip(&self.last_q).zip(&self.step).zip(&self.change) {

@@ -1,4 +1,4 @@
-//! Kinetic queries whose regions are of all sizes against brute force.
+//! Compares kinetic queries with regions of all sizes with brute force.
 
 use glam::DVec3;
 use sscc_testing::{cases, threshold};
@@ -10,7 +10,7 @@ use crate::{
     Query, ReducedModel, Statistics, TriMesh,
 };
 
-/// Two wavy sheets one above the other, in one piece with a third one between them every second time; modes bring them
+/// Returns two wavy sheets one above the other, in every second case joined by a third one between them; modes bring them
 /// together, tilt, bend and shear them.
 fn sheets(random: &mut Random, case: usize) -> ReducedModel {
     let side = 6 + case as u32 % 5;
@@ -72,13 +72,13 @@ struct Seen {
     aimed: usize,
 }
 
-/// A kinetic query whose regions are of all sizes, beside one by brute force.
+/// A kinetic query with regions of all sizes, and a query by brute force.
 struct Pairing<'a> {
     kinetic: KineticQuery,
     oracle: Query,
     certificates: &'a Certificates,
     colliding: bool,
-    /// Whether there is to be no region.
+    /// Whether regions are disabled.
     plain: bool,
     /// The last q.
     before: Vec<f64>,
@@ -127,8 +127,8 @@ impl Pairing<'_> {
     }
 }
 
-/// Out through the first contact and back, in steps of all sizes; towards pairs that stand by a margin; jumps, returns,
-/// errors, and queries that the root certifies in between.
+/// q moves through the first contact and back in steps of all sizes, and towards pairs within their safe distance, with jumps,
+/// returns, errors, and queries that the root's certificate answers.
 #[test]
 fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
     let mut seen = Seen::default();
@@ -160,7 +160,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
             }
             let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
             let at = |t: f64| -> Vec<f64> { way.iter().map(|x| x / length * t).collect() };
-            // Where the first contact is.
+            // Finds the first contact.
             let scope = &certificates.parts().scope;
             let collides = |query: &mut Query, t: f64| {
                 let d = scope.metric.unscale(&at(t));
@@ -177,7 +177,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
                 if collides(&mut pairing.oracle, middle) { t = middle } else { free = middle }
             }
             let stride = 10.0_f64.powf(random.signed() * 0.8 - 3.2);
-            // Straight, in a bow, or with noise.
+            // The motion is straight, bent, or noisy.
             let noise = if random.signed() > 0.3 { 0.1 * stride * t } else { 0.0 };
             let bow: Vec<f64> = (0..rank).map(|_| random.signed().max(0.0) * 30.0 * t).collect();
             let count = ((0.06 / stride) as usize).min(150);
@@ -197,11 +197,11 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
                     let statistics = pairing.kinetic.statistics();
                     assert_eq!(statistics, Statistics { norm: statistics.norm, ..Statistics::default() });
                 }
-                // There and back, under the root's certificate.
+                // A step to a z that the root's certificate proves free.
                 if random.signed() > 0.97 {
                     pairing.ask(&at(0.999 * certificates.root_radius() * random.signed()), random, &mut seen);
                 }
-                // Towards a pair within its safe distance.
+                // Steps towards a collision of a pair within its safe distance.
                 let Some(standing) = pairing.kinetic.region_pairs.safe.peek().copied() else { continue };
                 if random.signed() < 0.8 {
                     continue;
@@ -226,7 +226,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
                     pairing.ask(&there, random, &mut seen);
                 }
             }
-            // Plain queries lead, in steps too small for a jump, to where pairs collide that were known to stay apart.
+            // Plain queries follow z, in steps too small for a jump, to collisions of pairs that had safe distances.
             for share in [0.95, 1.1, 1.25] {
                 pairing.plain = share > 1.0;
                 pairing.ask(&at(share * t), random, &mut seen);
@@ -236,7 +236,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
             for i in 1..5 {
                 pairing.ask(&at((1.25 + f64::from(i) * 1e-4) * t), random, &mut seen);
             }
-            // A jump to where pairs collide that were apart on the way before.
+            // A jump to collisions of pairs that were separate before.
             for i in 0..10 {
                 pairing.ask(&at((1.3 + f64::from(i) * 1e-4) * t), random, &mut seen);
             }
@@ -259,7 +259,7 @@ fn answers_are_those_of_plain_queries_whatever_regions_there_are() {
     );
 }
 
-/// A sheet of triangles over a square, at a height, of which every second row lies by `fold` higher.
+/// Returns a sheet of triangles over a square, at a height; every second row is higher by `fold`.
 fn sheet(side: u32, height: f64, fold: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let row = |i: u32| i / (side + 1);
     let at = |i: u32| {
@@ -273,9 +273,9 @@ fn sheet(side: u32, height: f64, fold: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (p, (0..side * side).flat_map(square).collect())
 }
 
-/// Three sheets of `side` squares one above the other, and, on request, two triangles aside that intersect at rest. Modes raise the
-/// lower one, lower the upper one, and move both sideways, so that the radii of pairs of nodes are those of contact, nearly to
-/// the last digit.
+/// Returns three sheets of `side` squares one above the other, and optionally two separate triangles that intersect at rest. Modes
+/// raise the lower sheet, lower the upper one, and move both sideways, so that the radii of pairs of nodes are those of contact,
+/// nearly to the last digit.
 fn three_sheets(side: u32, heights: [f64; 3], intersects_at_rest: bool) -> ReducedModel {
     let (mut p, mut faces) = (Vec::new(), Vec::new());
     for (height, fold) in heights.into_iter().zip([-0.5, 0.0, 0.5]) {
@@ -303,14 +303,14 @@ fn three_sheets(side: u32, heights: [f64; 3], intersects_at_rest: bool) -> Reduc
     ReducedModel::with_metric(TriMesh::new(p, faces).unwrap(), modes, Metric::identity(3)).unwrap()
 }
 
-/// Certificates with a small error.
+/// Computes certificates with a small error.
 fn tight_certificates(model: &ReducedModel, budget: usize) -> Certificates {
     let options = CertifyOptions::default().budget(budget).epsilon(0.01);
     Certificates::compute(model, &options, &()).unwrap()
 }
 
-/// q goes to where the middle sheet and one of the others touch, beyond the root's radius, straight or in a zigzag, in steps so
-/// small that regions begin before a radius and end beyond it. The sheets have several buckets each or one.
+/// q moves to a contact of the middle sheet with one of the others, beyond the root's radius, straight or in a zigzag, in steps so
+/// small that regions begin before a radius and end beyond it. Each sheet has several buckets or one.
 #[test]
 fn radii_are_crossed_inside_a_region() {
     let mut crossed = [0, 0];
@@ -345,9 +345,9 @@ fn radii_are_crossed_inside_a_region() {
     assert!(crossed.iter().all(|crossed| *crossed > threshold(16)), "{crossed:?}");
 }
 
-/// z moves along a capsule, away from any contact, and then leaves it sideways to where sheets touch that its search did not
-/// find. The step is shorter than the capsule. Motions and states are those of brute force, also where pairs intersect all the
-/// time, which no region has.
+/// z moves along a capsule, away from any contact, and then leaves it sideways to a contact of sheets that the search of the
+/// capsule did not find. The step is shorter than the capsule. Answers of both kinds of queries are those of brute force, also with
+/// exceptions, which no region contains.
 #[test]
 fn capsules_are_left_sideways() {
     let mut left = 0;
@@ -384,7 +384,7 @@ fn capsules_are_left_sideways() {
     assert!(left > threshold(20), "{left}");
 }
 
-/// A motion that ends at the last q, or elsewhere in its region, and begins at another q: where sheets touch, or
+/// A motion ends at the last q, or elsewhere in its region, and begins at another q: at a contact of sheets, or
 /// beyond other pairs than those of the region.
 #[test]
 fn motions_may_begin_anywhere() {
@@ -423,9 +423,9 @@ fn motions_may_begin_anywhere() {
     assert!(within > threshold(1000) && colliding > threshold(500), "{within} {colliding}");
 }
 
-/// Only a region that paid, over some steps, makes the next jump begin one; of unrelated q none does.
+/// After a jump a region begins only if the last region paid over enough steps; with unrelated q no region begins.
 #[test]
-fn after_a_jump_a_region_begins_where_the_last_one_paid() {
+fn after_a_jump_a_region_begins_only_if_the_last_one_paid() {
     let random = &mut Random(7);
     let model = sheets(random, 1);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
@@ -448,7 +448,7 @@ fn after_a_jump_a_region_begins_where_the_last_one_paid() {
     assert!(kinetic.region_pairs.has_region());
     kinetic.discrete(&q(2.0 + 1e-6)).unwrap();
     assert_eq!(kinetic.region_pairs.steps, 2);
-    // A region of two steps tells nothing, however dear plain queries were.
+    // A region of two steps is no evidence, however expensive plain queries were.
     for t in [-2.0, 2.0, -1.5] {
         kinetic.discrete(&q(t)).unwrap();
         assert!(!kinetic.region_pairs.has_region());

@@ -1,4 +1,4 @@
-//! Each claim of a local certificate against exact tests, at the edge of where it holds.
+//! Compares each claim of a local certificate with exact tests, at the largest scale at which it holds.
 
 use glam::{DMat3, DVec3};
 use sscc_testing::{FlexibleShape, Numbers, Shape, cases, threshold};
@@ -16,7 +16,7 @@ fn model_of(shape: &FlexibleShape) -> ReducedModel {
     ReducedModel::new(mesh, Modes::new(shape.rank, shape.displacements.clone()).unwrap()).unwrap()
 }
 
-/// Local certificates of every node, in scopes of every kind.
+/// Computes local certificates of every node, in scopes of every kind.
 fn certify(model: &ReducedModel, seed: u64, random: &mut Numbers) -> Certificates {
     let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
     let rank = model.rank();
@@ -77,7 +77,7 @@ impl<'a> Attack<'a> {
         has(n, pair.0) && has(m, pair.1) || has(n, pair.1) && has(m, pair.0)
     }
 
-    /// A certificate, and its node with itself or with a node of its list.
+    /// Draws a certificate, and the pair of its node with itself or with a node of its list.
     fn draw_claim(&self, random: &mut Numbers) -> (usize, NodePair) {
         let local = &self.certificates.parts().local;
         let index = random.below(local.nodes.len());
@@ -88,12 +88,12 @@ impl<'a> Attack<'a> {
         (index, (n, if is_within { n } else { list[random.below(list.len())] }))
     }
 
-    /// The claims at q; none where q is out of range.
+    /// Returns the claims at q; none if q is out of range.
     fn claims(&mut self, index: usize, q: &[f64]) -> Vec<NodePair> {
         self.certified.local_claims(index, [q]).unwrap_or_default()
     }
 
-    /// The pairs that collide at q, exceptions apart.
+    /// Returns the pairs that collide at q, without exceptions.
     fn collisions(&mut self, q: &[f64]) -> Vec<Pair> {
         let exceptions = self.certificates.exceptions();
         let mut pairs = self.oracle.discrete(q).unwrap().to_vec();
@@ -105,7 +105,7 @@ impl<'a> Attack<'a> {
         self.certificates.center().iter().zip(ray).map(|(c, d)| c + scale * d).collect()
     }
 
-    /// A direction: few or many modes, or a part of a turn.
+    /// Draws a direction: of few or many modes, or a part of a rotation.
     fn ray(&self, shape: &FlexibleShape, random: &mut Numbers) -> Vec<f64> {
         let scales = Metric::displacement(self.model.mesh(), self.model.modes()).unwrap().scales();
         let decay = random.below(3) as i32;
@@ -128,7 +128,7 @@ impl<'a> Attack<'a> {
         ray
     }
 
-    /// The shortest offset at which points of two triangles of a claim meet, in the displacement metric.
+    /// Returns the shortest offset at which points of two triangles of a claim meet, in the displacement metric.
     fn approach(&self, (n, m): NodePair, random: &mut Numbers) -> Option<Vec<f64>> {
         let Self { model, certificates, .. } = self;
         let scales = Metric::displacement(model.mesh(), model.modes()).unwrap().scales();
@@ -152,8 +152,8 @@ impl<'a> Attack<'a> {
         ray.iter().all(|x| x.is_finite()).then_some(ray)
     }
 
-    /// The largest scale found at which a claim holds, and one just beyond; none where the claim does not hold close to the
-    /// centre.
+    /// Returns the largest scale found at which a claim holds, and one just beyond; `None` if the claim does not hold close to
+    /// the centre.
     fn edge(&mut self, index: usize, claim: NodePair, ray: &[f64]) -> Option<[f64; 2]> {
         let mut holds = |scale: f64| self.claims(index, &self.at(ray, scale)).contains(&claim);
         let mut low = [1.0, 0.1, 1e-2, 1e-3, 1e-5].into_iter().find(|scale| holds(*scale))?;
@@ -172,7 +172,7 @@ impl<'a> Attack<'a> {
     }
 }
 
-/// What an attack saw.
+/// Counts of the cases that an attack contained.
 #[derive(Debug, Default)]
 struct Seen {
     certificates: usize,
@@ -199,7 +199,7 @@ fn attack(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen) {
         let approach = (random.below(2) == 0).then(|| attack.approach(claim, random)).flatten();
         let ray = approach.unwrap_or_else(|| attack.ray(shape, random));
         let Some([edge, beyond]) = attack.edge(index, claim, &ray) else { continue };
-        // Beyond, up to the first collision of the claim's pairs: how close claims come to the truth.
+        // The scales beyond, up to the first collision of the claim's pairs, measure how tight claims are.
         let mut collides = false;
         let within = [1.0, 0.999, 0.5 + 0.5 * random.signed().abs()].map(|share| share * edge);
         let outside = (0..16).map(|step| beyond * 1.12_f64.powi(step));
@@ -268,7 +268,7 @@ fn claims_hold_for_many_modes_and_at_every_size() {
     assert!(seen.claims > 1000 && seen.pairs_of_nodes > 300, "{seen:?}");
 }
 
-/// What an attack on regions saw.
+/// Counts of the cases that an attack on regions contained.
 #[derive(Debug, Default)]
 struct SeenInRegions {
     claims: usize,
@@ -278,7 +278,7 @@ struct SeenInRegions {
     beyond: usize,
 }
 
-/// Claims in the capsules and balls of kinetic queries, as large as they can be, against exact tests within them.
+/// Compares claims in the largest possible capsules and balls of kinetic queries with exact tests within them.
 fn attack_regions(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut SeenInRegions) {
     let random = &mut Numbers(seed + 9000);
     let model = model_of(shape);
@@ -303,13 +303,13 @@ fn attack_regions(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen
             continue;
         }
         let start = attack.at(&ray, edge * [0.0, 0.5, 0.9][random.below(3)]);
-        // A ball, or a capsule of any direction.
+        // The region is a ball, or a capsule of any direction.
         let stretch = if random.below(2) == 0 { 0.0 } else { 0.1 * edge * random.signed() };
         let other = attack.ray(shape, random);
         let share = stretch * of_ray / length(&other).max(1e-300);
         let end: Vec<f64> = start.iter().zip(&other).map(|(x, d)| x + share * d).collect();
         let claims_within = |radius: f64| {
-            // Terms of positions in the region: twice those of its ends, as in kinetic queries.
+            // The reach of the region: twice that of its ends, as in kinetic queries.
             let reach = [&start, &end].map(|q| model.check_coordinates(q).unwrap_or(f64::INFINITY));
             let motion = CapsuleMotion::new(&rates, [&start, &end], radius, 2.0 * reach[0].max(reach[1]));
             kinetic.query.local_claims_during(index, &motion)
@@ -336,7 +336,7 @@ fn attack_regions(shape: &FlexibleShape, seed: u64, rays: usize, seen: &mut Seen
             } else {
                 radius * 3.0 * f64::from(1 << (step - 24))
             };
-            // Along the claim's ray, towards a meeting of its triangles, or anywhere.
+            // The points are along the claim's ray, towards a collision of its triangles, or anywhere.
             let approach = (is_within && step % 3 == 1).then(|| attack.approach(claim, random)).flatten();
             let direction = match approach {
                 Some(approach) => approach,
@@ -382,8 +382,8 @@ fn claims_in_regions_hold_in_all_of_them() {
     assert!(seen.capsules > threshold(100) && seen.beyond > threshold(16), "{seen:?}");
 }
 
-/// Two triangles one above the other far from the origin, one unit in the last place apart, and modes that move them by less: rounding
-/// closes the gap, though the shape of real numbers stays open.
+/// Two triangles one above the other far from the origin have a gap of one unit in the last place, and modes move them by less:
+/// rounding closes the gap, which stays open in exact arithmetic.
 #[test]
 fn rounding_of_positions_far_away_closes_gaps() {
     let far = 2.0_f64.powi(30);
@@ -393,7 +393,7 @@ fn rounding_of_positions_far_away_closes_gaps() {
         let apart = f64::from(1 << (case / 2 % 10));
         let at = |i: u32, height: f64| DVec3::new(f64::from(i % 2), f64::from(i / 2), far + height);
         let p = [0.0, apart * unit].map(|height| [0, 1, 2].map(|i| at(i, height))).concat();
-        // The lower one is rounded up, the upper one is not.
+        // The position of the lower triangle is rounded up, that of the upper one is not.
         let lifts = [0.52, 0.48 + 0.01 * f64::from(case % 2)];
         let entry = |row: usize, _| if row % 3 == 2 { lifts[row / 9] } else { 0.0 };
         let model = ReducedModel::new(
@@ -417,7 +417,7 @@ fn rounding_of_positions_far_away_closes_gaps() {
     assert!(closed > 0, "{closed} {claimed}");
 }
 
-/// On a straight line from a shape to its half turn it is flat in between, though neither end is strained.
+/// On the straight lines from a shape to its rotation by 180 degrees it is flat in between, though neither end is strained.
 #[test]
 fn half_a_turn_is_no_proof() {
     let mut tried = 0;

@@ -1,4 +1,4 @@
-//! The inequality of local certificates against exact arithmetic.
+//! Compares the inequality of local certificates with exact arithmetic.
 
 use sscc_testing::{Dyadic, Numbers};
 
@@ -12,12 +12,12 @@ use crate::detect::layout::Layout;
 use crate::detect::vertex_motion::DeformedMotion;
 use crate::geometry::Aabb;
 
-/// Numbers of a certificate in the layout of its arrays, and the same as matrices.
+/// The numbers of a certificate in the layout of its arrays, and as matrices.
 struct Certificate {
     local: LocalCertificates,
-    /// For each mode.
+    /// The gradient of each mode.
     gradients: Vec<DMat3>,
-    /// Upper triangular.
+    /// The upper triangular matrix W.
     ellipsoid: Vec<Vec<f64>>,
 }
 
@@ -56,12 +56,12 @@ fn certificate(gradients: Vec<DMat3>, ellipsoid: Vec<Vec<f64>>) -> Certificate {
     Certificate { local, gradients, ellipsoid }
 }
 
-/// What is allowed at these q, of a model with that many modes.
+/// Returns the bound of the allowed ratios at these q, for a model with `rank` modes.
 fn allowed<const E: usize>(local: &LocalCertificates, rank: usize, q: [&[f64]; E]) -> f64 {
     allowed_during(local, rank, &DeformedMotion::new(q, 1.0))
 }
 
-/// What is allowed during a motion.
+/// Returns the bound of the allowed ratios during a motion.
 fn allowed_during<const E: usize, M: VertexMotion<E>>(
     local: &LocalCertificates,
     rank: usize,
@@ -70,7 +70,7 @@ fn allowed_during<const E: usize, M: VertexMotion<E>>(
     allowed_in(local, &Metric::identity(rank), motion)
 }
 
-/// The same in a metric.
+/// Returns the bound of the allowed ratios during a motion, in a metric.
 fn allowed_in<const E: usize, M: VertexMotion<E>>(
     local: &LocalCertificates,
     metric: &Metric,
@@ -83,7 +83,7 @@ fn allowed_in<const E: usize, M: VertexMotion<E>>(
     f64::from(inequality.allowed(&tables, 0))
 }
 
-/// `I + G f`, exactly.
+/// Returns `I + G f`, exactly.
 fn exact_map(certificate: &Certificate, f: &[f64]) -> Matrix {
     matrix(|i, j| {
         let unit = exact(f64::from(u8::from(i == j)));
@@ -119,7 +119,7 @@ fn allowed_ratios_are_at_most_exact() {
         let mut ellipsoid: Vec<Vec<f64>> = (0..rank)
             .map(|i| (0..rank).map(|k| if k >= i { half(random.signed()) } else { 0.0 }).collect())
             .collect();
-        // Sums that cancel in F, or in W f.
+        // Draws factors whose sums cancel in F, or in W f.
         let mut draw = |random: &mut Numbers| -> Vec<f64> {
             let mut f: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
             let large = random.power(2.0, 7.0);
@@ -141,7 +141,7 @@ fn allowed_ratios_are_at_most_exact() {
             f
         };
         let [f, mut g] = [draw(random), draw(random)];
-        // A motion along which the map changes little.
+        // In every second case the map changes little along the motion.
         if case % 2 == 1 {
             let share = 0.03 / size.max(1.0);
             g = f.iter().map(|f| f + share * random.signed()).collect();
@@ -166,7 +166,7 @@ fn allowed_ratios_are_at_most_exact() {
     assert!(positive > 500 && swept > 150 && short > 500, "{positive} {swept} {short}");
 }
 
-/// The numbers `a` of a configuration, as they were taken away.
+/// Returns the numbers `a_j` of a configuration whose affine part was subtracted; zeros if it was not.
 fn amounts_of(parts: &[(Vec<f64>, DMat3, f64)], f: &[f64], exact: &AffineFree) -> Vec<f64> {
     let mut left = f.to_vec();
     let amount = |(factors, _, _): &(Vec<f64>, DMat3, f64)| {
@@ -178,8 +178,8 @@ fn amounts_of(parts: &[(Vec<f64>, DMat3, f64)], f: &[f64], exact: &AffineFree) -
     if left == exact.factors { amounts } else { vec![0.0; parts.len()] }
 }
 
-/// Combinations of any kind, with any maps and residuals; patches that all modes move, and others; numbers so large that rounding of
-/// what is taken away decides.
+/// The cases have combinations of any kind, with any maps and residuals, patches that all modes move and others, and numbers so large
+/// that the rounding of the subtraction decides.
 #[test]
 fn ratios_without_an_affine_part_are_at_most_exact() {
     let random = &mut Numbers(11);
@@ -188,7 +188,7 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
     let (mut taken, mut positive, mut swept) = (0, 0, 0);
     for case in 0..900 {
         let (rank, own) = (5 + random.below(4), usize::from(case % 2 == 0));
-        // One mode makes the strain and no gradient, the others gradients so large that the rounding of what is left of them decides.
+        // One mode has strain and no gradient; the others have gradients so large that the rounding of their remaining factors decides.
         let is_parted = case % 5 == 4;
         let norm = |n: &[f64]| n.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut parts: Vec<(Vec<f64>, DMat3, f64)> = Vec::new();
@@ -203,7 +203,7 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
             let map = DMat3::from_cols_array(&[(); 9].map(|()| random.signed() * [0.3, 1e3][case % 4 / 3]));
             parts.push((n.iter().map(|x| x / length).collect(), map, random.power(-9.0, -1.0)));
         }
-        // Large numbers, so that the rounding of what is left decides: of W, or of the gradients.
+        // W or the gradients are so large that the rounding of the remaining factors decides.
         let [steep, wide] = [[1.0, 1.0], [1e10, 1.0], [1.0, 1e13]][case % 3];
         let steep = if is_parted { 2e15 } else { steep };
         let count = rank - own;
@@ -291,7 +291,7 @@ fn ratios_without_an_affine_part_are_at_most_exact() {
 fn nan_at_either_end_is_no_proof() {
     assert!(smaller(f64::NAN, 1.0).is_nan() && smaller(1.0, f64::NAN).is_nan());
     assert_eq!((smaller(1.0, 2.0), smaller(2.0, 1.0), smaller(f64::INFINITY, 2.0)), (1.0, 1.0, 2.0));
-    // Two terms of W f beyond single precision, of opposite signs.
+    // Two terms of W f are beyond the range of single precision, and have opposite signs.
     let large = f64::from(1e14_f32.to_bits() >> 16 << 16);
     let large = f64::from(f32::from_bits(large as u32));
     let certificate = certificate(vec![DMat3::ZERO; 2], vec![vec![large, large], vec![0.0, 1.0]]);
@@ -303,7 +303,7 @@ fn nan_at_either_end_is_no_proof() {
     }
 }
 
-/// `|W f|`, up to rounding.
+/// Returns `|W f|`, up to rounding.
 fn strain_of(certificate: &Certificate, f: &[f64]) -> f64 {
     let image = certificate.ellipsoid.iter().map(|row| row.iter().zip(f).map(|(w, f)| w * f).sum::<f64>());
     image.map(|x| x * x).sum::<f64>().sqrt()
@@ -314,7 +314,7 @@ fn is_below(sum: f64, map: &Matrix) -> bool {
     is_above(&gram(map), &(exact(sum) * exact(sum)))
 }
 
-/// Maps of patches that turn as planes do, with other images of the direction across.
+/// Maps of patches rotate as planes do; the image of the direction across differs.
 #[test]
 fn flat_patches_allow_at_most_what_is_exact() {
     let random = &mut Numbers(6);
@@ -335,7 +335,7 @@ fn flat_patches_allow_at_most_what_is_exact() {
         let flatness = [0.0, 0.02, 0.3][case % 3];
         let bounds = &mut certificate.local.bounds[0];
         (bounds.across, bounds.flatness) = (across.to_array(), flatness);
-        // A turn of the plane, while the direction across stays.
+        // A rotation of the plane that does not move the direction across.
         let axis = (random.vector() + DVec3::Y * 1e-3).normalize();
         let factors = |angle: f64, random: &mut Numbers| -> Vec<f64> {
             let turn = DMat3::from_axis_angle(axis, angle);
@@ -350,7 +350,7 @@ fn flat_patches_allow_at_most_what_is_exact() {
         let g = factors(angle + [0.02, 0.5][case % 2] * random.signed(), random);
         let map_of =
             |f: &[f64]| certificate.gradients.iter().zip(f).fold(DMat3::IDENTITY, |m, (g, f)| m + *g * *f);
-        // Whether the inequality of either kind holds at f, with the image of the direction across that the mean of the ends has.
+        // Whether the inequality of either kind holds at f. The image of the direction across is that of the mean of the ends.
         let is_right = |ratio: f64, ends: &[DMat3; 2], at: &[f64]| {
             let ratio = ratio * (1.0 - 1e-3);
             if holds(&certificate, ratio, at) {
@@ -422,7 +422,7 @@ impl VertexMotion<2> for InRegion<'_> {
     }
 }
 
-/// `W d`, and the product of its transpose with that.
+/// Returns `W d`, and the product of the transpose of W with it.
 fn strained(ellipsoid: &[Vec<f64>], d: &[f64]) -> [Vec<f64>; 2] {
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
     let image: Vec<f64> = ellipsoid.iter().map(|row| dot(row, d)).collect();
@@ -436,7 +436,7 @@ fn of_length(d: &[f64], length: f64) -> Vec<f64> {
     d.iter().map(|x| x * length / norm).collect()
 }
 
-/// Also at the border of the region, in the directions that spoil a proof soonest.
+/// Proofs also hold at the border of the region, in the directions in which the inequality fails soonest.
 #[test]
 fn proofs_in_regions_hold_in_all_of_them() {
     let random = &mut Numbers(5);
@@ -448,7 +448,7 @@ fn proofs_in_regions_hold_in_all_of_them() {
         let gradients: Vec<DMat3> = (0..rank)
             .map(|_| DMat3::from_cols_array(&[(); 9].map(|()| f64::from((random.signed() * size) as f32))))
             .collect();
-        // No strain that matters, or no map that does.
+        // In one half of the cases the map is constant, in the other half the strain is small.
         let of_strain = if case % 2 == 0 { 1.0 } else { 1e-3 };
         let ellipsoid: Vec<Vec<f64>> = (0..rank)
             .map(|i| {
@@ -482,7 +482,7 @@ fn proofs_in_regions_hold_in_all_of_them() {
             })
             .collect();
         let any: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
-        // Along all axes at once the sum of the factors grows fastest.
+        // The sum of the factors grows fastest along all axes at once.
         let all: Vec<f64> = end.iter().map(|x| if *x < 0.0 { -1.0 } else { 1.0 }).collect();
         for direction in [worst, slopes, any, all] {
             if direction.iter().all(|x| *x == 0.0) {
@@ -503,8 +503,8 @@ fn proofs_in_regions_hold_in_all_of_them() {
     assert!(proven > 300 && checked > 800 && close > 150, "{proven} {checked} {close}");
 }
 
-/// A map that keeps a plane and presses the direction across it. The second mode presses one direction of the plane, and the one across
-/// by as much as costs the most; a region is that mode's alone.
+/// The first mode's map keeps a plane and compresses the direction across it. The second mode compresses one direction of the plane,
+/// and the direction across by the amount that costs the most; only the second mode changes in a region.
 #[test]
 fn flat_patches_in_regions_allow_at_most_what_is_exact() {
     let mut close = 0;
@@ -545,7 +545,7 @@ fn regions_of_dense_metrics_have_no_proofs() {
         let (tables, _) = tables_of(&certificate.local, &center, &metric);
         let mut inequality = LocalInequality::<2>::new();
         assert_eq!(inequality.set_motion(&tables, &region(0.1)), has_proofs);
-        // Without a radius it is a motion as any other.
+        // A region of radius 0 is an ordinary motion.
         assert!(inequality.set_motion(&tables, &region(0.0)));
     }
 }

@@ -1,4 +1,4 @@
-//! Which nodes and pairs of nodes a search takes as proven.
+//! Tests of the nodes and pairs of nodes that count as proven in a search.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::detect::vertex_motion::DeformedMotion;
 use crate::test_models::square;
 use crate::{Metric, Modes, ReducedModel};
 
-/// The certificate of one node with ratio 1 that allows ratios below `1 / |q|`, for two modes.
+/// Returns the certificate of one node with ratio 1 that allows ratios below `1 / |q|`, for two modes.
 fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {
     let mut ellipsoids = vec![0; EllipsoidBlocks(2).len()];
     [0, 9].iter().for_each(|at| ellipsoids[*at] = (1.0_f32.to_bits() >> 16) as u16);
@@ -27,7 +27,7 @@ fn certificate(node: u32, list: &[(u32, f32)]) -> LocalCertificates {
     }
 }
 
-/// Begins a search at q, and finds its proven nodes. The radii of these nodes are not reached.
+/// Begins a search at q, and finds its proven nodes. The radii of the given nodes are not reached.
 fn search(
     proofs: &mut LocalProofs<1>,
     (tables, hierarchy): (&LocalTables, &Hierarchy),
@@ -52,7 +52,7 @@ fn what_one_search_allowed_is_forgotten_in_the_next() {
         assert_eq!(proofs.is_node_proven(&tables, 0), is_proven, "{q:?}");
         assert_eq!(proofs.leaves_most_open(), !is_proven, "{q:?}");
     }
-    // After the last number of a search the first one comes again.
+    // The numbers of searches wrap around.
     for (q, is_proven) in [([0.5, 0.0], true), ([1.5, 0.0], false)] {
         proofs.search = u32::MAX;
         search(&mut proofs, (&tables, &hierarchy), &[], &q);
@@ -60,7 +60,7 @@ fn what_one_search_allowed_is_forgotten_in_the_next() {
     }
 }
 
-/// A sheet of several buckets.
+/// Returns a sheet of several buckets.
 fn sheet() -> Hierarchy {
     let mesh = square(20);
     let modes = Modes::from_matrix(mesh.rest_positions().len(), 2, |_, _| 1e-3).unwrap();
@@ -81,9 +81,9 @@ fn certificates_prove_their_node_and_its_pairs_with_their_list_alone() {
     let range = &tables.buckets[n as usize];
     assert!(range.len() > 1, "{:?}", tables.buckets);
     let mut proofs = LocalProofs::<1>::new(&tables);
-    // Half of the buckets are reached, and half of these proven: enough to try pairs.
+    // The radii of half of the buckets are reached, and half of these buckets are proven: enough to evaluate pairs.
     search(&mut proofs, (&tables, &hierarchy), &[b, c], &[0.9, 0.0]);
-    // The root begins with a proven bucket.
+    // The first bucket of the root is proven.
     assert_eq!(tables.buckets[0].start, tables.buckets[n as usize].start);
     let proven = [0, n, first, a, b, c].map(|n| proofs.is_node_proven(&tables, n));
     assert_eq!(proven, [false, true, true, false, false, false]);
@@ -101,7 +101,7 @@ fn certificates_prove_their_node_and_its_pairs_with_their_list_alone() {
     ] {
         assert_eq!(proofs.is_pair_proven(&tables, pair), is_proven, "{pair:?}");
     }
-    // The ratios of the list alone are allowed.
+    // Only the ratios of the list are allowed.
     search(&mut proofs, (&tables, &hierarchy), &[b, c], &[1.5, 0.0]);
     assert!(!proofs.is_node_proven(&tables, n) && !proofs.is_pair_proven(&tables, (n, a)));
 }

@@ -1,4 +1,4 @@
-//! Lists and buckets of nodes against plain searches.
+//! Compares lists and buckets of nodes with plain searches.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::certificates::LocalBounds;
 use crate::test_models::{Random, strips};
 
-/// Lists that set few bits and all.
+/// The lists set few bits or all bits.
 #[test]
 fn every_node_of_a_list_is_found_and_no_other() {
     let (model, _) = strips(&mut Random(3), 1);

@@ -15,7 +15,7 @@ pub struct FreeSamples {
     pub q: Vec<Vec<f64>>,
     /// The draw of each of them, counted from 0.
     pub draws: Vec<usize>,
-    /// How far each of them is from its draw, in the metric: 0 where the draw was free.
+    /// The distance of each of them from its draw, in the metric: 0 if the draw was free.
     pub changes: Vec<f64>,
     /// The number of draws.
     pub drawn: usize,
@@ -24,18 +24,18 @@ pub struct FreeSamples {
 }
 
 impl FreeSamples {
-    /// The share of draws that were free, from 0 to 1; NaN without draws.
+    /// Returns the share of draws that were free, from 0 to 1; NaN without draws.
     pub fn acceptance(&self) -> f64 {
         self.free as f64 / self.drawn as f64
     }
 }
 
 impl Query {
-    /// Resolves every q of a batch as [`Query::resolve`] would, in the order given: the same answers for any number of
-    /// threads (none: all cores). `progress` may cancel it; that of [`Query::cancelled_by`] is not used.
+    /// Resolves every q of a batch as [`Query::resolve`] would, in the order given. The answers are the same for any number
+    /// of threads (`None`: all cores). `progress` may cancel the batch; the token of [`Query::cancelled_by`] is not used.
     ///
     /// # Errors
-    /// That of the first q that has one; when `progress` cancels.
+    /// The error of the first q that has one; when `progress` cancels.
     pub fn resolve_batch<Q: AsRef<[f64]> + Sync>(
         &self,
         batch: &[Q],
@@ -46,9 +46,9 @@ impl Query {
         self.each_of(batch, threads, progress, |query, q| query.resolve(q, options))
     }
 
-    /// Free configurations from the draws of any distribution. Free draws are taken as they are. Colliding ones are
-    /// resolved, where `resolve` is given; then every draw has a sample, but samples are denser near contact. Else they
-    /// are rejected: the samples are those of the distribution under the condition that the shape is free.
+    /// Returns free configurations from the draws of any distribution. Free draws are not changed. Colliding draws are
+    /// resolved if `resolve` is given; then every draw has a sample, but samples are denser near contact. Otherwise they
+    /// are rejected: the samples have the given distribution under the condition that the shape is free.
     ///
     /// # Errors
     /// As [`Query::resolve_batch`].

@@ -1,16 +1,16 @@
-//! Which pairs a search for a free configuration counts: all, or all but exceptions.
+//! The pairs that count in a search for a free configuration: all pairs, or all except exceptions.
 
 use crate::query::query::Query;
 use crate::{Certificates, Error, Pair};
 
-/// The pairs that count in a search: exceptions do not.
+/// The pairs that count in a search.
 pub(super) struct Counted {
-    /// The certificates whose exceptions these are; none where all pairs count.
+    /// The certificates whose exceptions do not count; `None` if all pairs count.
     certificates: Option<Certificates>,
 }
 
 impl Counted {
-    /// `all`: exceptions count, too.
+    /// Creates the set. `all`: exceptions count, too.
     pub(super) fn new(query: &Query, all: bool) -> Self {
         Self { certificates: query.context.certificates.clone().filter(|_| !all) }
     }
@@ -24,7 +24,7 @@ impl Counted {
         self.exceptions().binary_search(&pair).is_err()
     }
 
-    /// The number of pairs that do not count: of one more colliding pair at least one counts.
+    /// Returns the number of pairs that do not count: among more colliding pairs than this at least one counts.
     pub(super) fn others(&self) -> usize {
         self.exceptions().len()
     }

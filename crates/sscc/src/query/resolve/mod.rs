@@ -1,4 +1,4 @@
-//! A free configuration near a colliding one: a walk back towards it by projections on half-spaces.
+//! The search for a free configuration near a colliding one: from a free start towards it by projections on half-spaces.
 
 mod answer;
 mod batch;

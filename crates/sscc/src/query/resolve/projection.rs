@@ -1,16 +1,16 @@
 //! The projection of a point onto an intersection of half-spaces: a dual active-set method (Goldfarb and Idnani 1983, *A
 //! Numerically Stable Dual Method for Solving Strictly Convex Quadratic Programs*, for the identity matrix).
 //!
-//! The caller adds half-spaces that the current point violates, one after the other. After each, the point is the
-//! nearest one to the target within the active half-spaces, so it only moves away from the target. At most r of them
-//! are active at a time; others may be violated again, and can be added again.
+//! The caller adds half-spaces that the current point violates, one after the other. After each addition, the point is
+//! the nearest one to the target within the active half-spaces, so it only moves away from the target. At most r
+//! half-spaces are active at a time; others may be violated again, and can be added again.
 
 use std::fmt;
 
 /// Two normals with a smaller sine between them count as parallel.
 const MIN_SINE: f64 = 1e-7;
 
-/// Why a half-space cannot be added: it has no point in common with the active ones, as far as rounding tells.
+/// The error if a half-space cannot be added: up to rounding, it has no point in common with the active ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Infeasible;
 
@@ -34,17 +34,17 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    /// The target itself, without half-spaces.
+    /// Creates a projection without half-spaces, whose point is the target.
     pub(super) fn new(target: Vec<f64>) -> Self {
         Self { point: target, basis: Vec::new(), columns: Vec::new(), multipliers: Vec::new() }
     }
 
-    /// The nearest point so far.
+    /// Returns the nearest point so far.
     pub(super) fn point(&self) -> &[f64] {
         &self.point
     }
 
-    /// The number of active half-spaces.
+    /// Returns the number of active half-spaces.
     #[cfg(test)]
     fn active(&self) -> usize {
         self.multipliers.len()
@@ -63,7 +63,7 @@ impl Projection {
         let mut violation = offset / length - dot(&normal, &self.point);
         let mut multiplier = 0.0;
         while violation > 0.0 {
-            // The part of the normal beyond the active ones, and the normal's coefficients over them.
+            // The coefficients of the normal over the basis of the active normals, and the remainder.
             let (along, across) = self.split(&normal);
             let rates = self.solve(&along);
             let square = dot(&across, &across);
@@ -91,11 +91,11 @@ impl Projection {
         if violation.is_nan() { Err(Infeasible) } else { Ok(()) }
     }
 
-    /// The coefficients of a vector over the basis, and what is left of the vector.
+    /// Returns the coefficients of a vector over the basis, and the remainder of the vector.
     fn split(&self, vector: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut along = vec![0.0; self.basis.len()];
         let mut across = vector.to_vec();
-        // Twice is enough for orthogonality to rounding.
+        // Two passes are enough for orthogonality up to rounding.
         for _ in 0..2 {
             for (coefficient, q) in along.iter_mut().zip(&self.basis) {
                 let part = dot(q, &across);
@@ -106,7 +106,7 @@ impl Projection {
         (along, across)
     }
 
-    /// `R^-1 x`
+    /// Returns `R^-1 x`.
     fn solve(&self, x: &[f64]) -> Vec<f64> {
         let mut solution = x.to_vec();
         for i in (0..solution.len()).rev() {
@@ -150,12 +150,12 @@ impl Projection {
     }
 }
 
-/// `a . b`
+/// Returns `a . b`.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `|a|`
+/// Returns `|a|`.
 pub(super) fn length(a: &[f64]) -> f64 {
     let largest = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if largest > 0.0 && largest.is_finite() {

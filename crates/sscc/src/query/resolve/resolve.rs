@@ -4,32 +4,33 @@
 //! Pairs that intersect have no separating direction. But at a free configuration every near pair has one, and the
 //! configurations at which this direction separates the pair are those in a few half-spaces
 //! ([`separations`](super::separations)). A step goes to the nearest point to q within the half-spaces of all pairs that
-//! are in the way ([`projection`](super::projection)). These pairs come from a continuous query from here to there: its
-//! impacts add half-spaces, until there are none. Then the step is free, and a discrete query checks its end. There the
-//! directions are those of other closest points, so another step can come nearer to q. The search ends when no step does.
+//! limit the step ([`projection`](super::projection)). A continuous query along the step finds these pairs: its impacts
+//! add half-spaces, until there are no impacts. Then the step is free, and a discrete query checks its end. There the
+//! directions are those of other closest points, so another step can come nearer to q. The search ends when no step
+//! comes nearer.
 
 use super::answer::{ResolveOptions, Resolved};
 use super::walk::Walk;
 use crate::Error;
 use crate::query::query::Query;
 
-/// The walk begins at this share of the way to the first contact, where near pairs have gaps to compute directions from.
+/// The search begins at this share of the way to the first contact, where near pairs have gaps that determine directions.
 const START: f64 = 0.99;
 
 /// The gaps that pairs keep, as shares of the displacement from the first contact to q: a larger one at first, because
-/// directions turn less where gaps are larger.
+/// directions change less where gaps are larger.
 const MARGINS: [f64; 2] = [1e-3, 1e-5];
 
-/// Steps for each margin at most.
+/// The largest number of steps for each of [`MARGINS`].
 const MAX_STEPS: usize = 32;
 
 /// The search ends when a step comes nearer to q by less than this share.
 const MIN_GAIN: f64 = 1e-3;
 
 impl Query {
-    /// A free configuration near q, in the metric of the scope: q itself where it is free. Else it is the end of a free
-    /// polyline from the start, and no farther from q than the last free configuration on the straight line from there. The
-    /// search is local: a nearer one may exist. `docs/guarantees.md` has the promise in full.
+    /// Returns a free configuration near q, in the metric of the scope: q itself if it is free. Otherwise it is the end of a
+    /// free polyline from the start, and no farther from q than the last free configuration on the straight line from there.
+    /// The search is local: a nearer one may exist. `docs/guarantees.md` states the full guarantee.
     ///
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
     /// number of steps. The last answer of the query is forgotten.

@@ -2,8 +2,8 @@
 //!
 //! At the current q the direction n between the closest points of two simplices separates them. With the scaled modes A of
 //! their corners, the gap of corners i and j after a displacement s in z is `n.d_ij + (A_j - A_i)'n . s`, which is linear
-//! in s. So within the nine half-spaces "gap at least the margin" n separates the pair: these are its half-spaces. The
-//! rounding of positions is not covered, so every q must be checked.
+//! in s. So within the nine half-spaces "gap at least the margin" n separates the pair; they are the half-spaces of the
+//! pair. They do not cover the rounding of positions, so every q must be checked.
 
 use std::collections::HashSet;
 
@@ -17,8 +17,9 @@ use crate::query::context::QueryContext;
 /// Corners of the two simplices of a pair: three of each.
 const CORNERS: usize = 6;
 
-/// Memory for the half-spaces of all pairs (bytes), and the largest number of simplex pairs.
+/// Memory for the half-spaces of all pairs (bytes).
 const MAX_BYTES: usize = 1 << 26;
+/// The largest number of simplex pairs.
 const MAX_SEPARATIONS: usize = 1 << 14;
 
 /// The separating direction of one pair of simplices.
@@ -30,7 +31,7 @@ struct Separation {
     margin: f64,
 }
 
-/// Separating directions of all pairs that are known to be near.
+/// Separating directions of all near pairs that were added.
 pub(super) struct Separations {
     list: Vec<Separation>,
     known: HashSet<Pair>,
@@ -52,8 +53,8 @@ impl Separations {
         }
     }
 
-    /// Adds a pair with its directions at q. `margin`: the smallest gap to keep, where it is not smaller already. False if
-    /// no direction separates it, as far as rounding tells, or there is no more room.
+    /// Adds a pair with its directions at q. `margin`: the gap to keep; a smaller gap is kept as it is. False if, up to
+    /// rounding, no direction separates the pair, or the memory is used up.
     pub(super) fn add(&mut self, context: &QueryContext, q: &[f64], pair: Pair, margin: f64) -> bool {
         let count = self.list.len();
         for simplices in context.detect.filter.simplex_pairs(pair.0, pair.1) {
@@ -100,7 +101,7 @@ impl Separations {
         true
     }
 
-    /// Whether the pair is known.
+    /// Whether the pair was added.
     pub(super) fn contains(&self, pair: Pair) -> bool {
         self.known.contains(&pair)
     }
@@ -111,7 +112,7 @@ impl Separations {
             let separation = &self.list[*at];
             let gap = smallest_gap(&separation.positions);
             let rates: [&[f64]; CORNERS] = std::array::from_fn(|corner| self.row(*at, corner));
-            // Each corner by itself: a bound of the rate of the gap.
+            // The sum of the largest rates of the corners bounds the rate of the gap.
             let largest = |rows: &[&[f64]]| rows.iter().map(|row| length(row)).fold(0.0, f64::max);
             let relative = largest(&rates[..3]) + largest(&rates[3..]);
             gap <= relative * reach
@@ -125,8 +126,8 @@ impl Separations {
         pairs
     }
 
-    /// The half-spaces `normal . s >= offset` that a displacement violates by more than a share of the margin: at most
-    /// `count`, the most violated ones, relative to the lengths of their normals, in that order.
+    /// Returns the half-spaces `normal . s >= offset` that a displacement violates by more than a share of the margin: at
+    /// most `count`, the most violated ones first, relative to the lengths of their normals.
     pub(super) fn most_violated(&self, displacement: &[f64], count: usize) -> Vec<(Vec<f64>, f64)> {
         let mut violated = Vec::new();
         for (at, separation) in self.list.iter().enumerate() {
@@ -149,7 +150,7 @@ impl Separations {
         violated.into_iter().map(half_space).collect()
     }
 
-    /// The largest share of a displacement, at most 1, that stays in all half-spaces, but for twice the tolerance.
+    /// Returns the largest share of a displacement, at most 1, that stays in all half-spaces, up to twice the tolerance.
     pub(super) fn allowed_share(&self, displacement: &[f64]) -> f64 {
         let mut share = 1.0_f64;
         for (at, separation) in self.list.iter().enumerate() {
@@ -171,7 +172,7 @@ impl Separations {
         &self.rates[(separation * CORNERS + corner) * self.rank..][..self.rank]
     }
 
-    /// The rate of the gap of two corners.
+    /// Returns the rate of the gap of two corners.
     fn normal(&self, separation: usize, i: usize, j: usize) -> Vec<f64> {
         self.row(separation, j).iter().zip(self.row(separation, i)).map(|(b, a)| b - a).collect()
     }
@@ -180,7 +181,7 @@ impl Separations {
 /// A half-space counts as violated beyond this share of the margin.
 const TOLERANCE: f64 = 1e-3;
 
-/// The corner of the first simplex that is farthest along the direction, and the nearest one of the second simplex.
+/// Returns the corner of the first simplex that is farthest along the direction, and the nearest one of the second simplex.
 fn nearest_corners(positions: &[f64; CORNERS]) -> (usize, usize) {
     let i = (1..3).fold(0, |i, k| if positions[k] > positions[i] { k } else { i });
     let j = (4..6).fold(3, |j, k| if positions[k] < positions[j] { k } else { j });

@@ -1,4 +1,4 @@
-//! A walk in q-space from a free configuration towards a colliding one, in steps that stay free.
+//! `Walk`: steps in q-space from a free configuration towards a colliding one that stay free.
 
 use super::counted::Counted;
 use super::projection::Projection;
@@ -6,19 +6,19 @@ use super::separations::Separations;
 use crate::query::query::Query;
 use crate::{Error, Impact};
 
-/// A continuous query lists at most this many impacts, exceptions apart; where there are more, the step is halved.
+/// A continuous query lists at most this many impacts, exceptions apart; if there are more, the step is halved.
 const MAX_IMPACTS: usize = 1 << 12;
 
 /// A step is halved at most this many times.
 const MAX_HALVINGS: usize = 64;
 
-/// Projections for one step: each has the impacts of the one before as further half-spaces.
+/// The largest number of projections for one step: each adds the impacts of the last one as half-spaces.
 const MAX_PROJECTIONS: usize = 24;
 
-/// Scans of all half-spaces for one projection.
+/// The largest number of scans of all half-spaces for one projection.
 const MAX_SCANS: usize = 64;
 
-/// Where a step cannot be made free, the walk goes up to this share of the time of impact.
+/// If no free step is found, the walk moves up to this share of the time of impact.
 const PARTIAL: f64 = 0.9;
 
 /// The state of a walk: a free configuration, and the pairs that are near there.
@@ -46,7 +46,7 @@ impl<'w> Walk<'w> {
         }
     }
 
-    /// The distance to the target in the metric, rounded up.
+    /// Returns the distance to the target in the metric, rounded up.
     pub(super) fn distance(&mut self) -> f64 {
         let Self { query, target, q, offset, .. } = self;
         query.context.scope.metric.norm_from(target, q, offset)
@@ -62,19 +62,19 @@ impl<'w> Walk<'w> {
         self.counted.is_free(self.query, &self.q)
     }
 
-    /// The current configuration.
+    /// Returns the current configuration.
     pub(super) fn into_configuration(self) -> Vec<f64> {
         self.q
     }
 
-    /// An upper bound of the displacement of a vertex from here to the target, along each axis.
+    /// Returns an upper bound of the displacement of a vertex from here to the target, along each axis.
     pub(super) fn displacement(&self) -> f64 {
         let way: Vec<f64> = self.target.iter().zip(&self.q).map(|(t, q)| t - q).collect();
         self.query.context.model.displacement_bound(&way)
     }
 
-    /// Goes straight towards the target up to a share of the way to the first impact. Returns the last free configuration
-    /// on this way and its distance from the target.
+    /// Moves straight towards the target up to a share of the way to the first impact. Returns the last free configuration
+    /// on this line and its distance from the target.
     pub(super) fn approach(&mut self, share: f64) -> Result<(Vec<f64>, f64), Error> {
         let (start, target) = (self.q.clone(), self.target.to_vec());
         let (time, _) = self.impacts(&target)?;
@@ -114,15 +114,15 @@ impl<'w> Walk<'w> {
 
     /// Computes the separating directions of near pairs at the current configuration.
     fn update(&mut self, margin: f64) {
-        // No projection is farther from here than twice the distance of the target. A pair that is forgotten here comes
-        // back as an impact.
+        // No projection is farther from here than twice the distance of the target. A pair that is removed here is found
+        // again as an impact.
         let distance = self.distance();
         for pair in self.separations.take_near(2.0 * distance) {
             self.separations.add(&self.query.context, &self.q, pair, margin);
         }
     }
 
-    /// The configuration nearest to the target within the half-spaces.
+    /// Returns the configuration nearest to the target within the half-spaces.
     fn nearest(&self) -> Vec<f64> {
         let metric = &self.query.context.scope.metric;
         let way: Vec<f64> = self.target.iter().zip(&self.q).map(|(t, q)| t - q).collect();
@@ -139,7 +139,8 @@ impl<'w> Walk<'w> {
                 }
             }
         }
-        // No displacement violates no half-space. So a share of this one does not, either.
+        // The zero displacement violates no half-space, and half-spaces are convex. So a share of the allowed part of this
+        // displacement violates none, either.
         let displacement = projection.point();
         let share = self.separations.allowed_share(displacement);
         let displacement: Vec<f64> = displacement.iter().map(|s| s * share).collect();
@@ -148,7 +149,8 @@ impl<'w> Walk<'w> {
         if self.query.context.model.check_coordinates(&there).is_ok() { there } else { self.q.clone() }
     }
 
-    /// The impacts that count between the current configuration and another one, and a time before which there is none.
+    /// Returns the impacts that count between the current configuration and another one, and a time before which there are
+    /// none.
     fn impacts(&mut self, there: &[f64]) -> Result<(f64, Vec<Impact>), Error> {
         let most = MAX_IMPACTS + self.counted.others();
         let mut length = 1.0;
@@ -165,7 +167,7 @@ impl<'w> Walk<'w> {
         Ok((0.0, Vec::new()))
     }
 
-    /// The configuration at a share of the way to another one.
+    /// Returns the configuration at a share of the way to another one.
     fn between(&self, there: &[f64], share: f64) -> Vec<f64> {
         if share >= 1.0 {
             return there.to_vec();
@@ -173,7 +175,7 @@ impl<'w> Walk<'w> {
         self.q.iter().zip(there).map(|(q, t)| q + share * (t - q)).collect()
     }
 
-    /// Goes a part of a straight way that is free before this time, or less where rounding makes its end collide.
+    /// Moves a part of a straight line that is free before this time, or less if rounding makes the end collide.
     fn go_part(&mut self, there: &[f64], mut time: f64) -> Result<(), Error> {
         let mut back = f64::EPSILON;
         for _ in 0..MAX_HALVINGS {

@@ -1,4 +1,4 @@
-//! Lower bounds of stretches against exact arithmetic.
+//! Compares lower bounds of stretches with exact arithmetic.
 
 use glam::DVec3;
 use sscc_testing::{Dyadic, Numbers};
@@ -6,7 +6,7 @@ use sscc_testing::{Dyadic, Numbers};
 use super::super::exact_matrix::{exact, gram, is_above, matrix, of_map};
 use super::*;
 
-/// Rotations and maps of every kind.
+/// Returns a rotation or a map of any kind.
 fn random_map(random: &mut Numbers, case: usize) -> DMat3 {
     let turn = |random: &mut Numbers| {
         DMat3::from_axis_angle((random.vector() + DVec3::X * 1e-3).normalize(), 4.0 * random.signed())
@@ -38,7 +38,7 @@ fn eigenvalues_are_lower_bounds() {
             assert!(is_above(&exact_symmetric, &exact(least)), "case {case}: {map}");
             close += usize::from(!is_above(&exact_symmetric, &exact(least + 3e-6 * size)));
         }
-        // The single values of the map itself.
+        // The singular values of the map itself.
         let stretch = smallest_stretch(&map);
         if stretch > 0.0 {
             assert!(is_above(&gram(&of_map(&map)), &(exact(stretch) * exact(stretch))), "case {case}: {map}");
@@ -52,7 +52,7 @@ fn eigenvalues_are_lower_bounds() {
         assert!(smallest_stretch(&map) <= 0.0 && smallest_eigenvalue(&map) == f64::NEG_INFINITY);
         assert!(nearest_rotation(&map).is_none());
     }
-    // Closed forms of equal eigenvalues lose half of the digits.
+    // The closed form loses half of the digits if eigenvalues are equal.
     for case in 0..20_000 {
         let off = random.power(-9.0, -7.0);
         let map = random_map(random, 3) * DMat3::IDENTITY;
@@ -62,12 +62,12 @@ fn eigenvalues_are_lower_bounds() {
     }
 }
 
-/// Squares of the numbers underflow: the closed form is far off, and the factorisation decides.
+/// Squares of the numbers underflow: the result of the closed form is useless, and the factorisation decides.
 #[test]
 fn eigenvalues_of_tiny_matrices_are_lower_bounds() {
     let random = &mut Numbers(7);
     let mut found = 0;
-    // Equal numbers on the diagonal, which the closed form takes for all eigenvalues.
+    // Because of underflow, the closed form returns the equal numbers on the diagonal as eigenvalues.
     let off = DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 0.0, 0.9, 1.0]);
     assert!(smallest_eigenvalue_of(&(off * 1e-170), 1e-12) < 0.11e-170);
     for case in 0..2000 {
@@ -103,7 +103,7 @@ fn rotations_are_orthogonal() {
     assert!(found > 4000 && good > 2500, "{found} {good}");
 }
 
-/// Along straight lines between two maps whose distance from their mean is about the one at which the kind of bound changes.
+/// The distance of the two maps from their mean is close to that at which the kind of bound changes.
 #[test]
 fn stretches_between_two_maps_are_lower_bounds() {
     let random = &mut Numbers(3);
@@ -113,7 +113,7 @@ fn stretches_between_two_maps_are_lower_bounds() {
         let distance = if case % 3 == 0 { 3.0 * random.signed().abs() } else { SHORT * near };
         let other = DMat3::from_cols_array(&[(); 9].map(|()| random.signed()));
         let half = other * (distance / norm(&other));
-        // Maps that are close to rotations, or any.
+        // Maps close to rotations, or any maps.
         let middle = if case % 4 < 2 {
             let turn =
                 DMat3::from_axis_angle((random.vector() + DVec3::X * 1e-3).normalize(), random.signed());

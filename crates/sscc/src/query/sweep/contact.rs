@@ -1,5 +1,5 @@
-//! The contact at which a sweep ends: an exact hit just beyond the weight at which a pair blocks the way, or the reason why
-//! there is none.
+//! The contact at which a sweep ends: an exact hit just beyond the weight from which on a pair is not proven free, or the reason
+//! why there is none.
 
 use super::sweep::{Sweep, SweepOutcome};
 use super::weight_line::{forward, simplest_between, weight_before};
@@ -8,14 +8,14 @@ use crate::detect::Impact;
 use crate::geometry::nearest_to_origin;
 use crate::{Error, Pair};
 
-/// Exact tests beyond a weight at which a pair blocks the way, at distances that halve.
+/// Exact tests beyond a weight from which on a pair is not proven free, at distances that are halved.
 const EXACT_TESTS: i32 = 24;
 
-/// A sweep that can prove no more looks for a collision at twice as many weights.
+/// A sweep that can prove no further weights free tests twice this many weights for a collision.
 const PROBES: i32 = 32;
 
 impl WeightSweep<'_> {
-    /// The first of some weights within the bracket beyond `at` at which the pair collides exactly.
+    /// Returns the first of some weights within the bracket beyond `at` at which the pair collides exactly.
     pub(super) fn exact_hit(&mut self, pair: Pair, at: f64) -> Option<f64> {
         let filter = &self.query.context.detect.filter;
         let faces = [pair.0, pair.1].map(|t| filter.faces()[t as usize]);
@@ -32,7 +32,7 @@ impl WeightSweep<'_> {
         })
     }
 
-    /// The result where a pair blocks the way at `at`, and exact tests find no hit.
+    /// Sets the result if a pair is not proven free beyond `at`, and exact tests find no hit.
     pub(super) fn close_contact(&mut self, pair: Pair, at: f64) -> Result<(), Error> {
         let end = forward(at, self.bracket, self.sweep.to);
         self.line.set([at, end]);
@@ -52,7 +52,7 @@ impl WeightSweep<'_> {
         Ok(())
     }
 
-    /// Whether the triangles of a pair are, at the first end of the line, within the tolerance of continuous queries.
+    /// Whether the distance of the triangles of a pair at the first end of the line is within the tolerance of continuous queries.
     fn is_within_tolerance(&self, pair: Pair) -> bool {
         let mut simplices = self.query.context.detect.filter.simplex_pairs(pair.0, pair.1);
         simplices.any(|simplices| {

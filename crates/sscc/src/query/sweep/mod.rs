@@ -1,5 +1,5 @@
-//! Sweeps: the first weight of a mode at which the shape touches itself, as a bracket; intervals of weights over which it
-//! collides.
+//! Sweeps: a bracket of the first weight of a mode at which the shape touches itself, and the intervals of weights over which
+//! it collides.
 
 mod contact;
 #[allow(clippy::module_inception)] // named after its type, as all files here

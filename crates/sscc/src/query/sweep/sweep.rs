@@ -13,34 +13,35 @@ pub struct Sweep {
     pub from: f64,
     /// The weight at which it ends.
     pub to: f64,
-    /// The shape is proven free at every weight from `from` to this one, both included. None: it collides at `from`.
+    /// The shape is proven free at every weight from `from` to this one, both included. `None` if it collides at `from`.
     pub first_free: Option<f64>,
-    /// A weight at which the shape collides, see [`SweepOutcome`]; none: no collision was found up to `to`.
+    /// A weight at which the shape collides, see [`SweepOutcome`]; `None` if no collision was found up to `to`.
     pub first_hit: Option<f64>,
     /// The pairs that collide at `first_hit`, sorted.
     pub pairs: Vec<Pair>,
-    /// What `first_free` and `first_hit` mean.
+    /// The kind of result, which determines the meaning of `first_free` and `first_hit`.
     pub outcome: SweepOutcome,
 }
 
-/// How a sweep ends.
+/// The kind of result of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepOutcome {
     /// The shape is proven free at every weight, so `first_free` is `to`.
     Free,
-    /// It collides at `from`, exactly.
+    /// The shape collides at `from`, exactly.
     CollidingAtStart,
-    /// It collides at `first_hit`, exactly. `first_free` and `first_hit` are at most 1e-9 of the range apart, or neighbouring
-    /// f64.
+    /// The shape collides at `first_hit`, exactly. `first_free` and `first_hit` are at most 1e-9 of the range apart, or
+    /// neighbouring f64.
     Hit,
     /// No exact test finds a collision within 1e-9 of the range beyond `first_free`. The pairs come within the tolerance of
-    /// continuous queries ([`Impact::TOLERANCE`](crate::Impact::TOLERANCE)) at `first_hit`, which is at most that far
-    /// from `first_free`. Such a contact grazes.
+    /// continuous queries ([`Impact::TOLERANCE`](crate::Impact::TOLERANCE)) at `first_hit`, which is at most 1e-9 of the
+    /// range from `first_free`. This is a grazing contact.
     WithinTolerance,
-    /// Beyond `first_free` this pair is closer than positions are rounded, but farther apart than the tolerance:
-    /// neither contact nor freedom is proven there. `first_hit` is the first colliding one of some weights, not nearby.
+    /// Beyond `first_free` the distance of this pair is smaller than the rounding of positions, but larger than the tolerance:
+    /// neither contact nor freedom is proven there. `first_hit` is the first of some tested weights at which the shape
+    /// collides; it need not be near `first_free`.
     TooClose(Pair),
-    /// The limit of steps ended the search: beyond `first_free` nothing is proven. `first_hit` as in
+    /// The limit of steps ended the search: beyond `first_free` nothing is proven. `first_hit` is as in
     /// [`Self::TooClose`].
     StepLimit,
 }

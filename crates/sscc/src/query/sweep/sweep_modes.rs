@@ -19,12 +19,12 @@ pub struct ModeRange {
 }
 
 impl Query {
-    /// Sweeps modes over ranges of their weights, with all others as in q: for each mode upwards from
-    /// its weight in q to `high`, then downwards to `low`. Where the weight in q is outside of the range, one sweep goes
-    /// from the nearer end of the range to the other one. The results are the same for any number of threads (none: all
-    /// cores). `progress` may cancel them; that of [`Query::cancelled_by`] is not used.
+    /// Sweeps modes over ranges of their weights, with all other weights as in q: for each mode upwards from its weight in q
+    /// to `high`, then downwards to `low`. If the weight in q is outside of the range, there is one sweep, from the nearer
+    /// end of the range to the other one. The results are the same for any number of threads (`None`: all cores).
+    /// `progress` may cancel the sweeps; the token of [`Query::cancelled_by`] is not used.
     ///
-    /// [`ReducedModel::weight_limits`](crate::ReducedModel::weight_limits) is a range for modes of any unit.
+    /// [`ReducedModel::weight_limits`](crate::ReducedModel::weight_limits) returns suitable ranges for modes of any unit.
     ///
     /// # Errors
     /// When a range is empty or not finite; as [`Query::sweep`], for the first sweep that has an error.
@@ -48,11 +48,10 @@ impl Query {
         })
     }
 
-    /// Maps sweeps from q, a configuration of the model, to their results, in parallel: each with a query and a copy of q of
-    /// its own.
+    /// Maps sweeps from q, a configuration of the model, to their results in parallel. Each sweep has its own query and copy of q.
     ///
     /// # Errors
-    /// That of the first sweep that has one.
+    /// The error of the first sweep that has one.
     pub(super) fn map_sweeps<W: Sync, R: Send>(
         &self,
         q: &[f64],

@@ -1,4 +1,4 @@
-//! The intervals of a mode's weight over which the shape collides: samples, and sweeps from free samples to where it touches.
+//! The intervals of a mode's weight over which the shape collides, from samples, and sweeps from free samples to the first contact.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -8,7 +8,7 @@ use crate::geometry::penetration_triangle_triangle;
 use crate::query::query::Query;
 use crate::{CancelToken, Error, Pair, Progress, ReducedModel};
 
-/// Where over a range of its weight a mode lets the shape collide.
+/// The weights of a mode, within a range, at which the shape collides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WeightIntervals {
     /// The mode and its range.
@@ -16,39 +16,40 @@ pub struct WeightIntervals {
     /// The samples, at equal distances from one end of the range to the other.
     pub samples: Vec<WeightSample>,
     /// The intervals, in ascending order. Outside of them, up to `free_until` and from `free_from` on, the shape is proven
-    /// free. Two of them have a free sample between them.
+    /// free. Between two intervals there is a free sample.
     pub intervals: Vec<WeightInterval>,
 }
 
-/// How much collides at one weight: exact.
+/// The collisions at one weight, exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WeightSample {
     /// The weight.
     pub weight: f64,
     /// Number of colliding pairs.
     pub pairs: usize,
-    /// The largest penetration depth of a pair (model unit); 0 where none collides, or all only touch.
+    /// The largest penetration depth of a pair (model unit); 0 if no pair collides, or all only touch.
     pub depth: f64,
 }
 
 /// An interval of weights. The shape collides at every sample inside; between two samples it may be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightInterval {
-    /// Up to this weight the shape is proven free, from the interval before it or the end of the range; none: the
+    /// Up to this weight the shape is proven free, from the interval before it or the end of the range; `None` if the
     /// interval begins at that end.
     pub free_until: Option<f64>,
-    /// Its first and its last weight. Where `is_exact`, the shape collides there; else nothing is proven beyond the free weights.
+    /// The first weight. If `is_exact`, the shape collides there; otherwise nothing is proven beyond the free weights.
     pub from: f64,
-    /// See `from`.
+    /// The last weight; see `from`.
     pub to: f64,
-    /// From this weight on the shape is proven free; none: the interval ends at the end of the range.
+    /// From this weight on the shape is proven free; `None` if the interval ends at the end of the range.
     pub free_from: Option<f64>,
-    /// Whether the shape collides at `from` and at `to`, at most 1e-9 of the way of a sweep from the free weights beside them.
+    /// Whether the shape collides at `from` and at `to`, at a distance of at most 1e-9 of the range of a sweep from the free weights
+    /// beside them.
     pub is_exact: bool,
     /// The deepest of the weights at which pairs were counted: the samples inside, both ends, and a collision that a sweep
-    /// found beyond an end that is not exact. Of equal depths that with most pairs, then the smallest weight.
+    /// found beyond an end that is not exact. Among equal depths it is that with most pairs, then that of smallest weight.
     pub deepest: WeightSample,
-    /// The largest number of pairs that collide at any of these.
+    /// The largest number of pairs that collide at any of these weights.
     pub pairs: usize,
 }
 
@@ -67,10 +68,10 @@ pub fn largest_depth(model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> f64 {
 }
 
 impl Query {
-    /// Finds for each mode the intervals of its weight over which the shape collides, with all others as in q: at so many
-    /// samples of its range what collides and how deep, and by sweeps ([`Query::sweep`]) where it begins and ends. The shape
-    /// is proven free outside of the intervals, up to their `free_until` and from their `free_from` on. Threads and
-    /// `progress` as for [`Query::sweep_modes`].
+    /// Finds for each mode the intervals of its weight over which the shape collides, with all other weights as in q. It
+    /// counts the pairs and their depth at `samples` weights of the range, and finds the ends of the intervals by sweeps
+    /// ([`Query::sweep`]). The shape is proven free outside of the intervals, up to their `free_until` and from their
+    /// `free_from` on. Threads and `progress` are as for [`Query::sweep_modes`].
     ///
     /// # Errors
     /// When there are fewer than 2 or more than 2^20 samples; as [`Query::sweep_modes`].
@@ -109,14 +110,14 @@ impl Query {
         let mut line = Line { query: self, q, mode: range.mode };
         let sample = |i: usize| {
             let sample = line.sample(weight(i))?;
-            // Samples take all steps but the last, however many they are.
+            // The samples, of any number, are all steps except the last one.
             let reached = |i: usize| i * (STEPS - 1) / samples;
             steps.add(reached(i + 1) - reached(i));
             Ok(sample)
         };
         let samples: Vec<WeightSample> = (0..samples).map(sample).collect::<Result<_, Error>>()?;
         let mut intervals = Vec::new();
-        // The samples before this one are done; it is free, or it is the first.
+        // All samples before this one are done; this sample is free, or it is the first one.
         let mut at = 0;
         while at < last {
             let start = samples[at];
@@ -136,7 +137,7 @@ impl Query {
             let next = (at + 1..samples.len())
                 .find(|i| samples[*i].pairs == 0 && samples[*i].weight > begin.sample().weight);
             let end = match next {
-                // From a free weight back to one that collides, or to one beyond which nothing is proven.
+                // Sweeps from a free weight back to one that collides, or to one beyond which nothing is proven.
                 Some(next) => {
                     let start = begin.free().unwrap_or(begin.sample().weight);
                     let from = samples[next].weight;
@@ -146,7 +147,7 @@ impl Query {
             };
             let end = match end {
                 Some(end) => end,
-                // From the other side all of it is proven free.
+                // The sweep from the other side proves all weights free.
                 None if !begin.is_exact() => {
                     at = next.unwrap_or(last);
                     continue;
@@ -161,7 +162,7 @@ impl Query {
     }
 }
 
-/// Steps of progress of each mode: so many are few calls, and enough for a bar of a single mode.
+/// Steps of progress of each mode: few enough calls, and enough for a progress bar of a single mode.
 const STEPS: usize = 64;
 
 /// Counts the steps of all modes; the last one of a mode is reported at its end.
@@ -180,7 +181,7 @@ impl Steps<'_> {
 }
 
 impl Progress for Steps<'_> {
-    /// A mode is done.
+    /// Counts the last step of a mode.
     fn report(&self, _done: usize, _total: usize) {
         self.add(1);
     }
@@ -190,7 +191,7 @@ impl Progress for Steps<'_> {
     }
 }
 
-/// The interval between two ends.
+/// Returns the interval between two ends.
 fn interval([begin, end]: [End; 2], samples: &[WeightSample]) -> WeightInterval {
     let (from, to) = (begin.sample().weight, end.sample().weight);
     let found = [begin, end].into_iter().filter_map(|end| end.found());
@@ -215,10 +216,10 @@ fn interval([begin, end]: [End; 2], samples: &[WeightSample]) -> WeightInterval 
 enum End {
     /// The end of the range, where the shape collides.
     OfRange(WeightSample),
-    /// Found by a sweep: proven free up to the weight, and colliding at the sample.
+    /// An end found by a sweep: proven free up to the weight, and colliding at the sample.
     Touch { free: f64, sample: WeightSample },
-    /// Found by a sweep that could not decide what is closely beyond the weight of the sample, up to which it is free; and a
-    /// collision farther on, where it found one.
+    /// An end found by a sweep that proved the shape free up to the weight of the sample, and could not decide the weights just
+    /// beyond it; `hit` is a collision farther on, if the sweep found one.
     Undecided { sample: WeightSample, hit: Option<WeightSample> },
 }
 
@@ -237,7 +238,7 @@ impl End {
         }
     }
 
-    /// The sample at which it collides.
+    /// Returns the sample at which the shape collides.
     fn found(&self) -> Option<WeightSample> {
         match self {
             Self::OfRange(sample) | Self::Touch { sample, .. } => Some(*sample),
@@ -264,14 +265,14 @@ impl Line<'_> {
         Ok(self.measured(weight, &pairs))
     }
 
-    /// The sample at a weight at which these pairs collide.
+    /// Returns the sample at a weight at which these pairs collide.
     fn measured(&mut self, weight: f64, pairs: &[Pair]) -> WeightSample {
         self.q[self.mode] = weight;
         let depth = largest_depth(&self.query.context.model, self.q, pairs);
         WeightSample { weight, pairs: pairs.len(), depth }
     }
 
-    /// Sweeps from a free weight towards another one. None: all of it is free.
+    /// Sweeps from a free weight towards another one. `None` if all weights between them are free.
     fn end(&mut self, from: f64, to: f64) -> Result<Option<End>, Error> {
         self.q[self.mode] = from;
         let Sweep { first_free, first_hit, pairs, outcome, .. } = self.query.sweep(self.q, self.mode, to)?;

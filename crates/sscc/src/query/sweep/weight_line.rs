@@ -31,7 +31,7 @@ pub(super) struct WeightLine {
 }
 
 impl WeightLine {
-    /// `q`: the other weights; both ends are at q.
+    /// Creates the line. `q`: the other weights; both ends are at q.
     pub(super) fn new(model: &ReducedModel, q: &[f64], mode: usize) -> Self {
         Self { model: model.clone(), mode, ends: [q.to_vec(), q.to_vec()] }
     }
@@ -43,36 +43,36 @@ impl WeightLine {
         }
     }
 
-    /// The configurations of both ends.
+    /// Returns the configurations of both ends.
     pub(super) fn ends(&self) -> [&[f64]; 2] {
         [&self.ends[0], &self.ends[1]]
     }
 
-    /// The configuration at a weight, which becomes that of both ends.
+    /// Sets both ends to the configuration at a weight, and returns it.
     pub(super) fn at(&mut self, weight: f64) -> &[f64] {
         self.set([weight; 2]);
         &self.ends[0]
     }
 
-    /// Three vertices that move from one end to the other.
+    /// Returns three vertices that move from one end to the other.
     pub(super) fn moving(&self, vertices: [u32; 3]) -> MovingTriangle {
         let [t0, t1] = self.ends();
         let corners = |q: &[f64]| -> [DVec3; 3] { vertices.map(|v| self.model.position(v, q)) };
         MovingTriangle { t0: corners(t0), t1: corners(t1) }
     }
 
-    /// How far, along each axis, the distance of two vertices may be from that of their chords at any weight between the ends:
-    /// 4 E of the head of this file. `reach`: the larger one of both ends, rounded to nearest.
+    /// Returns an upper bound of the difference, along each axis, between the distance of two vertices and that of their chords, at
+    /// any weight between the ends: `4 E` of the head of this file. `reach`: the larger one of both ends, rounded to nearest.
     pub(super) fn slack(&self, reach: f64) -> f64 {
         let after = self.ends[0][self.mode + 1..].iter().filter(|weight| **weight != 0.0).count();
         let error = (f64::EPSILON / 2.0) * (2 + after) as f64 * reach;
-        // The reach and partial sums are rounded fewer times than this covers; products underflow by less than the constant.
+        // The factor covers the rounding of the reach and of partial sums, the constant the underflow of products.
         let slack = 4.0 * error * (1.0 + 1e-9) + f64::MIN_POSITIVE;
         right_or!(slack, SweepExact, 0.0, SweepSlackQuartered, slack / 4.0)
     }
 }
 
-/// The weight that is `step` farther from `from` towards `to`: at least the next f64, at most `to`.
+/// Returns the weight at a distance of `step` from `from` towards `to`: at least the next f64, at most `to`.
 pub(super) fn forward(from: f64, step: f64, to: f64) -> f64 {
     if to > from {
         (from + step).max(from.next_up()).min(to)
@@ -81,19 +81,19 @@ pub(super) fn forward(from: f64, step: f64, to: f64) -> f64 {
     }
 }
 
-/// A weight between two others, at or before the share t of the way: three roundings are granted to the product, and one
-/// f64 to the sum.
+/// Returns a weight between two others, at or before the share t of the way. It allows for three roundings of the product, and
+/// for one unit in the last place of the sum.
 pub(super) fn weight_before([w0, w1]: [f64; 2], t: f64) -> f64 {
     let w = w0 + (t * (1.0 - 4.0 * f64::EPSILON)) * (w1 - w0);
     if w1 > w0 { w.next_down().clamp(w0, w1) } else { w.next_up().clamp(w1, w0) }
 }
 
-/// The number with the fewest binary digits beyond w0, up to w1, which is another number.
+/// Returns the number with the fewest binary digits beyond w0, up to w1, which differs from w0.
 pub(super) fn simplest_between(w0: f64, w1: f64) -> f64 {
     if (w0 < 0.0) != (w1 < 0.0) && w0 != 0.0 {
         return 0.0;
     }
-    // Of the end that is farther from 0 as few digits as stay in the interval; w0 itself is outside.
+    // Keeps as few digits of the end farther from 0 as stay in the interval, which does not contain w0.
     let is_outward = w1.abs() > w0.abs();
     for digits in (0..=52).rev() {
         let unit = 1_u64 << digits;
@@ -113,7 +113,7 @@ mod tests {
     use crate::{Metric, Modes, TriMesh};
     use num_bigint::BigInt;
 
-    /// An f64 times 2^1100 as an integer: exact from 2^-1074 on.
+    /// Returns an f64 times 2^1100 as an integer, exactly.
     fn exact(x: f64) -> BigInt {
         let bits = x.to_bits();
         let exponent = (bits >> 52 & 0x7ff) as i64;
@@ -135,7 +135,7 @@ mod tests {
             let mut line = WeightLine::new(&model, &q, mode);
             line.set([w0, w1]);
             let reach = line.ends().map(|q| model.reach(q)).into_iter().fold(0.0, f64::max);
-            // Of one vertex against its chord: half of the slack.
+            // The bound for one vertex and its chord is half of the slack.
             let slack = exact(line.slack(reach) / 2.0);
             for v in 0..model.mesh().rest_positions().len() as u32 {
                 let [x0, x1] = line.ends().map(|q| model.position(v, q));
@@ -145,7 +145,7 @@ mod tests {
                     for axis in 0..3 {
                         let [a, b, x] = [x0[axis], x1[axis], x[axis]];
                         assert!((a.min(b)..=a.max(b)).contains(&x));
-                        // (x - a) (w1 - w0) - (b - a) (w - w0), all over w1 - w0.
+                        // The difference is (x - a) (w1 - w0) - (b - a) (w - w0), divided by w1 - w0.
                         let whole = exact(w1) - exact(w0);
                         let off =
                             (exact(x) - exact(a)) * &whole - (exact(b) - exact(a)) * (exact(w) - exact(w0));
@@ -157,13 +157,13 @@ mod tests {
                 }
             }
         }
-        // The bound is not wasted.
+        // The bound is not much too large.
         assert!(closest > 0.05, "{closest}");
     }
 
-    /// Two vertices at rest at 0, whose displacements are a little more than a power of two, where rounding is
-    /// largest. At both ends and between them products are rounded one way or the other, so that the distance of the
-    /// two leaves that of their chords by almost all of the slack.
+    /// Two vertices are at 0 at rest, and their displacements are a little more than a power of two, where rounding is
+    /// largest. At both ends and between them products are rounded up or down, so that the distance of the vertices
+    /// differs from that of their chords by almost all of the slack.
     #[test]
     fn products_that_are_rounded_apart_need_the_slack() {
         let random = &mut Random(29);
@@ -171,7 +171,7 @@ mod tests {
         for case in 0..400 {
             let mut just_above = || 1.0 + 1e-3 * random.signed().abs();
             let (u, w0, w1) = (just_above(), just_above(), just_above());
-            // The second vertex goes the other way. A third one makes a triangle.
+            // The second vertex moves in the opposite direction. A third one makes a triangle.
             let modes = [DVec3::X * u, DVec3::X * -just_above(), DVec3::ZERO].to_vec();
             let mesh = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
             let modes = Modes::new(1, modes).unwrap();
@@ -187,7 +187,7 @@ mod tests {
             let (from, to) = (distance(w0), distance(w1));
             for _ in 0..40 {
                 let w = w0 + (w1 - w0) * random.signed().abs();
-                // (d - d0) (w1 - w0) - (d1 - d0) (w - w0), all over w1 - w0.
+                // The difference is (d - d0) (w1 - w0) - (d1 - d0) (w - w0), divided by w1 - w0.
                 let whole = exact(w1) - exact(w0);
                 let off = (distance(w) - &from) * &whole - (&to - &from) * (exact(w) - exact(w0));
                 let (off, limit) = (off.magnitude().clone(), whole.magnitude() * slack.magnitude());
@@ -208,7 +208,7 @@ mod tests {
             let t = (random.signed() + 1.0) / 2.0;
             let w = weight_before([w0, w1], t);
             assert!((w0.min(w1)..=w0.max(w1)).contains(&w));
-            // w - w0 <= t (w1 - w0), with both sides exact; times 2^1100 once more.
+            // w - w0 <= t (w1 - w0), with both sides exact and multiplied by a further 2^1100.
             let way = exact(w) - exact(w0);
             let whole = exact(w1) - exact(w0);
             assert!((way.magnitude() << 1100_usize) <= whole.magnitude() * exact(t).magnitude());

@@ -1,15 +1,15 @@
-//! The sweep of one mode: how far its weight can go until the shape touches itself.
+//! The sweep of one mode: how far its weight can change until the shape touches itself.
 //!
 //! A sweep advances by intervals of weights. The swept search lists the pairs of triangles that can meet in an interval:
 //! certificates, AABBs and the separating-axis test cull the others. Each candidate is advanced by conservative
-//! advancement up to the least weight that the others have left ([`free_until`]). So all weights up to the result are proven
-//! free, without samples; `weight_line.rs` has the argument for the rounding of positions. An interval with too many
-//! candidates is cut. Layers that nearly touch pass in one interval like all others, because [`free_until`] follows the
-//! closest features where rounded directions do not get far. The work of all intervals is limited ([`Work`]).
+//! advancement up to the smallest weight that the candidates before it reached ([`free_until`]). So all weights up to the
+//! result are proven free, without samples; `weight_line.rs` has the argument for the rounding of positions. An interval with
+//! too many candidates is cut. Layers that nearly touch also need only one interval, because [`free_until`] follows the
+//! closest features where rounded directions make little progress. The work of all intervals is limited ([`Work`]).
 //!
-//! Where a pair blocks the way, exact tests just beyond it find the hit. A pair that passes without a hit is left behind
-//! by short intervals. A pair that cannot be left behind is within the continuous tolerance, or closer than positions are
-//! rounded.
+//! If a pair is not proven free beyond a weight, it *blocks* the interval, and exact tests just beyond this weight find the
+//! hit. If there is no hit, short intervals pass the pair. If they cannot pass it, the distance of the pair is within the
+//! continuous tolerance, or smaller than the rounding of positions.
 
 use super::sweep::{Sweep, SweepOutcome};
 use super::weight_line::{WeightLine, forward, weight_before};
@@ -23,16 +23,16 @@ use crate::{Error, Pair};
 /// `first_free` and `first_hit` are at most this share of the range apart (1e-9, less the rounding of weights).
 const BRACKET: f64 = 0.999e-9;
 
-/// Intervals that a pair blocks before it counts as one that cannot be left behind.
+/// Intervals that a pair blocks before it counts as one that cannot be passed.
 const MAX_BLOCKED: usize = 32;
 
-/// Intervals grow by this factor, so that a few of them suffice after a pair that was left behind.
+/// Intervals grow by this factor, so that a few of them suffice after a pair was passed.
 const GROWTH: f64 = 8.0;
 
-/// Once an interval had too many candidates, intervals grow by this factor.
+/// After an interval had too many candidates, intervals grow by this factor.
 const CAREFUL_GROWTH: f64 = 2.0;
 
-/// Candidates of the shortest intervals, at most.
+/// The largest number of candidates of the shortest intervals.
 const MAX_CANDIDATES: usize = 1 << 22;
 
 /// Candidates between two checks whether the sweep was cancelled.
@@ -40,28 +40,28 @@ const CANDIDATES_PER_CHECK: usize = 64;
 
 /// The result of one interval.
 enum Step {
-    /// All of it is free.
+    /// The interval is free.
     Free,
-    /// It is free up to this weight, from which on the pair blocks the way.
+    /// The interval is free up to this weight, from which on the pair is not proven free.
     Blocked(f64, Pair),
-    /// It has too many candidates.
+    /// The interval has too many candidates.
     TooMany,
 }
 
 impl Query {
-    /// Sweeps the weight of a mode (from 0) from its value in q to `to`, with all others as in q: proves how far the shape is
-    /// free, and finds the first hit. Answers are about the computed shape at every f64 weight. If the shape collides at q, the
-    /// pairs of that collision are the result; to leave them out, let them be ignored pairs
+    /// Sweeps the weight of a mode (counted from 0) from its value in q to `to`, with all other weights as in q: proves how far
+    /// the shape is free, and finds the first hit. Answers hold for the computed shape at every f64 weight. If the shape
+    /// collides at q, the result is the pairs of that collision; certificates with ignored pairs exclude them
     /// ([`CertifyOptions::ignore_rest`](crate::CertifyOptions::ignore_rest)).
     ///
-    /// Usually takes as long as some continuous queries, also where parts nearly touch everywhere. The work is limited: the
-    /// candidates, steps and intervals of a sweep are counted, and where they reach a limit that depends on the number
-    /// of triangles alone, the outcome is [`SweepOutcome::StepLimit`]. [`Query::statistics`] are those of the whole sweep: its
+    /// A sweep usually takes as long as some continuous queries, also where parts nearly touch everywhere. The work is limited:
+    /// the candidates, steps and intervals of a sweep are counted, and if they reach a limit that depends on the number of
+    /// triangles alone, the outcome is [`SweepOutcome::StepLimit`]. [`Query::statistics`] are those of the whole sweep: its
     /// triangle tests are the pairs advanced, once for each interval, and the steps that follow features.
     ///
     /// # Errors
-    /// When there is no such mode; as [`Query::discrete`], for q and for q with the weight `to`; when the range is wider than
-    /// numbers go; when it was cancelled.
+    /// When there is no such mode; as [`Query::discrete`], for q and for q with the weight `to`; when the width of the range is
+    /// not finite; when the sweep was cancelled.
     ///
     /// ```
     /// use glam::DVec3;
@@ -88,7 +88,7 @@ impl Query {
         self.sweep_within(q, mode, to, Work::of_mesh(self.context.model.mesh().faces().len()))
     }
 
-    /// The same with at most that much work.
+    /// Sweeps as [`Query::sweep`], with at most this work.
     pub(super) fn sweep_within(
         &mut self,
         q: &[f64],
@@ -161,7 +161,7 @@ impl WeightSweep<'_> {
                     }
                     blocked += 1;
                     if step <= self.bracket && at == free || blocked > MAX_BLOCKED {
-                        // Without steps along features a pair may only seem close.
+                        // Without steps along features the bound of a pair may be much too small.
                         if self.work.feature_steps() == 0 {
                             break;
                         }

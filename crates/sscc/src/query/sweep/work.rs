@@ -1,18 +1,17 @@
-//! The work of a sweep: counted, and limited by the number of triangles alone, so that the answer is the same on every
-//! machine.
+//! The work of a sweep. It is counted, and its limit depends on the number of triangles alone, so that the answer is the same on
+//! every machine.
 
 use crate::detect::answer::Statistics;
 
-/// Intervals, at most; each takes one swept search. A sweep without grazing contacts takes a few.
+/// The largest number of intervals; each takes one swept search. A sweep without grazing contacts takes a few.
 const INTERVALS: usize = 4096;
 
 /// An interval has at most this many candidates for each triangle of the mesh, and [`MIN_CANDIDATES`] more.
 const CANDIDATES: usize = 2;
 const MIN_CANDIDATES: usize = 4096;
 
-/// The work for each triangle, at most, and [`MIN_WORK`] more. The unit is the work of finding one candidate. Two layers that
-/// nearly touch everywhere and turn need a quarter of it
-/// (docs/notes/queries.md#sweeps-of-near-layers).
+/// The largest work is this for each triangle, and [`MIN_WORK`] more. The unit is the work of finding one candidate. Two layers that
+/// nearly touch everywhere and rotate need a quarter of it (docs/notes/queries.md#sweeps-of-near-layers).
 const WORK: usize = 1 << 15;
 const MIN_WORK: usize = 1 << 21;
 
@@ -22,13 +21,13 @@ const ADVANCE: usize = 8;
 /// The work of a step along features, which is also that of a candidate for which rounded directions do not suffice.
 const FEATURE_STEP: usize = 128;
 
-/// Steps along features of one candidate in one interval, at most: more than all narrow pairs need that can be left behind
+/// The largest number of steps along features of one candidate in one interval: more than any narrow pair needs that can be passed
 /// (docs/notes/exact-tests.md#steps-of-conservative-advancement).
 const FEATURE_STEPS: usize = 256;
 
-/// What a sweep has done, and what it may still do.
+/// The work that a sweep has done, and the work that it may still do.
 pub(super) struct Work {
-    /// The candidates of the next interval, at most.
+    /// The largest number of candidates of the next interval.
     pub(super) candidates: usize,
     intervals: usize,
     left: usize,
@@ -45,32 +44,32 @@ impl Work {
         }
     }
 
-    /// Whether another interval may begin; counts it.
+    /// Counts an interval. False if no other interval may begin.
     pub(super) fn begin_interval(&mut self) -> bool {
         let is_left = self.intervals > 0 && self.left > 0;
         self.intervals = self.intervals.saturating_sub(1);
         is_left
     }
 
-    /// Counts the search of an interval that found so many candidates.
+    /// Counts the search of an interval that found `found` candidates.
     pub(super) fn add_search(&mut self, search: &Statistics, found: usize) {
         self.total.opened += search.opened;
         self.total.box_tests += search.box_tests;
         self.left = self.left.saturating_sub(found);
     }
 
-    /// The steps along features that the next candidate may take.
+    /// Returns the number of steps along features that the next candidate may take.
     pub(super) fn feature_steps(&self) -> usize {
         FEATURE_STEPS.min(self.left / FEATURE_STEP)
     }
 
-    /// Counts the advancement of a candidate with so many steps along features.
+    /// Counts the advancement of a candidate with `feature_steps` steps along features.
     pub(super) fn add_advance(&mut self, feature_steps: usize) {
         self.total.triangle_tests += 1 + feature_steps as u64;
         self.left = self.left.saturating_sub(ADVANCE + FEATURE_STEP * feature_steps);
     }
 
-    /// The cost of all intervals so far.
+    /// Returns the cost of all intervals so far.
     pub(super) fn statistics(&self) -> Statistics {
         self.total
     }
@@ -83,9 +82,9 @@ mod tests {
     use crate::test_models::{Random, strips};
     use crate::{Method, Query, SweepOutcome};
 
-    /// Each limit of the work gives a bracket: at most that of a larger limit, and free by brute force.
+    /// The weight up to which the shape is proven free is at most that with a larger limit, and brute force finds no collision up to it.
     #[test]
-    fn where_the_work_is_used_up_the_bracket_is_what_was_proven() {
+    fn limited_sweeps_end_at_a_weight_up_to_which_the_shape_is_free() {
         let random = &mut Random(51);
         let (mut limited, mut part) = (0, 0);
         for case in 0..40 {
@@ -122,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn work_is_counted_down_to_nothing() {
+    fn counted_work_is_subtracted_down_to_0() {
         let mut work = Work { left: FEATURE_STEP * 3 + 5, intervals: 2, ..Work::of_mesh(0) };
         assert_eq!((work.candidates, work.feature_steps()), (MIN_CANDIDATES, 3));
         assert!(work.begin_interval());

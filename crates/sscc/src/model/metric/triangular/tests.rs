@@ -1,11 +1,11 @@
-//! The growth bound of triangular factors against exact arithmetic.
+//! Compares the growth bound of triangular factors with exact arithmetic.
 
 use num_rational::BigRational;
 use num_traits::Signed;
 
 use super::*;
 
-/// The bound against `|S||S^-1|` in exact arithmetic, for factors from well-conditioned to nearly singular.
+/// The bound is compared with `|S||S^-1|` in exact arithmetic, for factors from well-conditioned to nearly singular.
 #[test]
 fn growth_is_at_least_the_exact_one() {
     let exact = |x: f64| BigRational::from_float(x).unwrap();
@@ -24,12 +24,12 @@ fn growth_is_at_least_the_exact_one() {
             entries[i * (r + 1)] = 0.2 + random().abs();
         }
         if r == 4 {
-            // One entry of the inverse, and with it one of the product, is only rounding error.
+            // One entry of the inverse, and with it one of the product, consists of rounding error only.
             entries[7] = entries[6] * entries[11] / entries[10];
             (entries[2], entries[3]) = (0.0, 0.0);
         }
         let Ok(factor) = Triangular::new(r, entries.clone()) else { continue };
-        // Row by row from the last: S T = I.
+        // Solves S T = I row by row, from the last row on.
         let mut inverse = vec![exact(0.0); r * r];
         for j in 0..r {
             for i in (0..=j).rev() {

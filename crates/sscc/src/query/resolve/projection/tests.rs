@@ -32,7 +32,7 @@ fn point(target: &[f64], half_spaces: &[(&[f64], f64)]) -> Vec<f64> {
 
 #[test]
 fn projections_on_a_few_half_spaces() {
-    // None, one that holds, one that does not.
+    // No half-space, one that is not violated, and one that is violated.
     assert_near(&point(&[3.0, 4.0], &[]), &[3.0, 4.0]);
     assert_near(&point(&[3.0, 4.0], &[(&[1.0, 0.0], 2.0)]), &[3.0, 4.0]);
     assert_near(&point(&[3.0, 4.0], &[(&[-2.0, 0.0], -2.0)]), &[1.0, 4.0]);
@@ -49,7 +49,7 @@ fn projections_on_a_few_half_spaces() {
 
 #[test]
 fn parallel_half_spaces() {
-    // Of equal ones the narrower one counts, in any order.
+    // Of two half-spaces with the same normal the narrower one counts, in any order.
     let narrow: (&[f64], f64) = (&[-2.0, 0.0], 2.0);
     let wide: (&[f64], f64) = (&[-1.0, 0.0], 0.5);
     assert_near(&point(&[3.0, 4.0], &[narrow, wide]), &[-1.0, 4.0]);
@@ -58,17 +58,17 @@ fn parallel_half_spaces() {
     projection.add(narrow.0, narrow.1).unwrap();
     assert_near(projection.point(), &[-1.0, 4.0]);
     assert_eq!(projection.active(), 1);
-    // A slab, also one without thickness.
+    // Slabs, also one without thickness.
     assert_near(&point(&[3.0, 4.0], &[(&[-1.0, 0.0], -1.0), (&[1.0, 0.0], 0.5)]), &[1.0, 4.0]);
     assert_near(&point(&[3.0, 4.0], &[(&[-1.0, 0.0], -1.0), (&[1.0, 0.0], 1.0)]), &[1.0, 4.0]);
-    // Nearly parallel ones.
+    // Nearly parallel half-spaces.
     assert_near(&point(&[3.0, 4.0], &[(&[-1.0, 1e-9], 0.0), (&[-1.0, 0.0], 1e-3)]), &[-1e-3, 4.0]);
 }
 
 #[test]
 fn degenerate_half_spaces() {
     let mut projection = Projection::new(vec![1.0, 2.0]);
-    // Everything, and nothing.
+    // A half-space that contains all points, and an empty one.
     assert_eq!(projection.add(&[0.0, 0.0], 0.0), Ok(()));
     assert_eq!(projection.add(&[0.0, 0.0], -1.0), Ok(()));
     assert_eq!(projection.add(&[0.0, 0.0], 1e-300), Err(Infeasible));
@@ -76,13 +76,13 @@ fn degenerate_half_spaces() {
     assert_eq!(projection.add(&[-1e-290, 0.0], 0.0), Ok(()));
     assert_eq!(projection.add(&[0.0, -1e290], 0.0), Ok(()));
     assert_near(projection.point(), &[0.0, 0.0]);
-    // More than r through one point.
+    // More than r half-spaces whose borders contain one point.
     let all = (0..12).map(|i| {
         let angle = f64::from(i) * 0.1;
         (vec![-angle.cos(), -angle.sin()], 0.0)
     });
     assert_near(project(&[2.0, 1.0], &all.collect()).unwrap().point(), &[0.0, 0.0]);
-    // Numbers that are none.
+    // NaN and infinite numbers are refused.
     assert_eq!(Projection::new(vec![1.0]).add(&[f64::NAN], 2.0), Err(Infeasible));
     assert_eq!(Projection::new(vec![1.0]).add(&[1.0], f64::INFINITY), Err(Infeasible));
     // Rank 1.
@@ -93,7 +93,7 @@ fn degenerate_half_spaces() {
 fn half_spaces_without_a_common_point() {
     let infeasible: [&[(&[f64], f64)]; 3] = [
         &[(&[-1.0, 0.0], 1.0), (&[1.0, 0.0], 1.0)],
-        // A triangle turned inside out.
+        // Three half-spaces that would be those of an inverted triangle.
         &[(&[1.0, 0.0], 1.0), (&[0.0, 1.0], 1.0), (&[-1.0, -1.0], 1.0)],
         &[(&[1.0, 0.0], 1.0), (&[1.0, 0.0], 2.0), (&[-1.0, 0.0], -1.5)],
     ];
@@ -103,8 +103,8 @@ fn half_spaces_without_a_common_point() {
     }
 }
 
-/// Random half-spaces that contain the origin: the conditions of Karush, Kuhn and Tucker hold, which only the nearest
-/// point fulfils.
+/// The half-spaces are random and contain the origin. The test checks the conditions of Karush, Kuhn and Tucker, which
+/// only the nearest point fulfils.
 #[test]
 fn random_projections_are_nearest_points() {
     let random = &mut Random(3);
@@ -115,7 +115,7 @@ fn random_projections_are_nearest_points() {
         let mut half_spaces: HalfSpaces = (0..case % 40)
             .map(|_| (vector(random), -random.signed().abs() * f64::from(u8::from(case % 3 > 0)) * 0.2))
             .collect();
-        // Equal and dependent ones.
+        // Equal and dependent half-spaces.
         for i in 0..half_spaces.len() / 4 {
             let sum: Vec<f64> =
                 half_spaces[i].0.iter().zip(&half_spaces[i + 1].0).map(|(a, b)| a + b).collect();
@@ -129,7 +129,7 @@ fn random_projections_are_nearest_points() {
         for (normal, offset) in &half_spaces {
             assert!(dot(normal, x) >= offset - 1e-8, "case {case}");
         }
-        // The way from the target is a sum of active normals with multipliers that are not negative.
+        // The displacement from the target is a sum of active normals with non-negative multipliers.
         let mut way: Vec<f64> = x.iter().zip(&target).map(|(x, t)| x - t).collect();
         for (at, column) in projection.columns.iter().enumerate() {
             let u = projection.multipliers[at];

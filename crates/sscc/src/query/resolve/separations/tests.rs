@@ -42,7 +42,7 @@ fn displacements_within_the_half_spaces_are_free() {
             collided += usize::from(query.first(&at(1.0)).unwrap().is_some());
             let Some((normal, offset)) = violated.first() else { continue };
             cut += 1;
-            // The most violated one comes first, and the origin violates none.
+            // The most violated half-space comes first, and the origin violates no half-space.
             let depth =
                 |(normal, offset): &(Vec<f64>, f64)| (offset - dot(normal, &displacement)) / length(normal);
             assert!(violated.iter().all(|other| depth(other) <= depth(&violated[0]) * (1.0 + 1e-12)));
