@@ -92,7 +92,7 @@
 //! | Do shapes in the world collide with each other? | [`parts::PosedShape`], [`parts::SweptShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
 //! | Which points do two triangles have in common? | [`parts::intersection_triangle_triangle`] |
-//! | What is the smallest translation that parts two triangles? | [`parts::penetration_triangle_triangle`] |
+//! | What is the smallest translation that separates two triangles? | [`parts::penetration_triangle_triangle`] |
 //! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`parts::contact_curves`], [`parts::contact_curves_between`] |
 //! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
