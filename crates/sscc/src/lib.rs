@@ -105,7 +105,7 @@
 //! count:
 //!
 //! - [`Neighbours`]: by default triangles that share a vertex never count. Optionally, triangles that share exactly
-//!   one vertex count if they have another point in common; of meshes without modes also those that share an edge or all
+//!   one vertex count if they have another point in common; for meshes without modes also those that share an edge or all
 //!   vertices, if they are folded onto each other.
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
 //!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide. Readers of such

@@ -81,7 +81,7 @@ impl CertifyOptions {
         /// children; this suits certificates that serve a few queries only, since the tree takes most of the time. 64 by default.
         budget: usize,
         /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of
-        /// the mesh. Together with [`budget`](Self::budget) it also limits the hierarchy and its radii (10 to 14 bytes a
+        /// the mesh. Together with [`budget`](Self::budget) it also covers the hierarchy and its radii (10 to 14 bytes a
         /// triangle), so by default certificates take at most 128 bytes a triangle; memory that the pair tree does not need is
         /// used here. Nodes that few modes move come first, and among them the largest. There are no local certificates if they
         /// would cover less than 0.6 of all triangles. 0 for none; they take about as long as the radii, which suits certificates

@@ -44,6 +44,7 @@ pub struct Penetration {
 /// boundary of one of them. Otherwise it is positive (at least the smallest denormal number), and too large by at most a few
 /// units in the last place and `2^-48` times the largest difference of coordinates of a corner of each. If several directions are
 /// equally good (up to rounding), the result has the first in a fixed order.
+///
 /// A call costs about three microseconds.
 ///
 /// ```
