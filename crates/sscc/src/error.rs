@@ -1,7 +1,7 @@
 //! The errors of the core.
 //!
-//! A message is one line: the place (a vertex, a triangle, a mode, counted from 0), the cause, and the way out where
-//! there is one. Callers put the file or the argument in front.
+//! A message is one line: the place (a vertex, a triangle, a mode, counted from 0), the cause, and the remedy, if there is one.
+//! Callers put the file or the argument in front.
 
 /// Why the core refuses a mesh, modes, a metric, q, an option or certificates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,7 +51,7 @@ pub enum Error {
         face: usize,
         /// The index it names, from 0.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A pair names a triangle that does not exist.
@@ -61,7 +61,7 @@ pub enum Error {
         pair: usize,
         /// The triangle that it names, from 0.
         triangle: u32,
-        /// How many triangles there are.
+        /// Number of triangles.
         triangles: usize,
     },
     /// A mesh without an inside, the `first` or the `second` one, where the volume of bodies is needed.

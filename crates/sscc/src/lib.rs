@@ -92,7 +92,7 @@
 //! | Do shapes in the world collide with each other? | [`parts::PosedShape`], [`parts::SweptShape`] |
 //! | Do two triangles intersect? | [`intersect_triangle_triangle`] |
 //! | Which points do two triangles have in common? | [`parts::intersection_triangle_triangle`] |
-//! | What is the smallest translation that parts two triangles? | [`parts::penetration_triangle_triangle`] |
+//! | What is the smallest translation that separates two triangles? | [`parts::penetration_triangle_triangle`] |
 //! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`parts::contact_curves`], [`parts::contact_curves_between`] |
 //! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
@@ -105,7 +105,7 @@
 //! count:
 //!
 //! - [`Neighbours`]: by default triangles that share a vertex never count. Optionally, triangles that share exactly
-//!   one vertex count if they have another point in common; of meshes without modes also those that share an edge or all
+//!   one vertex count if they have another point in common; for meshes without modes also those that share an edge or all
 //!   vertices, if they are folded onto each other.
 //! - *Weld*: whether vertices of equal position and modes are one vertex. Files for rendering (STL, glTF) split vertices
 //!   along seams; without welding, the triangles on both sides of a seam share no vertex, and always collide. Readers of such

@@ -1,4 +1,4 @@
-//! Entries of a `BinaryHeap` that gives the smallest number first, in the same order in every run.
+//! Entries of a `BinaryHeap` that pops the smallest number first, in the same order in every run.
 //!
 //! `BinaryHeap` pops its largest entry and needs a total order, which f64 does not have: keys compare by
 //! `f64::total_cmp`, reversed. Answers must not depend on the order in which entries were pushed, so each entry also

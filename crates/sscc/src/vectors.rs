@@ -184,7 +184,7 @@ mod avx2 {
         simd.vectorize(Run { simd, kernel })
     }
 
-    /// Bytes in a line of the caches.
+    /// The number of bytes in a line of the caches.
     const LINE: usize = 64;
 
     /// Requests each line of a slice.

@@ -158,8 +158,8 @@ impl Attack<'_> {
         self.claims.node(n as u32)
     }
 
-    /// Returns a q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one; for two
-    /// nodes mostly where two of their triangles approach.
+    /// Returns a q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one. For a
+    /// claim about two nodes it is mostly a q at which two of their triangles approach.
     fn draw_configuration(&self, claim: Claim, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
         let Claim { nodes: (n, m), radius } = claim;
         let scope = &self.certificates.parts().scope;

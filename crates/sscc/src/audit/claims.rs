@@ -9,8 +9,7 @@ use crate::certificates::{StoredPair, sibling_pairs};
 use crate::hierarchy::NodePair;
 use crate::{Clearance, Pair};
 
-/// The claim that no pair of triangles between two nodes, or within one where both are the same, collides below the
-/// radius.
+/// The claim that no pair of triangles between two nodes, or within one node if both are the same, collides below the radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Claim {
     pub(super) nodes: NodePair,

@@ -41,7 +41,7 @@ const INWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.01, 0.05, 0.2];
 /// Number of random steps of the local search.
 const STEPS: usize = 400;
 
-/// Searches closest collisions of the model of certificates.
+/// Searches the closest collisions of triangle pairs of a model.
 #[derive(Clone, Copy)]
 pub(super) struct MinimumSearch<'a> {
     pub(super) model: &'a ReducedModel,
@@ -54,7 +54,7 @@ pub(super) struct MinimumSearch<'a> {
     pub(super) clearance: Option<Clearance>,
 }
 
-/// The candidate of a minimum over pairs of points.
+/// A candidate for the minimum over pairs of points.
 #[derive(Clone, Copy)]
 struct Candidate {
     radius: f64,

@@ -93,7 +93,7 @@ impl PointPairs<'_> {
 impl Relative {
     /// Returns `y = (B B')^-1 d` and d, if B has full rank. For a distance D, a vector of length D along y is first subtracted
     /// from d: then the points are D apart in that direction, and no smaller z brings them as near. A few fixed-point iterations
-    /// find the direction; the points come as near with any direction.
+    /// find the direction. The points come as near as D with any other direction, too.
     fn multiplier(&self, distance: f64) -> Option<(DVec3, DVec3)> {
         let mut gram = DMat3::ZERO;
         for b in &self.modes {

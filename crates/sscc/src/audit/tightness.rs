@@ -11,10 +11,10 @@ use crate::certificates::{
 use crate::parallel::{map, map_with};
 use crate::{Certificates, Pair, Progress};
 
-/// Nodes measured beside the root and the pairs of its children.
+/// Number of nodes measured beside the root and the pairs of its children.
 const NODES: usize = 200;
 
-/// Entries of the pair tree measured.
+/// Number of entries of the pair tree measured.
 const STORED: usize = 100;
 
 /// Number of absent pairs measured: those with the smallest bounds.

@@ -9,13 +9,14 @@
 //! R_ab >= (delta - e0) / (g delta + e + e1)
 //! ```
 //!
-//! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows
-//! with delta, so a lower bound of the distance serves. Only the symmetric part of each mode's gradient enters g: a
-//! local infinitesimal rotation costs nothing. One map may serve many triangle pairs.
+//! B holds the relative modes of the two points; e0 and e1 are the two parts of the [`RoundingBound`]. The bound grows with
+//! delta, so a lower bound of the distance suffices. Only the symmetric part of each mode's gradient enters g: a local
+//! infinitesimal rotation costs nothing. One map may serve many triangle pairs.
 //!
 //! A clearance (`required_gap.rs`) needs a gap along the unit direction u of more than D in place of 0, with the rate D' at which D grows:
 //! `(delta - e0 - D) / (g delta + e + e1 + D')`. For `D + e0 >= 0` this grows with delta, too: its derivative has the sign of
-//! `e + e1 + D' + g (e0 + D)`. Each two points of the triangles have a direction u of their own; all of them stay farther apart than D.
+//! `e + e1 + D' + g (e0 + D)`. The proof holds for each two points of the triangles with a direction u of their own: all points
+//! stay farther apart than D.
 
 use glam::DVec3;
 

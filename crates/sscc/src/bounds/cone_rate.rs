@@ -53,8 +53,8 @@ pub(super) fn bound_rate_in_cone(
         if rate <= wanted {
             break;
         }
-        // Halve across the longest edge. Rounding leaves a gap between the halves about an ulp wide, 48 of them at
-        // most; over it f^2 changes by less than 3e-14 of the trace, which the rounding bound of the forms covers.
+        // Halve across the longest edge. By rounding there is a gap about an ulp wide between the halves, at most 48 in all; over
+        // it f^2 changes by less than 3e-14 of the trace, which the rounding bound of the forms covers.
         let [u0, u1, u2] = cones[worst].directions;
         let edges = [(u0, u1, u2), (u1, u2, u0), (u2, u0, u1)];
         let (u0, u1, u2) = edges

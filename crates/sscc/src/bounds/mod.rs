@@ -2,8 +2,8 @@
 //! section 5).
 //!
 //! These files compute bounds: `separating_direction`, `affine_bound`, `pair_refiner` (both, with subdivision), `leaf_pair`,
-//! `node_pair`, `configuration_line`, `upper_bound`. `pair_witness` proves the bound of a triangle pair to others. The other
-//! files contain parts of the bounds.
+//! `node_pair`, `configuration_line`, `upper_bound`. `pair_witness` finds proofs of the bound of a triangle pair that another
+//! program can check. The other files contain parts of the bounds.
 //!
 //! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
 //! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any

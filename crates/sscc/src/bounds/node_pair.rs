@@ -182,7 +182,7 @@ impl Kernel for NodeWitness<'_> {
     }
 }
 
-/// Returns the candidate directions that separate the AABBs; none if the AABBs touch.
+/// Returns the candidate directions that separate the AABBs; there are none if the AABBs touch.
 #[inline(always)]
 fn candidates(
     n: &NodeModes,

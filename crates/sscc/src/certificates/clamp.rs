@@ -3,8 +3,7 @@
 use super::Certificates;
 use crate::Error;
 
-/// The maximum number of steps towards the centre: a few make up for rounding, about a thousand for a norm that
-/// overflows.
+/// The maximum number of steps towards the centre: a few compensate for rounding, about a thousand for a norm that overflows.
 const MAX_STEPS: usize = 4096;
 
 impl Certificates {

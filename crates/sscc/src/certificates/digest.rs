@@ -1,4 +1,4 @@
-//! The digest by which certificates recognise their model and scope.
+//! The digest that identifies the model and scope of certificates.
 
 use super::Scope;
 use crate::filter::weld_classes;

@@ -49,7 +49,8 @@ impl CertifyOptions {
         /// - pairs of buckets that the outer round adds, up to 1.5 times the limit before it: lower bounds without a tolerance;
         /// - radii of nodes that are searched on their own: `max(epsilon, 0.4)`.
         ///
-        /// A radius at the cap, or one whose search ran out of subdivisions or queue, may be smaller. Paper, section 5.1, and default: 0.1.
+        /// A radius at the cap may be smaller, and so may one whose search ran out of subdivisions or of memory for its queue.
+        /// The paper (section 5.1) and the default have 0.1.
         epsilon: f64,
         /// The metric. None for the model's default.
         metric: impl Into<Option<Metric>>,
@@ -74,19 +75,19 @@ impl CertifyOptions {
         /// Memory for the pair tree ([`PairTree`](crate::parts::PairTree)), in bytes for each triangle of the mesh; a node pair
         /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
         /// ([`PairTree::limit`](crate::parts::PairTree::limit)): queries with `|z|` below that do not open two nodes only because
-        /// their AABBs touch, unless the tree has nearly all pairs and all are reached. The rounds before the outer one may use a quarter of the budget, and search the radii of their pairs;
-        /// pairs of the outer round mostly have the bound of the two nodes alone. 0 for no tree, which is the paper's scheme of
-        /// one radius for each node and each pair of the root's children; this suits certificates that serve a few queries only,
-        /// since the tree takes most of the time. 64 by default.
+        /// their AABBs touch, unless the tree has nearly all pairs and all are reached. The rounds before the outer one may use a
+        /// quarter of the budget, and search the radii of their pairs. Pairs of the outer round mostly have the bound of the two
+        /// nodes alone. 0 for no tree, which is the paper's scheme of one radius for each node and each pair of the root's
+        /// children; this suits certificates that serve a few queries only, since the tree takes most of the time. 64 by default.
         budget: usize,
-        /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of the mesh. Together with
-        /// [`budget`](Self::budget) it also limits the hierarchy and its radii (10 to 14 bytes a triangle), so by default
-        /// certificates take at most 128 bytes a triangle; memory that the pair tree does not need is used here. Nodes that few
-        /// modes move come first, and among them the largest. There are no local certificates if they would cover less than 0.6
-        /// of all triangles. 0 for none; they take about as long as the radii, which suits certificates that serve a few queries
-        /// only. 64 by default.
+        /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of
+        /// the mesh. Together with [`budget`](Self::budget) it also covers the hierarchy and its radii (10 to 14 bytes a
+        /// triangle), so by default certificates take at most 128 bytes a triangle; memory that the pair tree does not need is
+        /// used here. Nodes that few modes move come first, and among them the largest. There are no local certificates if they
+        /// would cover less than 0.6 of all triangles. 0 for none; they take about as long as the radii, which suits certificates
+        /// that serve a few queries only. 64 by default.
         local_budget: usize,
-        /// How far radii may reach, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
+        /// The farthest radius, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
         /// radius, or before it if its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of
         /// the budget. That takes longer than local certificates, which prove most shapes there free, so the default is 1. Radii
         /// of nodes are capped at the radius up to which the tree was built, but not below `R_global`

@@ -6,8 +6,8 @@
 use super::{CertificateParts, Certificates};
 use crate::Error;
 
-/// Certificates from their parts, as read from a file whose integrity has been checked. Parts that do not fit together are
-/// refused.
+/// Creates certificates from their parts, as read from a file whose integrity has been checked. Parts that do not fit together
+/// are refused.
 impl TryFrom<CertificateParts> for Certificates {
     type Error = Error;
 

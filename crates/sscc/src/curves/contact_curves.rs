@@ -97,7 +97,7 @@ pub fn contact_curves(
 /// meshes intersect, like [`contact_curves`].
 ///
 /// # Errors
-/// As [`contact_curves`].
+/// Those of [`contact_curves`].
 pub fn contact_curves_between(
     x: Surface<'_>,
     y: Surface<'_>,

@@ -12,7 +12,7 @@ pub struct PairContact {
     pub pair: Pair,
     /// The common points, as computed by [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle).
     pub intersection: Intersection,
-    /// Unit normals of both triangles, to which their corners turn counterclockwise; 0 for a degenerate one.
+    /// Unit normals of both triangles, from whose side their corners turn counterclockwise; 0 for a degenerate one.
     pub normals: [DVec3; 2],
     /// The penetration depth (model unit): the length of the smallest translation after which the two only touch; see
     /// [`penetration_triangle_triangle`](crate::parts::penetration_triangle_triangle).

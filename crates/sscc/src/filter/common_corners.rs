@@ -44,7 +44,7 @@ pub(super) fn intersect_beyond_common_corners(
     if common_a == [true; 3] && common_b == [true; 3] {
         return right_or!(true, DoubledFacesAreFree, false);
     }
-    // At most two distinct positions: three would be all corners of both.
+    // There are at most two distinct positions: three would be all corners of both.
     let mut common = a.corners_where(common_a);
     let Some(u) = common.next() else {
         return intersect_triangle_triangle(a.positions, b.positions);

@@ -46,7 +46,7 @@ pub(crate) struct PairFilter {
     /// The vertex class of each corner: the lowest vertex that it is welded to; without welding the vertex itself.
     pub(super) classes: Vec<[u32; 3]>,
     neighbours: Neighbours,
-    /// Sorted.
+    /// The excluded pairs, sorted.
     excluded: Vec<Pair>,
     /// Group numbers, one for each face. None if all pairs of groups count.
     groups: Option<Arc<TriangleGroups>>,

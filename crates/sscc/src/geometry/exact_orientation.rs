@@ -97,12 +97,12 @@ fn integer_sign(x: &BigInt) -> i8 {
 mod tests {
     use super::*;
 
-    /// At the smallest numbers that `robust` is used for, both exact ways agree; far below, `robust` loses the sign.
+    /// At the smallest numbers for which `robust` is used, both exact methods agree; far below, `robust` loses the sign.
     #[test]
     fn robust_agrees_with_integers_where_it_is_used() {
         let corners = |g: f64| {
             let (a, b, c) = (DVec3::new(1.0, 3.0, 5.0), DVec3::new(7.0, 2.0, 4.0), DVec3::new(6.0, 9.0, 8.0));
-            // On the plane up to one unit in the last place of one coordinate.
+            // The point d is on the plane up to one unit in the last place of one coordinate.
             let mut d = (a * 2.0 + b + c) / 4.0;
             d.z = d.z.next_up();
             [a, b, c, d].map(|p| p * g)

@@ -156,7 +156,7 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     }
 }
 
-/// Whether all are strictly above, or all strictly below.
+/// Whether all sides are strictly above, or all strictly below.
 #[inline]
 pub(super) fn is_strictly_one_side(sides: &[i8]) -> bool {
     sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0)

@@ -8,8 +8,8 @@
 
 use glam::{DVec2, DVec3};
 
-/// Rounding errors of one pair, in units of the products that [`error`] names. Clips have at most 8 errors each, heights 16, and
-/// integrals 8.
+/// Bound of the rounding errors of one pair, in units of the products that [`error`] names. Clips have at most 8 errors each,
+/// heights 16, and integrals 8.
 const ERROR: f64 = 128.0 * f64::EPSILON;
 
 /// A term of the volume.
@@ -75,7 +75,7 @@ struct Plane {
     area: f64,
     from: DVec3,
     slope: DVec2,
-    /// Whether the slope is beyond the range of numbers and was replaced by 0.
+    /// Whether the slope was beyond the range of numbers, and is replaced by 0.
     is_vague: bool,
     /// The lowest and the highest corner.
     z: (f64, f64),

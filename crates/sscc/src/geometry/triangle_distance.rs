@@ -5,9 +5,9 @@
 //! not too small. The smallest candidate is too large by at most a few rounding units of the size, although the formulas lose
 //! digits:
 //!
-//! - For edges at an angle t and a distance h, the point at which the lines are nearest errs along its edge by about `e = u / t +
-//!   h u / t^2`. The nearest point of the other edge is computed from this point, so that the distance is about `sqrt(h^2 + (t
-//!   e)^2)`: too large by at most u. If the second term of e is large, an end of an edge is as near.
+//! - For edges at an angle t and a distance h, the point at which the lines are nearest errs along its edge by about
+//!   `e = u / t + h u / t^2`. The nearest point of the other edge is computed from this point, so that the distance is about
+//!   `sqrt(h^2 + (t e)^2)`: too large by at most u. If the second term of e is large, an end of an edge is as near.
 //! - In a needle the formula for a point of the interior is applied again to the part of the vector that it has not removed,
 //!   until nothing of that remains. If a needle is thinner than the error, edges are as near.
 

@@ -7,8 +7,9 @@ use crate::bounds::tests::random::Random;
 use crate::bounds::tests::rounding::exact;
 use crate::{Metric, Modes, ReducedModel, TriMesh};
 
-/// The node is a tilted thin plate of many vertices and one far away, and its two faces move against each other: the fitted
-/// gradient is hundreds of times larger than the modes over the size of the node, and residuals are differences of large numbers.
+/// The node is a tilted thin plate with many vertices, and one vertex far away. The two faces of the plate move against each
+/// other: the fitted gradient is hundreds of times larger than the modes over the size of the node, and residuals are differences
+/// of large numbers.
 #[test]
 fn residuals_hold_what_the_fit_has_rounded() {
     let mut worst = 0.0_f64;

@@ -14,8 +14,8 @@ const BUCKET_LOOKAHEAD: f64 = 2.0;
 /// hulls separate most of the others until close to their radius (docs/notes/pair-tree.md#outer-round).
 const OUTER_SEARCH_SHARE: f64 = 0.75;
 
-/// The maximum number of pairs that one task bounds; those that it leaves open are further tasks, so that threads
-/// finish together. Tests have small models and a small maximum, so that they leave some pairs open, too.
+/// The maximum number of pairs that one task bounds; pairs that are then open become further tasks, so that threads finish
+/// together. Tests have small models and a small maximum, so that they leave some pairs open, too.
 const MAX_BOUNDED: usize = if cfg!(test) { 3 } else { 256 };
 
 /// The number of pairs between two checks for cancellation; searches check it themselves.

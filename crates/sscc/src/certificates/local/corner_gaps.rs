@@ -52,17 +52,17 @@ pub(super) struct CornerGaps<'g> {
     pub(super) hierarchy: &'g Hierarchy,
     pub(super) filter: &'g PairFilter,
     positions: &'g [DVec3],
-    /// For each node where its vertices start if it is a leaf, and the end.
+    /// For each node the start of its vertices, which only leaves have, and the end.
     starts: Vec<u32>,
     vertices: Vec<u32>,
     pub(super) spheres: Vec<Sphere>,
-    /// For each node where its tables with later leaves start if it is a leaf, and the end.
+    /// For each node the start of its tables with later leaves, which only leaves have, and the end.
     table_starts: Vec<u32>,
     /// The later leaf of each table, ascending for each first one.
     table_leaves: Vec<u32>,
     /// The tables. None if two triangles that count have no gap.
     tables: Vec<Option<GapTable>>,
-    /// For each node where the tight pairs of its tables with later leaves start if it is a leaf, and the end.
+    /// For each node the start of the tight pairs of these tables, and the end.
     tight_starts: Vec<u32>,
     /// The later leaf of each tight pair, and the pair.
     tight: Vec<(u32, TightPair)>,

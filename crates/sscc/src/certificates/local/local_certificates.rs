@@ -31,8 +31,8 @@
 //!
 //! So `kappa |W f| + phi |F a - nu| + rho T + eta / s < sigma_min(F~)` suffices, too, if `|a.(p_j - p_i)| <= phi s_ij`. The
 //! searches for kappa and phi may accept one pair along different directions n and n', with gaps s and s'. For `A = kappa |W f|`
-//! and `B = phi |F a - nu|` the direction `(A n + B n') / (A + B)`, of length at most 1, serves for both: its gap is `(A s + B
-//! s') / (A + B)`, at least the smaller of both, which is why eta and rho are over the smallest gap of both searches.
+//! and `B = phi |F a - nu|` the direction `(A n + B n') / (A + B)`, of length at most 1, serves for both: its gap is
+//! `(A s + B s') / (A + B)`, at least the smaller of both, which is why eta and rho are over the smallest gap of both searches.
 //!
 //! A certificate has a ratio for the pairs within N, and one for the pairs of N with each node of its list, which are nodes that share a vertex
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the

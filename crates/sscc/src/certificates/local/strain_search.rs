@@ -33,8 +33,9 @@ pub(super) struct StrainSearch {
     instructions: InstructionSet,
     /// A node and all nodes below it, breadth first; then likewise each other node that was added.
     parts: Vec<Part>,
-    /// For each leaf's part where the numbers of its vertices start.
+    /// The vertices of the parts that are leaves, by their numbers in the patch.
     vertices: Vec<u32>,
+    /// For each part the start of its vertices, and the end.
     vertex_starts: Vec<u32>,
     width: usize,
     pub(super) images: Vec<f32>,

@@ -5,7 +5,7 @@
 //! with rounded numbers ([`candidate_direction`](super::candidate_direction)), decides nearly all pairs in a few steps. Thin
 //! sheets that rotate together need more: a direction that follows two features is exact for as long as these two are closest,
 //! and exact numbers decide the signs of gaps along it where rounding does not ([`feature_direction`](super::feature_direction)).
-//! The number of steps then depends on how often the closest features change, and only by its logarithm on how narrow the gap is.
+//! The number of steps then depends on how often the closest features change, and only logarithmically on how narrow the gap is.
 //! Limits of steps: docs/notes/exact-tests.md#steps-of-conservative-advancement.
 
 use super::candidate_direction::MovingPair;

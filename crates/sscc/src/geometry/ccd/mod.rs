@@ -10,13 +10,13 @@
 //! # The method
 //!
 //! Two convex shapes are disjoint when some direction separates them. The gap of two linearly moving corners along a
-//! fixed direction is linear in t, along a direction that turns linearly it is quadratic. A polynomial is positive on
-//! an interval where all its Bernstein coefficients there are. So one direction, or the two between which it turns,
-//! proves a whole interval of time free for all pairs of corners, hence for the hulls: faces, edges and vertices at
-//! once ([`candidate_direction`]). A direction perpendicular to two moving features is a polynomial in t of degree 1 to
-//! 3. It separates the shapes for as long as these two features are closest, however narrow the gap is
-//!   ([`feature_direction`]). The remaining task is to advance from t = 0 to 1 in as few intervals as possible
-//!   ([`conservative_advancement`]; Mirtich 1996, *Impulse-based Dynamic Simulation of Rigid Body Systems*).
+//! fixed direction is linear in t, along a direction that turns linearly it is quadratic. A polynomial is positive on an interval
+//! if all its Bernstein coefficients there are. So one direction, or the two between which it turns, proves a whole interval of
+//! time free for all pairs of corners, hence for the hulls: faces, edges and vertices at once ([`candidate_direction`]). A
+//! direction perpendicular to two moving features is a polynomial in t of degree 1 to 3. It separates the shapes for as long as
+//! these two features are closest, however narrow the gap is ([`feature_direction`]). The remaining task is to advance from t = 0
+//! to 1 in as few intervals as possible ([`conservative_advancement`]; Mirtich 1996, *Impulse-based Dynamic Simulation of Rigid
+//! Body Systems*).
 //!
 //! The usual tests are 6 of a vertex and a face and 9 of two edges, each by subdivision of (t, u, v) with inclusion
 //! functions in Bernstein form (Wang et al. 2021, *A Large-Scale Benchmark and an Inclusion-Based Algorithm for

@@ -72,7 +72,7 @@ pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
     best.map(|(_, normal)| normal)
 }
 
-/// Returns the unit normal of a triangle, to which its corners turn counterclockwise; 0 if it is degenerate.
+/// Returns the unit normal of a triangle, from whose side its corners turn counterclockwise; 0 if it is degenerate.
 pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
     if !hull.is_triangle() {
         return DVec3::ZERO;

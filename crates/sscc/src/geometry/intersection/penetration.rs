@@ -1,4 +1,4 @@
-//! The smallest translation that parts two intersecting triangles.
+//! The smallest translation that separates two intersecting triangles.
 //!
 //! Let D be all differences `x - y` of points x of a and y of b: a convex polytope that contains 0. Translated by v, b
 //! meets a exactly if v is in D. So the depth is the distance of 0 to the boundary of D, the smallest of its support
@@ -26,7 +26,7 @@ use crate::limits;
 /// The rounding error of the first, coarse value of h, with differences of at most 1: 2^-47.
 const FIRST_LOOK_ERROR: f64 = f64::EPSILON * 32.0;
 
-/// The smallest translation that parts two triangles.
+/// The smallest translation that separates two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
     /// The length of the translation (model unit).
@@ -37,13 +37,14 @@ pub struct Penetration {
 }
 
 /// Returns the penetration depth of two closed triangles: the length and direction of the smallest translation after which they
-/// only touch, so that any longer one parts them. None if they are disjoint.
+/// only touch, so that any longer one separates them. None if they are disjoint.
 ///
 /// The conditions are those of [`intersection_triangle_triangle`](crate::parts::intersection_triangle_triangle). The depth is
 /// exactly 0 if the triangles touch without crossing: if they are in one plane or on one line, or if all common points are on the
 /// boundary of one of them. Otherwise it is positive (at least the smallest denormal number), and too large by at most a few
 /// units in the last place and `2^-48` times the largest difference of coordinates of a corner of each. If several directions are
 /// equally good (up to rounding), the result has the first in a fixed order.
+///
 /// A call costs about three microseconds.
 ///
 /// ```
