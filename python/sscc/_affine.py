@@ -1,4 +1,4 @@
-"""Modes of affine maps that are blended by weights: bones of a skin, handles of Simplicits."""
+"""Modes of affine maps that are blended by weights, as for bones of a skin and handles of Simplicits."""
 
 from __future__ import annotations
 

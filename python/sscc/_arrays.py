@@ -1,4 +1,4 @@
-"""Conversion of arguments to arrays, for the parts that are written in Python."""
+"""Conversion of arguments to arrays, for the parts of the package that are written in Python."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def as_array(given: Any) -> NDArray[Any]:
-    """Returns the same numbers as an array, without a copy where their memory allows that."""
-    # NumPy takes an object that has DLPack alone for a scalar.
+    """Returns the same numbers as an array, without a copy if their memory allows that."""
+    # NumPy treats an object that has only DLPack as a scalar.
     if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
         return np.from_dlpack(given)
     return np.asarray(given)

@@ -14,9 +14,9 @@ class Curve(NamedTuple):
     """A polyline in which a mesh intersects itself or another one. Its arrays are read-only."""
 
     points: NDArray[np.float64]
-    """(n, 3). Each is within rounding of the exact point. A closed curve does not repeat its first point."""
+    """The points (n, 3), each within rounding of the exact point. A closed curve does not repeat its first point."""
     pairs: NDArray[np.uint32]
-    """The pair of triangles of each segment, from a point to the next: (n - 1, 2); of a closed curve (n, 2)."""
+    """The pair of triangles of each segment, from a point to the next: (n - 1, 2), or (n, 2) for a closed curve."""
     closed: bool
     """Whether the last point is joined to the first."""
 

@@ -1,4 +1,4 @@
-"""How deep two closed meshes are in each other."""
+"""Penetration depths of two closed meshes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ class BodyPenetration(NamedTuple):
     """The result of ``Detector.penetration``; each number comes with a bound of its error."""
 
     volume: float
-    """The volume that both meshes have inside, within ``volume_error``."""
+    """The volume of the space inside both meshes, within ``volume_error``."""
     volume_error: float
     depth: float
-    """The diameter of a ball inside of both, nearly the largest: none is larger than ``depth + depth_error``."""
+    """The diameter of a ball inside both meshes, nearly the largest: no such ball is larger than ``depth + depth_error``."""
     depth_error: float
 
     def __repr__(self) -> str:

@@ -6,9 +6,9 @@ import sys
 import time
 from collections.abc import Callable
 
-#: Shorter work shows no bar (seconds).
+#: Work of less than this time shows no bar (seconds).
 MIN_SECONDS = 0.5
-#: Characters of the bar.
+#: Number of characters of the bar.
 WIDTH = 30
 
 
@@ -41,7 +41,7 @@ def is_interactive() -> bool:
         return False
     if sys.stderr.isatty():
         return True
-    # A notebook has imported IPython.
+    # IPython is imported in a notebook.
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     return type(shell).__name__ == "ZMQInteractiveShell"
@@ -52,7 +52,7 @@ Report = Callable[[float], object]
 
 
 def start(progress: Report | bool | None, label: str) -> tuple[Report, Callable[[], object]] | None:
-    """Returns two functions: one receives the finished share, one ends the report. None for no report."""
+    """Returns two functions: one receives the finished share, one ends the report. Returns None if nothing is reported."""
     if progress is False or progress is None and not is_interactive():
         return None
     if progress is None or progress is True:

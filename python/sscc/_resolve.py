@@ -16,11 +16,11 @@ class Resolved(NamedTuple):
     resolved: bool
     """Whether a free q was found."""
     q: NDArray[np.float64] | None
-    """The free q (r,): the given one where that is free. None if none was found."""
+    """The free q (r,), which is the given q if that is free. None if none was found."""
     change: float
     """Its distance from the given q in the metric, ``|S (resolved q - q)|``; infinite if none was found."""
     safe_scale_change: float
-    """The distance of the last free q on the straight way from the start; 0 where q is free."""
+    """The distance of the last free q on the line from the start to the given q; 0 if the given q is free."""
 
     def __repr__(self) -> str:
         if self.q is None:

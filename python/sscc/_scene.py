@@ -1,4 +1,4 @@
-"""Scenes of glTF files: every mesh with itself and with the others, as a player shows them."""
+"""Scenes of glTF files: collisions of each mesh with itself and with the others, at the positions that a player shows."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class SceneNode(NamedTuple):
     """A node that shows a mesh with triangles."""
 
     node: int
-    """Its number in the file."""
+    """The number of the node in the file."""
     name: str | None
-    """Its name. Names may repeat."""
+    """The name of the node. Names may repeat."""
     mesh: str | None
-    """The name of its mesh."""
+    """The name of the node's mesh."""
     vertices: int
     triangles: int
 
@@ -37,7 +37,7 @@ class SceneAnimation(NamedTuple):
 
     name: str | None
     duration: float
-    """The time of its last key frame (s)."""
+    """The time of the last key frame (s)."""
 
     def __repr__(self) -> str:
         name = "without a name" if self.name is None else quoted(self.name)
@@ -46,33 +46,33 @@ class SceneAnimation(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SceneAnswer:
-    """The result of one node at one time, or of two nodes: ``against_node`` is then the other one."""
+    """The result of one node at one time, or of two nodes; ``against_node`` is then the second node."""
 
     node: int
-    """The node, by its number."""
+    """The number of the node."""
     node_name: str | None
     against_node: int | None
-    """The other node; None: the mesh of ``node`` with itself."""
+    """The number of the second node; None for the mesh of ``node`` with itself."""
     against_node_name: str | None
     index: int
-    """The number of the time; of continuous queries that of the start."""
+    """The number of the time; for continuous queries, of the time at the start."""
     time: float | None
-    """The time (s); None: the scene as it is stored."""
+    """The time (s); None for the scene as it is stored."""
     pairs: NDArray[np.uint32]
-    """Pairs that collide, or are nearer than the clearance: (n, 2), sorted, read-only. Of two nodes (triangle of
-    ``node``, triangle of ``against_node``)."""
+    """Pairs that collide, or are nearer than the clearance: (n, 2), sorted, read-only. For two nodes, each pair is a triangle
+    of ``node`` and a triangle of ``against_node``."""
     times: NDArray[np.float64] | None
-    """The time of impact (0 to 1) of each pair, of continuous queries."""
+    """The time of impact (0 to 1) of each pair, for continuous queries."""
     distances: NDArray[np.float64] | None
-    """The distance of each pair, with a clearance."""
+    """The distance of each pair, if a clearance is given."""
     distance: float | None
-    """The smallest distance, with a clearance; None: no pair counts."""
+    """The smallest distance, if a clearance is given; None if no pair counts."""
     complete: bool
     """Whether all pairs are listed."""
 
     @property
     def colliding(self) -> bool:
-        """Whether any pair collides; with a clearance: whether one has distance 0."""
+        """Whether any pair collides. With a clearance: whether the distance of any pair is 0."""
         return len(self.pairs) > 0 if self.distances is None else bool((self.distances == 0).any())
 
     def __repr__(self) -> str:
@@ -106,7 +106,7 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Scene:
-        """Reads what is in a file. Raises FileNotFoundError, OSError, ValueError."""
+        """Reads the contents of a file. Raises FileNotFoundError, OSError, ValueError."""
         return cls(path)
 
     def __repr__(self) -> str:
@@ -135,19 +135,19 @@ class Scene:
     ) -> list[SceneAnswer]:
         """Checks every mesh with itself and with the others, as ``sscc check`` does.
 
-        animation: its name or number; None: the scene as it is stored.
-        times, fps: when the animation is checked (s; times a second); None: 30 times a second.
-        node: the name or number of the only node; None: all.
-        between_nodes: whether two nodes are compared with each other; None: yes.
-        continuous: from each time to the next, every vertex on a straight line.
-        clearance: find pairs nearer than this in place of those that collide.
-        ignore_groups, only_groups: pairs "A,B" of names of nodes, meshes and materials that do not count, or alone
-            count. group_by: "node", "mesh", "material", "group" (primitives) or a file of numbers; None: any name.
-        ignore_rest: True: pairs that collide at rest do not count, nor pairs of two nodes that collide at the first time; a
-            number: nor those within so many rings of them.
-        limit: the most pairs of each answer.
+        animation: its name or number. None means the scene as it is stored.
+        times, fps: the times at which the animation is checked (s), or their rate (times per second). None means 30 per second.
+        node: the name or number of the only node. None means all nodes.
+        between_nodes: whether two nodes are compared with each other. None means yes.
+        continuous: whether the motion from each time to the next is checked, with every vertex on a straight line.
+        clearance: finds pairs nearer than this instead of pairs that collide.
+        ignore_groups, only_groups: pairs "A,B" of names of nodes, meshes and materials. The former do not count; with the latter,
+            no others count. group_by: "node", "mesh", "material", "group" (primitives) or a file of numbers. None means any name.
+        ignore_rest: True: pairs that collide at rest do not count, nor pairs of two nodes that collide at the first time. A
+            number: in addition, pairs within this number of rings of them do not count.
+        limit: the maximum number of pairs of each answer.
 
-        One answer for each node and time; then, time by time, one for each two nodes that collide (or are near). Raises
+        Returns one answer for each node and time, then, time by time, one for each two nodes that collide (or are near). Raises
         FileNotFoundError, OSError, ValueError, TypeError.
         """
         if clearance is not None and neighbours is not None:
@@ -182,7 +182,7 @@ class Scene:
         times: ArrayLike | None = None,
         fps: float | None = None,
     ) -> NDArray[np.float64]:
-        """The positions of a node's mesh at each time, as a player shows them: (T, V, 3)."""
+        """Returns the positions of a node's mesh at each time, as a player shows them: (T, V, 3)."""
         return _scene_positions(self.path, _name(node, "node"), _name(animation, "animation"), times, fps)
 
 

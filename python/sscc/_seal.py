@@ -1,7 +1,7 @@
 """Seals of results that other processes compute.
 
 A result is accepted only if it is complete and has the expected key. Both sides compute the key from the build, the
-model and the options. Seals find damage and mix-ups. They do not detect malicious workers.
+model and the options. Seals detect damaged and mixed-up results. They do not detect malicious workers.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ def key(task: str, *parts: bytes) -> bytes:
 
 
 def options_bytes(options: Mapping[str, object]) -> bytes:
-    """Returns options as bytes, the same for equal values."""
+    """Returns options as bytes. Equal values have equal bytes."""
     written = b""
     for name, value in sorted(options.items()):
         if isinstance(value, (np.ndarray, list, tuple)):
             array = np.ascontiguousarray(value)
             text = f"{name}: {array.dtype} {array.shape} ".encode() + array.tobytes()
         else:
-            # The text of NumPy's numbers depends on its version.
+            # The text of NumPy's scalars depends on the version of NumPy.
             plain = value.item() if isinstance(value, np.generic) else value
             text = f"{name}: {plain!r}".encode()
         written += len(text).to_bytes(8, "little") + text

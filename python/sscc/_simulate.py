@@ -40,13 +40,13 @@ def simulate(
     """Simulates the bodies of a scene, as ``sscc simulate`` does.
 
     scene: a ``.toml`` file, or the name of a scene that comes with the package, such as "spring".
-    out: the folder to write to; None: the scene's name. A stopped run in this folder is resumed.
-    steps: number of steps from the beginning; None: the scene's number.
-    restart: True: simulate from the beginning, also if the folder has a stopped run.
-    models: the folder of bunny_14964_closed.obj and dragon_77202_closed.ply; None: that of the environment variable
-        SSCC_MODELS, without it embedded shapes replace them.
+    out: the folder to write to. None means the scene's name. A stopped run in this folder is resumed.
+    steps: number of steps from the beginning. None means the scene's number.
+    restart: if True, simulates from the beginning, even if the folder has a stopped run.
+    models: the folder of bunny_14964_closed.obj and dragon_77202_closed.ply. None means the folder in the environment
+        variable SSCC_MODELS; if that is not set, embedded shapes replace the models.
     cache: the folder that keeps models and certificates between runs.
-    threads: None: all cores.
+    threads: the number of threads. None means all cores.
 
     A bar shows the progress of the steps on a terminal or in a notebook. Ctrl-C stops the simulation after the current
     step and writes the steps until then; the same call resumes it. Several threads may simulate at the same time, each

@@ -33,9 +33,9 @@ class Model:
 
     vertices: (V, 3), rest positions p in any unit of length.
     faces: (F, 3) integers, vertex numbers counted from 0.
-    modes: U as (3V, r), (V, 3, r), (r, V, 3), or of one mode (V, 3): the displacement of each vertex for a unit of
+    modes: U as (3V, r), (V, 3, r), (r, V, 3), or (V, 3) for one mode: the displacement of each vertex for a unit of
         each entry of q.
-    metric: the matrix M of the norm ``sqrt(q'Mq)``: a name, its diagonal (r,) or all of it (r, r); None:
+    metric: the matrix M of the norm ``sqrt(q'Mq)``: a name, its diagonal (r,) or the full matrix (r, r). None means
         "displacement".
 
     Raises TypeError or ValueError; the message names the argument and the row.
@@ -50,7 +50,7 @@ class Model:
         mesh (OBJ, PLY, OFF, STL) with its ``modes`` (``.npy``, ``.npz``, VegaFEM's matrices, a folder of target meshes).
 
         ``mesh_name``, or ``FILE#NAME`` as the path, chooses one of several meshes of a glTF file. The model is in the
-        coordinates of its mesh: nodes do not move it. Primitives that lack morph targets are warned about. Raises
+        coordinates of its mesh: nodes do not move it. Primitives without morph targets cause a warning. Raises
         FileNotFoundError, OSError, ValueError.
         """
     def save(self, path: _Path) -> None:
@@ -78,38 +78,41 @@ class Model:
     ) -> Certificates:
         """Computes certificates, once for a model.
 
-        epsilon: allowed relative error of the root's radius; None: 0.1.
-        metric: as in ``Model``; None: the model's own.
-        center: the q from which radii are measured (r,); None: 0, the rest pose.
+        epsilon: allowed relative error of the root's radius. None means 0.1.
+        metric: as in ``Model``. None means the model's own metric.
+        center: the q from which radii are measured (r,). None means 0, the rest pose.
         scheme: "full" (default) stores a pair tree of up to ``budget`` (64) bytes for each triangle,
             and local certificates; "paper" does not.
-        local_budget: bytes for each triangle that local certificates may take, beside what the pair tree leaves of its own;
-            0: none; None: 64.
-        reach: how far radii of the scheme "full" may reach, in units of the paper's global radius; None: 1.
-        neighbours: "include-one-vertex": triangles that share one vertex count where they have another common point.
-        weld: whether vertices of equal position and modes are one, for adjacency; None: only for STL and glTF files.
-        ignore_rest: True: pairs that collide at rest never count; a number: neither do those within so many rings of them.
-        max_exceptions: largest number of pairs that collide at the centre and are tested in every query; None: F / 2.
-        clearance: radii at which triangles come nearer than this, in place of those at which they collide: for ``within``; other queries
-            are answered without certificates. ``rings``: triangles within so many rings of each other on the surface do not count; None: 1.
-        groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
-        ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.
-        threads: None: all cores. The certificates are the same for any number.
-        progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. True: a bar on
-            standard error; False: nothing; None: a bar on a terminal or in a notebook.
+        local_budget: bytes for each triangle that local certificates may take, in addition to the unused part of ``budget``.
+            With 0 there are none. None means 64.
+        reach: maximum radius of the scheme "full", in units of the paper's global radius. None means 1.
+        neighbours: "include-one-vertex": triangles that share one vertex count if they have another common point.
+        weld: whether vertices of equal position and modes are one, for adjacency. None means only for STL and glTF files.
+        ignore_rest: True: pairs that collide at rest never count. A number: in addition, pairs within this number of rings of
+            them never count.
+        max_exceptions: largest number of pairs that collide at the centre and are tested in every query. None means F / 2.
+        clearance: for ``within``. Radii are then those at which triangles come nearer than this, instead of those at which they
+            collide; other queries are answered without certificates. ``rings``: triangles within this number of rings of each
+            other on the surface do not count. None means 1.
+        groups: the group of each triangle (F,), from 0 to 65535. None means no groups.
+        ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count. A pair (a, a) ignores pairs within
+            group a.
+        threads: the number of threads. None means all cores. The certificates do not depend on it.
+        progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. True shows a bar on
+            standard error, False nothing. None means a bar on a terminal or in a notebook.
         """
     def positions(self, q: ArrayLike) -> _F64:
-        """The vertices at q, (V, 3): the shape that all answers are about."""
+        """Returns the vertices at q, (V, 3): the positions that all queries test."""
     def static(self, forces: ArrayLike, *, gravity: ArrayLike | None = None) -> _F64:
-        """The q (r,) of forces on the vertices, (V, 3): the linear static answer in the span of the modes.
+        """Returns the q (r,) of forces on the vertices, (V, 3): the linear static solution in the span of the modes.
 
         gravity: acceleration (3,) of the whole mass. Raises ValueError for models without stiffness, or for gravity without
         mass.
         """
     def fit(self, positions: ArrayLike) -> tuple[_F64, float]:
-        """The q (r,) whose shape is nearest to positions (V, 3), and the share of the displacements that remains.
+        """Returns the q (r,) whose shape is nearest to positions (V, 3), and the share of the displacements that remains.
 
-        Where modes depend on each other, q is the one of the smallest norm.
+        Where modes depend on each other, returns the q with the smallest norm.
         """
     @property
     def vertices(self) -> _F64:
@@ -162,13 +165,14 @@ class Certificates:
     def save(self, path: _Path) -> None:
         """Writes ``*.sscc.safetensors``, whole or not at all."""
     def check(self, q: ArrayLike, limit: SupportsIndex | None = None) -> Answer:
-        """The pairs of triangles that collide at q (r,). ``limit``: the search ends after this number of pairs."""
+        """Returns the pairs of triangles that collide at q (r,). ``limit``: the search ends after this number of pairs."""
     def within(
         self, q: ArrayLike, clearance: float, *, rings: SupportsIndex | None = None
     ) -> tuple[_U32, _F64]:
-        """All pairs (n, 2) nearer than a clearance at q (r,), and their distances (n,), as ``Detector.within`` finds them at the positions.
+        """Returns all pairs (n, 2) nearer than a clearance at q (r,), and their distances (n,), equal to those that
+        ``Detector.within`` finds at the positions.
 
-        Certificates of this clearance, or of a larger one, beyond no more rings, answer most q by one comparison.
+        Certificates of this clearance or a larger one, with at most this number of rings, answer most q by one comparison.
         """
     def check_many(
         self,
@@ -178,11 +182,11 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> Batch:
-        """``check`` for every row of Q (n, r). ``threads``: None: all cores. ``progress``: as in ``Model.certify``."""
+        """Runs ``check`` for every row of Q (n, r). ``threads``: None means all cores. ``progress``: as in ``Model.certify``."""
     def continuous(self, q0: ArrayLike, q1: ArrayLike) -> Impacts:
-        """The pairs that collide between q0 and q1, and when. Each vertex moves on a straight line."""
+        """Returns the pairs that collide between q0 and q1, and their times of impact. Each vertex moves on a straight line."""
     def safe_scale(self, q: ArrayLike) -> float:
-        """A scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s."""
+        """Returns a scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s."""
     def sweep(
         self,
         range: ArrayLike | None = None,
@@ -192,12 +196,12 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> list[Sweep]:
-        """For each mode, up and then down, the first weight at which the shape touches itself.
+        """Finds for each mode, upwards and downwards, the first weight at which the shape touches itself.
 
-        range: (2,) or (r, 2), the ends of the weights; None: 0 to 1 for morph targets, three standard deviations for
-            principal components, else as far as moves some vertex by half the diagonal of the AABB.
-        q: the weights at the start (r,), at which the other modes stay; None: the centre.
-        modes: numbers or names; None: all.
+        range: (2,) or (r, 2), the ends of the weights. None means 0 to 1 for morph targets, three standard deviations for
+            principal components, else the weights that move some vertex by half the diagonal of the AABB.
+        q: the weights at the start (r,). The other modes keep them. None means the centre.
+        modes: numbers or names. None means all modes.
         threads, progress: as in ``Model.certify``.
         """
     def intervals(
@@ -210,15 +214,15 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> list[Intervals]:
-        """For each mode all intervals of its weight over which the shape collides, how much and how deep.
+        """Finds for each mode all intervals of its weight over which the shape collides, with numbers of pairs and depths.
 
-        samples: samples of each weight, from 2 to 2^20; None: 101. Their pairs and depths are exact, and every weight outside of the
-            intervals is proven free.
+        samples: samples of each weight, from 2 to 2^20. None means 101. Their pairs and depths are exact, and every weight
+            outside of the intervals is proven free.
         range, q, modes, threads, progress: as in ``sweep``.
         """
     def resolve(self, q: ArrayLike, start: ArrayLike | None = None, *, all: bool | None = None) -> Resolved:
-        """A free q near q, on a free way from ``start`` (None: the centre), which must be free. Exceptions are left as they
-        are, unless ``all``."""
+        """Returns a free q near q, on a free path from ``start`` (None: the centre), which must be free. Exceptions may keep
+        colliding, unless ``all`` is True."""
     def free_samples(
         self,
         draws: ArrayLike,
@@ -229,23 +233,23 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> FreeSamples:
-        """Free configurations from the rows of draws (n, r) of any distribution. Colliding draws are resolved, as by
-        ``resolve``; ``resolve=False``: they are rejected, also where only exceptions collide."""
+        """Returns free configurations from the rows of draws (n, r) of any distribution. Colliding draws are resolved as by
+        ``resolve``. With ``resolve=False`` they are rejected, even if only exceptions collide."""
     def clamp(self, q: ArrayLike) -> _F64 | None:
-        """q, or the last point on the line from the centre to q that the root's certificate proves free. None if its
-        radius is 0 or there are exceptions."""
+        """Returns q, or the last point on the line from the centre to q that the root's certificate proves free. Returns None if
+        its radius is 0 or there are exceptions."""
     def norm(self, q: ArrayLike) -> float:
-        """``|S (q - center)|``, rounded up."""
+        """Returns ``|S (q - center)|``, rounded up."""
     def radius(self, node: SupportsIndex) -> float:
-        """The norm below which no two triangles of the node collide, apart from exceptions."""
+        """Returns the norm below which no two triangles of the node collide, apart from exceptions."""
     def kinetic(self) -> KineticQuery:
-        """A query for a sequence of q with small steps."""
+        """Returns a query for a sequence of q with small steps."""
     @property
     def model(self) -> Model: ...
     @property
     def root_radius(self) -> float:
-        """The norm below which the whole shape is free, apart from exceptions; with a ``clearance`` it keeps the clearance, but may collide
-        within the rings."""
+        """The norm below which the whole shape is free, apart from exceptions. With a ``clearance``, the shape keeps the
+        clearance below this norm, but triangles within the rings may collide."""
     @property
     def global_radius(self) -> float:
         """The largest radius: radii are computed up to it. It may be infinite."""
@@ -271,13 +275,13 @@ class Certificates:
         """Pairs that collide at the centre, (n, 2): no radius covers them, and every query tests them."""
     @property
     def clearance(self) -> float | None:
-        """The clearance that triangles keep below the radii; None: they do not collide."""
+        """The clearance that triangles keep below the radii; None if radii are about collisions."""
     @property
     def rings(self) -> int | None:
-        """Triangles within so many rings of each other need not keep the clearance; None without one."""
+        """Triangles within this number of rings of each other need not keep the clearance; None without a clearance."""
     @property
     def rest_collisions(self) -> int:
-        """Number of pairs that collide at rest, ignored ones included."""
+        """Number of pairs that collide at rest, including ignored pairs."""
     @property
     def nodes(self) -> int:
         """Number of nodes of the BVH."""
@@ -319,8 +323,8 @@ class Hierarchy:
 
 @final
 class KineticQuery:
-    """``check`` for a q that changes little from call to call: the same answers, at less cost. It serves one call after
-    the other."""
+    """Runs ``check`` for a q that changes little from call to call: the same answers, at less cost. Calls from several threads
+    run one after the other."""
 
     def check(self, q: ArrayLike) -> Answer: ...
 
@@ -345,7 +349,7 @@ class Answer:
         """Whether all pairs are listed; False if ``limit`` stopped the search."""
     @property
     def root_certified(self) -> bool:
-        """Whether the root's certificate proved the shape free, apart from exceptions: its radius or its local one."""
+        """Whether the root proved the shape free, apart from exceptions, by its radius or its local certificate."""
     @property
     def proof(self) -> Literal["radius", "local", "search"]:
         """The proof of the answer, apart from exceptions: the root's radius, the root's local certificate, or a search."""
@@ -369,7 +373,7 @@ class Impacts:
         """The time of impact of each pair, from 0 to 1: (n,), read-only."""
     @property
     def time_of_impact(self) -> float | None:
-        """The earliest time of impact; None: the shape is free from q0 to q1."""
+        """The earliest time of impact; None if the shape is free from q0 to q1."""
     @property
     def colliding(self) -> bool: ...
     @property
@@ -428,7 +432,7 @@ def self_intersections(
     weld: bool | ArrayLike | None = None,
     neighbours: Literal["exclude", "include-one-vertex", "include-folded"] | None = None,
 ) -> _U32:
-    """The pairs of triangles of a mesh that have a point in common, exactly: (n, 2), i < j, sorted. Touching counts.
+    """Returns the pairs of triangles of a mesh that have a point in common, exactly: (n, 2), i < j, sorted. Touching counts.
 
     vertices: (V, 3); faces: (F, 3) integers, counted from 0. A mesh without faces has no pairs.
     weld, neighbours: as in ``Detector``; by default all pairs count that share no vertex number.
@@ -439,22 +443,23 @@ def self_intersections(
 
 @final
 class Detector:
-    """Collisions of any deforming mesh at given positions, without modes. Any number of threads may use it at once.
+    """Collisions of any deforming mesh at given positions, without modes. Several threads may use it at once.
 
-    It builds a BVH once, refits it in each call, and rebuilds it where it has degraded. Answers do not depend on the
-    BVH. Each call copies its arrays first.
+    The detector builds a BVH once, refits it in each call, and rebuilds it if its cost has grown. Answers do not depend on
+    the BVH. Each call copies its arrays first.
 
     faces: (F, 3) integers, vertex numbers counted from 0; at least one face.
-    rest: (V, 3), the positions for which the BVH is built; None: the first ones that are checked, which also set V.
+    rest: (V, 3), the positions for which the BVH is built. None means the first positions that are checked, which also set V.
     weld: True: vertices of equal rest position are one vertex, for adjacency (needs ``rest``). (V,) integers:
-        vertices with the same number are one. False (default): every vertex number is a vertex of its own.
+        vertices with the same number are one. False (default): every vertex number is a separate vertex.
     neighbours: "exclude" (default): triangles that share a vertex do not count; "include-one-vertex": triangles that
-        share one vertex count where they have another common point; "include-folded": those that share one, two or
-        three vertices, where they have another common point than these and the edges between them, and doubled
-        faces. ``continuous`` refuses it.
+        share one vertex count if they have another common point; "include-folded": triangles that share one, two or
+        three vertices count if they have a common point other than these vertices and the edges between them, and doubled
+        faces count. ``continuous`` refuses "include-folded".
     ignored: (n, 2), pairs of triangles that never count.
-    groups: the group of each triangle (F,), from 0 to 65535; None: no groups.
-    ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count; (a, a): those within group a.
+    groups: the group of each triangle (F,), from 0 to 65535. None means no groups.
+    ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count. A pair (a, a) ignores pairs within
+        group a.
 
     Raises TypeError or ValueError; the message names the argument and the row.
     """
@@ -473,7 +478,7 @@ class Detector:
     def check(
         self, positions: ArrayLike, limit: SupportsIndex | None = None, *, first: bool | None = None
     ) -> DetectorAnswer:
-        """The pairs of triangles that collide at these positions (V, 3), exactly.
+        """Returns the pairs of triangles that collide at these positions (V, 3), exactly.
 
         ``limit``: the search ends after this number of pairs; ``first=True``: after one.
         """
@@ -485,63 +490,63 @@ class Detector:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> DetectorBatch:
-        """``check`` for every frame (T, V, 3). ``threads``: None: all cores. ``progress``: as in ``Model.certify``."""
+        """Runs ``check`` for every frame (T, V, 3). ``threads``: None means all cores. ``progress``: as in ``Model.certify``."""
     def continuous(self, x0: ArrayLike, x1: ArrayLike) -> DetectorImpacts:
-        """The pairs that collide while each vertex moves on a straight line from x0 to x1 (V, 3), and when."""
+        """Returns the pairs that collide while each vertex moves on a straight line from x0 to x1 (V, 3), and their times."""
     def against(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> DetectorAnswer:
-        """The pairs (triangle of this mesh, triangle of the other) that have a point in common, exactly.
+        """Returns the pairs (triangle of this mesh, triangle of the other) that have a point in common, exactly.
 
         All such pairs count: ``neighbours``, ``weld``, ``ignored`` and groups apply within one mesh.
         """
     def against_continuous(
         self, x0: ArrayLike, x1: ArrayLike, other: Detector, y0: ArrayLike, y1: ArrayLike
     ) -> DetectorImpacts:
-        """The pairs of ``against`` that collide while this mesh moves from x0 to x1 and the other from y0 to y1."""
+        """Returns the pairs of ``against`` that collide while this mesh moves from x0 to x1 and the other from y0 to y1."""
     def within(
         self, positions: ArrayLike, clearance: float, *, rings: SupportsIndex | None = None
     ) -> tuple[_U32, _F64]:
-        """The pairs nearer than a distance, sorted: (n, 2), and their distances (n,), which are 0 where they collide.
+        """Returns the pairs nearer than a distance, sorted: (n, 2), and their distances (n,), which are 0 if they collide.
 
-        Distances have an error of at most 2^-40 of the size of both triangles. Triangles with a common vertex never count. ``rings``: those within
-        so many rings of each other on the surface do not count either: 1 (default): with a common vertex; 2: with a common
-        neighbour of this kind, and so on.
+        Distances have an error of at most 2^-40 of the size of both triangles. Triangles with a common vertex never count.
+        ``rings``: triangles within this number of rings of each other on the surface do not count either. With 1 (default) these
+        are triangles with a common vertex, with 2 also triangles with a common neighbour of this kind, and so on.
         """
     def within_against(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike, clearance: float
     ) -> tuple[_U32, _F64]:
-        """The pairs (triangle of this mesh, triangle of the other) nearer than a distance, and their distances."""
+        """Returns the pairs (triangle of this mesh, triangle of the other) nearer than a distance, and their distances."""
     def nearest(
         self, positions: ArrayLike, *, rings: SupportsIndex | None = None
     ) -> tuple[float, tuple[int, int]] | None:
-        """The smallest distance of two triangles that count as in ``within``, and these; None: no pair counts."""
+        """Returns the smallest distance of two triangles that count as in ``within``, and these. None if no pair counts."""
     def nearest_against(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> tuple[float, tuple[int, int]] | None:
-        """The smallest distance of this mesh and the other one, and its triangles."""
+        """Returns the smallest distance of this mesh and the other one, and its triangles."""
     def enclosed(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> tuple[tuple[int, int], tuple[int, int]]:
-        """How many connected components of this mesh are inside the other one, and how many it has; likewise those of
-        the other one inside this mesh. It holds where ``against`` finds no pair. Only closed components have an inside;
-        others can be inside of them.
+        """Returns the number of connected components of this mesh that are inside the other mesh, and the number of all its
+        components; then the same numbers for the components of the other mesh inside this one. The result is valid if ``against``
+        finds no pair. Only closed components have an inside; open components can be inside of them.
         """
     def penetration(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> BodyPenetration:
-        """The volume that both meshes share, and the diameter of the largest ball inside of both. Both must be closed."""
+        """Returns the volume inside both meshes, and the diameter of the largest ball inside both. Both meshes must be closed."""
     @property
     def faces(self) -> _U32:
         """Vertex numbers, (F, 3); a copy."""
     @property
     def rest(self) -> _F64 | None:
-        """The argument, (V, 3); a copy."""
+        """The argument ``rest``, (V, 3); a copy."""
     @property
     def neighbours(self) -> str: ...
     @property
     def weld(self) -> bool | _U32:
-        """The argument; classes (V,) are numbered from 0."""
+        """The argument ``weld``; classes (V,) are numbered from 0."""
     @property
     def ignored(self) -> _U32:
         """Pairs that never count, (n, 2)."""
@@ -556,7 +561,7 @@ class Detector:
 class DetectorAnswer:
     """The result at given positions. It has no truth value: use ``colliding``.
 
-    Answers are equal if ``pairs`` and ``complete`` are. Their cost depends on the state of the BVH.
+    Answers are equal if their ``pairs`` and ``complete`` are equal. Their cost depends on the state of the BVH.
     """
 
     @property
@@ -583,25 +588,25 @@ class DetectorAnswer:
         """The cost of the refitted BVH by the surface area heuristic."""
     @property
     def rebuilds(self) -> int:
-        """How often this copy of the BVH has been rebuilt."""
+        """Number of times that this copy of the BVH has been rebuilt."""
     def curves(self) -> list[Curve]:
-        """The curves in which the surfaces intersect: the intersection segments of all pairs, joined.
+        """Returns the curves in which the surfaces intersect: the intersection segments of all pairs, joined.
 
-        They are joined by the vertices, edges and faces on which their ends lie, without a tolerance. Pairs that meet
-        in one point or in a polygon (coplanar triangles) add no segment. A curve ends at a border of the mesh, at a
-        polygon, where more than two segments meet, and where a pair is not listed.
+        Segments are joined by the vertices, edges and faces on which their ends lie, without a tolerance. Pairs that meet
+        in one point or in a polygon (coplanar triangles) add no segment. A curve ends at a border of the mesh, at such a
+        polygon, at a point where more than two segments meet, and at a pair that is not listed.
         """
     def depths(self) -> _F64:
-        """The penetration depth of each pair, (n,): the length of the smallest translation after which its triangles
-        only touch. 0 where they already only touch, and for coplanar ones."""
+        """Returns the penetration depth of each pair, (n,): the length of the smallest translation after which its triangles
+        only touch. It is 0 if they already only touch, and for coplanar triangles."""
     def directions(self) -> _F64:
-        """The direction of this translation for the second triangle of each pair, (n, 3): unit vectors."""
+        """Returns the direction of this translation for the second triangle of each pair, (n, 3): unit vectors."""
 
 @final
 class DetectorImpacts:
     """The result between given positions. It has no truth value: use ``colliding``.
 
-    Impacts are equal if ``pairs``, ``times`` and ``complete`` are.
+    Impacts are equal if their ``pairs``, ``times`` and ``complete`` are equal.
     """
 
     @property
@@ -612,7 +617,7 @@ class DetectorImpacts:
         """The time of impact of each pair, from 0 to 1: (n,), read-only."""
     @property
     def time_of_impact(self) -> float | None:
-        """The earliest time of impact; None: free from start to end."""
+        """The earliest time of impact; None if the shape is free from start to end."""
     @property
     def colliding(self) -> bool: ...
     @property
@@ -711,7 +716,7 @@ def _check_scene(
     progress: _Progress,
 ) -> list[SceneAnswer]: ...
 
-# Used by sscc.batch.
+# Functions for sscc.batch.
 
 def _certificates(bytes: bytes, model: Model) -> Certificates: ...
 

@@ -11,24 +11,24 @@ from sscc._text import counted, number, quoted
 
 
 class Sweep(NamedTuple):
-    """How far the weight of one mode can go, with all others fixed, until the shape touches itself."""
+    """The free range of the weight of one mode in one direction, with all other weights fixed."""
 
     mode: int
     """The mode, counted from 0."""
     name: str
-    """Its name, or its number."""
+    """The name of the mode, or its number."""
     start: float
     """The weight at which the sweep starts."""
     end: float
-    """The weight at which it ends."""
+    """The weight at which the sweep ends."""
     first_free: float | None
-    """The shape is proven free at every weight from ``start`` to this one. None: it collides at ``start``."""
+    """The shape is proven free at every weight from ``start`` to this one. None if it collides at ``start``."""
     first_hit: float | None
-    """The first weight at which it collides, at most 1e-9 of the range beyond ``first_free``. None: none was found."""
+    """The first weight at which the shape collides, at most 1e-9 of the range beyond ``first_free``. None if none was found."""
     pairs: NDArray[np.uint32]
     """The pairs that collide at ``first_hit``: (n, 2), i < j, sorted, read-only."""
     note: str | None
-    """What is unusual: a collision at ``start``, a grazing contact, or why ``first_hit`` is farther away or None."""
+    """An unusual event: a collision at ``start``, a grazing contact, or the reason why ``first_hit`` is farther away or None."""
 
     def __repr__(self) -> str:
         name = f"mode {self.mode}" if self.name == str(self.mode) else f"mode {self.mode} {quoted(self.name)}"
@@ -51,21 +51,21 @@ class Interval(NamedTuple):
     """An interval of weights over which the shape collides at every sample."""
 
     start: float
-    """Its first weight."""
+    """The first weight of the interval."""
     end: float
-    """Its last weight."""
+    """The last weight of the interval."""
     free_until: float | None
-    """Up to this weight the shape is proven free. None: the interval begins at the end of the range."""
+    """The shape is proven free up to this weight. None if the interval begins at the end of the range."""
     free_from: float | None
-    """From this weight on it is proven free. None: the interval ends at the end of the range."""
+    """The shape is proven free from this weight. None if the interval ends at the end of the range."""
     exact: bool
-    """Whether it collides at ``start`` and ``end``, at most 1e-9 of a sweep's way from the free weights."""
+    """Whether the shape collides at ``start`` and ``end``, which are within 1e-9 of a sweep's range from the free weights."""
     pairs: int
-    """The most pairs that collide at a sample or an end."""
+    """The maximum number of pairs that collide at a sample or an end."""
     depth: float
     """The largest penetration depth of a pair (model unit)."""
     deepest: float
-    """The weight of that depth."""
+    """The weight with that depth."""
 
     def __repr__(self) -> str:
         found = f"{counted(self.pairs, 'pair')}, depth {number(self.depth)} at {number(self.deepest)}"
@@ -78,13 +78,13 @@ class Intervals(NamedTuple):
     mode: int
     """The mode, counted from 0."""
     name: str
-    """Its name, or its number."""
+    """The name of the mode, or its number."""
     start: float
     """The smallest weight."""
     end: float
     """The largest weight."""
     intervals: list[Interval]
-    """In ascending order; every weight outside of them is proven free."""
+    """The intervals in ascending order. Every weight outside of them is proven free."""
     samples: NDArray[np.float64]
     """Weight, number of pairs and largest penetration depth of each sample: (n, 3), read-only."""
 

@@ -1,4 +1,4 @@
-"""Tasks of `sscc.batch`, run by workers. Needs no dask."""
+"""Tasks of `sscc.batch` that workers run. This module does not need dask."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from sscc._sscc import Certificates, Model, _ShardWorker
 
 
 def as_given(data: bytes) -> bytes:
-    """Returns the data, for other tasks."""
+    """Returns the data, so that other tasks can use this result."""
     return data
 
 
 def certify_whole(model: Model, options: dict[str, Any]) -> bytes:
-    """Computes the certificates of a model; returns them sealed."""
+    """Computes the certificates of a model, and returns them sealed."""
     certificates = model.certify(**options, progress=False)
     return seal(key_of_model(model, options), content_of(certificates))
 
 
 def check_chunk(held: bytes, rows: NDArray[np.float64], limit: int | None) -> bytes:
-    """Answers rows of Q; returns the answers pickled and sealed. held: the pickled certificates."""
+    """Answers rows of Q, and returns the answers pickled and sealed. held: the pickled certificates."""
     certificates, content = _prepared(held, lambda certificates: (certificates, content_of(certificates)))
     answers = certificates.check_many(rows, limit, threads=1, progress=False)
     return seal(key_of_chunk(content, rows, limit), pickle.dumps(answers))
@@ -62,7 +62,7 @@ def key_of_chunk(content: bytes, rows: NDArray[np.float64], limit: int | None) -
     return key("check", content, repr(plain).encode(), np.ascontiguousarray(rows).tobytes())
 
 
-#: The hash of the object that this process prepared last, and the result.
+#: The hash of the object that this process prepared last, and the prepared result.
 _last: tuple[bytes, Any] = (b"", None)
 _preparing = threading.Lock()
 

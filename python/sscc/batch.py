@@ -1,4 +1,4 @@
-"""Many models, one large model, or many configurations on many machines, by ``dask.distributed``.
+"""Certificates of many models or of one large model, and queries of many configurations, by ``dask.distributed``.
 
 Every function takes a ``distributed.Client``. Results equal those of one process, byte for byte. Workers need only this
 package: the client sends them the models. dask repeats the jobs of a lost worker on another one.
@@ -38,13 +38,13 @@ except ImportError as _missing:
 
 __all__ = ["Library", "certify", "certify_in_shards", "check"]
 
-#: Models sent for each thread of the workers: one in work, one waiting.
+#: Number of models sent for each thread of the workers: one in work, one waiting.
 _WAITING = 2
 
-#: Jobs of one stage for each thread of the workers, so that all threads have work until the end.
+#: Number of jobs of one stage for each thread of the workers, so that all threads have work until the end.
 _JOBS = 4
 
-#: Turns off a warning: large data are arguments of tasks, so that the scheduler can send them to another worker.
+#: Disables a warning: large data are arguments of tasks, so that the scheduler can send them to another worker.
 _LARGE = {"distributed.admin.large-graph-warning-threshold": "1TB"}
 
 
@@ -54,7 +54,7 @@ class Library:
 
     #: Certificates of the certified models.
     certificates: dict[str, Certificates] = field(default_factory=dict)
-    #: Errors of the other models. Messages begin with the name.
+    #: Errors of the other models. Each message begins with the name.
     failures: dict[str, Exception] = field(default_factory=dict)
 
     def __repr__(self) -> str:
@@ -71,7 +71,7 @@ def certify(
     """Certifies each model of a library on a worker.
 
     models: models or files, or a mapping from names to them. Without a mapping, the name of a file is its path, and the
-        name of a model its index (``models[3]``). The client reads each file when its turn comes.
+        name of a model its index (``models[3]``). The client reads a file when a worker can take it.
     progress, options: as in ``Model.certify``; the same for all models. ``threads`` is 1 by default.
 
     The error of a model that cannot be read or certified is in ``failures``; the other models are certified.
@@ -135,8 +135,8 @@ def certify_in_shards(
 
     The work has a few dozen stages. Each worker process prepares the model once.
 
-    shards: largest number of jobs of one stage; None: four for each thread of the workers. A job uses one thread. The
-        certificates are the same for any number.
+    shards: largest number of jobs of one stage. None means four for each thread of the workers. A job uses one thread. The
+        certificates do not depend on it.
     progress, options: as in ``Model.certify``; ``threads`` is the number of threads of the client.
     """
     _check_client(client)

@@ -8,11 +8,11 @@ Common arguments:
 
 - ``fix``: numbers of fixed vertices (n,); ``fix_box``: two corners (2, 3) of a box in which all vertices are fixed.
   Without fixed vertices the body is free, and its rigid motions are not among the modes.
-- ``youngs``, ``poisson``, ``density``: the material; None: that of a solid's file, else 1e6, 0.4 and 1000.
-- ``resolution``: number of cubes along the longest side of the lattice; None: about 20,000 cubes in all.
+- ``youngs``, ``poisson``, ``density``: the material. None means the material of a solid's file, else 1e6, 0.4 and 1000.
+- ``resolution``: number of cubes along the longest side of the lattice. None means about 20,000 cubes in total.
 - ``threads``, ``progress``: as in ``Model.certify``.
 
-``skinning`` returns modes, not a model: those of linear blend skinning.
+``skinning`` returns modes, not a model: the modes of linear blend skinning.
 
 All raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
 """
@@ -32,7 +32,7 @@ from sscc._sscc import Model, _elastic, _pca, _polynomial
 
 __all__ = ["linear", "nonlinear", "pca", "polynomial", "skinning", "skinning_q"]
 
-#: The largest difference from 1 of a vertex's sum of weights: files store weights in as few as 8 bits.
+#: Maximum difference from 1 of a vertex's sum of weights: files store weights in as few as 8 bits.
 MAX_WEIGHT_ERROR = 0.01
 
 Source = str | PathLike[str] | tuple[ArrayLike, ArrayLike]
@@ -51,7 +51,7 @@ def linear(
     threads: int | None = None,
     progress: Report | bool | None = None,
 ) -> Model:
-    """The ``rank`` (None: 20) lowest natural vibrations of a body. The metric is their strain energy."""
+    """Returns a model with the ``rank`` (None: 20) lowest natural vibrations of a body. The metric is their strain energy."""
     material = (youngs, poisson, density)
     return _elastic(source, "linear", rank, fix, fix_box, material, resolution, threads, progress)
 
@@ -69,7 +69,7 @@ def nonlinear(
     threads: int | None = None,
     progress: Report | bool | None = None,
 ) -> Model:
-    """A basis of ``rank`` (None: 30) modes for large deformations (modal derivatives), with its reduced forces."""
+    """Returns a model with ``rank`` (None: 30) modes for large deformations (modal derivatives), and its reduced forces."""
     material = (youngs, poisson, density)
     return _elastic(source, "nonlinear", rank, fix, fix_box, material, resolution, threads, progress)
 
@@ -85,9 +85,9 @@ def polynomial(
     threads: int | None = None,
     progress: Report | bool | None = None,
 ) -> Model:
-    """The 24 quadratic polynomials of the rest position without rigid motions.
+    """Returns a model with the 24 quadratic polynomials of the rest position without rigid motions.
 
-    Modes of a surface need no volume, and its metric is displacement. With ``solid=True``, a ``resolution`` or a
+    Modes of a surface need no volume, and its metric is the displacement metric. With ``solid=True``, a ``resolution`` or a
     material, and for solids in files, the model has the stiffness and the forces of the body, and the metric is its
     strain energy.
     """
@@ -107,26 +107,26 @@ def pca(
     threads: int | None = None,
     progress: Report | bool | None = None,
 ) -> Model:
-    """The mean of shapes and their principal components. q is in standard deviations.
+    """Returns a model with the mean and the principal components of shapes. q is in standard deviations.
 
     shapes: (n, V, 3) or (n, 3V), with their ``faces`` (F, 3); or a folder of meshes with the same faces.
-    rank: number of components, less than the number of shapes; None: as many as explain 99.9% of the variance.
+    rank: number of components, less than the number of shapes. None means as many as explain 99.9% of the variance.
     """
     return _pca(shapes, faces, rank, threads, progress)
 
 
 def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
-    """The modes U (V, 3, 12 B) of linear blend skinning by B bones: ``vertices + U q`` is the skinned mesh.
+    """Returns the modes U (V, 3, 12 B) of linear blend skinning by B bones: ``vertices + U q`` is the skinned mesh.
 
     vertices: (V, 3), in the pose in which the mesh was bound to its bones (for body models: with all corrections).
     weights: (V, B), not negative. Each row must sum to 1 (within 0.01) and is divided by its sum.
 
     q has 12 entries for each bone: the first three rows of its matrix minus the identity, row by row. So q[12 b + 4 i +
-    j] is entry (i, j) of the matrix of bone b, minus 1 where i = j; j = 3 is the translation. ``skinning_q`` computes
-    it. A matrix maps the vertex in the bind pose to its place: in glTF it is ``joint_world @ inverse_bind``.
+    j] is entry (i, j) of the matrix of bone b, minus 1 if i = j; j = 3 is the translation. ``skinning_q`` computes
+    it. A matrix maps the vertex from the bind pose to its position: in glTF it is ``joint_world @ inverse_bind``.
 
     Answers are exact for every q. But a usual motion of one bone is a large q, so certificates prove only small motions
-    about their center (docs/python.md has measurements). For poses of an animation, ``Detector`` is faster.
+    about their centre free (docs/python.md has measurements). For poses of an animation, ``Detector`` is faster.
     """
     x = numbers(vertices, "vertices")
     w = numbers(weights, "weights")
@@ -150,9 +150,9 @@ def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
 
 
 def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
-    """q (12 B,) of the bone matrices (B, 3, 4) or (B, 4, 4), for the modes of ``skinning``.
+    """Returns q (12 B,) of the bone matrices (B, 3, 4) or (B, 4, 4), for the modes of ``skinning``.
 
-    More axes in front are poses: (n, B, 4, 4) gives Q (n, 12 B). The last row of a 4 x 4 matrix must be (0, 0, 0, 1).
+    Leading axes are poses: (n, B, 4, 4) gives Q (n, 12 B). The last row of a 4 x 4 matrix must be (0, 0, 0, 1).
     """
     m = numbers(matrices, "matrices")
     if m.ndim < 3 or m.shape[-2:] not in ((3, 4), (4, 4)):

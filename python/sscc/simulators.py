@@ -6,7 +6,7 @@ The vertices of a model are all vertices of the body, with the simulator's numbe
 - ``from_simplicits``: bodies of Simplicits (NVIDIA Kaolin), moved by handles.
 - ``from_sofa``: modes of SOFA's plugin ModelOrderReduction.
 
-Only ``from_mujoco`` needs its simulator: the others take arrays. All raise ValueError or TypeError with a message that
+Only ``from_mujoco`` needs its simulator: the other functions take arrays. All raise ValueError or TypeError with a message that
 names the argument.
 """
 
@@ -34,13 +34,13 @@ _F64 = NDArray[np.float64]
 
 
 def from_mujoco(model: Any, flex: str | int) -> tuple[Model, Callable[[Any], _F64]]:
-    """The model of a flex with dof "trilinear" or "quadratic", and the function that maps MuJoCo's state to q.
+    """Returns the model of a flex with dof "trilinear" or "quadratic", and the function that maps MuJoCo's state to q.
 
     model: a ``mujoco.MjModel``; flex: its name or number. The state is a ``mujoco.MjData``.
 
     With ``body, q_of = from_mujoco(model, flex)``, ``body.positions(q_of(data))`` are the positions of the flex in
     ``data.flexvert_xpos``, except for rounding, after ``mj_forward`` or any other call that places the bodies. q has
-    three numbers for each node, also for pinned ones: its displacement from its position at ``qpos0``. There are 24
+    three numbers for each node, including pinned nodes: its displacement from its position at ``qpos0``. There are 24 numbers
     for "trilinear" and 81 for "quadratic", more with a ``cellcount``.
 
     Raises ImportError without the package mujoco.
@@ -73,9 +73,9 @@ def from_mujoco(model: Any, flex: str | int) -> tuple[Model, Callable[[Any], _F6
 
 
 def from_simplicits(vertices: ArrayLike, faces: ArrayLike, weights: ArrayLike) -> Model:
-    """The model of a surface in a body of Simplicits, moved by H handles.
+    """Returns the model of a surface in a body of Simplicits, moved by H handles.
 
-    vertices: (V, 3), at rest; faces: (F, 3); weights: (V, H), of the handles at the vertices, of any sign and sum.
+    vertices: (V, 3), at rest; faces: (F, 3); weights: (V, H), of the handles at the vertices, with any sign and sum.
 
     As in Kaolin's ``standard_lbs``, vertex x is moved by the sum of ``weights[h] * T[h] @ (x, 1)`` over h. The
     transforms T (H, 3, 4) are 0 at rest. q (12 H,) has their entries, row by row; in Kaolin it is
@@ -95,12 +95,12 @@ def from_sofa(
     modes: ArrayLike | str | PathLike[str],
     rank: int | None = None,
 ) -> Model:
-    """The model of a body that SOFA's ``ModelOrderReductionMapping`` moves. q is the state of its input.
+    """Returns the model of a body that SOFA's ``ModelOrderReductionMapping`` moves. q is the state of its input.
 
     vertices: (V, 3), the ``rest_position`` of its output, or a text file with three numbers in each line.
-    faces: (F, 3), or tetrahedra (T, 4), whose boundary is taken.
+    faces: (F, 3), or tetrahedra (T, 4), whose boundary is used.
     modes: (3V, r), or the file at ``modesPath``: numbers of rows and columns in its first line, then the rows.
-    rank: how many modes the mapping has, the first ones of ``modes``; None: all.
+    rank: number of modes of the mapping, which are the first of ``modes``. None means all.
 
     A ``rotation`` of the mapping must be applied to the modes.
     """
@@ -122,7 +122,7 @@ def _interpolated(model: Any, flex: str | int) -> tuple[int, str]:
         if flex not in names:
             nearest = difflib.get_close_matches(flex, names, 1, 0)
             hint = f": the nearest name is {quoted(nearest[0])}" if nearest else ": the model has no flexes"
-            raise ValueError(f"flex: there is no {quoted(flex)}{hint}")
+            raise ValueError(f"flex: no flex has the name {quoted(flex)}{hint}")
         number = names.index(flex)
     elif not hasattr(flex, "__index__"):
         raise TypeError(f"flex is a {type(flex).__name__}: a name or a number was expected")
@@ -133,7 +133,7 @@ def _interpolated(model: Any, flex: str | int) -> tuple[int, str]:
     if not model.flex_interp[number]:
         raise ValueError(
             f"flex: {quoted(names[number])} is not interpolated, with dof 'trilinear' or 'quadratic'; "
-            f"those that are: {fit or 'none'}"
+            f"interpolated flexes: {fit or 'none'}"
         )
     return number, quoted(names[number])
 
@@ -142,7 +142,7 @@ def _node_weights(model: Any, flex: int, nodes: slice) -> _F64:
     """Returns the weight of each node at each vertex, (V, N).
 
     They are the positions that MuJoCo computes for the vertices when one node is at (1, 1, 1) and the others are at 0.
-    So they are its own for any order, any cells and any version.
+    So they equal MuJoCo's weights for any order, any cells and any version.
     """
     import mujoco
 
@@ -162,7 +162,7 @@ def _node_weights(model: Any, flex: int, nodes: slice) -> _F64:
 
 
 def _flex_faces(model: Any, flex: int, shown: str) -> NDArray[np.int32]:
-    """Returns the triangles of a flex, or those around its tetrahedra."""
+    """Returns the triangles of a flex, or the boundary of its tetrahedra."""
     if model.flex_dim[flex] == 2:
         first, count, corners = model.flex_elemdataadr[flex], model.flex_elemnum[flex], model.flex_elem
     elif model.flex_dim[flex] == 3:
@@ -174,7 +174,7 @@ def _flex_faces(model: Any, flex: int, shown: str) -> NDArray[np.int32]:
 
 
 def _boundary(faces: ArrayLike, vertices: int) -> ArrayLike:
-    """Returns triangles as they are, and of tetrahedra those that one tetrahedron alone has."""
+    """Returns triangles unchanged, and for tetrahedra the triangles that belong to only one tetrahedron."""
     cells = as_array(faces)
     if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
         return faces
@@ -218,5 +218,5 @@ def _matrix(given: ArrayLike | str | PathLike[str], name: str, *, has_size: bool
         return matrix
     if len(size) != 2 or size[0] != len(rows) or not 1 <= size[1] <= matrix.shape[1]:
         raise ValueError(f"{path}: line 1: '{len(rows)} {matrix.shape[1]}' was expected, the size of the matrix")
-    # SOFA reads no other columns, which its own files may have.
+    # SOFA ignores further columns, which its own files may have.
     return matrix[:, : int(size[1])]

@@ -26,7 +26,7 @@ class UsdMesh(NamedTuple):
     frames: NDArray[np.float64]
     """Positions in the coordinates of the stage, (T, V, 3)."""
     times: NDArray[np.float64]
-    """The time of each frame (s); one, 0, for a mesh that does not move."""
+    """The time of each frame (s); only 0 for a mesh that does not move."""
 
     def __repr__(self) -> str:
         sizes = f"{counted(len(self.faces), 'triangle')}, {counted(len(self.times), 'frame')}"
@@ -34,17 +34,17 @@ class UsdMesh(NamedTuple):
 
 
 def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
-    """The mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
+    """Returns the mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
 
-    prim: the path of a prim of type Mesh; None: the only one.
+    prim: the path of a prim of type Mesh. None means the only one.
 
-    Skins and instances are evaluated, instances of a PointInstancer are not. A subdivision surface is its control mesh. Files
-    of Alembic can be read where the installed USD has the plugin for them.
+    Skins and instances are evaluated, instances of a PointInstancer are not. A subdivision surface is replaced by its control
+    mesh. Alembic files can be read if the installed USD has the plugin for them.
 
     >>> mesh = sscc.from_usd("cloth.usda")
     >>> sscc.Detector(mesh.faces, mesh.frames[0]).check_many(mesh.frames).colliding
 
-    ``numpy.save("frames.npy", mesh.frames)`` writes what ``sscc check --frames`` reads. Raises ImportError without the package
+    ``numpy.save("frames.npy", mesh.frames)`` writes the file for ``sscc check --frames``. Raises ImportError without the package
     usd-core, FileNotFoundError, ValueError.
     """
     try:
@@ -70,12 +70,12 @@ def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
             warn(f"{place}: {found.GetPath()}: a PointInstancer is not evaluated: its instances are left out", stacklevel=2)
     meshes = {str(found.GetPath()): UsdGeom.Mesh(found) for found in stage.Traverse() if found.IsA(UsdGeom.Mesh)}
     if not meshes:
-        raise ValueError(f"{place}: it has no prim of type Mesh")
+        raise ValueError(f"{place}: the file has no prim of type Mesh")
     if prim is None and len(meshes) > 1:
-        raise ValueError(f"{place}: it has {len(meshes)} meshes: name one by prim: {_listed(meshes)}")
+        raise ValueError(f"{place}: the file has {len(meshes)} meshes: choose one by prim: {_listed(meshes)}")
     name = next(iter(meshes)) if prim is None else str(prim)
     if name not in meshes:
-        raise ValueError(f"{place}: there is no mesh {quoted(name)}; there are {_listed(meshes)}")
+        raise ValueError(f"{place}: no mesh has the path {quoted(name)}; the paths are {_listed(meshes)}")
     prim_of_mesh = meshes[name].GetPrim()
     is_skinned = UsdSkel.BindingAPI(prim_of_mesh).GetJointIndicesAttr().HasAuthoredValue()
     if is_skinned and not _has_values(stage.GetSessionLayer(), f"{name}.points"):
@@ -100,7 +100,7 @@ def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:
 
     counts, corners = mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()
     if counts.GetNumTimeSamples() > 1 or corners.GetNumTimeSamples() > 1:
-        raise ValueError(f"{place}: its faces change over time: a mesh with the same faces at all times was expected")
+        raise ValueError(f"{place}: the faces change over time: a mesh with the same faces at all times was expected")
     points = mesh.GetPointsAttr()
     samples = set(points.GetTimeSamples())
     ancestor = mesh.GetPrim()
@@ -113,10 +113,10 @@ def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:
         code = Usd.TimeCode(time)
         values = points.Get(code)
         if values is None:
-            raise ValueError(f"{place}: it has no points at time code {time:g}")
+            raise ValueError(f"{place}: the mesh has no points at time code {time:g}")
         x = np.asarray(values, dtype=np.float64).reshape(-1, 3)
         if frames and len(x) != len(frames[0]):
-            raise ValueError(f"{place}: it has {len(frames[0])} points at first, {len(x)} at time code {time:g}")
+            raise ValueError(f"{place}: the mesh has {len(frames[0])} points at first, {len(x)} at time code {time:g}")
         matrix = np.asarray(mesh.ComputeLocalToWorldTransform(code), dtype=np.float64)
         frames.append(x @ matrix[:3, :3] + matrix[3, :3])
     first = Usd.TimeCode(times[0])
@@ -125,7 +125,7 @@ def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:
 
 
 def _triangles(place: str, counts: Any, corners: Any, rest: NDArray[np.float64]) -> NDArray[np.uint32]:
-    """Polygons cut as all readers of the package do."""
+    """Returns the triangles of polygons, cut as by all readers of the package."""
     counts, corners = (np.asarray(() if found is None else found, dtype=np.int64) for found in (counts, corners))
     faces, warnings = _triangulated(place, counts, corners, rest)
     for text in warnings:

@@ -25,37 +25,37 @@ def skip(test: str, reason: str) -> None:
 
 @pytest.fixture
 def libigl(request: pytest.FixtureRequest) -> None:
-    """Needs the package libigl."""
+    """Skips the test if the package libigl is not installed."""
     needs(request, "igl")
 
 
 @pytest.fixture
 def ipctk(request: pytest.FixtureRequest) -> None:
-    """Needs the package ipctk."""
+    """Skips the test if the package ipctk is not installed."""
     needs(request, "ipctk")
 
 
 @pytest.fixture
 def mujoco(request: pytest.FixtureRequest) -> None:
-    """Needs the package mujoco."""
+    """Skips the test if the package mujoco is not installed."""
     needs(request, "mujoco")
 
 
 @pytest.fixture
 def usd(request: pytest.FixtureRequest) -> None:
-    """Needs the package usd-core."""
+    """Skips the test if the package usd-core is not installed."""
     needs(request, "pxr")
 
 
 def needs(request: pytest.FixtureRequest, module: str) -> None:
     """Skips a test if a module is not installed."""
     if importlib.util.find_spec(module) is None:
-        skip(request.node.name, f"there is no package {module} for this interpreter")
+        skip(request.node.name, f"the package {module} is not installed for this interpreter")
 
 
 @pytest.fixture
 def models(request: pytest.FixtureRequest) -> Path:
-    """The folder of real models, which is not part of the project."""
+    """Returns the folder of real models, which is not part of the project."""
     folder = Path(os.environ.get("SSCC_MODELS") or PROJECT.parent / "shared" / "models")
     if not folder.is_dir():
         skip(request.node.name, "no real models found; set SSCC_MODELS to their folder")
@@ -64,7 +64,7 @@ def models(request: pytest.FixtureRequest) -> Path:
 
 @pytest.fixture
 def command(request: pytest.FixtureRequest) -> Path:
-    """The ``sscc`` command that ``cargo xtask python`` has built."""
+    """Returns the ``sscc`` command that ``cargo xtask python`` has built."""
     path = os.environ.get("SSCC_COMMAND")
     if not path:
         skip(request.node.name, "SSCC_COMMAND does not name the sscc command")
@@ -74,11 +74,11 @@ def command(request: pytest.FixtureRequest) -> Path:
 
 @pytest.fixture(scope="session")
 def model() -> sscc.Model:
-    """A torus of 576 triangles with 6 smooth modes, shared by all tests."""
+    """Returns a torus of 576 triangles with 6 smooth modes, shared by all tests."""
     return sscc.Model(*torus(24, 12, 6))
 
 
 @pytest.fixture(scope="session")
 def certs(model: sscc.Model) -> sscc.Certificates:
-    """Certificates of that torus."""
+    """Returns certificates of that torus."""
     return model.certify()

@@ -17,17 +17,17 @@ F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 U32 = NDArray[np.uint32]
 
-#: Models without vertices of equal position (libigl omits pairs that touch at such vertices), and the largest
+#: Models without vertices of equal position (libigl omits pairs that touch at such vertices). The number is the largest
 #: displacement of their configurations in half diagonals of their AABB, such that many of them collide.
 MODELS = {"vega_A": 8.0, "bunny": 4.0, "face": 0.2}
-#: Number of configurations of each model, and of those to compare: all of them with CI=true, else the first eighth.
+#: Number of configurations of each model, and number of those to compare: all with CI=true, else the first eighth.
 COUNT = 500
 COMPARED = COUNT if os.environ.get("CI") == "true" else COUNT // 8
 
 
 @cache
 def load(name: str, models: Path) -> sscc.Model:
-    """A model of that name."""
+    """Returns the model of that name."""
     match name:
         case "vega_A":
             return sscc.Model.load(models / "vega_A/A.obj", models / "vega_A/A.URendering.float")
@@ -41,12 +41,12 @@ def load(name: str, models: Path) -> sscc.Model:
 
 @cache
 def certificates(name: str, models: Path) -> sscc.Certificates:
-    """Certificates of that model, which tests share."""
+    """Returns certificates of that model, which tests share."""
     return load(name, models).certify(scheme="paper", progress=False)
 
 
 def configurations(model: sscc.Model, count: int, most: float) -> F64:
-    """Random q: z_i = N(0, 1) / i, scaled to a largest vertex displacement of 0.5% to 100% of ``most`` half diagonals
+    """Returns random q: z_i = N(0, 1) / i, scaled to a largest vertex displacement of 0.5% to 100% of ``most`` half diagonals
     of the AABB."""
     random = np.random.default_rng(2026)
     vertices = model.vertices[np.unique(model.faces)]
@@ -62,7 +62,7 @@ def configurations(model: sscc.Model, count: int, most: float) -> F64:
 
 
 def libigl_pairs(positions: F64, faces: I64) -> U32:
-    """The pairs of triangles without a common vertex that intersect, by CGAL's exact predicates: sorted, (n, 2)."""
+    """Returns the pairs of triangles without a common vertex that intersect, by CGAL's exact predicates: sorted, (n, 2)."""
     import igl.copyleft.cgal
 
     found = igl.copyleft.cgal.remesh_self_intersections(positions, faces, detect_only=True)[2]
@@ -73,7 +73,7 @@ def libigl_pairs(positions: F64, faces: I64) -> U32:
 
 
 def meets_at_coincident_vertices(positions: F64, faces: I64, pairs: U32) -> NDArray[np.bool_]:
-    """For each pair, whether its triangles have different vertices at the same position, and no common vertex."""
+    """Returns for each pair whether its triangles have different vertices at the same position, and no common vertex."""
     a, b = faces[pairs[:, 0]][:, :, None], faces[pairs[:, 1]][:, None, :]
     equal = (positions[a] == positions[b]).all(axis=3)
     found: NDArray[np.bool_] = equal.any(axis=(1, 2)) & (a != b).all(axis=(1, 2))
@@ -81,13 +81,13 @@ def meets_at_coincident_vertices(positions: F64, faces: I64, pairs: U32) -> NDAr
 
 
 def without(pairs: U32, others: U32) -> U32:
-    """The pairs that are not among the others."""
+    """Returns the pairs that are not among the others."""
     rows = {(i, j) for i, j in others.tolist()}
     return np.array([pair for pair in pairs.tolist() if tuple(pair) not in rows], np.uint32).reshape(-1, 2)
 
 
 def unexplained(positions: F64, faces: I64, found: U32, libigl: U32) -> tuple[list[str], int]:
-    """All differences but contacts at coincident vertices, and the number of these."""
+    """Returns all differences except contacts at coincident vertices, and the number of these contacts."""
     more = without(found, libigl)
     explained = meets_at_coincident_vertices(positions, faces, more)
     wrong = [f"only sscc lists {pair}" for pair in more[~explained].tolist()]
@@ -100,13 +100,13 @@ def _ask(question: tuple[F64, I64]) -> U32:
 
 
 def libigl_answers(questions: Iterable[tuple[F64, I64]]) -> Iterator[U32]:
-    """The answers to all questions, on all cores."""
+    """Computes the answers to all questions, on all cores."""
     with multiprocessing.get_context("spawn").Pool(os.cpu_count()) as pool:
         yield from pool.imap(_ask, questions)
 
 
 def differences(name: str, models: Path, count: int = COMPARED) -> tuple[int, int, list[int]]:
-    """The number of colliding configurations, the number of pairs, and the configurations where libigl differs."""
+    """Returns the number of colliding configurations, the number of pairs, and the configurations where libigl differs."""
     model = load(name, models)
     certs = certificates(name, models)
     qs = configurations(model, max(count, COUNT), MODELS[name])[:count]

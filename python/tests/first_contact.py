@@ -3,7 +3,7 @@
 Two triangles meet exactly when some corners of one and some of the other, at most five together, form a Radon
 partition: their homogeneous coordinates have exactly one linear dependency, which is positive on one side and negative
 on the other. A partition of five corners holds during an interval of time. So at an impact after time 0 there is a
-partition of at most four corners. These are in one plane, so the time is a root of their determinant. Where that
+partition of at most four corners. These are in one plane, so the time is a root of their determinant. If that
 determinant is always zero, a coefficient of the dependency changes its sign, so the time is a root of a smaller
 determinant.
 """
@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from polynomial import Polynomial, Root, add, multiply, negate, rational, refine, roots, sign_at, trimmed
 
 Set = tuple[int, ...]
-#: The width of the interval of the time before it is rounded.
+#: The width of the interval that contains the time, before the time is rounded.
 WIDTH = Fraction(1, 2**60)
 
 
 def first_contact(corners: NDArray[np.float64]) -> float | None:
-    """The first time in [0, 1] at which two triangles have a common point, rounded; None if there is none.
+    """Returns the first time in [0, 1] at which two triangles have a common point, rounded; None if they have none.
 
     corners: (2, 2, 3, 3), for each triangle its corners at the start and at the end.
     """
@@ -41,7 +41,7 @@ def first_contact(corners: NDArray[np.float64]) -> float | None:
 
 
 def mixed(corners: Iterable[int], most: int) -> Iterator[Set]:
-    """All sets of at most this many corners with some of each triangle: 0, 1, 2 and 3, 4, 5."""
+    """Returns all sets of at most this many corners with some of each triangle: 0, 1, 2 and 3, 4, 5."""
     corners = tuple(corners)
     sets = chain.from_iterable(combinations(corners, size) for size in range(2, most + 1))
     return (some for some in sets if some[0] < 3 <= some[-1])
@@ -52,7 +52,7 @@ class Pair:
 
     def __init__(self, corners: NDArray[np.float64]) -> None:
         starts, ends = np.swapaxes(corners, 0, 1).reshape(2, 6, 3).tolist()
-        # Times a common denominator, which changes no sign and no root.
+        # Coordinates are multiplied by a common denominator, which changes no sign and no root.
         scale = max(x.as_integer_ratio()[1] for corner in starts + ends for x in corner)
 
         def whole(x: float) -> int:
@@ -67,7 +67,7 @@ class Pair:
         self.minors: dict[tuple[Set, Set], Polynomial] = {((), ()): (1,)}
 
     def minor(self, some: Set, rows: Set) -> Polynomial:
-        """The determinant of some corners and as many coordinates."""
+        """Returns the determinant of some corners and as many coordinates."""
         if (some, rows) not in self.minors:
             total: Polynomial = ()
             for i, row in enumerate(rows):
@@ -77,21 +77,21 @@ class Pair:
         return self.minors[some, rows]
 
     def critical_sets(self) -> Iterator[Set]:
-        """Sets of corners of which one is a partition at the impact, unless the impact is at time 0."""
+        """Returns sets of corners, one of which is a partition at the impact, unless the impact is at time 0."""
         fours = list(combinations(range(6), 4))
         yield from fours
         if not all(self.minor(some, (0, 1, 2, 3)) for some in fours):
             yield from mixed(range(6), 3)
 
     def roots(self, some: Set) -> list[Root]:
-        """Times at which the corners of a set can become dependent."""
+        """Returns times at which the corners of a set can become dependent."""
         minors = {self.minor(some, rows) for rows in combinations(range(4), len(some))}
         return [root for minor in minors if minor for root in roots(minor)]
 
     def is_partition(self, some: Set, time: Root) -> bool:
         """Whether corners have exactly one dependency at a time, positive on one triangle, negative on the other."""
         for rows in combinations(range(4), len(some) - 1):
-            # By Cramer's rule the only dependency within these rows, unless it is 0.
+            # By Cramer's rule this is the only dependency within these rows, unless it is 0.
             others = [self.minor(some[:i] + some[i + 1 :], rows) for i in range(len(some))]
             signs = [-sign_at(p, time) if i % 2 else sign_at(p, time) for i, p in enumerate(others)]
             if any(signs):
@@ -100,6 +100,6 @@ class Pair:
         return False
 
     def is_dependency(self, some: Set, rows: Set, time: Root) -> bool:
-        """Whether the dependency within these rows holds in every other row: a determinant is 0 there."""
+        """Whether the dependency within these rows holds in every other row: the determinant with that row is 0."""
         others = (tuple(sorted((*rows, row))) for row in set(range(4)) - set(rows))
         return all(sign_at(self.minor(some, all_rows), time) == 0 for all_rows in others)

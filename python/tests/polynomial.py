@@ -7,14 +7,14 @@ from itertools import pairwise
 from math import gcd
 from typing import NamedTuple
 
-#: Coefficients, the constant one first, the last one not 0.
+#: Coefficients, the constant first; the last coefficient is not 0.
 Polynomial = tuple[int, ...]
 
 
 class Root(NamedTuple):
     """The only root of a polynomial in an interval; for a rational root both ends are that number."""
 
-    #: A polynomial without repeated roots. No end of the interval is a root of it, unless both ends are the same.
+    #: A polynomial without repeated roots. No end of the interval is a root of it, unless both ends are equal.
     of: Polynomial
     low: Fraction
     high: Fraction
@@ -52,7 +52,7 @@ def value(p: Polynomial, x: Fraction) -> Fraction:
 
 
 def numerator(p: Polynomial, x: Fraction) -> int:
-    """The value times a power of the denominator of x: Horner's rule in integers."""
+    """Returns the value times a power of the denominator of x, by Horner's rule in integers."""
     total, power = 0, 1
     for coefficient in reversed(p):
         total = total * x.numerator + coefficient * power
@@ -70,7 +70,7 @@ def derivative(p: Polynomial) -> Polynomial:
 
 
 def divide(p: Polynomial, by: Polynomial) -> tuple[Polynomial, Polynomial]:
-    """Quotient and remainder, each up to a positive factor."""
+    """Returns quotient and remainder, each up to a positive factor."""
     rest, quotient = list(p), [0] * max(len(p) - len(by) + 1, 0)
     size = abs(by[-1])
     for i in reversed(range(len(quotient))):
@@ -95,7 +95,7 @@ def common_divisor(p: Polynomial, q: Polynomial) -> Polynomial:
 
 
 def count_roots(chain: list[Polynomial], low: Fraction, high: Fraction) -> int:
-    """The number of different roots above ``low`` and not above ``high``, by a Sturm chain."""
+    """Returns the number of different roots above ``low`` and not above ``high``, by a Sturm chain."""
     changes = []
     for x in (low, high):
         signs = [s for s in (sign_of(p, x) for p in chain) if s != 0]
@@ -104,7 +104,7 @@ def count_roots(chain: list[Polynomial], low: Fraction, high: Fraction) -> int:
 
 
 def roots(p: Polynomial) -> list[Root]:
-    """All different roots in [0, 1] of a polynomial that is not 0."""
+    """Returns all different roots in [0, 1] of a polynomial that is not 0."""
     of = divide(p, common_divisor(p, derivative(p)))[0]
     chain = [of, derivative(of)]
     while chain[-1]:
@@ -125,7 +125,7 @@ def roots(p: Polynomial) -> list[Root]:
 
 
 def halve(root: Root) -> Root:
-    """The same root in half the interval."""
+    """Returns the same root in half the interval."""
     middle = (root.low + root.high) / 2
     at_middle = sign_of(root.of, middle)
     if at_middle == 0:
@@ -136,14 +136,14 @@ def halve(root: Root) -> Root:
 
 
 def refine(root: Root, width: Fraction) -> Root:
-    """The same root in an interval that is not wider."""
+    """Returns the same root in an interval of at most this width."""
     while root.high - root.low > width:
         root = halve(root)
     return root
 
 
 def sign_at(p: Polynomial, root: Root) -> int:
-    """The exact sign of a polynomial at a root in [0, 1]."""
+    """Returns the exact sign of a polynomial at a root in [0, 1]."""
     slope = sum(abs(a) for a in derivative(p))
     is_known_not_zero = False
     while True:

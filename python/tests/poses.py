@@ -15,7 +15,7 @@ from skinned import Character
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-#: Meshes by name: the file, and the mesh in a glTF file or the place of the skinned node in it.
+#: Meshes by name: the file, and for glTF files the name of the mesh or the index of the skinned node.
 FILES: dict[str, tuple[str, str | int | None]] = {
     "bunny_69451": ("bunny_69451_open.obj", None),
     "bunny_69664": ("bunny_69664_closed.ply", None),
@@ -72,7 +72,7 @@ class Mesh:
         return source.faces.astype(np.int64) if isinstance(source, sscc.Model) else source.mesh[1]
 
     def pose(self, number: int) -> F64:
-        """A random pose (V, 3): a bend and a twist; of every second pose of a character, a moment of an animation."""
+        """Returns a random pose (V, 3): a bend and a twist; for every second pose of a character, a time of an animation."""
         random = np.random.default_rng([2026, number])
         x, source = self.vertices, self._source
         if isinstance(source, Character):
@@ -87,12 +87,12 @@ class Mesh:
 
 @cache
 def mesh(models: Path, name: str) -> Mesh:
-    """The mesh of that name."""
+    """Returns the mesh of that name."""
     return Mesh(models, name)
 
 
 def frame(x: F64, random: np.random.Generator) -> tuple[F64, F64]:
-    """Positions in a random orthonormal frame, the largest coordinate 1, and the frame."""
+    """Returns positions in a random orthonormal frame with largest coordinate 1, and the frame."""
     axes = np.linalg.qr(random.normal(size=(3, 3)))[0]
     y = (x - x.mean(axis=0)) @ axes
     size = np.abs(y).max()
@@ -100,7 +100,7 @@ def frame(x: F64, random: np.random.Generator) -> tuple[F64, F64]:
 
 
 def twisted(x: F64, random: np.random.Generator) -> F64:
-    """Turned about an axis, by up to several turns along it."""
+    """Returns positions rotated about an axis, with an angle that grows along it by up to several full rotations."""
     y, axes = frame(x, random)
     angle = y[:, 2] * 10 ** random.uniform(-1, 1)
     cos, sin = np.cos(angle), np.sin(angle)
@@ -110,7 +110,7 @@ def twisted(x: F64, random: np.random.Generator) -> F64:
 
 
 def bent(x: F64, random: np.random.Generator) -> F64:
-    """Bent along a circle of random radius: where it is small, the ends meet or the inner side is turned over."""
+    """Returns positions bent along a circle of random radius. If it is small, the ends meet or the inner side is inverted."""
     y, axes = frame(x, random)
     radius = 10 ** random.uniform(-0.7, 0.7)
     along, out = y[:, 0] / radius, radius - y[:, 1]

@@ -11,8 +11,8 @@ import numpy as np
 
 
 def character(folder: Path) -> Path:
-    """A triangle ("body"), one above it ("shirt") that the animation "wave" moves down by 2 in a second, and a node without a
-    mesh."""
+    """Writes a triangle ("body"), a triangle above it ("shirt") that the animation "wave" moves down by 2 in a second, and a
+    node without a mesh."""
     body = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     shirt = [[1, 1, 1], [1.5, 1, 1], [1, 1, 1.5]]
     arrays = [(body, "VEC3"), (shirt, "VEC3"), ([0, 1], "SCALAR"), ([[0, 0, 0], [0, 0, -2]], "VEC3")]

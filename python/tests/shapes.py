@@ -1,4 +1,4 @@
-"""Models made in code."""
+"""Models created in code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ I64 = NDArray[np.int64]
 
 
 def torus(around: int, across: int, rank: int) -> tuple[F64, I64, F64]:
-    """A torus of 2 around x across triangles with smooth random modes: vertices, faces, modes (V, 3, r)."""
+    """Returns a torus of 2 around x across triangles with smooth random modes: vertices, faces, modes (V, 3, r)."""
     u, v = np.meshgrid(np.arange(around) / around, np.arange(across) / across, indexing="ij")
     u, v = 2 * np.pi * u.ravel(), 2 * np.pi * v.ravel()
     radius = 1 + 0.3 * np.cos(v)
@@ -29,7 +29,7 @@ def torus(around: int, across: int, rank: int) -> tuple[F64, I64, F64]:
 
 
 def two_triangles() -> tuple[F64, I64, F64]:
-    """Two triangles one unit apart, and one mode that moves the second one away: they touch at q = -1."""
+    """Returns two triangles at distance 1, and one mode that moves the second one away: they touch at q = -1."""
     vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]], float)
     modes = np.zeros((6, 3, 1))
     modes[3:, 2, 0] = 1
@@ -37,7 +37,7 @@ def two_triangles() -> tuple[F64, I64, F64]:
 
 
 def samples(count: int, rank: int, scale: float, seed: int = 7) -> F64:
-    """Random q, (count, rank)."""
+    """Returns random q, (count, rank)."""
     return np.random.default_rng(seed).normal(size=(count, rank)) * scale
 
 

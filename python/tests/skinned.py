@@ -1,6 +1,6 @@
 """Skinned characters of glTF files, evaluated in double precision: node transforms, one animation, one skin.
 
-For files with linear keys and without morph targets, such as those of Fox and CesiumMan.
+It reads files with linear keys and without morph targets, such as those of Fox and CesiumMan.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Character:
 
     @classmethod
     def load(cls, path: Path, place: int = 0) -> Character:
-        """Reads a GLB or glTF file; the node at that place among those with a skin."""
+        """Reads a GLB or glTF file. ``place`` is the index of the node among those with a skin."""
         content = path.read_bytes()
         if content.startswith(b"glTF"):
             size = struct.unpack_from("<I", content, 12)[0]
@@ -52,7 +52,7 @@ class Character:
         return cls(gltf, data, skinned[place])
 
     def array(self, accessor: int) -> NDArray[Any]:
-        """The rows of an accessor."""
+        """Returns the rows of an accessor."""
         a = self.gltf["accessors"][accessor]
         view = self.gltf["bufferViews"][a["bufferView"]]
         dtype, width = np.dtype(TYPES[a["componentType"]]), WIDTHS[a["type"]]
@@ -65,7 +65,7 @@ class Character:
 
     @cached_property
     def mesh(self) -> tuple[F64, I64, F64]:
-        """Vertices (V, 3), faces (F, 3) and weights of all bones (V, B) of all primitives."""
+        """Returns vertices (V, 3), faces (F, 3) and weights of all bones (V, B) of all primitives."""
         skin = self.gltf["skins"][self.gltf["nodes"][self.node]["skin"]]
         vertices, faces, weights, count = [], [], [], 0
         for part in self.gltf["meshes"][self.gltf["nodes"][self.node]["mesh"]]["primitives"]:
@@ -83,19 +83,19 @@ class Character:
 
     @cached_property
     def classes(self) -> I64:
-        """For each vertex a class: vertices of equal position and weights are one."""
+        """Returns a class for each vertex: vertices of equal position and weights are in one class."""
         vertices, _, weights = self.mesh
         rows = np.concatenate([vertices, weights], axis=1) + 0.0
         found: I64 = np.unique(rows, axis=0, return_inverse=True)[1].reshape(-1)
         return found
 
     def duration(self, animation: int) -> float:
-        """The time of the last key (s)."""
+        """Returns the time of the last key (s)."""
         samplers = self.gltf["animations"][animation]["samplers"]
         return max(float(self.array(sampler["input"]).max()) for sampler in samplers)
 
     def bones(self, animation: int, time: float) -> F64:
-        """The matrices of the bones, (B, 4, 4): they map vertices at rest to the world at that time."""
+        """Returns the matrices of the bones, (B, 4, 4): they map vertices at rest to the world at that time."""
         parts = [dict(node) for node in self.gltf["nodes"]]
         moves = self.gltf["animations"][animation]
         for channel in moves["channels"]:
@@ -116,7 +116,7 @@ class Character:
         return found
 
     def positions(self, bones: F64) -> F64:
-        """The skinned vertices (V, 3), bone by bone."""
+        """Returns the skinned vertices (V, 3), computed bone by bone."""
         vertices, _, weights = self.mesh
         posed = np.zeros_like(vertices)
         for bone, share in zip(bones, weights.T, strict=True):
@@ -125,7 +125,7 @@ class Character:
 
 
 def interpolated(times: F64, values: F64, time: float, is_rotation: bool) -> F64:
-    """The value of a track at a time: linear, for rotations by the shorter arc."""
+    """Returns the value of a track at a time: linear interpolation, for rotations along the shorter arc."""
     found: F64
     after = int(np.clip(np.searchsorted(times, time, side="right"), 1, max(len(times) - 1, 1)))
     if len(times) == 1 or time <= times[0]:
@@ -149,7 +149,7 @@ def interpolated(times: F64, values: F64, time: float, is_rotation: bool) -> F64
 
 
 def local(node: dict[str, Any]) -> F64:
-    """The matrix of a node."""
+    """Returns the matrix of a node."""
     if "matrix" in node and not {"translation", "rotation", "scale"} & node.keys():
         return np.array(node["matrix"], float).reshape(4, 4).T
     x, y, z, w = np.array(node.get("rotation", [0, 0, 0, 1]), float) / np.linalg.norm(

@@ -16,7 +16,7 @@ Any64 = NDArray[Any]
 
 
 def unaligned(array: Any64) -> Any64:
-    """The same numbers at an odd address."""
+    """Returns the same numbers at an odd address."""
     raw = np.zeros(array.nbytes + 1, np.uint8)
     shifted = raw[1:].view(array.dtype).reshape(array.shape)
     shifted[...] = array
@@ -25,7 +25,7 @@ def unaligned(array: Any64) -> Any64:
 
 
 def every_other(array: Any64) -> Any64:
-    """The same numbers with others between them, along every axis."""
+    """Returns the same numbers with others between them, along every axis."""
     wide = np.full([2 * n for n in array.shape], 77, array.dtype)
     view = wide[tuple(slice(None, None, 2) for _ in array.shape)]
     view[...] = array
@@ -33,7 +33,7 @@ def every_other(array: Any64) -> Any64:
 
 
 class OnlyDlpack:
-    """An array of another library that has DLPack alone."""
+    """An array of another library that has only DLPack."""
 
     def __init__(self, array: Any64) -> None:
         self.array = np.array(array)
@@ -46,7 +46,7 @@ class OnlyDlpack:
 
 
 class OnlyInterface:
-    """An array of another library that has the array interface alone."""
+    """An array of another library that has only the array interface."""
 
     def __init__(self, array: Any64) -> None:
         self.array = array

@@ -48,7 +48,7 @@ def client() -> Iterator[Any]:
 
 
 def within(work: Callable[[], T], seconds: float = TIME_LIMIT) -> T:
-    """Returns the result of the work; fails if it takes longer than this."""
+    """Returns the result of the work; fails if the work takes longer than this."""
     found: list[T] = []
     raised: list[BaseException] = []
 
@@ -61,14 +61,14 @@ def within(work: Callable[[], T], seconds: float = TIME_LIMIT) -> T:
     thread = threading.Thread(target=run, daemon=True)
     thread.start()
     thread.join(seconds)
-    assert not thread.is_alive(), f"no end after {seconds} seconds"
+    assert not thread.is_alive(), f"the work did not end within {seconds} seconds"
     if raised:
         raise raised[0]
     return found[0]
 
 
 class Killed:
-    """Kills one of the two workers while it is at its n-th call of a function of `sscc._worker`."""
+    """Kills one of the two workers during its n-th call of a function of `sscc._worker`."""
 
     def __init__(self, client: Any, folder: Path, name: str, call: int) -> None:
         self.client, self.started, self.over = client, folder / "started", threading.Event()
@@ -136,7 +136,7 @@ def test_a_bad_model_fails_alone_under_its_name(client: Any, tmp_path: Path) -> 
     too_large = sscc.Model(*torus(16, 9, 3))
 
     def with_little_memory() -> None:
-        """Workers have no memory for the model that is too large."""
+        """Leaves workers without memory for the model that is too large."""
         worker: Any = importlib.import_module("sscc._worker")
         given = worker.key_of_model
 
@@ -195,7 +195,7 @@ def test_answers_in_chunks_are_the_same(client: Any, certs: sscc.Certificates) -
     assert len(within(lambda: sscc.batch.check(certs, np.empty((0, 6)), client))) == 0
 
 
-#: With SSCC_LONG=1 workers are killed in every stage, else in one of each kind of task.
+#: With SSCC_LONG=1 workers are killed in every stage, else in one stage of each kind of task.
 LONG = bool(os.environ.get("SSCC_LONG"))
 JOBS = [1, 2, 3, 5, 8, 13, 21, 34] if LONG else [3]
 OF_MODELS = ["certify_whole", "key_of_model", "content_of", "seal"] if LONG else ["content_of"]
@@ -328,7 +328,7 @@ def test_only_the_client_reports_progress(client: Any, model: sscc.Model, capfd:
 
 def test_the_error_without_dask_names_the_package(tmp_path: Path) -> None:
     code = "import sys; sys.modules['distributed'] = None; import sscc; import sscc.batch"
-    # In another folder: python -c imports from the current folder first, and the source here is not built.
+    # The folder is another one: python -c imports from the current folder first, and the source here is not built.
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].endswith("pip install './python[dask]'")

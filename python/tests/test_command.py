@@ -1,4 +1,4 @@
-"""Answers equal those of the command."""
+"""Answers of the package equal those of the command."""
 
 from __future__ import annotations
 

@@ -16,28 +16,28 @@ from test_interrupt import MAX_SECONDS, ctrl_c_handler, seconds_until_stopped  #
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-#: A triangle, and one whose corner is 0.25 below it.
+#: A triangle, and a triangle with a corner 0.25 below it.
 FACE = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0]], float)
 SPIKE = np.array([[1, 1, -0.25], [1, 1, 2], [2, 1, 2]])
 ONE = [[0, 1, 2]]
 
 
 def linked() -> tuple[F64, F64, I64]:
-    """Positions of two tori that cross each other, and their faces. All coordinates have few digits, so that moving a
-    torus is exact."""
+    """Returns positions of two tori that cross each other, and their faces. All coordinates have few digits, so that moving
+    a torus is exact."""
     x, f, _ = torus(32, 16, 1)
     x = np.round(x * 2**20) / 2**20
     return x, x @ np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]]) + [0.25, 0.125, 0.0625], f
 
 
 def folded() -> tuple[F64, I64]:
-    """A torus that crosses itself."""
+    """Returns a torus that crosses itself."""
     x, f, modes = torus(32, 16, 6)
     return x + modes @ samples(1, 6, 0.6, seed=2)[0], f
 
 
 def distance_to_triangle(point: F64, corners: F64) -> float:
-    """How far a point is from a triangle: from its plane, and beyond its edges."""
+    """Returns the distance of a point from a triangle: from its plane, and from its edges if it is beyond them."""
     a, b, c = corners
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal)
@@ -46,7 +46,7 @@ def distance_to_triangle(point: F64, corners: F64) -> float:
 
 
 def segments(curves: list[sscc.Curve]) -> dict[tuple[int, int], F64]:
-    """The ends of the segment of each pair, (2, 3); no pair may have two."""
+    """Returns the ends of the segment of each pair, (2, 3). No pair may have two segments."""
     found: dict[tuple[int, int], F64] = {}
     for points, pairs, closed in curves:
         assert points.dtype == float and pairs.dtype == np.uint32
@@ -58,7 +58,7 @@ def segments(curves: list[sscc.Curve]) -> dict[tuple[int, int], F64]:
 
 
 def check_segments(curves: list[sscc.Curve], pairs: NDArray[np.uint32], first: F64, second: F64) -> None:
-    """Each segment is on both triangles of its pair. (F, 3, 3): the corners of the triangles."""
+    """Checks that each segment is on both triangles of its pair. (F, 3, 3): the corners of the triangles."""
     found = segments(curves)
     assert found.keys() <= {(i, j) for i, j in pairs.tolist()}
     for (i, j), ends in found.items():
@@ -77,7 +77,7 @@ def test_a_corner_below_a_face() -> None:
     for array in (curve.points, curve.pairs, answer.depths(), answer.directions()):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
-    # In one mesh.
+    # Both triangles are in one mesh.
     both = sscc.Detector([[0, 1, 2], [3, 4, 5]]).check(np.concatenate([FACE, SPIKE]))
     assert both.pairs.tolist() == [[0, 1]] and both.depths().tolist() == [0.25]
     assert [curve.pairs.tolist() for curve in both.curves()] == [[[0, 1]]]
@@ -101,7 +101,7 @@ def test_closed_surfaces_cross_in_closed_curves() -> None:
     assert answer.count > 100 and len(curves) > 1 and all(curve.closed for curve in curves)
     check_segments(curves, answer.pairs, x[f], y[f])
     assert len(segments(curves)) == answer.count
-    # The same in one mesh that has both.
+    # Both tori are in one mesh.
     whole = sscc.Detector(np.concatenate([f, f + len(x)])).check(np.concatenate([x, y])).curves()
     for one, two in zip(curves, whole, strict=True):
         assert np.array_equal(one.points, two.points) and np.array_equal(one.pairs + [0, len(f)], two.pairs)
@@ -117,13 +117,13 @@ def test_a_mesh_that_crosses_itself() -> None:
     assert segments(batch[1].curves()).keys() == segments(curves).keys()
     assert np.array_equal(batch[1].depths(), answer.depths())
     assert np.array_equal(batch[0].depths(), answer.depths() / 2)
-    # Of a part of the pairs: open curves.
+    # A part of the pairs has open curves.
     some = sscc.Detector(f).check(x, 7)
     assert len(some.depths()) == 7 and len(segments(some.curves())) == 7
 
 
 def test_curves_pass_seams() -> None:
-    """Each triangle has vertices of its own; those at equal positions are welded."""
+    """Each triangle has its own vertices, and vertices at equal positions are welded."""
     x, f = folded()
     split, own = x[f].reshape(-1, 3), np.arange(3 * len(f)).reshape(-1, 3)
     whole, welded = sscc.Detector(f).check(x), sscc.Detector(own, split, weld=True).check(split)
@@ -191,7 +191,7 @@ def test_damaged_pickles_are_refused() -> None:
             make(((pairs, cost), contacts))
     with pytest.raises(ValueError, match="the pickled answer is damaged"):
         make(((b"", cost), (triangles, None)))
-    # Other triangles than those of the pairs.
+    # The pickled triangles are not those of the pairs.
     for contacts in ((triangles[:88], None), (triangles, triangles[:88])):
         other = make(((pairs, cost), contacts))
         for call in (other.curves, other.depths, other.directions):
@@ -206,7 +206,7 @@ def test_answers_at_q_have_the_contacts_of_their_positions(model: sscc.Model, ce
 
 
 def test_contacts_stop_on_ctrl_c() -> None:
-    """A fan of triangles around the z axis: each pair crosses there."""
+    """In a fan of triangles around the z axis all pairs cross there."""
     angle = np.linspace(0, np.pi, 1500, endpoint=False)
     round_axis = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     corners = np.stack([round_axis * s + [0, 0, z] for s, z in ((1, 0), (-1, 0.5), (0.5, 2))], axis=1)

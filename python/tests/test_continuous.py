@@ -26,23 +26,23 @@ def coarse(numbers: F64, bits: int = 5) -> F64:
 
 
 def coarse_torus(around: int, across: int, rank: int) -> sscc.Model:
-    """A torus whose triangles, of few digits, also touch exactly."""
+    """Returns a torus whose coordinates have few digits, so that some triangles touch exactly."""
     vertices, faces, modes = torus(around, across, rank)
     return sscc.Model(coarse(vertices), faces, coarse(modes))
 
 
 def moving(model: sscc.Model, q0: F64, q1: F64) -> F64:
-    """The corners of every triangle at both ends, (F, 2, 3, 3)."""
+    """Returns the corners of every triangle at both ends, (F, 2, 3, 3)."""
     return np.stack([model.positions(q)[model.faces] for q in (q0, q1)], axis=1)
 
 
 def contact(corners: F64, i: int, j: int) -> float | None:
-    """The exact time of impact of two triangles."""
+    """Returns the exact time of impact of two triangles."""
     return first_contact(corners[[i, j]])
 
 
 def candidates(corners: F64, faces: NDArray[np.uint32]) -> Iterator[tuple[int, int]]:
-    """Pairs of triangles without a common vertex whose swept AABBs overlap."""
+    """Returns pairs of triangles without a common vertex whose swept AABBs overlap."""
     low, high = corners.min(axis=(1, 2)), corners.max(axis=(1, 2))
     for i in range(len(faces)):
         near = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
@@ -59,7 +59,7 @@ def is_close(corners: F64, i: int, j: int, time: float) -> bool:
 
 
 def distance(x: F64, y: F64) -> float:
-    """The distance of two triangles that do not intersect."""
+    """Returns the distance of two triangles that do not intersect."""
     edges = [(x[a], x[a - 1] - x[a], y[b], y[b - 1] - y[b]) for a in range(3) for b in range(3)]
     found = [segments(*pair) for pair in edges]
     found += [point_triangle(p, y) for p in x] + [point_triangle(p, x) for p in y]
@@ -67,7 +67,7 @@ def distance(x: F64, y: F64) -> float:
 
 
 def segments(p: F64, d: F64, r: F64, e: F64) -> float:
-    """The distance of two segments p + s d and r + t e."""
+    """Returns the distance of two segments p + s d and r + t e."""
     w = p - r
     a, b, c, f, g = (float(x @ y) for x, y in ((d, d), (d, e), (e, e), (d, w), (e, w)))
     best = float("inf")
@@ -83,7 +83,7 @@ def segments(p: F64, d: F64, r: F64, e: F64) -> float:
 
 
 def point_triangle(p: F64, t: F64) -> float:
-    """The distance of a point to the interior of a triangle; infinite if its projection is outside."""
+    """Returns the distance of a point to the interior of a triangle; infinite if its projection is outside."""
     u, v, w = t[1] - t[0], t[2] - t[0], p - t[0]
     gram = np.array([[u @ u, u @ v], [u @ v, v @ v]])
     if np.linalg.det(gram) <= 0:
@@ -93,7 +93,7 @@ def point_triangle(p: F64, t: F64) -> float:
 
 
 def test_no_exact_impact_is_missed() -> None:
-    """For a sample of the pairs with overlapping swept AABBs, since exact arithmetic is slow."""
+    """Tests a sample of the pairs with overlapping swept AABBs, since exact arithmetic is slow."""
     model = coarse_torus(10, 6, 3)
     certs = model.certify()
     random = np.random.default_rng(3)
@@ -119,7 +119,7 @@ def test_no_exact_impact_is_missed() -> None:
 
 
 def ipctk_pairs(model: sscc.Model, q0: F64, q1: F64) -> set[tuple[int, int]]:
-    """Pairs of triangles without a common vertex with an impact of a vertex and a face or of two edges by ipctk."""
+    """Returns pairs without a common vertex for which ipctk finds an impact of a vertex and a face or of two edges."""
     import ipctk
 
     faces = model.faces.astype(np.int32)
@@ -149,7 +149,7 @@ def ipctk_pairs(model: sscc.Model, q0: F64, q1: F64) -> set[tuple[int, int]]:
 
 
 def onsets(model: sscc.Model, qs: F64) -> Iterator[tuple[F64, F64]]:
-    """Motions around the first impact on the line from rest to each q."""
+    """Returns motions around the first impact on the line from rest to each q."""
     certs = model.certify()
     for q in qs:
         first = certs.continuous(0 * q, q).time_of_impact
@@ -183,10 +183,10 @@ def test_differences_from_ipctk_are_explained(name: str, request: pytest.Fixture
             assert exact is None
             theirs_alone += 1
         for i, j in sorted(times.keys() - theirs):
-            # Such as a face that an edge pierces during the whole motion: it has no impact of vertices or edges.
+            # An edge may pierce a face during the whole motion: the pair has no impact of vertices or edges.
             exact = contact(corners, i, j)
             print(f"{name}: only sscc reports {i}, {j}: exactly {exact}")
             assert exact is not None or is_close(corners, i, j, times[i, j])
             ours_alone += 1
-    print(f"{name}: {both} pairs of both, {theirs_alone} of ipctk alone, {ours_alone} of sscc alone")
+    print(f"{name}: {both} pairs of both, {theirs_alone} only of ipctk, {ours_alone} only of sscc")
     assert both > 10

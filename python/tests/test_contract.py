@@ -1,4 +1,4 @@
-"""The interface on which scripts rely."""
+"""Tests of the interface on which scripts rely."""
 
 from __future__ import annotations
 

@@ -35,20 +35,20 @@ FALLEN = X * [1, 1, -1]
 
 
 def soup(count: int, random: np.random.Generator) -> tuple[F64, I64]:
-    """Random triangles in the unit cube, about 0.3 in size."""
+    """Returns random triangles in the unit cube, about 0.3 in size."""
     centres = random.uniform(size=(count, 1, 3))
     corners = centres + random.uniform(-0.15, 0.15, size=(count, 3, 3))
     return corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
 
 
 def lattice_soup(count: int, random: np.random.Generator) -> tuple[F64, I64]:
-    """Triangles with corners in a lattice of 4 x 4 x 4 points, each with vertices of its own: many touch, are coplanar,
+    """Returns triangles with corners in a lattice of 4 x 4 x 4 points, each with its own vertices: many touch, are coplanar,
     equal or of zero area."""
     return random.integers(0, 4, size=(3 * count, 3)).astype(float), np.arange(3 * count).reshape(-1, 3)
 
 
 def brute_force(corners: F64) -> list[list[int]]:
-    """All pairs of triangles that have a common point, by rational arithmetic. corners: (F, 3, 3)."""
+    """Returns all pairs of triangles that have a common point, by rational arithmetic. corners: (F, 3, 3)."""
     start = rational(Fraction(0))
     found = []
     for i in range(len(corners)):
@@ -75,7 +75,7 @@ def test_one_line_finds_self_intersections() -> None:
 
 
 def test_the_contact_filter() -> None:
-    """Two triangles that meet in a corner, each with a vertex of its own there; folded, they meet beside it."""
+    """Two triangles meet in a corner, and each has its own vertex there. When folded, they also meet beside it."""
     flat = np.array([[0, 0, 0], [2, -1, 0], [2, 1, 0], [0, 0, 0], [1, 0, 1], [2, 0, 1]], float)
     folded = flat * [1, 1, 0]
     find: Callable[..., U32] = sscc.self_intersections
@@ -93,7 +93,7 @@ def test_the_contact_filter() -> None:
 
 
 def test_folded_neighbours_and_doubled_faces_are_found_on_request() -> None:
-    """A triangle folded onto its neighbour, a hinge that is open, and a face that is there twice."""
+    """The mesh has a triangle folded onto its neighbour, an open hinge, and a doubled face."""
     faces = [[0, 1, 2], [1, 0, 3], [0, 4, 1], [2, 0, 1]]
     closed = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0.5, 0.5, 0], [0, -1, 1]], float)
     opened = closed + np.array([[0], [0], [0], [1], [0]]) * [0, 0, 1]
@@ -114,7 +114,7 @@ def test_pairs_equal_brute_force(seed: int) -> None:
     assert len(expected) > 20
     assert sscc.self_intersections(vertices, faces).tolist() == expected
     assert sscc.Detector(faces).check(vertices).pairs.tolist() == expected
-    # Vertices of equal position, as one vertex.
+    # Vertices of equal position are welded.
     unique, numbers = np.unique(vertices, axis=0, return_inverse=True)
     joined = numbers.reshape(-1)[faces]
     apart = [[i, j] for i, j in expected if not set(joined[i]) & set(joined[j])]
@@ -124,7 +124,7 @@ def test_pairs_equal_brute_force(seed: int) -> None:
 
 
 def check_against_libigl(positions: F64, faces: I64, found: U32) -> int:
-    """Checks that the pairs are those of libigl and contacts at coincident vertices. Returns the number of these."""
+    """Checks that the pairs are those of libigl and contacts at coincident vertices. Returns the number of these contacts."""
     wrong, at_coincident = exact.unexplained(positions, faces, found, exact.libigl_pairs(positions, faces))
     assert not wrong, "\n".join(wrong)
     return at_coincident
@@ -144,7 +144,7 @@ def test_soups_equal_libigl(seed: int) -> None:
 
 @pytest.mark.usefixtures("libigl")
 def test_libigl_omits_contacts_at_coincident_vertices() -> None:
-    """A torus whose triangles have vertices of their own: neighbours touch, and count."""
+    """The triangles of the torus have their own vertices: neighbours touch, and count."""
     x, f, modes = torus(24, 12, 6)
     for q in samples(5, 6, 0.4):
         split, faces = (x + modes @ q)[f].reshape(-1, 3), np.arange(3 * len(f)).reshape(-1, 3)
@@ -169,7 +169,7 @@ def test_cloth_frames_equal_libigl(models: Path) -> None:
 @pytest.mark.usefixtures("libigl")
 @pytest.mark.parametrize("name", exact.MODELS)
 def test_random_poses_equal_libigl_and_certificates(name: str, models: Path) -> None:
-    """Poses of `test_exact.py`, where certificates and libigl agree; a few of them with libigl here."""
+    """Compares poses of `test_exact.py`, where certificates and libigl agree. Only a few are compared with libigl here."""
     model = exact.load(name, models)
     qs = exact.configurations(model, exact.COUNT, exact.MODELS[name])
     faces = model.faces.astype(np.int64)
@@ -198,7 +198,7 @@ def test_two_meshes_equal_one_that_has_both() -> None:
     answer = first.against(x, second, y)
     assert answer.pairs.tolist() == between and answer.count == len(between) > 50 and answer.complete
     assert sorted([j, i] for i, j in second.against(y, first, x).pairs.tolist()) == sorted(between)
-    # A mesh against itself, at other positions.
+    # A mesh is tested against itself at other positions.
     assert first.against(x, first, x).count > 300
     moved = first.against_continuous(x, x + [3, 0, 0], second, y + [3, 0, 0], y)
     resting = first.against_continuous(x, x, second, y, y)
@@ -236,7 +236,7 @@ def test_continuous_queries_equal_exact_arithmetic() -> None:
             assert is_close(corners, i, j, times[i, j])
 
 
-def test_limits() -> None:
+def test_limits_end_the_search() -> None:
     x, f = soup(200, np.random.default_rng(2))
     detector = sscc.Detector(f, x)
     whole = detector.check(x)

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run, and what the first pages of the site show."""
+"""The examples of docs/python.md run, and so do those of the first pages of the site."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def run(arguments: list[Any]) -> None:
 
 
 def run_commands(page: str, command: Path, is_chosen: Callable[[str], bool] = lambda _: True) -> int:
-    """Runs the chosen commands of the page, and returns how many there are."""
+    """Runs the chosen commands of the page, and returns their number."""
     text = (PROJECT / page).read_text(encoding="utf-8")
     shown = re.findall(r"^```sh\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
     lines = [line for line in "".join(shown).splitlines() if is_chosen(line)]
@@ -59,7 +59,7 @@ def run_commands(page: str, command: Path, is_chosen: Callable[[str], bool] = la
 
 
 def write_files(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The files that the first page names."""
+    """Writes the files that the first page names."""
     monkeypatch.syspath_prepend(str(PROJECT / "python/examples"))
     from mouth import mouth, mouth_glb  # type: ignore[import-not-found]
 
@@ -101,10 +101,10 @@ def test_the_rolled_sheet_collides_at_its_end(
     assert run_commands("docs/how-it-works.md", command) == 1
     assert (tmp_path / "sheet.html").stat().st_size > 100_000
 
-#: Lines of docs/command.md that tests in Rust run: those of a model in statics.rs, an audit in clearance.rs, proofs in proof.rs.
+#: Parts of lines of docs/command.md that Rust tests run: a model in statics.rs, an audit in clearance.rs, proofs in proof.rs.
 RUN_ELSEWHERE = ("bracket.model", "sscc audit face", "spring.proof")
 
-#: Lines of docs/command.md whose q are of a model of three modes.
+#: Lines of docs/command.md whose q are for a model of three modes.
 OF_THREE_MODES = ("face.model.safetensors --trajectory", "near.sscc")
 
 
@@ -119,7 +119,7 @@ def write_stl(path: Path, corners: list[list[float]]) -> None:
 
 
 def write_guide_files(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The files that the guide of the command names, apart from those of VTK."""
+    """Writes the files that the guide of the command names, except those of VTK."""
     monkeypatch.syspath_prepend(str(PROJECT / "python/examples"))
     import mouth as example
 

@@ -151,7 +151,7 @@ def test_invalid_q_are_refused(certs: sscc.Certificates, q: Any, error: type[Exc
         for call in named:
             with pytest.raises(error, match="^" + re.escape(message.format(name))):
                 call()
-    # An error leaves the state of the query as it was.
+    # An error does not change the state of the query.
     assert not certs.check(good).colliding
 
 

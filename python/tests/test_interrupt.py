@@ -15,13 +15,13 @@ import pytest
 import sscc
 from shapes import samples, torus
 
-#: The longest time until work stops, in processor time of all cores, so that other work on the machine does not count.
+#: Maximum time until work stops, in processor time of all cores, so that other work on the machine does not count.
 MAX_SECONDS = 1.0 * (os.cpu_count() or 1)
 
 
 @pytest.fixture(autouse=True)
 def ctrl_c_handler() -> Iterator[None]:
-    """Handles Ctrl-C also in a process that a shell started in the background, which would ignore it."""
+    """Enables Ctrl-C, which a process that a shell started in the background would ignore."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -29,25 +29,25 @@ def ctrl_c_handler() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def large() -> sscc.Model:
-    """A torus of 57,600 triangles: certificates take long."""
+    """Returns a torus of 57,600 triangles: its certificates take long."""
     return sscc.Model(*torus(240, 120, 12))
 
 
 @pytest.fixture(scope="module")
 def medium() -> sscc.Model:
-    """A torus of 12,800 triangles: certificates take seconds."""
+    """Returns a torus of 12,800 triangles: its certificates take seconds."""
     return sscc.Model(*torus(112, 57, 12))
 
 
 @pytest.fixture(scope="module")
 def one_point() -> sscc.Certificates:
-    """Certificates of a torus that is one point at q = 1: each pair of triangles collides, so queries take minutes."""
+    """Returns certificates of a torus that is one point at q = 1: all pairs of triangles collide, so queries take minutes."""
     vertices, faces, _ = torus(90, 45, 1)
     return sscc.Model(vertices, faces, -vertices[:, :, None]).certify(scheme="paper", epsilon=0.9)
 
 
 def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> float:
-    """Presses Ctrl-C during the work; returns the time until it stops (s)."""
+    """Presses Ctrl-C during the work, and returns the time until it stops (s)."""
     pressed = []
 
     def press() -> None:

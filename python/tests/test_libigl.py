@@ -1,7 +1,7 @@
 """Self-intersections equal libigl's exact ones, on every real mesh as it is and in random poses.
 
-libigl omits contacts at coincident vertices: those at which two triangles meet at vertices of equal position and
-different number. Each such pair is verified to be one.
+libigl omits contacts at coincident vertices: pairs of triangles that meet at vertices of equal position and different
+number. The tests verify that each omitted pair is such a contact.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import exact
 import sscc
 from poses import FILES, mesh
 
-#: How many of every 125 poses are of each mesh: few of the large ones, where libigl takes seconds.
+#: Number of poses of each mesh among 125 poses. It is low for large meshes, for which libigl takes seconds.
 SHARES = {
     "bunny_69451": 1,
     "dragon_77202": 1,
@@ -38,9 +38,9 @@ SHARES = {
 }
 #: The mesh of each pose; the order repeats.
 NAMES = [name for name, share in SHARES.items() for _ in range(share)]
-#: The first pose of each mesh, and more where there are many: about a sixteenth of all.
+#: The first pose of each mesh, and more for meshes with many poses: about a sixteenth of all.
 FEW = [number for number, name in enumerate(NAMES) if 4 * NAMES[:number].count(name) < SHARES[name]]
-#: The poses to try: with CI=true all 500.
+#: The poses to test: with CI=true all 500.
 POSES = list(range(500)) if os.environ.get("CI") == "true" else FEW
 
 
@@ -54,7 +54,7 @@ def test_each_difference_is_listed() -> None:
     assert exact.unexplained(x, f, found, found[:1]) == (["only sscc lists [0, 2]"], 0)
     libigl = np.array([[0, 1], [0, 2], [2, 3]], np.uint32)
     assert exact.unexplained(x, f, found, libigl) == (["only libigl lists [2, 3]"], 0)
-    # A pair with a common vertex is no such contact.
+    # A pair with a common vertex is not such a contact.
     assert not exact.meets_at_coincident_vertices(x, np.array([[0, 1, 2], [0, 3, 4]]), found[:1]).any()
 
 
@@ -68,7 +68,7 @@ def test_real_meshes_as_they_are(models: Path) -> None:
         these, at_coincident[some.name] = exact.unexplained(some.vertices, some.faces, found, libigl)
         wrong += [f"{some.name}: {difference}" for difference in these]
     assert not wrong, "\n".join(wrong)
-    # Vertices of equal position: most glTF files split them for rendering.
+    # Most glTF files split vertices for rendering, so they have vertices of equal position.
     split = {name for name, (file, _) in FILES.items() if file.endswith((".glb", ".gltf"))}
     assert {name for name, count in at_coincident.items() if count > 0} == split - {"SimpleSkin", "Animation_Skin_10"}
 

@@ -15,13 +15,13 @@ STATM = Path("/proc/self/statm")
 
 
 def resident() -> int:
-    """Memory that this process holds, in bytes."""
+    """Returns the resident memory of this process, in bytes."""
     gc.collect()
     return int(STATM.read_text().split()[1]) * 4096
 
 
 @pytest.mark.skipif(not STATM.exists(), reason="only Linux has /proc/self/statm")
-def test_hundreds_of_cycles_leave_memory_flat() -> None:
+def test_memory_does_not_grow_over_hundreds_of_cycles() -> None:
     vertices, faces, modes = torus(5, 4, 2)
     qs = samples(4, 2, 0.4)
 
@@ -46,5 +46,5 @@ def test_hundreds_of_cycles_leave_memory_flat() -> None:
     for _ in range(400):
         cycle()
     grown = resident() - before
-    # A leak of 11 kB in each cycle fails.
+    # A leak of 11 kB in each cycle would fail.
     assert grown < 4 << 20, f"{grown / 2**20:.1f} MB more after 400 cycles"

@@ -1,4 +1,4 @@
-"""The installed package: its metadata, its types and its licences, and versions that are written in several files."""
+"""The installed package: its metadata, its types, its licences, and versions that are stated in several files."""
 
 from __future__ import annotations
 

@@ -12,17 +12,17 @@ import sscc
 from scenes import character
 from shapes import samples, torus, two_triangles
 
-#: A line that is longer wraps more than once in a usual terminal.
+#: Maximum length: a longer line wraps more than once in a usual terminal.
 LIMIT = 200
 
 
 def instances(
     model: sscc.Model, certs: sscc.Certificates, scene: sscc.Scene
 ) -> dict[str, list[object]]:
-    """Small, large and unusual objects of each class."""
+    """Returns small, large and unusual objects of each class."""
     vertices, faces, modes = torus(24, 12, 6)
     draws = samples(500, 6, 0.4)
-    # Draws that are far from free ones take long to be led back.
+    # Draws far from free configurations take long to resolve.
     near = 0.4 * draws
     assert certs.check_many(near).colliding.any()
     far = draws[certs.check_many(draws).colliding][0]
@@ -93,7 +93,7 @@ def test_each_class_has_a_representation_of_one_line(
             assert len(text) < LIMIT and text.isprintable(), text
 
 
-def test_representations_name_the_numbers_that_matter(model: sscc.Model, certs: sscc.Certificates) -> None:
+def test_representations_show_the_main_numbers(model: sscc.Model, certs: sscc.Certificates) -> None:
     assert repr(model) == "<sscc.Model: 576 triangles, 288 vertices, 6 modes>"
     assert repr(certs).startswith("<sscc.Certificates: root radius 0.")
     assert repr(certs.check(np.zeros(6))) == "<sscc.Answer: free, norm 0>"

@@ -18,7 +18,7 @@ def scene(tmp_path: Path) -> sscc.Scene:
     return sscc.Scene.load(character(tmp_path))
 
 
-def test_a_scene_tells_what_is_in_it(scene: sscc.Scene) -> None:
+def test_a_scene_lists_its_nodes_and_animations(scene: sscc.Scene) -> None:
     assert scene.nodes == [
         sscc.SceneNode(0, "body", "torso", 3, 1),
         sscc.SceneNode(2, "shirt", "cotton", 3, 1),
@@ -27,7 +27,7 @@ def test_a_scene_tells_what_is_in_it(scene: sscc.Scene) -> None:
 
 
 def test_nodes_are_checked_with_each_other(scene: sscc.Scene) -> None:
-    # As it is stored one is above the other.
+    # In the stored scene, one mesh is above the other.
     assert [(answer.node, answer.against_node) for answer in scene.check()] == [(0, None), (2, None)]
     found = scene.check("wave", times=[0, 0.6, 1])
     assert [(answer.node_name, answer.time) for answer in found[:6]] == [

@@ -26,8 +26,8 @@ def text(array: Any) -> str:
 
 V, F, _ = torus(16, 8, 1)
 
-#: A block with two pinned nodes in a body that moves, a ring, a bar of six cells, a shell whose inner node follows the
-#: others, a net whose vertices are bodies, and a rope.
+#: The scene has a block with two pinned nodes in a body that moves, a ring, a bar of six cells, a shell whose inner node
+#: follows the others, a net whose vertices are bodies, and a rope.
 SCENE = f"""
 <mujoco><worldbody>
   <body name="base" pos=".1 .2 .3" euler="10 20 30">
@@ -53,7 +53,7 @@ BLOCK, RING, BAR, SHELL = range(4)
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo writes its warnings to a file in the current folder."""
+    """Changes the current folder, to which MuJoCo writes its warnings."""
     monkeypatch.chdir(tmp_path)
 
 
@@ -67,7 +67,7 @@ def scene(request: pytest.FixtureRequest) -> Any:
 
 
 def states(scene: Any, flex: int, count: int, scale: float) -> Iterator[tuple[Any, F64]]:
-    """Random states of a scene, and the positions (V, 3) of a flex in each of them."""
+    """Returns random states of a scene, and the positions (V, 3) of a flex in each of them."""
     import mujoco
 
     data = mujoco.MjData(scene)
@@ -98,7 +98,7 @@ def test_a_thousand_states_of_a_flex(scene: Any, name: str, flex: int, rank: int
 
 
 @pytest.mark.parametrize("flex, rank", [(BAR, 3 * 7 * 3 * 5), (SHELL, 81)])
-def test_cells_and_shells(scene: Any, flex: int, rank: int) -> None:
+def test_flexes_with_cells_and_shells_have_the_positions_of_mujoco(scene: Any, flex: int, rank: int) -> None:
     model, q_of = sscc.from_mujoco(scene, flex)
     assert model.rank == rank
     for data, x in states(scene, flex, 10, 0.1):
@@ -142,10 +142,10 @@ FLEXES: list[tuple[Any, type[Exception], str]] = [
         "net",
         ValueError,
         "flex: 'net' is not interpolated, with dof 'trilinear' or 'quadratic'; "
-        "those that are: 'block', 'ring', 'bar', 'shell', 'rope'",
+        "interpolated flexes: 'block', 'ring', 'bar', 'shell', 'rope'",
     ),
     (4, ValueError, "flex: 'net' is not interpolated"),
-    ("rnig", ValueError, "flex: there is no 'rnig': the nearest name is 'ring'"),
+    ("rnig", ValueError, "flex: no flex has the name 'rnig': the nearest name is 'ring'"),
     (6, ValueError, "flex is 6: the model has 6, counted from 0"),
     (-1, ValueError, "flex is -1: the model has 6"),
     (None, TypeError, "flex is a NoneType: a name or a number was expected"),
@@ -163,7 +163,7 @@ def test_refused_models_and_states(scene: Any) -> None:
 
     refused(TypeError, "model is a str: a mujoco.MjModel was expected", lambda: sscc.from_mujoco(SCENE, "block"))
     empty = mujoco.MjModel.from_xml_string("<mujoco/>")
-    refused(ValueError, "flex: there is no 'block': the model has no flexes", lambda: sscc.from_mujoco(empty, "block"))
+    refused(ValueError, "flex: no flex has the name 'block': the model has no flexes", lambda: sscc.from_mujoco(empty, "block"))
     model, q_of = sscc.from_mujoco(scene, "block")
     data = mujoco.MjData(scene)
     mujoco.mj_kinematics(scene, data)
@@ -209,7 +209,7 @@ def test_refused_arguments_of_simplicits(changed: dict[str, Any], kind: type[Exc
     refused(kind, message, lambda: sscc.from_simplicits(**{"vertices": V, "faces": F, "weights": W, **changed}))
 
 
-#: A cube of six tetrahedra around a diagonal, each with another order of its corners.
+#: A cube of six tetrahedra around a diagonal. Each has another order of its corners.
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 TETRAHEDRA = np.array([[0, 4, 6, 7], [4, 0, 5, 7], [0, 1, 7, 5], [1, 3, 0, 7], [0, 2, 3, 7], [2, 6, 7, 0]])
 MODES = samples(24, 4, 0.3)
@@ -227,7 +227,7 @@ def test_sofa(tmp_path: Path) -> None:
     assert model.rank == 4 and np.array_equal(model.modes.reshape(24, 4), MODES)
     corners = CUBE[model.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    # Two triangles on each of the six sides.
+    # Each of the six sides has two triangles.
     assert np.unique(np.abs(normals), axis=0, return_counts=True)[1].tolist() == [4, 4, 4]
     assert (np.linalg.norm(normals, axis=1) == 1).all()
     for q in samples(20, 4, 1):

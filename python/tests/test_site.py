@@ -1,4 +1,4 @@
-"""The checks of the site find what they are for, and its tables are those of the records."""
+"""The checks of the site find each kind of problem, and its tables are those of the records."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ CHARACTERS = ("Fox", "CesiumMan")
 
 
 def arm(bones: int) -> tuple[F64, NDArray[np.int64], F64]:
-    """A torus, and smooth weights of bones around it."""
+    """Returns a torus, and smooth weights of bones around it."""
     vertices, faces, _ = torus(40, 8, 1)
     angle = np.arctan2(vertices[:, 1], vertices[:, 0])[:, None]
     near = np.cos(angle - 2 * np.pi * np.arange(bones) / bones)
@@ -32,21 +32,21 @@ def arm(bones: int) -> tuple[F64, NDArray[np.int64], F64]:
 
 
 def skin(vertices: F64, weights: F64, matrices: F64) -> F64:
-    """Linear blend skinning, vertex by vertex."""
+    """Computes linear blend skinning, vertex by vertex."""
     moved = np.einsum("bij,vj->vbi", matrices[:, :3], np.concatenate([vertices, np.ones((len(vertices), 1))], axis=1))
     found: F64 = np.einsum("vb,vbi->vi", weights, moved)
     return found
 
 
 def poses(count: int, bones: int, scale: float) -> F64:
-    """Random affine matrices near the identity."""
+    """Returns random affine matrices near the identity."""
     random = np.random.default_rng(3)
     matrices = np.tile(np.eye(4), (count, bones, 1, 1))
     matrices[:, :, :3] += random.normal(size=(count, bones, 3, 4)) * scale
     return matrices
 
 
-def test_the_order_of_q() -> None:
+def test_q_has_the_documented_order() -> None:
     """q[12 b + 4 i + j] is entry (i, j) of the matrix of bone b minus the identity."""
     x = np.array([[2.0, 3.0, 5.0]])
     modes = sscc.modes.skinning(x, [[0.25, 0.75]])
@@ -153,14 +153,14 @@ def character(folder: Path, name: str) -> Character:
 
 
 def records(folder: Path, name: str) -> list[dict[str, Any]]:
-    """Animations with their answers."""
+    """Returns animations with their answers."""
     found: list[dict[str, Any]] = json.loads((folder / f"{name}.answers.json").read_text())
     return found
 
 
 @pytest.mark.parametrize("name", CHARACTERS)
 def test_characters_have_exactly_the_known_pairs(name: str, models: Path) -> None:
-    """Positions of every kept frame by skinning bone by bone, in a detector whose vertices are welded by classes."""
+    """Positions of every stored frame come from skinning bone by bone. The detector welds vertices by classes."""
     played = character(models / "skinned", name)
     vertices, faces, _ = played.mesh
     detector = sscc.Detector(faces, vertices, weld=played.classes)
@@ -174,7 +174,7 @@ def test_characters_have_exactly_the_known_pairs(name: str, models: Path) -> Non
 
 @pytest.mark.parametrize("name", CHARACTERS)
 def test_skinning_modes_have_exactly_the_known_pairs(name: str, models: Path) -> None:
-    """Positions of every kept frame as `vertices + U q`, in double precision."""
+    """Positions of every stored frame are `vertices + U q`, in double precision."""
     played = character(models / "skinned", name)
     vertices, faces, weights = played.mesh
     model = sscc.Model(vertices, faces, sscc.modes.skinning(vertices, weights))
@@ -188,7 +188,7 @@ def test_skinning_modes_have_exactly_the_known_pairs(name: str, models: Path) ->
 
 
 def test_certificates_of_a_character_are_exact(models: Path) -> None:
-    """Fox: few poses are proven free by the root, but all answers are exact."""
+    """For the model Fox, the root proves few poses free, but all answers are exact."""
     played = character(models / "skinned", "Fox")
     vertices, faces, weights = played.mesh
     model = sscc.Model(vertices, faces, sscc.modes.skinning(vertices, weights))

@@ -1,4 +1,4 @@
-"""Sweeps of single weights."""
+"""Sweeps of the weights of single modes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_sweep_ends_at_the_first_contact(certs: sscc.Certificates) -> None:
             assert np.array_equal(certs.check(weights[0]).pairs, sweep.pairs) and len(sweep.pairs)
 
 
-def test_starts_and_ranges() -> None:
+def test_sweeps_use_the_given_starts_and_ranges() -> None:
     certs = sscc.Model(*two_triangles()).certify()
     (hit,) = [s for s in certs.sweep([[-4, 4]], q=[0.5]) if s.first_hit is not None]
     assert hit.start == 0.5 and hit.first_hit == -1.0 and hit.pairs.tolist() == [[0, 1]]

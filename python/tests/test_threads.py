@@ -1,4 +1,4 @@
-"""Certificates answer any number of threads at once."""
+"""Certificates answer queries of any number of threads at once."""
 
 from __future__ import annotations
 

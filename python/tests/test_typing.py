@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 
-#: stubtest does not look for it.
+#: stubtest does not find this configuration by itself.
 CONFIG = ("--mypy-config-file", "pyproject.toml")
 
 
@@ -22,5 +22,5 @@ def test_package_and_tests_are_typed_strictly() -> None:
 
 
 def test_stubs_agree_with_the_module() -> None:
-    # Private functions, such as those that unpickle, need no stub.
+    # Private functions, such as functions for unpickling, need no stub.
     run("mypy.stubtest", "sscc", "--ignore-disjoint-bases", "--ignore-missing-stub", *CONFIG)

@@ -50,9 +50,9 @@ def test_a_mesh_that_stands_has_one_frame_and_may_be_named(tmp_path: Path) -> No
     still = f'def Mesh "{{}}" {{{{\nint[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\n{points}\n}}}}\n'
     path = write(tmp_path, "#usda 1.0\n" + still.format("A") + still.format("B"))
     assert sscc.from_usd(path, "/B").frames.shape == (1, 3, 3)
-    with pytest.raises(ValueError, match=r"a\.usda: it has 2 meshes: name one by prim: '/A', '/B'"):
+    with pytest.raises(ValueError, match=r"a\.usda: the file has 2 meshes: choose one by prim: '/A', '/B'"):
         sscc.from_usd(path)
-    with pytest.raises(ValueError, match="there is no mesh '/C'; there are '/A', '/B'"):
+    with pytest.raises(ValueError, match="no mesh has the path '/C'; the paths are '/A', '/B'"):
         sscc.from_usd(path, "/C")
 
 
@@ -61,13 +61,13 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
         sscc.from_usd(tmp_path / "none.usda")
     with pytest.raises(ValueError, match=r"bad\.usda: USD cannot read it"):
         sscc.from_usd(write(tmp_path, "#usda 1.0\ndef Mesh {", "bad.usda"))
-    with pytest.raises(ValueError, match=r"empty\.usda: it has no prim of type Mesh"):
+    with pytest.raises(ValueError, match=r"empty\.usda: the file has no prim of type Mesh"):
         sscc.from_usd(write(tmp_path, "#usda 1.0\n", "empty.usda"))
     for bad, message in [
         (CLOTH.replace("[4, 3]", "[4, 4]"), "more corners than are given"),
         (CLOTH.replace("[4, 3]", "[5, 2]"), "needs at least 3 corners"),
         (CLOTH.replace("4, 5, 6]\n", "4, 5, 7]\n"), "names vertex 7"),
-        (CLOTH.replace("(2,1,-0.5), (1,1,0.5)", "(2,1,-0.5)"), "it has 7 points at first, 6 at time code 5"),
+        (CLOTH.replace("(2,1,-0.5), (1,1,0.5)", "(2,1,-0.5)"), "the mesh has 7 points at first, 6 at time code 5"),
         (CLOTH.replace("int[] faceVertexCounts = [4, 3]", "int[] faceVertexCounts.timeSamples = {0: [4, 3], 1: [3, 4]}"), "change over time"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -75,7 +75,7 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
 
 
 def test_concave_polygons_have_their_own_surface(tmp_path: Path) -> None:
-    # An arrow whose fan from the first corner is not its surface.
+    # The surface of the arrow differs from a fan of triangles at its first corner.
     points = "(2,0,0), (0,1,0), (1,0,0), (0,-1,0)"
     arrow = f'#usda 1.0\ndef Mesh "A" {{\nint[] faceVertexCounts = [4]\nint[] faceVertexIndices = [1, 2, 3, 0]\npoint3f[] points = [{points}]\n}}\n'
     mesh = sscc.from_usd(write(tmp_path, arrow))
@@ -122,7 +122,7 @@ def SkelRoot "Root" {
 """
     mesh = sscc.from_usd(write(tmp_path, skinned))
     assert mesh.times.tolist() == [0, 1]
-    # A skin that cannot be evaluated is no mesh at rest.
+    # A mesh whose skin cannot be evaluated is refused, instead of being shown at rest.
     for bad in [
         skinned.replace("        uniform matrix4d[] bindTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))]\n", ""),
         skinned.replace("jointIndices = [0, 0, 0]", "jointIndices = [0, 0, 7]"),
@@ -141,7 +141,7 @@ def test_instances_are_meshes(tmp_path: Path) -> None:
         '{\ndouble3 xformOp:translate = (0, 0, 5)\nuniform token[] xformOpOrder = ["xformOp:translate"]\n}'
     )
     path = write(tmp_path, f'#usda 1.0\ndef Xform "P" {{\n{mesh}\n}}\n{instance}\n')
-    with pytest.raises(ValueError, match="it has 2 meshes: name one by prim: '/P/m', '/I/m'"):
+    with pytest.raises(ValueError, match="the file has 2 meshes: choose one by prim: '/P/m', '/I/m'"):
         sscc.from_usd(path)
     assert sscc.from_usd(path, "/I/m").frames[0, :, 2].tolist() == [5, 5, 5]
     instancer = f'#usda 1.0\n{mesh}\ndef PointInstancer "many" {{\n}}\n'
