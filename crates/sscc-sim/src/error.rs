@@ -1,4 +1,4 @@
-//! Errors of models, scenes and simulations: one line each, which names the file, the place and the cause.
+//! Errors of models, scenes and simulations. Each is one line, which names the file, the place and the cause.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub enum SimError {
     Refused {
         /// The file, the key or the part at fault.
         place: Message,
-        /// The error, and the way out.
+        /// The error, and a remedy.
         cause: Message,
     },
     /// Another error, with its place.
@@ -78,16 +78,16 @@ pub enum SimError {
         body: usize,
         /// Its energy (J).
         energy: f64,
-        /// The error of the world, after a colon; empty where the energy alone shows it.
+        /// The error of the world, after a colon; empty if the energy alone shows it.
         cause: String,
     },
-    /// A simulation was cancelled; its states until then are kept.
+    /// A simulation was cancelled. Its states up to the end are kept.
     #[error("interrupted after {steps} steps; the same command continues from there")]
     Interrupted {
         /// States in the folder.
         steps: usize,
     },
-    /// A simulation ended early; its states until then are kept.
+    /// A simulation ended early. Its states up to the end are kept.
     #[error("{failure}; the states until then are in {}{}", folder.display(), in_parentheses(unwritten))]
     EndedEarly {
         /// Cause of the end.
@@ -139,7 +139,7 @@ impl SimError {
         }
     }
 
-    /// Returns the error of a file if that is the cause.
+    /// Returns the error of a file if it is the cause.
     pub fn file(&self) -> Option<&IoError> {
         match self {
             Self::File(error) => Some(error),

@@ -1,9 +1,9 @@
 //! Scenes as a library: models from files and recipes, simulations that continue from checkpoints, and their files;
-//! collisions of meshes, frames and animations from files ([`detect`]); certificates by options in part
+//! collisions of meshes, frames and animations from files ([`detect`]); certificates with options of which some may be absent
 //! ([`CertificateRequest`]).
 //!
-//! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
-//! printed. One simulation:
+//! Long work takes a [`sscc::Progress`], or a [`Watch`] if it has several stages. Both can cancel it. The crate prints
+//! nothing. One simulation:
 //!
 //! ```no_run
 //! use sscc_sim::{Outputs, Request, simulate};
