@@ -22,7 +22,7 @@ const STEP: f64 = 1.0 / 240.0;
 const DAMPING: f64 = 0.01;
 
 /// The polynomial mode that moves along z by the square of z: it squeezes one end and stretches the other.
-/// (The linear modes alone never make a shape touch itself before they have flattened it.)
+/// (The linear modes alone flatten a shape before it can touch itself.)
 const SQUEEZE: usize = 14;
 
 fn main() -> ExitCode {

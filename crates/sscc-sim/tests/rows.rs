@@ -79,7 +79,7 @@ fn in_blocks(rows: &[Row]) -> usize {
 fn rows_in_blocks_are_those_of_single_queries() {
     let (model, trajectory) = (ring(), trajectory());
     let scope = || Scope::of(&model);
-    // By brute force a query takes longer than starting threads.
+    // A query by brute force takes longer than starting threads.
     let query = || Query::without_certificates(&model, scope(), Method::BruteForce).unwrap();
     let requests = |limit, threads| RowQueries {
         model: &model,

@@ -1,8 +1,8 @@
 //! Contact between two triangles: its geometry.
 //!
 //! A contact is rigid or soft. Triangles that do not intersect make rigid contacts: a swept query finds them, and each step
-//! computes nearest points and normal anew. Triangles that intersect make soft contacts, springs whose material points and
-//! normal stay those of the beginning.
+//! computes nearest points and normal again. Triangles that intersect make soft contacts: springs whose material points and
+//! normal remain those of the beginning.
 
 use glam::{DMat3, DVec3};
 use sscc::Pair;

@@ -28,7 +28,7 @@ pub struct SoundBank {
 
 impl SoundBank {
     /// Creates a bank from mass-orthonormal modes of a surface and their eigenvalues (r numbers, 1/s^2), at `rate`
-    /// samples per second. Modes above half that rate are inaudible and left out. Needs 12 bytes per vertex and mode.
+    /// samples per second. Modes above half that rate are inaudible and omitted. Needs 12 bytes per vertex and mode.
     ///
     /// # Errors
     /// When modes, mesh and eigenvalues have different sizes, or the rate or the damping is outside its range.
@@ -177,7 +177,7 @@ mod tests {
             // Amplitudes decay as e^(-5 t).
             let decay = power(hertz, late) / power(hertz, early);
             assert!((decay / libm::exp(-4.5) - 1.0).abs() < 0.05, "{decay}");
-            // Excited alone, a mode has its spectral peak at its frequency.
+            // If only one mode is excited, its spectral peak is at its frequency.
             let mut bank = bank(Damping::default());
             bank.v[mode] = 1.0;
             let alone: Vec<f64> = (0..4410).map(|_| bank.sample()).collect();

@@ -146,7 +146,7 @@ impl MeshSource {
         of_skin.map_or_else(|| WeldClasses::at(self.own_positions()), WeldClasses::from)
     }
 
-    /// Assigns the groups that hold between two meshes to both, if there are rules.
+    /// Assigns the groups that hold between two meshes to both, if `rules` has any.
     pub fn set_groups(rules: &GroupRules, meshes: [&mut Self; 2]) -> Result<()> {
         let [a, b] = meshes;
         if rules.is_empty() && rules.by.is_none() {

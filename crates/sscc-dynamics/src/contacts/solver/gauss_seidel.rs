@@ -219,7 +219,7 @@ mod tests {
         }
     }
 
-    /// The same computation without rows: the oracle.
+    /// Oracle: the same computation without rows.
     struct Plain<'c> {
         contacts: &'c Contacts,
         masses: Vec<RigidVelocity>,
@@ -312,7 +312,7 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) -> Vec<DVec3> {
             for (n, impulse) in self.impulses.iter().enumerate() {
                 let along = self.rows.axes(n).map(|axis| axis.dot(*impulse));
-                // In two parts, of which the first is along the normal.
+                // The impulse is applied in two parts. The first is along the normal.
                 self.rows.push_along_normal(simd, n, 0.5 * along[0]);
                 self.rows.push_along_axes(simd, n, [0.5 * along[0], along[1], along[2]]);
             }
