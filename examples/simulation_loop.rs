@@ -83,7 +83,7 @@ impl Oscillators {
         Self { time: 0.0, q: vec![0.0; scales.len()], velocities: vec![0.0; scales.len()], scales }
     }
 
-    /// Angular frequency of a mode (per second).
+    /// Returns the angular frequency of a mode (per second).
     fn frequency(k: usize) -> f64 {
         TAU * (1.0 + 0.2 * k as f64)
     }

@@ -125,7 +125,7 @@ impl SoundBank {
     }
 }
 
-/// Unit normals of vertices: area-weighted means over their triangles.
+/// Returns the unit normals of vertices: area-weighted means over their triangles.
 fn vertex_normals(mesh: &TriMesh) -> Vec<DVec3> {
     let p = mesh.rest_positions();
     let mut normals = vec![DVec3::ZERO; p.len()];
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use sscc_modes::shapes;
 
-    /// A spring with three modes; the frequency of the last one is above half the sample rate.
+    /// Returns a spring with three modes; the frequency of the last one is above half the sample rate.
     fn bank(damping: Damping) -> SoundBank {
         let mesh = shapes::spring_of(60, 6);
         let p = mesh.rest_positions().to_vec();

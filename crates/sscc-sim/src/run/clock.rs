@@ -18,9 +18,9 @@ const MIN_BLOCK: f64 = 1e-4;
 
 /// Wall clock and processor clock, in seconds. Tests have their own implementation.
 pub trait Clocks {
-    /// Wall-clock time (s).
+    /// Returns the wall-clock time (s).
     fn wall(&self) -> f64;
-    /// Processor time of all threads that work on a step (s).
+    /// Returns the processor time of all threads that work on a step (s).
     fn processor(&self) -> f64;
     /// Whether one thread does all the work. The parts then share processor time in proportion to wall-clock time.
     fn is_one_thread(&self) -> bool;

@@ -29,12 +29,12 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    /// Processor time of detecting self-collisions (s).
+    /// Returns the processor time of detecting self-collisions (s).
     pub fn self_seconds(&self) -> f64 {
         self.seconds[0]
     }
 
-    /// Processor time of the whole step (s).
+    /// Returns the processor time of the whole step (s).
     pub fn total_seconds(&self) -> f64 {
         self.seconds.iter().sum()
     }

@@ -199,7 +199,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Size of the positions and faces of a body in a report (bytes).
+/// Returns the size of the positions and faces of a body in a report (bytes).
 fn planned_bytes(mesh: &TriMesh, frames: usize) -> u64 {
     let frame = 12 * mesh.rest_positions().len() as u64;
     // The first frame is stored twice.

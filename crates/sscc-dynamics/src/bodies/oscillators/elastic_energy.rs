@@ -323,7 +323,7 @@ mod tests {
     use super::*;
     use sscc_solid::Stiffness;
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of a fixed sequence of pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
