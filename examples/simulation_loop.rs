@@ -22,7 +22,7 @@ const STEP: f64 = 1.0 / 240.0;
 const DAMPING: f64 = 0.01;
 
 /// The polynomial mode that moves along z by the square of z: it squeezes one end and stretches the other.
-/// (The linear modes alone never make a shape touch itself before they have flattened it.)
+/// (The linear modes alone flatten a shape before it can touch itself.)
 const SQUEEZE: usize = 14;
 
 fn main() -> ExitCode {
@@ -83,7 +83,7 @@ impl Oscillators {
         Self { time: 0.0, q: vec![0.0; scales.len()], velocities: vec![0.0; scales.len()], scales }
     }
 
-    /// Angular frequency of a mode (per second).
+    /// Returns the angular frequency of a mode (per second).
     fn frequency(k: usize) -> f64 {
         TAU * (1.0 + 0.2 * k as f64)
     }

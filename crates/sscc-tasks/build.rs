@@ -1,4 +1,4 @@
-//! Passes the compiler's version to the crate, which names it in the description of the machine.
+//! Passes the compiler's version to the crate, which states it in the description of the machine.
 
 use std::process::Command;
 

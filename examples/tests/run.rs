@@ -12,7 +12,7 @@ use sscc_io::read_mesh;
 use sscc_testing::models;
 use tempfile::TempDir;
 
-/// Returns the path of an example. Cargo builds it before all tests, but not for `--test run` alone.
+/// Returns the path of an example. Cargo builds it before all tests, but not with `--test run`.
 fn program(example: &str) -> PathBuf {
     let tests = env::current_exe().unwrap(); // PROFILE/deps/run-...
     let profile = tests.parent().unwrap().parent().unwrap();

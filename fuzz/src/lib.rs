@@ -9,7 +9,7 @@ use cpu_time::ThreadTime;
 use sscc::TriMesh;
 use sscc::glam::DVec3;
 
-/// Memory that an input may take: so much, and so many times its size.
+/// Maximum memory of an input: a constant (bytes) and a factor on the size of the input.
 const MEMORY: (u64, u64) = (8 << 20, 2048);
 
 /// Maximum processor time of an input of at most [`MAX_BYTES`]. Coverage and checks make code several times slower.

@@ -165,7 +165,7 @@ pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answ
     Ok(sscc::Answer { pairs: pairs_of_bytes(bytes)?, statistics })
 }
 
-/// Constructor for pickled answers.
+/// Unpickles answers.
 #[pyfunction]
 pub fn _answer(answer: PickledAnswer<'_>) -> PyResult<Answer> {
     Ok(Answer { core: unpickled(&answer)?, pairs_array: CachedArray::new() })

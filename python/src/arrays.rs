@@ -107,7 +107,7 @@ fn numbers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAn
         let message = format!("{name}: an array of numbers was expected: {}", error.value(py));
         if error.is_instance_of::<PyValueError>(py) { value(message) } else { kind(message) }
     };
-    // NumPy takes an object that has DLPack alone for a scalar.
+    // NumPy treats an object that has only DLPack as a scalar.
     let convert =
         if any.hasattr("__dlpack__")? && !any.hasattr("__array__")? { "from_dlpack" } else { "asarray" };
     let array = numpy.call_method1(convert, (any,)).map_err(refused)?;

@@ -151,7 +151,7 @@ fn fixed(text: &str) -> PyFixedUnicode<6> {
     entry.into()
 }
 
-/// Constructor for pickled batches.
+/// Unpickles batches.
 #[pyfunction]
 pub fn _batch(answers: Vec<PickledAnswer<'_>>) -> PyResult<Batch> {
     Ok(Batch::of(answers.iter().map(unpickled).collect::<PyResult<_>>()?))

@@ -335,7 +335,7 @@ impl Certificates {
     }
 }
 
-/// Constructor for pickled certificates.
+/// Unpickles certificates.
 #[pyfunction]
 pub fn _certificates(bytes: &[u8], model: &Bound<'_, Model>) -> PyResult<Certificates> {
     let name = "pickled certificates";

@@ -401,7 +401,7 @@ impl Detector {
     }
 }
 
-/// Constructor for pickled detectors.
+/// Unpickles detectors.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _detector(

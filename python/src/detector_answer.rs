@@ -300,13 +300,13 @@ fn unpickled((bytes, cost): &PickledFrame<'_>) -> PyResult<Answer> {
     Ok(Answer { pairs: pairs_of_bytes(bytes)?, statistics })
 }
 
-/// Constructor for pickled answers.
+/// Unpickles answers.
 #[pyfunction]
 pub fn _detector_answer(answer: PickledAnswer<'_>) -> PyResult<DetectorAnswer> {
     Ok(DetectorAnswer::of(FoundFrame::unpickled(&answer)?))
 }
 
-/// Constructor for pickled impacts.
+/// Unpickles impacts.
 #[pyfunction]
 pub fn _detector_impacts(frame: PickledFrame<'_>, times: Vec<f64>) -> PyResult<DetectorImpacts> {
     let frame = unpickled(&frame)?;

@@ -134,7 +134,7 @@ impl DetectorBatch {
     }
 }
 
-/// Constructor for pickled batches.
+/// Unpickles batches.
 #[pyfunction]
 pub fn _detector_batch(frames: Vec<PickledAnswer<'_>>) -> PyResult<DetectorBatch> {
     Ok(DetectorBatch::of(frames.iter().map(FoundFrame::unpickled).collect::<PyResult<_>>()?))

@@ -115,7 +115,7 @@ impl Impacts {
     }
 }
 
-/// Constructor for pickled impacts.
+/// Unpickles impacts.
 #[pyfunction]
 pub fn _impacts(answer: PickledAnswer<'_>, times: Vec<f64>) -> PyResult<Impacts> {
     let answer = unpickled(&answer)?;

@@ -255,7 +255,7 @@ impl Model {
     }
 }
 
-/// Constructor for pickled models.
+/// Unpickles models.
 #[pyfunction]
 pub fn _model(
     bytes: &[u8],

@@ -26,7 +26,7 @@ pub fn _triangulated<'py>(
                 found.shape()
             )));
         }
-        // A negative number is not valid. As an unsigned number it is large, so that it is refused.
+        // A negative number is not valid. Converted to an unsigned number, it is large and is refused.
         Ok(found.as_slice()?.iter().map(|number| *number as u64).collect())
     };
     let (counts, corners) = (numbers(counts, "counts")?, numbers(corners, "corners")?);

@@ -24,7 +24,7 @@ pub fn write_bytes(folder: &Path) -> Result<(), String> {
     compare(&compute(Some(folder))?)
 }
 
-/// Runs the example, and returns what it prints.
+/// Runs the example, and returns its output.
 fn compute(folder: Option<&Path>) -> Result<String, String> {
     let mut program = cargo();
     program

@@ -45,7 +45,7 @@ impl KeptList {
         };
         let (listed, found) = (flat(&self.items), flat(found));
         let without = |all: &[String], others: &[String], sign: &str| -> Vec<String> {
-            // An item may be there twice: a method and a function of the same name.
+            // A name may occur twice: a method and a function may have the same name.
             let count = |names: &[String], name: &String| names.iter().filter(|other| *other == name).count();
             let more = all.iter().filter(|name| count(all, name) > count(others, name));
             more.map(|name| format!("{sign} {name}")).collect()

@@ -1,7 +1,7 @@
 //! `cargo xtask package`: packs the crates that are published, and checks the packages.
 //!
 //! Each package has a description, a licence with its text, a readme, keywords, categories and the oldest version of Rust,
-//! and is at most [`MAX_BYTES`] large. With `--verify` cargo also compiles each crate from its package alone, which takes
+//! and is at most [`MAX_BYTES`] large. With `--verify` cargo also compiles each crate from only its package, which takes
 //! minutes. Without a `repository` in the workspace's `Cargo.toml` cargo warns: the project has no public address yet.
 //!
 //! The packages are in `target/package`.

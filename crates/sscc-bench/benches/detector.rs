@@ -118,7 +118,7 @@ fn row(name: &str, mesh: TriMesh) -> Result<()> {
     Ok(())
 }
 
-/// Twenty smooth modes: waves along random directions.
+/// Returns twenty smooth modes: waves along random directions.
 fn smooth_modes(mesh: &TriMesh) -> Result<Modes> {
     let random = &mut Random(3);
     let size = mesh.rest_positions().iter().fold(0.0_f64, |size, x| size.max(x.abs().max_element()));

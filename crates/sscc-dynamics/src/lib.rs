@@ -58,10 +58,10 @@
 //!
 //! # Limitations
 //!
-//! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia.
-//! Bodies that no correction keeps apart, or whose corrected end has more elastic energy than there is, move only a share of
-//! their way in a step, which conserves no angular momentum ([`World::shortened_bodies`]). Bodies that begin in
-//! intersection with themselves or others pass through until they are free.
+//! The motion of the frame exerts no force on q (no centrifugal forces), and deformation does not change the inertia. Bodies
+//! that no correction keeps apart, or whose corrected end has more elastic energy than is available, move only a part of
+//! their motion in a step, which conserves no angular momentum ([`World::shortened_bodies`]). Bodies that intersect
+//! themselves or others at the start pass through until they are free.
 //!
 //! Units are those of the model: if the material is in SI units, times are seconds. The coordinates q are
 //! mass-orthonormal, so generalised forces are accelerations of q.

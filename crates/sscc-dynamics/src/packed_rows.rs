@@ -1,7 +1,7 @@
 //! Products of rows of a matrix with a vector, in four lanes at a time.
 //!
-//! They are compiled for AVX2 and for the baseline, and the processor decides which one runs. Both have the same partial
-//! sums, and products are not fused with sums, so results do not depend on the instruction set.
+//! The products are compiled for AVX2 and for the baseline, and the processor decides which version runs. Both have the same
+//! partial sums, and products are not fused with sums, so results do not depend on the instruction set.
 
 use pulp::{Scalar256b, Simd, WithSimd};
 

@@ -1,8 +1,9 @@
 //! Runs scenes of random stiffness, damping, steps, orientation, speed and shape, and reports for each whether it ran to its
 //! end, and its largest energy over the first one.
 //!
-//! Two bodies fall beside two others, which come towards them. Scenes that `sscc simulate` refuses, because half a period of
-//! the first mode is shorter than a step, are drawn again. The models are those of scenes: with `SSCC_MODELS` the real ones.
+//! Two bodies fall beside two others, which move towards them. Scenes that `sscc simulate` refuses, because half a period of
+//! the first mode is shorter than a step, are drawn again. The models are those of scenes; with `SSCC_MODELS` they are the
+//! real ones.
 //!
 //! ```sh
 //! cargo run --release -p sscc-sim --example robustness -- 40 1

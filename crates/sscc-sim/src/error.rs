@@ -53,16 +53,16 @@ pub enum SimError {
         body: usize,
         /// Its energy (J).
         energy: f64,
-        /// The error of the world, after a colon; empty where the energy alone shows it.
+        /// The error of the world, after a colon; empty if the energy alone shows it.
         cause: String,
     },
-    /// A simulation was cancelled; its states until then are kept.
+    /// A simulation was cancelled. Its states up to the end are kept.
     #[error("interrupted after {steps} steps; the same command continues from there")]
     Interrupted {
         /// States in the folder.
         steps: usize,
     },
-    /// A simulation ended early; its states until then are kept.
+    /// A simulation ended early. Its states up to the end are kept.
     #[error("{failure}; the states until then are in {}{}", folder.display(), in_parentheses(unwritten))]
     EndedEarly {
         /// Cause of the end.

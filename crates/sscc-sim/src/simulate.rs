@@ -1,4 +1,4 @@
-//! Runs a simulation: from the name of its scene to its states.
+//! Runs a simulation, from the name of its scene to its states.
 
 use std::path::{Path, PathBuf};
 
@@ -14,17 +14,17 @@ use crate::scenes::{Scene, read_scene};
 pub struct Request {
     /// A scene file, or the name of a scene that comes with the program.
     pub scene: PathBuf,
-    /// The folder to write to; none: the scene's name.
+    /// The folder to write to. None means the scene's name.
     pub out: Option<PathBuf>,
-    /// Number of steps from the beginning; none: that of the scene.
+    /// Number of steps from the beginning. None means the number of the scene.
     pub steps: Option<usize>,
     /// Whether to begin again, even if the folder has a checkpoint.
     pub restart: bool,
-    /// The folder of the real models; none: the one that the environment variable `SSCC_MODELS` names, if any.
+    /// The folder of the real models. None means the folder in the environment variable `SSCC_MODELS`, if it is set.
     pub models: Option<PathBuf>,
-    /// Where models and certificates are kept from one run to the next; none: the system's cache folder.
+    /// The folder that keeps models and certificates between runs. None means the system's cache folder.
     pub cache: Option<PathBuf>,
-    /// Number of threads; none: all cores.
+    /// Number of threads. None means all cores.
     pub threads: Option<usize>,
 }
 

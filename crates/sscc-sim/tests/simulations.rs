@@ -34,7 +34,7 @@ velocity = [0, 0, -2]
 modes = 8
 "#;
 
-/// A torus of 24 x 12 vertices.
+/// Returns a torus of 24 x 12 vertices.
 fn ring() -> String {
     let (around, across) = (24, 12);
     let mut text = String::new();
@@ -119,7 +119,7 @@ impl Watch for Watched {
     }
 }
 
-/// The files of a run that do not depend on time.
+/// Returns the files of a run that do not depend on time.
 fn written(run: FinishedRun) -> Result<Vec<Vec<u8>>, SimError> {
     let outputs = Outputs::write(&run);
     let is_motion = |name: &str| ["trajectories.npz", "animation.glb", "sound_float.wav"].contains(&name);

@@ -8,12 +8,12 @@ use crate::error::{At, Result};
 use crate::text::quoted;
 use crate::{TaskError, nearest};
 
-/// Returns the q that a setting states: r numbers with commas; `NAME=WEIGHT,NAME=WEIGHT`, where modes that are not named are 0;
-/// or a file of r numbers. A mode can also be named by its number from 0.
+/// Returns the q that a setting states: r numbers with commas; `NAME=WEIGHT,NAME=WEIGHT`, where the other modes are 0; or a
+/// file of r numbers. A mode can also be named by its number from 0.
 ///
 /// # Errors
-/// When an entry is no number, a name is unknown (the error has the nearest one), ambiguous or repeated, the file cannot be
-/// read, or q is not a configuration of the model.
+/// When an entry is not a number, a name is unknown (the error states the nearest name), ambiguous or repeated, the file
+/// cannot be read, or q is not a configuration of the model.
 pub fn read_configuration(setting: Setting, typed: &str, loaded: &LoadedModel) -> Result<Vec<f64>> {
     let mut place = Message::from(setting);
     let q = match typed.split(',').map(number).collect() {
@@ -98,7 +98,7 @@ mod tests {
         assert_eq!(read(" smile = -2e-1 ,0=1").unwrap(), [1.0, -0.2, 0.0]);
         assert_eq!(read("x=1=3").unwrap(), [0.0, 0.0, 3.0]);
         assert_eq!(read("1, 2,-3").unwrap(), [1.0, 2.0, -3.0]);
-        // A file, also where its name has the characters of names and lists.
+        // The text is a file, even if its name has the characters of names and lists.
         for name in ["q.txt", "smile=1,2.txt"] {
             let file = folder.path().join(name);
             fs::write(&file, "3 2\n1").unwrap();

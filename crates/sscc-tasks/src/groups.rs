@@ -1,4 +1,4 @@
-//! Which pairs of groups of triangles count, by the names of groups in files.
+//! Rules for the pairs of groups of triangles that count, by the names of groups in files.
 
 use std::path::{Path, PathBuf};
 
@@ -12,15 +12,15 @@ use crate::TaskError;
 use crate::error::{At, Result};
 use crate::named_meshes::{NamedMesh, is_in_one_mesh, names_of_pairs, tables};
 
-/// Pairs of groups of triangles that do not count, or that alone count. By default all count.
+/// Pairs of groups of triangles that do not count, or that count exclusively. By default all pairs count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GroupRules {
     /// Pairs `A,B` of names of groups whose triangles do not count (`--ignore-groups`).
     pub ignored: Vec<String>,
-    /// Pairs `A,B` of names of groups that alone count (`--only-groups`); not together with `ignored`.
+    /// Pairs `A,B` of names of groups (`--only-groups`): no other pairs count. Not allowed together with `ignored`.
     pub only: Vec<String>,
-    /// The groups (`--group-by`): `group`, `object` (or `node`), `mesh`, `material`, or a file of numbers. None: `group`; between
-    /// the meshes of a scene, or two meshes, any of these names of glTF files.
+    /// The groups (`--group-by`): `group`, `object` (or `node`), `mesh`, `material`, or a file of numbers. None means
+    /// `group`; between the meshes of a scene, or two meshes, any of these names of glTF files.
     pub by: Option<PathBuf>,
 }
 
@@ -44,10 +44,10 @@ impl GroupRules {
         self.ignored.is_empty() && self.only.is_empty()
     }
 
-    /// Returns the groups of a model with modes; none if all pairs count. `mesh_name` is that of a glTF mesh.
+    /// Returns the groups of a model with modes; None if all pairs count. `mesh_name` is the name of a glTF mesh.
     ///
     /// # Errors
-    /// When the groups cannot be read, there is none of a name, or they are not as many as the triangles.
+    /// When the groups cannot be read, no group has a given name, or their number differs from that of the triangles.
     pub fn of_model(
         &self,
         path: &Path,
@@ -57,7 +57,7 @@ impl GroupRules {
         self.of_file(path, "the model", triangles, |by| read_groups(path, mesh_name, by))
     }
 
-    /// As [`GroupRules::of_model`], of a mesh without modes.
+    /// Returns the groups of a mesh without modes, like [`GroupRules::of_model`].
     pub(crate) fn of_mesh(
         &self,
         path: &Path,
@@ -67,8 +67,8 @@ impl GroupRules {
         self.of_file(path, "the mesh", triangles, |by| read_base_groups(path, mesh_name, by))
     }
 
-    /// As [`GroupRules::of_model`], of each of these nodes of a glTF file. A group need not be in all of them. If nodes are
-    /// compared, the groups also hold between them.
+    /// Returns the groups of each of these nodes of a glTF file, like [`GroupRules::of_model`]. A group need not be in all of
+    /// them. If nodes are compared, the groups also hold between them.
     pub(crate) fn of_nodes(
         &self,
         path: &Path,
@@ -86,14 +86,14 @@ impl GroupRules {
         Ok(self.tables(&meshes, are_compared)?.into_iter().map(Some).collect())
     }
 
-    /// The groups of a mesh and of another one, which also hold between them; none if all pairs count.
+    /// Returns the groups of a mesh and of another one, which also hold between them; None if all pairs count.
     pub(crate) fn of_two(&self, meshes: [MeshGroups<'_>; 2]) -> Result<Option<[TriangleGroups; 2]>> {
         let named = |mesh: &MeshGroups<'_>| self.named(mesh.path, "the mesh", mesh.triangles, mesh.read);
         let [Some(a), Some(b)] = [named(&meshes[0])?, named(&meshes[1])?] else { return Ok(None) };
         Ok(self.tables(&[a, b], true)?.try_into().ok())
     }
 
-    /// The names of the triangles of a mesh, of each kind that groups may have; none if all pairs count.
+    /// Returns the names of the triangles of a mesh, for each kind that groups may have; None if all pairs count.
     fn named(
         &self,
         path: &Path,
@@ -114,7 +114,7 @@ impl GroupRules {
         Ok(Some(NamedMesh { kinds }))
     }
 
-    /// The groups of one file. They keep their numbers, which certificates store.
+    /// Returns the groups of one file. They keep their numbers, which certificates store.
     fn of_file(
         &self,
         path: &Path,
@@ -137,7 +137,7 @@ impl GroupRules {
         Ok(Some(if self.only.is_empty() { table.ignoring(pairs) } else { table.only(pairs) }?))
     }
 
-    /// Returns the source of groups; none if all pairs count.
+    /// Returns the source of groups; None if all pairs count.
     fn source(&self) -> Result<Option<Source<'_>>> {
         if self.is_empty() {
             return match self.by {
@@ -167,7 +167,7 @@ impl GroupRules {
         Err(TaskError::refused(place, cause))
     }
 
-    /// The setting of the pairs, and their texts.
+    /// Returns the setting of the pairs, and their texts.
     fn typed(&self) -> (Setting, &[String]) {
         match self.only[..] {
             [] => (Setting::IgnoreGroups, &self.ignored),
@@ -175,7 +175,7 @@ impl GroupRules {
         }
     }
 
-    /// Returns the groups of each mesh. Each name must be one of at least one of them.
+    /// Returns the groups of each mesh. Each given name must be the name of a group of at least one mesh.
     fn tables(&self, meshes: &[NamedMesh], are_compared: bool) -> Result<Vec<TriangleGroups>> {
         let (setting, typed) = self.typed();
         if let (Some(Source::Numbers(file)), true) = (self.source()?, are_compared && meshes.len() > 1) {
@@ -193,10 +193,10 @@ impl GroupRules {
     }
 }
 
-/// The kinds of names in a scene, beside primitives.
+/// The kinds of names in a scene, except primitives.
 const ANY_KIND: [GroupsBy; 3] = [GroupsBy::Object, GroupsBy::Mesh, GroupsBy::Material];
 
-/// The same groups, where those without a name of their own have none: they are named by a number, or `default`.
+/// Returns the groups with empty names for groups that a file does not name: their generated name is a number or `default`.
 fn with_own_names(mut groups: NamedGroups) -> NamedGroups {
     for name in &mut groups.names {
         let is_number = |rest: &str| rest.bytes().all(|byte| byte.is_ascii_digit());
@@ -251,7 +251,7 @@ mod tests {
         assert!(rules(&["hair,shoe"], &[]).tables(&all, true).is_ok());
     }
 
-    /// A triangle is in the groups of all its names: those of its node, its material and others.
+    /// A triangle is in the groups of all its names: the name of its node, of its material, and others.
     #[test]
     fn triangles_have_several_names() {
         let kind = |names: &[&str], of_triangle: &[u32]| {

@@ -1,4 +1,4 @@
-//! What an answer "free" leaves out, and the sentence that says so: in the command, on the page and in reports.
+//! Pairs that an answer "free" excludes, and the sentence that states them in the command, on the page and in reports.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use sscc::{ContactFilter, Neighbours};
 
 use crate::text::counted;
 
-/// The pairs of triangles that a run does not test. Displayed: their names, as in "151 ignored pairs and pairs with common
-/// vertices"; nothing if every pair is tested.
+/// The pairs of triangles that a run does not test. It is displayed as their names, such as "151 ignored pairs and pairs with
+/// common vertices", or as an empty text if every pair is tested.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LeftOut {
     /// Number of pairs that are ignored one by one.
     ignored: usize,
-    /// Names of pairs that the run has no test for.
+    /// Names of pairs that the run does not test.
     parts: Vec<&'static str>,
     has_groups: bool,
     neighbours: Option<&'static str>,
 }
 
 impl LeftOut {
-    /// The pairs that do not count under a filter within one mesh.
+    /// Returns the pairs that do not count under a filter within one mesh.
     pub fn of(filter: &ContactFilter) -> Self {
         Self {
             ignored: filter.ignored().len(),
@@ -33,28 +33,28 @@ impl LeftOut {
         }
     }
 
-    /// The same where two meshes are compared: the pairs within either of them, and those of groups.
+    /// Returns the excluded pairs of a comparison of two meshes: the pairs within either mesh, and those of groups.
     #[must_use]
     pub fn between_meshes(self) -> Self {
         let neighbours = Some("pairs within either mesh");
         Self { neighbours, has_groups: self.has_groups, ..Self::default() }
     }
 
-    /// The same where also the pairs between the meshes of several files are left out.
+    /// Adds the pairs between the meshes of several files.
     #[must_use]
     pub fn and_between_files(mut self) -> Self {
         self.parts.push("pairs of different files");
         self
     }
 
-    /// The same where also the pairs between the meshes of several nodes are left out.
+    /// Adds the pairs between the meshes of several nodes.
     #[must_use]
     pub fn and_between_nodes(mut self) -> Self {
         self.parts.push("pairs of different nodes");
         self
     }
 
-    /// The same with the pairs that another mesh of the run leaves out.
+    /// Adds the excluded pairs of another mesh of the run.
     #[must_use]
     pub fn and(mut self, other: &Self) -> Self {
         self.ignored += other.ignored;
@@ -65,19 +65,19 @@ impl LeftOut {
         self
     }
 
-    /// The same with so many more pairs that are ignored one by one.
+    /// Adds a number of pairs that are ignored one by one.
     #[must_use]
     pub fn and_ignored(mut self, pairs: usize) -> Self {
         self.ignored += pairs;
         self
     }
 
-    /// The number of pairs that are ignored one by one.
+    /// Returns the number of pairs that are ignored one by one.
     pub fn ignored(&self) -> usize {
         self.ignored
     }
 
-    /// Returns ", apart from ..." for the end of a sentence that says "free"; empty if every pair is tested.
+    /// Returns ", apart from ..." for the end of a sentence about a free shape; empty if every pair is tested.
     pub fn apart(&self) -> String {
         let names = self.to_string();
         if names.is_empty() { names } else { format!(", apart from {names}") }
@@ -99,10 +99,10 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// What proves an answer "free".
+/// The kind of proof of an answer "free".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FreeProof {
-    /// The root's certificate, and tests of this many exceptions.
+    /// The root's certificate, and tests of this number of exceptions.
     Root {
         /// Pairs that no radius covers, so that every query tests them.
         exceptions: usize,
@@ -111,7 +111,7 @@ pub enum FreeProof {
     Tests,
 }
 
-/// Returns the sentence for an answer "free". `place` stands before the pairs that are left out: " (|z| = ...)", or nothing.
+/// Returns the sentence for an answer "free". `place` is inserted before the excluded pairs: " (|z| = ...)", or an empty text.
 pub fn free_sentence(proof: FreeProof, place: &str, left_out: &LeftOut) -> String {
     let by = match proof {
         FreeProof::Root { exceptions: 0 } => " by the root's certificate alone".to_owned(),

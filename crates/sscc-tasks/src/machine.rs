@@ -1,10 +1,10 @@
-//! The machine that measures: its description, its threads, and the memory of this process.
+//! The machine on which times are measured: its description, its threads, and the memory of this process.
 
 use std::env::consts::{ARCH, OS};
 use std::fs;
 use std::thread;
 
-/// Returns processor, cores, memory, system and compiler in one line, without those that are unknown.
+/// Returns processor, cores, memory, system and compiler in one line, without unknown parts.
 pub fn machine_description() -> String {
     let processor = line_of("/proc/cpuinfo", "model name").unwrap_or_else(|| format!("{ARCH} processor"));
     let cores = available_threads();
@@ -40,14 +40,14 @@ impl PeakMemory {
     }
 }
 
-/// The value of the first line that begins with a name.
+/// Returns the value of the first line that begins with a name.
 fn line_of(file: &str, name: &str) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(rest.trim_start().trim_start_matches([':', '=']).trim().to_owned())
 }
 
-/// Bytes of a text like `16314272 kB`.
+/// Returns the bytes of a text like `16314272 kB`.
 fn kibibytes(text: &str) -> Option<u64> {
     Some(text.strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }

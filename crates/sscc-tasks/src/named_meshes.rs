@@ -1,4 +1,4 @@
-//! Groups of several meshes by their names, under one table of pairs.
+//! Groups of several meshes by their names, with one table of pairs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,9 +7,9 @@ use sscc_io::NamedGroups;
 
 use crate::error::Result;
 
-/// A mesh whose triangles have a name of each of several kinds: of their node, mesh, material, ...
+/// A mesh whose triangles have a name of each of several kinds: of their node, mesh, material and others.
 pub(crate) struct NamedMesh {
-    /// The groups of each kind, of the same triangles. Empty names are no names.
+    /// The groups of each kind, for the same triangles. A group with an empty name has no name.
     pub kinds: Vec<NamedGroups>,
 }
 
@@ -26,7 +26,7 @@ impl NamedMesh {
 /// A pair of names.
 type Names = [String; 2];
 
-/// Returns the names of each pair `A,B`; of each text that is none, the text and the cause.
+/// Returns the names of each pair `A,B`. The error is the first text that is not a pair of known names, with the cause.
 pub(crate) fn names_of_pairs<'t>(
     meshes: &[NamedMesh],
     typed: &'t [String],
@@ -47,8 +47,8 @@ pub(crate) fn is_in_one_mesh(meshes: &[NamedMesh], names: &Names) -> bool {
     meshes.iter().any(|mesh| names.iter().all(|name| mesh.has(name)))
 }
 
-/// Returns the groups of each mesh under one table, in which these pairs of names do not count, or alone count. A triangle is in
-/// the groups of all its names.
+/// Returns the groups of each mesh with one table, in which these pairs of names do not count, or no other pairs count. A
+/// triangle is in the groups of all its names.
 pub(crate) fn tables(
     meshes: &[NamedMesh],
     pairs: &[Names],
@@ -59,7 +59,7 @@ pub(crate) fn tables(
         let next = numbers.len();
         numbers.entry(name).or_insert(next);
     }
-    // Triangles of the same names that are in any pair are one group of the table.
+    // Triangles with the same names, among the names in pairs, are one group of the table.
     let mut groups: BTreeMap<Vec<usize>, u32> = BTreeMap::new();
     let mut of_triangles = Vec::new();
     for mesh in meshes {

@@ -2,12 +2,12 @@
 
 use strsim::levenshtein;
 
-/// Returns the name with the smallest edit distance to `typed`, the first of several. None without names.
+/// Returns the name with the smallest edit distance to `typed`; the first if several have it. None if there are no names.
 pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names.into_iter().min_by_key(|name| levenshtein(typed, name))
 }
 
-/// Returns "; did you mean 'NAME'?" with the nearest name that has about half of its characters in common with `typed`, else
+/// Returns "; did you mean 'NAME'?" with the nearest name if it has about half of its characters in common with `typed`, else
 /// an empty text.
 pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let typed: String = typed.chars().take(MAX_COMPARED).collect();
@@ -19,7 +19,7 @@ pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -
     }
 }
 
-/// Number of characters that are compared with a name: more are no name that was mistyped.
+/// Maximum number of characters that are compared with a name: longer texts are not mistyped names.
 const MAX_COMPARED: usize = 100;
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
-//! The size of a body: that of its file, a factor on it, a unit of its lengths, or a given longest side.
+//! The size of a body: the size in its file, a factor on it, a unit of its lengths, or a given longest side.
 
 use glam::DVec3;
 use sscc::TriMesh;
 
 use crate::TaskError;
 
-/// Units of length in which files are drawn, with their lengths in metres.
+/// Units of length of files, with their lengths in metres.
 pub const UNITS: [(&str, f64); 4] = [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254)];
 
 /// The size of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Resize {
-    /// That of its files.
+    /// The size in its files.
     #[default]
     Keep,
     /// All lengths of its files are multiplied by this factor.
@@ -24,7 +24,7 @@ impl Resize {
     /// Returns the factor on all lengths, for a body with these vertices.
     ///
     /// # Errors
-    /// When it is not positive and finite.
+    /// When the factor is not positive and finite.
     pub fn factor(self, points: &[DVec3]) -> Result<f64, TaskError> {
         let (key, factor) = match self {
             Self::Keep => return Ok(1.0),
@@ -38,7 +38,7 @@ impl Resize {
     }
 }
 
-/// Returns the longest side of the AABB of points; 0 for none.
+/// Returns the longest side of the AABB of points; 0 if there are no points.
 pub fn longest_side(points: &[DVec3]) -> f64 {
     let Some(first) = points.first() else { return 0.0 };
     let (lower, upper) = points.iter().fold((*first, *first), |(a, b), p| (a.min(*p), b.max(*p)));

@@ -9,7 +9,7 @@ use sscc_io::Rows;
 use crate::error::Result;
 use crate::text::length;
 
-/// The free configuration near one q. Its JSON has these keys; an infinite number is `null`.
+/// The free configuration near one q. The fields are the keys of its JSON; an infinite number is `null`.
 #[derive(Clone, Debug, Serialize)]
 pub struct ResolveReport {
     /// Whether a free configuration was found.
@@ -18,7 +18,7 @@ pub struct ResolveReport {
     pub q: Option<Vec<f64>>,
     /// Its distance from q in the metric.
     pub change: f64,
-    /// The distance from q of the last free configuration on the straight way from the start.
+    /// The distance from q of the last free configuration on the line from the start to q.
     pub safe_scale_change: f64,
 }
 
@@ -51,11 +51,11 @@ impl fmt::Display for ResolveReport {
     }
 }
 
-/// Resolves every row on so many threads, in order. `progress` may cancel it.
+/// Resolves every row on this number of threads, in order. `progress` may cancel it.
 ///
 /// # Errors
-/// When the certificates are of another model, a row is no configuration of it, or the start of the options is none or
-/// collides.
+/// When the certificates are of another model, a row is not a configuration of it, or the start of the options is not a
+/// configuration or collides.
 pub fn resolve_rows(
     model: &ReducedModel,
     certificates: &Certificates,

@@ -1,4 +1,4 @@
-//! The static answer of a model from a file to a load.
+//! The static configuration of a model from a file under a load.
 
 use glam::DVec3;
 use sscc::ReducedModel;
@@ -8,7 +8,7 @@ use sscc_modes::{generalized_forces, static_configuration};
 use crate::TaskError;
 use crate::error::Result;
 
-/// The linear static answer to a load.
+/// The linear static configuration under a load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StaticAnswer {
     /// The configuration.
@@ -19,12 +19,12 @@ pub struct StaticAnswer {
     pub vertex: u32,
 }
 
-/// Returns the linear static answer of a model with stiffness to forces on vertices (N), and to `gravity` (m/s^2) on its whole
-/// mass: see [`static_configuration`].
+/// Returns the linear static configuration of a model with stiffness under forces on vertices (N), and under `gravity`
+/// (m/s^2) on its whole mass: see [`static_configuration`].
 ///
 /// # Errors
-/// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static answer, or one that no
-/// query takes.
+/// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static configuration,
+/// or one that queries refuse.
 pub fn static_answer(
     model: &ReducedModel,
     info: &ModelInfo,

@@ -1,4 +1,4 @@
-//! Formats numbers and names for people.
+//! Formats numbers and names for messages and tables.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The longest text that an error repeats.
+/// Maximum length of a text that an error repeats.
 const MAX_SHOWN: usize = 60;
 
 /// Returns the beginning of a text on one line, in quotes.
@@ -48,8 +48,8 @@ pub fn length(value: f64) -> String {
     }
 }
 
-/// Formats longest side (m), mass (kg) and first frequency (Hz) of a body: a size in other units shows in each of them. A
-/// body of unknown mass is held.
+/// Formats longest side (m), mass (kg) and first frequency (Hz) of a body. Wrong units of a size are visible in each of them.
+/// A body of unknown mass is held.
 pub fn size_and_mass(side: f64, mass: Option<f64>, first: f64) -> String {
     let mass = mass.map_or_else(|| "held".into(), |mass| format!("mass {} kg", length(mass)));
     format!("longest side {} m, {mass}, first mode {} Hz", length(side), length(first))

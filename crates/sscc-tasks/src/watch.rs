@@ -30,16 +30,16 @@ pub enum Stage {
 
 /// [`Progress`] of work that has several stages. Cancels all of them.
 pub trait Watch: Progress {
-    /// Called when a stage begins. Later progress is that of this stage.
+    /// Called when a stage begins. Later progress belongs to this stage.
     fn begin(&self, stage: Stage);
 
-    /// Receives a note: one line that is no error, for example that a damaged file of the cache was computed again.
+    /// Receives a note: one line that is not an error, for example that a damaged file of the cache was computed again.
     fn note(&self, note: &str);
 
-    /// Receives a line about work that begins, for example the energy of a body; by default dropped.
+    /// Receives a line about work that begins, for example the energy of a body. By default it is dropped.
     fn inform(&self, _line: &str) {}
 
-    /// Receives a warning: one line about input that breaks a rule, and how it was understood. By default a note.
+    /// Receives a warning: one line about input that violates a format, and its interpretation. By default it is a note.
     fn warn(&self, warning: &str) {
         self.note(warning);
     }
@@ -65,7 +65,7 @@ impl Watch for () {
     fn note(&self, _note: &str) {}
 }
 
-/// Progress that passes on cancellation and ignores reports: a batch counts its own q.
+/// Progress that forwards cancellation and ignores reports: a batch counts its own q.
 pub(crate) struct CancelledBy<'a>(pub(crate) &'a dyn Progress);
 
 impl Progress for CancelledBy<'_> {

@@ -19,7 +19,7 @@ pub enum ZeroRadius {
     Near {
         /// The largest number of exceptions.
         max_exceptions: usize,
-        /// Beyond how many rings pairs count.
+        /// Number of rings beyond which pairs count.
         rings: u32,
     },
     /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
@@ -30,7 +30,7 @@ pub enum ZeroRadius {
 }
 
 impl ZeroRadius {
-    /// Finds the reason; none if the root's radius is not 0. Costs up to two discrete queries.
+    /// Finds the reason; None if the root's radius is not 0. Costs up to two discrete queries.
     ///
     /// # Errors
     /// When the certificates are of another model, or `progress` cancels.

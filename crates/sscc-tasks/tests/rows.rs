@@ -1,4 +1,4 @@
-//! Queries of the rows of a trajectory, answered in blocks, against single queries.
+//! Tests that queries of the rows of a trajectory, answered in blocks, equal single queries.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
@@ -11,8 +11,8 @@ use sscc::{Answer, Method, Modes, Pair, Query, ReducedModel, TriMesh};
 use sscc_io::Rows;
 use sscc_tasks::{ContactOptions, RowQueries, TaskError, check_rows};
 
-/// A torus of 24 x 12 vertices. The first mode moves its halves towards each other and, from about -1.4, into each other. The
-/// second bends it.
+/// Returns a torus of 24 x 12 vertices. The first mode moves its halves towards each other and, from about -1.4, into each
+/// other. The second bends it.
 fn ring() -> ReducedModel {
     let (around, across) = (24, 12);
     let grid = || (0..around).flat_map(|i| (0..across).map(move |j| (i, j)));
@@ -34,7 +34,7 @@ fn ring() -> ReducedModel {
     ReducedModel::new(TriMesh::new(vertices, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
 }
 
-/// 57 q: halves move together and apart again.
+/// Returns 57 q in which halves move together and apart again.
 fn trajectory() -> Rows {
     let rows = 57;
     let data = (0..rows).flat_map(|i| [-2.4 * (f64::from(i) / 9.0).sin().abs(), 0.1 * f64::from(i % 5)]);
@@ -70,7 +70,7 @@ fn rows(
     Ok(all)
 }
 
-/// Number of rows that were answered together with the row before: these have the same duration to the bit.
+/// Returns the number of rows that were answered together with the row before. Such rows have the same duration, bit for bit.
 fn in_blocks(rows: &[Row]) -> usize {
     rows.windows(2).filter(|pair| pair[0].microseconds == pair[1].microseconds).count()
 }
@@ -79,7 +79,7 @@ fn in_blocks(rows: &[Row]) -> usize {
 fn rows_in_blocks_are_those_of_single_queries() {
     let (model, trajectory) = (ring(), trajectory());
     let scope = || Scope::of(&model);
-    // By brute force a query takes longer than any start of threads.
+    // A query by brute force takes longer than starting threads.
     let query = || Query::without_certificates(&model, scope(), Method::BruteForce).unwrap();
     let requests = |limit, threads| RowQueries {
         model: &model,
@@ -135,7 +135,7 @@ fn rows_in_blocks_are_those_of_single_queries() {
     }
 }
 
-/// A row that is no q ends the queries. All rows before it are answered.
+/// A row that is not a configuration ends the queries. All rows before it are answered.
 #[test]
 fn a_row_that_is_no_configuration_is_refused() {
     let (model, mut trajectory) = (ring(), trajectory());

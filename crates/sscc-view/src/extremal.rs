@@ -23,7 +23,7 @@ pub struct Extremal {
 const VISIBLE: f64 = 0.02;
 
 /// Returns q along each of the first modes, in both directions, unless the shape looks like the shape at the centre. Returns
-/// none if the root's radius is 0 or infinite.
+/// an empty list if the root's radius is 0 or infinite.
 pub fn extremal(model: &ReducedModel, certificates: &Certificates) -> Vec<Extremal> {
     let (center, radius) = (certificates.center(), certificates.root_radius());
     if radius <= 0.0 || !radius.is_finite() {

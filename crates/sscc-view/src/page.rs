@@ -35,7 +35,7 @@ pub(crate) fn with_json(json: &str) -> String {
 
 /// Returns a page that may also run modules of WebAssembly that are within it.
 pub(crate) fn allowing_modules(page: String) -> String {
-    // Policies are in the head alone.
+    // Policies are only in the head.
     let (head, rest) = page.split_once("<body>").unwrap_or((&page, ""));
     let scripts = "script-src 'unsafe-inline'";
     [&head.replace(scripts, &format!("{scripts} 'wasm-unsafe-eval'")), "<body>", rest].concat()

@@ -13,7 +13,7 @@ pub struct Report {
     pub scene: Scene,
     /// The arrays that the scene names.
     pub arrays: Arrays,
-    /// The data with which the report checks q itself. If None, it shows only recorded results and what the root's radius proves.
+    /// The data with which the report checks q itself. If None, it shows only recorded results and proofs by the root's radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checks: Option<Checks>,
 }

@@ -21,11 +21,11 @@ pub struct Answers {
 
 /// The answers of all methods.
 pub struct Frames {
-    /// With certificates.
+    /// Answers of queries with certificates.
     pub certified: Answers,
-    /// Without certificates, with BD-tree AABBs.
+    /// Answers of queries without certificates, with BD-tree AABBs.
     pub bd_tree: Answers,
-    /// With a refit of all AABBs.
+    /// Answers of queries with a refit of all AABBs.
     pub traditional: Answers,
 }
 

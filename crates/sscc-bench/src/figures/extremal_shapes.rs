@@ -77,7 +77,7 @@ fn pictures(models: &[(&str, &CertifiedModel)]) -> Result<String, Error> {
     ))
 }
 
-/// Width and height of a PNG file, from its first chunk.
+/// Returns the width and height of a PNG file, from its first chunk.
 fn size(png: &[u8]) -> Option<[u32; 2]> {
     let (numbers, _) = png.get(16..24)?.as_chunks::<4>();
     Some([u32::from_be_bytes(*numbers.first()?), u32::from_be_bytes(*numbers.get(1)?)])

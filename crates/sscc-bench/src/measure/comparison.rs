@@ -20,9 +20,9 @@ const COMPARED_STEPS: usize = 20;
 
 /// Results of all methods on some steps.
 pub struct Comparison {
-    /// For each step, whether a body collides with itself at its start.
+    /// Whether a body collides with itself at the start, for each step.
     pub colliding: Vec<bool>,
-    /// For each step, whether the root's certificate fails for a body at its start.
+    /// Whether the root's certificate fails for a body at the start, for each step.
     pub root_failed: Vec<bool>,
     /// Strata of the steps, which give their weights.
     pub strata: Strata,

@@ -8,7 +8,7 @@ use super::engine::Engine;
 use super::parry::Parry;
 use crate::error::Error;
 
-/// One column of the tables. Of several columns with the same key, the one with the smallest mean is reported.
+/// One column of the tables. If several columns have the same key, the one with the smallest mean is reported.
 pub struct Column {
     /// Its name in tables and JSON.
     pub key: &'static str,

@@ -93,13 +93,13 @@ pub struct Record {
     /// Mean milliseconds of discrete queries over the steps that are free, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub free_ms: Means,
-    /// Their median milliseconds.
+    /// Median milliseconds of discrete queries over the free steps.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub free_ms_median: Means,
     /// Mean milliseconds of discrete queries over the colliding steps, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub colliding_ms: Means,
-    /// Their median milliseconds.
+    /// Median milliseconds of discrete queries over the colliding steps.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub colliding_ms_median: Means,
     /// Mean milliseconds over all steps, of the methods that ran on all; empty if all methods did.
@@ -111,15 +111,15 @@ pub struct Record {
 
 /// Totals of the whole scene that the measured steps represent.
 pub struct SceneTotals {
-    /// Steps.
+    /// Number of steps.
     pub steps: usize,
-    /// Steps in which some body collides with itself.
+    /// Number of steps in which some body collides with itself.
     pub colliding_steps: usize,
-    /// Steps times bodies.
+    /// Number of steps times bodies.
     pub body_steps: usize,
-    /// Those of them in which the body collides with itself.
+    /// Pairs of a step and a body in which the body collides with itself.
     pub colliding_body_steps: usize,
-    /// Processor seconds of the parts of its simulation; none without a simulation.
+    /// Processor seconds of the parts of its simulation; None without a simulation.
     pub seconds: Option<[f64; STEP_PARTS.len()]>,
 }
 

@@ -341,8 +341,8 @@ impl Body {
         certificates.norm(&self.q).is_ok_and(|norm| norm < certificates.root_radius())
     }
 
-    /// Finds the impacts of the body with itself in the motion from the beginning of the step to the current state. A body
-    /// that collides with itself at the beginning has none: it may pass through itself until it is free.
+    /// Finds the impacts of the body with itself in the motion from the beginning of the step to the current state. Finds no
+    /// impact for a body that collides with itself at the beginning: it may pass through itself until it is free.
     pub(crate) fn find_own_impacts(&mut self) -> Result<(), DynamicsError> {
         self.impacts.clear();
         if !self.pairs.is_empty() || self.detection == Detection::Off {

@@ -94,12 +94,12 @@ impl DepthField {
         distance.is_finite().then_some(SignedDistance { distance, gradient: gradient / self.spacing })
     }
 
-    /// Index of a grid point in `distances`.
+    /// Returns the index of a grid point in `distances`.
     fn index(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.size[1] + j) * self.size[0] + i
     }
 
-    /// Position of a grid point.
+    /// Returns the position of a grid point.
     fn point(&self, [i, j, k]: [usize; 3]) -> DVec3 {
         self.origin + DVec3::new(i as f64, j as f64, k as f64) * self.spacing
     }

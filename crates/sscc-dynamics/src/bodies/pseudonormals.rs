@@ -70,7 +70,7 @@ impl Pseudonormals {
     }
 }
 
-/// Key of an edge: its vertices, ascending.
+/// Returns the key of an edge: its vertices, ascending.
 fn edge(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }

@@ -29,7 +29,7 @@ pub(crate) fn constrain_to_root(body: &mut Body) -> Result<(), DynamicsError> {
     Ok(())
 }
 
-/// Gradient of `|S (q - c)|^2 / 2`, which is `S' S (q - c)`.
+/// Returns the gradient of `|S (q - c)|^2 / 2`, which is `S' S (q - c)`.
 fn gradient(certificates: &Certificates, q: &[f64]) -> Vec<f64> {
     let offset: Vec<f64> = q.iter().zip(certificates.center()).map(|(q, c)| q - c).collect();
     let Some(factor) = certificates.metric().dense_factor() else {

@@ -1,8 +1,8 @@
 //! Contact between two triangles: its geometry.
 //!
 //! A contact is rigid or soft. Triangles that do not intersect make rigid contacts: a swept query finds them, and each step
-//! computes nearest points and normal anew. Triangles that intersect make soft contacts, springs whose material points and
-//! normal stay those of the beginning.
+//! computes nearest points and normal again. Triangles that intersect make soft contacts: springs whose material points and
+//! normal remain those of the beginning.
 
 use glam::{DMat3, DVec3};
 use sscc::Pair;
@@ -133,7 +133,7 @@ impl Contact {
         self.is_rigid && !self.is_duplicate
     }
 
-    /// Key that identifies the contact and orders the list of contacts.
+    /// Returns the key that identifies the contact and orders the list of contacts.
     pub fn key(&self) -> ([u32; 2], Pair, u8) {
         (self.bodies, self.pair(), self.features)
     }
@@ -259,13 +259,13 @@ impl Contact {
     }
 }
 
-/// Rest positions of the corners of a triangle.
+/// Returns the rest positions of the corners of a triangle.
 fn corners_at_rest(shape: &Shape, triangle: u32) -> [DVec3; 3] {
     let mesh = shape.model().mesh();
     mesh.faces()[triangle as usize].map(|v| mesh.rest_positions()[v as usize])
 }
 
-/// Point of a triangle with these barycentric weights.
+/// Returns the point of a triangle with these barycentric weights.
 fn interpolate(x: &[DVec3; 3], weights: [f64; 3]) -> DVec3 {
     x[0] * weights[0] + x[1] * weights[1] + x[2] * weights[2]
 }

@@ -64,7 +64,7 @@ impl ContactConstraint {
 }
 
 impl ContactPoints {
-    /// Whether both points belong to one body. Their impulses then change its modes alone.
+    /// Whether both points belong to one body. Their impulses then change only its modes.
     pub fn is_within(&self) -> bool {
         self.bodies[0] == self.bodies[1]
     }

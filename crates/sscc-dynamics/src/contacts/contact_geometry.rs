@@ -98,7 +98,7 @@ impl<'a> RestFrame<'a> {
     }
 }
 
-/// Normal of a triangle, with twice the area as its length.
+/// Returns the normal of a triangle, with twice the area as its length.
 fn normal(x: &[DVec3; 3]) -> DVec3 {
     (x[1] - x[0]).cross(x[2] - x[0])
 }
@@ -124,7 +124,7 @@ fn intersection_point(a: &[DVec3; 3], b: &[DVec3; 3]) -> DVec3 {
     if count > 0.0 { sum / count } else { (a.iter().sum::<DVec3>() + b.iter().sum::<DVec3>()) / 6.0 }
 }
 
-/// Barycentric coordinates of the projection of a point onto the triangle's plane; 1/3 each for a triangle without
+/// Returns the barycentric coordinates of the projection of a point onto the triangle's plane; 1/3 each for a triangle without
 /// area.
 pub(crate) fn weights(x: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
     let n = normal(corners);

@@ -21,7 +21,7 @@ pub(crate) struct ContactSet {
     sorted: usize,
     /// Ended contacts, whose memory new contacts reuse.
     spare: Vec<Contact>,
-    /// Rigid contacts of the last step, sorted, while those of this step begin.
+    /// Rigid contacts of the last step, sorted, which are needed while the contacts of this step begin.
     old: Vec<Contact>,
     found: Vec<Nearest>,
     /// Rounded points of the rigid contacts of this step.
@@ -235,8 +235,8 @@ impl ContactSet {
     }
 }
 
-/// Gap, in skins, beyond which a contact ends. It exceeds 1, so that a contact whose spring throws a point a little
-/// farther than the skin does not begin anew when the point returns.
+/// Gap, in skins, beyond which a contact ends. It exceeds 1: a contact whose spring throws a point slightly farther than the
+/// skin continues when the point returns.
 const MAX_GAP: f64 = 3.0;
 
 /// Maximum preload, in skins.

@@ -82,7 +82,7 @@ fn separating_direction(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<DVec3> {
     best.map(|(_, normal)| normal)
 }
 
-/// Nearest points of two segments, and where they are on the segments (Ericson, Real-Time Collision Detection, 5.1.9).
+/// Returns the nearest points of two segments, and their parameters on these (Ericson, Real-Time Collision Detection, 5.1.9).
 fn nearest_segments([p, q]: [DVec3; 2], [r, s]: [DVec3; 2]) -> ([DVec3; 2], [f64; 2]) {
     let (d, e, between) = (q - p, s - r, p - r);
     let (dd, ee, f) = (d.dot(d), e.dot(e), e.dot(between));

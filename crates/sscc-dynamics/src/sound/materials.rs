@@ -15,7 +15,7 @@ pub struct SoundMaterial {
     pub damping: Damping,
 }
 
-/// Row of the table: name, density (kg/m^3), Young's modulus (N/m^2), Poisson's ratio, damping coefficients (1/s, s).
+/// Creates a row of the table: name, density (kg/m^3), Young's modulus (N/m^2), Poisson's ratio, damping coefficients (1/s, s).
 #[expect(clippy::panic, reason = "evaluated by the compiler")]
 const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64) -> SoundMaterial {
     let known = PartialMaterial { density: Some(d), youngs_modulus: Some(y), poisson_ratio: Some(nu) };
@@ -24,7 +24,7 @@ const fn row(name: &'static str, d: f64, y: f64, nu: f64, alpha: f64, beta: f64)
     SoundMaterial { name, elastic, damping: Damping { mass: alpha, stiffness: beta } }
 }
 
-/// Materials of everyday objects. Elastic constants of the first eight are round values in the range of handbooks; those of
+/// Materials of everyday objects. Elastic constants of the first eight are round values in the range of handbooks; constants of
 /// the others are usual values of the grades that `docs/command.md` names. Damping was chosen by ear for
 /// the first eight; each other material has the damping of the most similar one. No value was measured.
 pub const MATERIALS: [SoundMaterial; 16] = [

@@ -28,7 +28,7 @@ pub struct SoundBank {
 
 impl SoundBank {
     /// Creates a bank from mass-orthonormal modes of a surface and their eigenvalues (r numbers, 1/s^2), at `rate`
-    /// samples per second. Modes above half that rate are inaudible and left out. Needs 12 bytes per vertex and mode.
+    /// samples per second. Modes above half that rate are inaudible and omitted. Needs 12 bytes per vertex and mode.
     ///
     /// # Errors
     /// When modes, mesh and eigenvalues have different sizes, or the rate or the damping is outside its range.
@@ -125,7 +125,7 @@ impl SoundBank {
     }
 }
 
-/// Unit normals of vertices: area-weighted means over their triangles.
+/// Returns the unit normals of vertices: area-weighted means over their triangles.
 fn vertex_normals(mesh: &TriMesh) -> Vec<DVec3> {
     let p = mesh.rest_positions();
     let mut normals = vec![DVec3::ZERO; p.len()];
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use sscc_modes::shapes;
 
-    /// A spring with three modes; the frequency of the last one is above half the sample rate.
+    /// Returns a spring with three modes; the frequency of the last one is above half the sample rate.
     fn bank(damping: Damping) -> SoundBank {
         let mesh = shapes::spring_of(60, 6);
         let p = mesh.rest_positions().to_vec();
@@ -177,7 +177,7 @@ mod tests {
             // Amplitudes decay as e^(-5 t).
             let decay = power(hertz, late) / power(hertz, early);
             assert!((decay / libm::exp(-4.5) - 1.0).abs() < 0.05, "{decay}");
-            // Excited alone, a mode has its spectral peak at its frequency.
+            // If only one mode is excited, its spectral peak is at its frequency.
             let mut bank = bank(Damping::default());
             bank.v[mode] = 1.0;
             let alone: Vec<f64> = (0..4410).map(|_| bank.sample()).collect();

@@ -76,7 +76,7 @@ impl ImpactContacts {
         );
         near.retain(|(numbers, pair)| {
             let indices = numbers.map(|n| n as u32);
-            // A pair of one body may meet again after a correction, those of two bodies are gathered once.
+            // A pair of one body may meet again after a correction. Pairs of two bodies are gathered once.
             let has_begun = numbers[0] == numbers[1] && triangles.has_begun(indices, *pair);
             !has_begun && !triangles.has_rigid(indices, *pair)
         });

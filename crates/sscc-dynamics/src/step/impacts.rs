@@ -25,8 +25,8 @@ impl Impacts {
         self.pairs.is_empty() && self.sinking.is_empty()
     }
 
-    /// Finds the impacts of the selected bodies. `makes_points` makes points on the ground of the lowest vertices of those that
-    /// sink.
+    /// Finds the impacts of the selected bodies. With `makes_points`, the lowest vertices of sinking bodies become points on
+    /// the ground.
     pub fn find(
         &mut self,
         bodies: &mut [Body],

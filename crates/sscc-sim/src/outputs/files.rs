@@ -12,8 +12,8 @@ use crate::error::{Result, SimError};
 use crate::files::OUTPUT_FILES;
 use crate::run::FinishedRun;
 
-/// Files in the folder of a simulation, and errors of those that were not written. Numbers of a motion that diverges
-/// may not fit a file format.
+/// Files in the folder of a simulation, and errors of files that were not written. Numbers of a motion that diverges may not
+/// fit a file format.
 pub struct Outputs {
     folder: PathBuf,
     /// Indices in [`OUTPUT_FILES`] of the files that were written.
@@ -68,7 +68,7 @@ impl Outputs {
     /// Returns the result of the simulation.
     ///
     /// # Errors
-    /// When the simulation ended early, or a file was not written; the error is that of the first such file.
+    /// When the simulation ended early, or a file was not written. The error is that of the first such file.
     pub fn finish(self, run: FinishedRun) -> Result<(), SimError> {
         let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place).map(|(_, error)| error);
         match (run.failure, unwritten) {

@@ -63,7 +63,7 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
     Ok(lines)
 }
 
-/// Returns size, mass and first frequency of a model, which show wrong units.
+/// Returns size, mass and first frequency of a model. They show wrong units.
 fn facts(recipe: &Recipe, model: &PreparedModel) -> Result<String> {
     let side = longest_side(model.shape.model().mesh().rest_positions());
     let stiffness = model.shape.elasticity().stiffness();
@@ -73,7 +73,7 @@ fn facts(recipe: &Recipe, model: &PreparedModel) -> Result<String> {
     Ok(size_and_mass(side, is_known.then(|| model.shape.mass().mass), first))
 }
 
-/// Returns an upper bound of the displacement of a vertex by the free vibration with these rates at the beginning, in the
+/// Returns an upper bound of the displacement of a vertex by the free vibration that begins with these rates, with the
 /// stiffness at rest.
 fn farthest(
     model: &ReducedModel,
@@ -132,7 +132,7 @@ mod tests {
         };
         assert!((of(0.0, 1.0) / (0.2 / rate) - 1.0).abs() < 1e-6);
         assert!(of(20.0, 1.0) < 0.7 * of(0.0, 1.0));
-        // A quarter of the way to the peak.
+        // The time is a quarter of that of the peak.
         let early = 0.2 / rate * (rate * 0.01).sin();
         assert!((of(0.0, 0.01) / early - 1.0).abs() < 1e-6);
     }

@@ -16,11 +16,11 @@ use super::history::STEP_PARTS;
 /// Minimum duration of a block (s). One reading of the processor clock takes 0.2% of it.
 const MIN_BLOCK: f64 = 1e-4;
 
-/// Wall clock and processor clock, in seconds. Tests have an implementation of their own.
+/// Wall clock and processor clock, in seconds. Tests have their own implementation.
 pub trait Clocks {
-    /// Wall-clock time (s).
+    /// Returns the wall-clock time (s).
     fn wall(&self) -> f64;
-    /// Processor time of all threads that work on a step (s).
+    /// Returns the processor time of all threads that work on a step (s).
     fn processor(&self) -> f64;
     /// Whether one thread does all the work. The parts then share processor time in proportion to wall-clock time.
     fn is_one_thread(&self) -> bool;
@@ -95,7 +95,7 @@ impl<C: Clocks> StepClock<C> {
         self.clocks.wall()
     }
 
-    /// Begins a part, or none.
+    /// Begins a part; None ends the current part.
     pub fn enter(&mut self, part: Option<usize>) {
         // With several threads, some parts run on one thread: wall-clock time is then not proportional to processor
         // time.
@@ -134,7 +134,7 @@ pub mod tests {
 
     use super::*;
 
-    /// Clocks of a thread from which other programs take the processor at times; reading them takes no time.
+    /// Clocks of a thread that other programs interrupt at times. Reading the clocks takes no time.
     #[derive(Default)]
     pub struct Scripted {
         pub wall: Cell<f64>,
@@ -168,7 +168,8 @@ pub mod tests {
         }
     }
 
-    /// A step whose first parts work for the seconds of `work`; before each, another program takes those of `taken`.
+    /// Runs a step whose first parts work for the seconds of `work`. Before each part, another program takes the seconds of
+    /// `taken`.
     fn step(clock: &mut StepClock<&Scripted>, time: &Scripted, work: &[f64], taken: &[f64]) -> StepTimes {
         let begin = clock.begin();
         for (part, (work, taken)) in work.iter().zip(taken).enumerate() {

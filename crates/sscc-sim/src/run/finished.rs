@@ -1,4 +1,4 @@
-//! Data of a simulation after its last step; files and the report are made from them.
+//! Data of a simulation after its last step. Files and the report are created from them.
 
 use std::path::PathBuf;
 
@@ -19,9 +19,9 @@ pub struct FinishedRun {
     pub folder: PathBuf,
     /// Its states, at least one.
     pub history: History,
-    /// Its results in numbers.
+    /// Its summary.
     pub summary: Summary,
-    /// The traditional method at some states.
+    /// Costs of the traditional method at some states.
     pub traditional: Vec<TraditionalCost>,
     /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,

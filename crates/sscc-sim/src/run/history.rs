@@ -5,10 +5,10 @@ use glam::{DQuat, DVec3};
 /// The parts of a step that are timed, in the order of [`StepRecord::seconds`].
 pub const STEP_PARTS: [&str; 6] = ["self", "inter_object", "ground", "penalty", "dynamics", "sound"];
 
-/// Count of numbers of a step, without those of its bodies.
+/// Number of values of a step, without those of its bodies.
 const STEP_NUMBERS: usize = STEP_PARTS.len() + 5;
 
-/// Count of numbers of a body, without its q.
+/// Number of values of a body, without its q.
 const BODY_NUMBERS: usize = 8;
 
 /// Record of a step: its cost and its sound, with energy and collisions of the state at its beginning.
@@ -18,7 +18,7 @@ pub struct StepRecord {
     pub seconds: [f64; STEP_PARTS.len()],
     /// Wall-clock time of the step (s).
     pub wall: f64,
-    /// Kinetic, elastic and potential energy; NaN where it was not computed.
+    /// Kinetic, elastic and potential energy; NaN if it was not computed.
     pub energy: f64,
     /// Sample of the sound during the step; 0 without sound.
     pub sound: f64,
@@ -29,12 +29,12 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    /// Processor time of detecting self-collisions (s).
+    /// Returns the processor time of detecting self-collisions (s).
     pub fn self_seconds(&self) -> f64 {
         self.seconds[0]
     }
 
-    /// Processor time of the whole step (s).
+    /// Returns the processor time of the whole step (s).
     pub fn total_seconds(&self) -> f64 {
         self.seconds.iter().sum()
     }
@@ -90,7 +90,7 @@ impl StateLayout {
         self.starts[body + 1] - self.starts[body] - BODY_NUMBERS
     }
 
-    /// Returns the count of numbers of a step.
+    /// Returns the number of values of a step.
     pub fn width(&self) -> usize {
         self.starts[self.bodies()]
     }
@@ -112,7 +112,7 @@ impl StateLayout {
         debug_assert_eq!(numbers.len() % self.width(), 0);
     }
 
-    /// Sets the numbers of a state that are known after its step: the record, and the pairs of each body.
+    /// Sets the values of a state that are known after its step: the record, and the pairs of each body.
     pub fn complete(&self, facts: StepRecord, pairs: impl Iterator<Item = usize>, state: &mut [f64]) {
         state[..STEP_NUMBERS].copy_from_slice(&facts.numbers());
         for (start, pairs) in self.starts.iter().zip(pairs) {
@@ -192,7 +192,7 @@ impl History {
         (0..self.layout.bodies()).map(move |body| self.body(state, body))
     }
 
-    /// Whether a body moves in the step from a state, or in the last step before the end. A body that sleeps does not.
+    /// Whether a body moves in the step from a state, or in the last step before the end. A sleeping body does not move.
     pub fn moves(&self, state: usize, body: usize) -> bool {
         let next = if state + 1 < self.len() { state + 1 } else { state.saturating_sub(1) };
         let [a, b] = [state, next].map(|state| self.body(state, body));

@@ -30,9 +30,9 @@ pub struct StateLog {
     digest: [u8; DIGEST],
     layout: StateLayout,
     file: File,
-    /// Whole states in the file.
+    /// Number of complete states in the file.
     len: usize,
-    /// The hash of these.
+    /// The hash of these states.
     hasher: Hasher,
 }
 
@@ -47,8 +47,8 @@ pub struct Checkpoint {
 }
 
 impl StateLog {
-    /// Opens the log of a folder. Returns it with the checkpoint, if the folder has one. `again` removes both before.
-    /// `digest` is that of the simulation.
+    /// Opens the log of a folder. Returns it with the checkpoint, if the folder has one. `again` removes both files first.
+    /// `digest` is the digest of the simulation.
     ///
     /// # Errors
     /// When the folder cannot be written to, or holds another simulation.
@@ -216,7 +216,7 @@ mod tests {
         StateLog::open(folder, [digest; DIGEST], StateLayout::new([1]), false)
     }
 
-    /// A state of the layout, 20 numbers.
+    /// Returns a state of the layout, 20 numbers.
     fn state(x: f64) -> Vec<f64> {
         (0..20).map(|i| x + f64::from(i)).collect()
     }
@@ -281,7 +281,7 @@ mod tests {
         assert!(open(path, 1).is_ok());
         fs::write(path.join(LOG), [1; DIGEST]).unwrap();
         assert!(message(1).contains("the log beside this file has fewer states"));
-        // A log that is being written is refused, too.
+        // A log that another simulation writes is refused, too.
         let again = || StateLog::open(path, [2; DIGEST], StateLayout::new([1]), true);
         let (log, none) = again().unwrap();
         assert!(none.is_none() && log.len() == 0);

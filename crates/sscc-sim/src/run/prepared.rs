@@ -20,9 +20,9 @@ const TRIANGLE_BYTES: usize = 500;
 /// Maximum memory for all bodies (8 GB).
 const MAX_BODY_BYTES: usize = 8_000_000_000;
 
-/// The models of a scene, in its order.
+/// The models of a scene, in the order of the scene.
 pub struct PreparedScene {
-    /// One model for each of the scene.
+    /// One model for each model of the scene.
     pub models: Vec<PreparedModel>,
     /// The hash of this program.
     pub(super) program: String,
@@ -147,7 +147,7 @@ impl PreparedModel {
 /// Returns the elastic forces on a model's bodies.
 fn elasticity(certified: &CertifiedModel, spec: &ModelSpec) -> Result<Elasticity> {
     match &certified.elasticity {
-        // Those of a file with modes already follow the scene.
+        // The forces of a file with modes already follow the scene.
         known if matches!(spec.recipe.modes, ModesSpec::Given) => Ok(known.clone()),
         known if spec.is_linear => Ok(known.linearized()),
         Elasticity::Linear(_) => {
@@ -161,7 +161,7 @@ fn elasticity(certified: &CertifiedModel, spec: &ModelSpec) -> Result<Elasticity
     }
 }
 
-/// Adds forces and mass to a hash; the digest of a model has only its surface and its modes.
+/// Adds forces and mass to a hash. The digest of a model covers only its surface and its modes.
 fn add_forces(hasher: &mut blake3::Hasher, certified: &CertifiedModel) {
     let mut add = |numbers: &[f64]| {
         numbers.iter().for_each(|x| {

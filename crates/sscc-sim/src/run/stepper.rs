@@ -1,4 +1,4 @@
-//! Makes the steps of a world with its sounds, and records each step.
+//! Advances a world with its sounds, and records each step.
 
 use sscc_dynamics::{DynamicsError, Phase, SoundBank, World};
 
@@ -25,7 +25,7 @@ impl<C: Clocks> Stepper<C> {
         Self { world, sounds, layout, clock: StepClock::new(clocks), numbers: Vec::new(), block_start: 0 }
     }
 
-    /// Removes the states that are not yet in the log, to append them.
+    /// Removes and returns the states that are not yet in the log, so that they can be appended.
     pub fn take(&mut self) -> Vec<f64> {
         self.end_block();
         self.block_start = 0;
@@ -39,7 +39,7 @@ impl<C: Clocks> Stepper<C> {
         self.block_start = self.numbers.len();
     }
 
-    /// Returns the count of numbers that are not yet in the log.
+    /// Returns the number of values that are not yet in the log.
     pub fn pending_numbers(&self) -> usize {
         self.numbers.len()
     }
@@ -49,7 +49,7 @@ impl<C: Clocks> Stepper<C> {
         self.numbers.len() / self.layout.width()
     }
 
-    /// Makes one step, and records the state before it with the collisions that the step detects.
+    /// Advances by one step, and records the state before it with the collisions that the step detects.
     pub fn step(&mut self) -> Result<(), DynamicsError> {
         let has_energy = self.world.steps().is_multiple_of(ENERGY_STEPS as u64);
         let energy = if has_energy { self.world.energy() } else { f64::NAN };
@@ -122,7 +122,7 @@ mod tests {
 
     use super::*;
 
-    /// Clocks of a thread that works a tenth of the time. Each reading of the wall clock takes a millisecond.
+    /// Clocks of a thread that works during a tenth of the time. Each reading of the wall clock takes a millisecond.
     #[derive(Default)]
     struct Busy {
         readings: Cell<u32>,

@@ -21,10 +21,10 @@ use crate::scenes::Scene;
 /// Time from one checkpoint to the next.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
 
-/// Count of numbers in memory at which they are appended to the log.
+/// Number of values in memory at which they are appended to the log.
 const MAX_PENDING_NUMBERS: usize = 1 << 14;
 
-/// Maximum size of the log (4 GB). All outputs are made from it in memory.
+/// Maximum size of the log (4 GB). All outputs are created from it in memory.
 const MAX_LOG_BYTES: f64 = 4e9;
 
 /// The result of the loop over the steps.
@@ -70,7 +70,7 @@ pub fn run(
         restore(&mut world, &mut sounds, checkpoint.states, &checkpoint.memory)?;
     }
     announcement.iter().for_each(|line| watch.inform(line));
-    // The calling thread alone tests and moves a single body.
+    // A single body is tested and moved only by the calling thread.
     let is_one_thread = scene.bodies.len() == 1 || rayon::current_num_threads() == 1;
     let mut stepper = Stepper::new(world, sounds, layout, SystemClocks::new(is_one_thread));
     let is_whole = log.len() == 0;

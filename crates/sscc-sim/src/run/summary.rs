@@ -1,4 +1,4 @@
-//! Results of a simulation in numbers: the keys of `sscc simulate --json`, and lines for people.
+//! Results of a simulation as numbers: the keys of `sscc simulate --json`, and lines of text.
 
 use serde::Serialize;
 use sscc_tasks::machine_description;
@@ -35,7 +35,7 @@ pub struct Summary {
     pub colliding_steps: usize,
     /// Number of steps times number of bodies.
     pub body_steps: usize,
-    /// Number of those in which the body collides with itself.
+    /// Number of steps, over all bodies, in which the body collides with itself.
     pub colliding_body_steps: usize,
     /// Number of colliding triangle pairs within bodies in the last state.
     pub last_self_pairs: usize,
@@ -60,9 +60,9 @@ pub struct Summary {
 pub struct ModelSummary {
     /// Its name in the scene.
     pub name: String,
-    /// Where its shape comes from.
+    /// Origin of its shape.
     pub source: String,
-    /// A note for people.
+    /// A note, for example on an embedded shape in place of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// Number of triangles.
@@ -107,7 +107,7 @@ impl Summary {
             simulated_seconds: steps as f64 * scene.step,
             simulation_seconds: seconds,
             real_time_factor: steps as f64 * scene.step / wall,
-            // Several bodies are tested on several threads.
+            // The factor is unknown for several bodies, which are tested on several threads.
             real_time_factor_processor: processor_seconds
                 .filter(|_| scene.bodies.len() == 1)
                 .map(|seconds| steps as f64 * scene.step / seconds),
@@ -131,7 +131,7 @@ impl Summary {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Returns the results as lines for people.
+    /// Returns the results as lines of text.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for model in &self.models {

@@ -12,7 +12,7 @@ use crate::scenes::Scene;
 /// Maximum number of measured states, evenly spread.
 const MAX_STATES: usize = 100;
 
-/// Maximum number of bodies in all of these states.
+/// Maximum number of bodies over all measured states.
 const MAX_BODY_STATES: usize = 2000;
 
 /// The processor time of the traditional method at one state, on one thread.
@@ -20,9 +20,9 @@ const MAX_BODY_STATES: usize = 2000;
 pub struct TraditionalCost {
     /// The state.
     pub state: usize,
-    /// For all bodies (s).
+    /// Time for all bodies (s).
     pub seconds: f64,
-    /// For those that are awake (s): simulations test no others.
+    /// Time for the bodies that are awake (s). Simulations test only these.
     pub awake_seconds: f64,
 }
 

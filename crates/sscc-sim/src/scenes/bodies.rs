@@ -16,7 +16,7 @@ const MAX_BODIES: usize = 4096;
 pub struct BodySpec {
     /// Index of its model.
     pub model: usize,
-    /// Position of its centre of mass (m); none: the origin, for a held body its place in the file.
+    /// Position of its centre of mass (m). None means the origin, or for a held body its position in the file.
     pub position: Option<DVec3>,
     /// Rotation from the axes of its model to those of the world.
     pub orientation: DQuat,
@@ -91,7 +91,7 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
             position: Some(corner + spacing * DVec3::new(i as f64, j as f64, k as f64)),
-            // Rotates about the body's own upright axis. After a rotation about the vertical, all bodies would fall
+            // The rotation is about the body's own upright axis. After a rotation about the vertical, all bodies would fall
             // alike.
             orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),
             ..first.clone()

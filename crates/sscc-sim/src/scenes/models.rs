@@ -22,7 +22,7 @@ const MAX_CELLS: usize = 2000;
 pub struct ModelSpec {
     /// Shape, material and modes.
     pub recipe: Recipe,
-    /// Whether the dynamics are linear: the stiffness is that at rest. Of a model file, its forces decide.
+    /// Whether the dynamics are linear, with the stiffness at rest. For a model file, its forces determine this.
     pub is_linear: bool,
     /// Damping of its modes.
     pub damping: Damping,
@@ -66,16 +66,16 @@ const KEYS: [&str; 17] = [
     "spread",
 ];
 
-/// Keys for modes that are computed, which a file with modes does not take.
+/// Keys for modes that are computed. They are refused for a file with modes.
 const COMPUTED: [&str; 5] = ["kind", "rank", "resolution", "solid", "fix"];
 
-/// The names of the key of the amplitudes of modes.
+/// The two names of the key of the amplitudes of modes.
 const AMPLITUDES: [&str; 2] = ["amplitudes", "spread"];
 
-/// Names of embedded shapes, and of those that they stand in for.
+/// Names of shapes: embedded shapes, and real models that embedded shapes may replace.
 const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
 
-/// Reads all models of a scene. `folder` is that of the scene.
+/// Reads all models of a scene. `folder` is the folder of the scene.
 pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
     let mut models: Vec<ModelSpec> = Vec::new();
     for (name, section) in scene.named("models", &KEYS)? {
@@ -216,7 +216,7 @@ fn fix(model: &Section<'_>, folder: &Path) -> Result<Option<Fix>> {
     Ok(Some(Fix::Numbers(numbers.into_iter().map(|x| x as u32).collect())))
 }
 
-/// Reads `amplitudes = [...]`, one of each mode.
+/// Reads `amplitudes = [...]`, one for each mode.
 fn amplitudes(model: &Section<'_>, rank: Option<usize>) -> Result<Option<Vec<f64>>> {
     let key = model.either(AMPLITUDES)?;
     let Some(amplitudes) = model.numbers(key)? else { return Ok(None) };
@@ -238,8 +238,7 @@ pub fn damping(section: &Section<'_>) -> Result<Option<Damping>> {
     }))
 }
 
-/// Reads a material: by its name, with the damping of that name, or by its numbers. Missing numbers are those of the
-/// file.
+/// Reads a material: by its name, with the damping of that name, or by its numbers. Missing numbers are those of the file.
 fn material(model: &Section<'_>) -> Result<(PartialMaterial, Damping)> {
     if model.is_text("material") {
         let known = MATERIALS.map(|material| (material.name, material));

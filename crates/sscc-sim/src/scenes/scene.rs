@@ -48,7 +48,7 @@ pub struct Scene {
     pub steps: usize,
     /// Acceleration of gravity (m/s^2).
     pub gravity: DVec3,
-    /// The ground, if there is any.
+    /// The ground, if the scene has one.
     pub ground: Option<Ground>,
     /// Options of contacts.
     pub contact: ContactOptions,
@@ -60,7 +60,7 @@ pub struct Scene {
     pub models: Vec<ModelSpec>,
     /// The bodies at the beginning.
     pub bodies: Vec<BodySpec>,
-    /// Its sound, if there is any.
+    /// Its sound, if the scene has sound.
     pub sound: Option<Sound>,
     /// Key frames of the animation per second.
     pub frames_per_second: f64,
@@ -69,11 +69,11 @@ pub struct Scene {
 /// The sound of all bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sound {
-    /// Number of modes of the sound; more than those of the motion.
+    /// Number of modes of the sound. It is larger than that of the motion.
     pub modes: usize,
-    /// Damping of these modes; none: that of the body.
+    /// Damping of these modes. None means the damping of the body.
     pub damping: Option<Damping>,
-    /// Factor on the body's frequencies, as of a stiffer material.
+    /// Factor on the body's frequencies, as for a stiffer material.
     pub pitch: f64,
 }
 
@@ -99,8 +99,8 @@ impl Scene {
         WorldOptions { step, gravity, ground, contact, response, ..WorldOptions::default() }
     }
 
-    /// Shortens the scene for a quick run: a fifth of a second, with the small spring in place of each model, shaken harder
-    /// so that it collides with itself.
+    /// Shortens the scene for a quick run: a fifth of a second, with the small spring in place of each model, and with a
+    /// stronger shake, so that it collides with itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();
@@ -112,8 +112,8 @@ impl Scene {
         self.digest += " quick";
     }
 
-    /// Makes contacts within bodies penalties, as in the paper: the bodies then really collide with themselves, as benches of
-    /// queries need.
+    /// Sets contacts within bodies to penalties, as in the paper. The bodies then really collide with themselves, as benches
+    /// of queries require.
     pub fn penetrate(&mut self) {
         if self.response == Response::Contact {
             self.response = Response::Penalty;
@@ -144,7 +144,7 @@ impl Scene {
     /// Reads a scene from the text of a file of this name.
     ///
     /// # Errors
-    /// Those of [`Scene::read`], except of reading the file.
+    /// The errors of [`Scene::read`], except those of reading the file.
     pub fn parse(path: &Path, text: &str) -> Result<Self, SimError> {
         let source = Text { path, text };
         let table = DeTable::parse(text).map_err(|error| {
@@ -211,7 +211,7 @@ fn ground(scene: &Section<'_>) -> Result<Option<Ground>> {
     }))
 }
 
-/// The names of the key of the number of solver iterations.
+/// The two names of the key of the number of solver iterations.
 const ITERATIONS: [&str; 2] = ["iterations", "rounds"];
 
 fn contact(scene: &Section<'_>) -> Result<ContactOptions> {
@@ -237,7 +237,7 @@ fn response(scene: &Section<'_>) -> Result<Response> {
     Ok(scene.word("response", &words)?.unwrap_or_default())
 }
 
-/// Reads the sound. Each step makes one sample.
+/// Reads the sound. Each step produces one sample.
 fn sound(scene: &Section<'_>, rate: f64, steps: f64) -> Result<Option<Sound>> {
     let Some(sound) = scene.section("sound", &["modes", "damping", "pitch"])? else { return Ok(None) };
     if !RATES.contains(&rate) {

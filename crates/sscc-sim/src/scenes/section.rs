@@ -1,4 +1,4 @@
-//! Reads tables of a scene file; errors name the file and the line.
+//! Reads tables of a scene file. Errors name the file and the line.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -31,7 +31,7 @@ impl Text<'_> {
 pub struct Section<'a> {
     text: Text<'a>,
     table: &'a DeTable<'a>,
-    /// Place of the table in the text.
+    /// Range of the table in the text.
     span: Range<usize>,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Section<'a> {
         self.value(key).is_some()
     }
 
-    /// Returns which of the two names of a key the table has; the first if it has neither.
+    /// Returns the name of a key that the table has, out of two names; the first if it has neither.
     ///
     /// # Errors
     /// When the table has both.
@@ -196,7 +196,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Reads tables of any names within a table, in the order of the file.
+    /// Reads tables with any names within a table, in the order of the file.
     pub fn named(&self, key: &str, keys: &[&str]) -> Result<Vec<(&'a str, Section<'a>)>> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let DeValue::Table(all) = value.get_ref() else { return self.expected(key, "a table") };

@@ -3,7 +3,7 @@
 use super::section::Section;
 use crate::error::{Result, SimError};
 
-/// Rates of the first modes at the beginning; the other modes rest.
+/// Rates of the first modes at the beginning. The rates of all other modes are 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shake {
     /// One number for each of the first modes; its sign is that of the rate.
@@ -73,7 +73,7 @@ impl Shake {
         Ok(rates)
     }
 
-    /// Multiplies the rates by a factor, and keeps those of the first `rank` modes.
+    /// Multiplies the rates by a factor, and keeps only the rates of the first `rank` modes.
     pub(super) fn quicken(&mut self, factor: f64, rank: usize) {
         let factor = if self.unit == ShakeUnit::Energy { factor * factor } else { factor };
         self.values.truncate(rank);

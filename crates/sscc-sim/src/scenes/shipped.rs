@@ -7,7 +7,7 @@ use sscc_tasks::nearest;
 use super::scene::Scene;
 use crate::error::SimError;
 
-/// Names and texts of the scenes of the paper's Table 1: the Earth's gravity, and materials that exist.
+/// Names and texts of the scenes of the paper's Table 1, with the Earth's gravity and real materials.
 pub const SHIPPED: [(&str, &str); 5] = [
     ("spring", include_str!("../../scenes/spring.toml")),
     ("bunny16", include_str!("../../scenes/bunny16.toml")),
@@ -16,17 +16,17 @@ pub const SHIPPED: [(&str, &str); 5] = [
     ("dragon-polynomial", include_str!("../../scenes/dragon-polynomial.toml")),
 ];
 
-/// Names and texts of scenes made for the method: so gentle that most steps are within the root's radius, in a metric
-/// measured in their own motion.
+/// Names and texts of scenes that suit the method: most steps are within the root's radius, in a metric measured from their
+/// own motion.
 pub const OWN_AMPLITUDE_SCENES: [(&str, &str); 2] = [
     ("spring-gentle", include_str!("../../scenes/spring-gentle.toml")),
     ("bunny16-gentle", include_str!("../../scenes/bunny16-gentle.toml")),
 ];
 
-/// Reads a scene: a file, or a scene that comes with the program by its name.
+/// Reads a scene: a file, or by its name a scene that comes with the program.
 ///
 /// # Errors
-/// Those of [`Scene::read`]. If a name is neither, the error names the nearest one.
+/// The errors of [`Scene::read`]. If a name is neither a file nor a scene, the error states the nearest name.
 pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
     let all = || SHIPPED.iter().chain(&OWN_AMPLITUDE_SCENES);
     let shipped = path.to_str().and_then(|name| all().find(|(known, _)| *known == name));

@@ -11,8 +11,8 @@ use super::metric::metric;
 use crate::error::{At, Result};
 use crate::{GroupRules, TaskError, available_threads};
 
-/// Options of certificates. Absent ones have their defaults in new certificates, and may be anything in certificates from
-/// a file.
+/// Options of certificates. For new certificates, absent options have their defaults. Certificates from a file may have any
+/// value of an absent option.
 #[derive(Clone, Debug, Default)]
 pub struct CertificateRequest {
     /// File of the model.
@@ -27,36 +27,37 @@ pub struct CertificateRequest {
     pub center: Option<Vec<f64>>,
     /// Which triangles that share a vertex count (`--neighbours`).
     pub neighbours: Option<Neighbours>,
-    /// Whether to weld equal vertices (`--weld`); none: as the mesh has it ([`ContactFilter::of`]).
+    /// Whether to weld equal vertices (`--weld`). None means as the mesh requires it ([`ContactFilter::of`]).
     pub weld: Option<bool>,
-    /// Pairs within so many rings of those that collide at rest never count (`--ignore-rest`); none: all count.
+    /// Pairs within this number of rings of pairs that collide at rest never count (`--ignore-rest`). None means that all
+    /// pairs count.
     pub ignore_rest: Option<u32>,
     /// Which pairs of groups of triangles count.
     pub groups: GroupRules,
     /// Maximum number of exceptions (`--max-exceptions`).
     pub max_exceptions: Option<usize>,
-    /// Radii at which two triangles come nearer than a clearance (`--clearance`, `--rings`); none: radii of collisions.
+    /// Radii at which two triangles come nearer than a clearance (`--clearance`, `--rings`). None means radii of collisions.
     pub clearance: Option<Clearance>,
-    /// Whether certificates from a file may have any clearance, or none.
+    /// Whether certificates from a file may have any clearance or no clearance.
     pub any_clearance: bool,
     /// Which certificates to store (`--scheme`).
     pub scheme: Option<Scheme>,
     /// Memory for the pair tree (`--budget`), in bytes for each triangle.
     pub budget: Option<usize>,
-    /// Memory for local certificates (`--local-budget`), in bytes for each triangle, beside what the pair tree leaves of its own.
+    /// Memory for local certificates (`--local-budget`), in bytes for each triangle, in addition to the unused part of `budget`.
     pub local_budget: Option<usize>,
-    /// How far radii may reach (`--reach`), in units of the global radius of the paper.
+    /// Maximum radius (`--reach`), in units of the global radius of the paper.
     pub reach: Option<f64>,
-    /// Number of threads; none: all cores.
+    /// Number of threads. None means all cores.
     pub threads: Option<usize>,
 }
 
-/// Which certificates are stored.
+/// Kinds of certificates that are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
-    /// Those of the nodes and of the pairs of the root's children.
+    /// The certificates of the nodes and of the pairs of the root's children.
     Paper,
-    /// Also the pair tree and local certificates.
+    /// These certificates, the pair tree and local certificates.
     Full,
 }
 
@@ -83,10 +84,10 @@ impl CertificateRequest {
     /// Returns the scope of a query without certificates.
     ///
     /// # Errors
-    /// As [`CertificateRequest::options`].
+    /// The errors are those of [`CertificateRequest::options`].
     pub fn scope(&self, model: &ReducedModel) -> Result<Scope> {
         let (metric, mut filter) = (self.metric(model)?, self.filter(model)?);
-        // Contradictions of other options are refused here, too.
+        // These calls refuse contradictions of other options.
         self.budget()?;
         self.local_budget()?;
         self.reach()?;
@@ -107,7 +108,7 @@ impl CertificateRequest {
         self.metric.as_deref().map(|typed| metric(model, typed)).transpose()
     }
 
-    /// Returns the contact filter; but `ignore_rest` is not part of it.
+    /// Returns the contact filter. `ignore_rest` is not part of it.
     fn filter(&self, model: &ReducedModel) -> Result<ContactFilter> {
         let default = ContactFilter::of(model.mesh());
         let weld = self.weld.unwrap_or(default.weld);
@@ -119,7 +120,7 @@ impl CertificateRequest {
         })
     }
 
-    /// Returns the budget of the pair tree; none without a scheme and a budget.
+    /// Returns the budget of the pair tree; None if neither a scheme nor a budget is given.
     pub(super) fn budget(&self) -> Result<Option<usize>> {
         match (self.scheme, self.budget) {
             (Some(Scheme::Paper), None) => Ok(Some(0)),
@@ -131,7 +132,7 @@ impl CertificateRequest {
         }
     }
 
-    /// Returns the budget of local certificates; none without one and the scheme of the paper, which has none of them.
+    /// Returns the budget of local certificates; None if it is not given and the scheme is that of the paper, which has none.
     pub(super) fn local_budget(&self) -> Result<Option<usize>> {
         match (self.scheme, self.local_budget) {
             (Some(Scheme::Paper), None) => Ok(Some(0)),
@@ -142,7 +143,7 @@ impl CertificateRequest {
         }
     }
 
-    /// Returns how far radii may reach, if it is stated.
+    /// Returns the maximum radius, if it is given.
     pub(super) fn reach(&self) -> Result<Option<f64>> {
         if self.reach.is_some() && self.scheme == Some(Scheme::Paper) {
             return Err(refused_by_paper("its radii end at the global radius: leave ", Setting::Reach));

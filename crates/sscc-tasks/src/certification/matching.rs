@@ -1,4 +1,4 @@
-//! Certificates from a file, which must be those of a model and agree with the options that a user states.
+//! Certificates from a file, which must belong to a model and agree with the options that a user states.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ fn of_rings(rings: u32) -> String {
 }
 
 impl CertificateRequest {
-    /// Reads certificates. Refuses those of another model, and those that contradict an option.
+    /// Reads certificates. Refuses certificates of another model, and certificates that contradict an option.
     ///
     /// # Errors
     /// When they are refused, or a file cannot be read.
@@ -54,7 +54,7 @@ impl CertificateRequest {
         check_filter(certificates, &typed).in_file(path)
     }
 
-    /// Returns the first other contradiction: the cause of the refusal.
+    /// Returns the first other contradiction, which is the cause of the refusal.
     fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<Message>> {
         if let Some(cause) = self.clearance_contradiction(certificates) {
             return Ok(Some(cause));
@@ -136,7 +136,7 @@ impl CertificateRequest {
         }))
     }
 
-    /// Returns why certificates do not serve the clearance that is asked for, or none.
+    /// Returns the reason why certificates do not fit the requested clearance; None if they fit.
     fn clearance_contradiction(&self, certificates: &Certificates) -> Option<Message> {
         let anew = |cause: Message| Some(cause + "; certify anew");
         match (certificates.clearance(), &self.clearance) {
@@ -166,8 +166,8 @@ impl CertificateRequest {
         }
     }
 
-    /// Whether local certificates take no more than their budget and what the pair tree leaves of its own: that of `--budget`, else
-    /// the default. A budget of 0 allows none.
+    /// Whether local certificates take no more than their budget and the unused part of the pair tree's budget, which is
+    /// `--budget` or the default. A budget of 0 allows none.
     fn is_in_local_budget(
         &self,
         CertificateParts { hierarchy, pair_tree, local, .. }: &CertificateParts,

@@ -27,7 +27,7 @@ pub(super) fn metric(model: &ReducedModel, typed: &Path) -> Result<Metric> {
         }
         _ => from_file(model, typed)?,
     };
-    // Checked here, because later errors cannot name the setting.
+    // The metric is checked here, because later errors cannot name the setting.
     check_metric(&metric, model.mesh(), model.modes()).at(|| Setting::Metric + " " + typed.display())?;
     Ok(metric)
 }

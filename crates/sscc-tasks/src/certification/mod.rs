@@ -1,5 +1,5 @@
-//! Options of certificates as users state them: in part, with names of files. Certificates are computed by them, or read
-//! from a file that must agree with them.
+//! Options of certificates as users state them: only some of them, and with names of files. Certificates are computed by
+//! these options, or read from a file that must agree with them.
 
 mod certificate_request;
 mod matching;

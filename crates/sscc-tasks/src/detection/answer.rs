@@ -16,51 +16,51 @@ pub struct DetectionAnswer<'a> {
     pub file: &'a Path,
     /// The mesh, at rest.
     pub mesh: &'a TriMesh,
-    /// Number of the node, in an animation, or where several nodes show the mesh and there is another mesh.
+    /// Number of the node, in an animation, or if several nodes show the mesh and there is another mesh.
     pub node: Option<usize>,
-    /// Number of the node of the other mesh, where several show it.
+    /// Number of the node of the other mesh, if several nodes show it.
     pub other_node: Option<usize>,
-    /// Their names, in an animation or a scene.
+    /// Names of these nodes, in an animation or a scene.
     pub node_names: [Option<&'a str>; 2],
-    /// Number of the q, frame or time, counted from 0; of continuous queries that of the start.
+    /// Number of the q, frame or time, counted from 0; for continuous queries, of the one at the start.
     pub index: usize,
-    /// Its time (s), in an animation.
+    /// Time of the frame (s), in an animation.
     pub time: Option<f64>,
     /// Colliding pairs, sorted.
     pub pairs: &'a [Pair],
-    /// Time of impact (0 to 1) of each pair, of continuous queries.
+    /// Time of impact (0 to 1) of each pair, for continuous queries.
     pub times: Option<&'a [f64]>,
-    /// Depth and direction of the smallest translation that parts each pair, on request: that of its second triangle.
+    /// Depth and direction of the smallest translation of the second triangle that separates each pair, on request.
     pub penetrations: Option<&'a [Penetration]>,
-    /// Contact curves, on request of the last answer.
+    /// Contact curves of the last answer, on request.
     pub curves: Option<&'a ContactCurves>,
-    /// The clearance, and the distances that were found; then `pairs` are those nearer than it.
+    /// The clearance, and the distances that were found; `pairs` are then the pairs nearer than the clearance.
     pub near: Option<(Clearance, &'a Near)>,
-    /// How many connected components of the mesh are inside the other one, and of the other inside this one, where discrete
-    /// queries find no pair that collides.
+    /// Number of connected components of the mesh that are inside the other mesh, and of the other mesh inside this one, if
+    /// discrete queries find no colliding pair.
     pub enclosed: Option<[Enclosed; 2]>,
-    /// Of two closed meshes the volume that they share and the largest ball inside of both, where asked for.
+    /// For two closed meshes the volume inside both and the largest ball inside both, on request.
     pub body_penetration: Option<sscc::parts::BodyPenetration>,
-    /// Whether `pairs` are all.
+    /// Whether `pairs` contains all pairs.
     pub is_complete: bool,
-    /// Duration of the query on its thread, without reading files and evaluating animations. Where several q of a model are
-    /// answered together, the time of all of them divided by their number.
+    /// Duration of the query on its thread, without reading files and evaluating animations. If several q of a model are
+    /// answered together, it is the time of all of them divided by their number.
     pub microseconds: f64,
-    /// |z|, of a model.
+    /// |z|, for a model.
     pub norm: Option<f64>,
-    /// Whether the root's certificate held, of a model.
+    /// Whether the root's certificate held, for a model.
     pub root_certified: Option<bool>,
-    /// What proved the answer, of a model.
+    /// The kind of proof, for a model.
     pub proof: Option<Proof>,
-    /// Number of pairs that no certificate covers, so that each query tests them, of a model.
+    /// Number of pairs that no certificate covers, so that each query tests them, for a model.
     pub exceptions: usize,
-    /// The pairs that the run does not test.
+    /// The pairs that are not tested.
     pub left_out: &'a LeftOut,
     /// Nodes and node pairs that the query opened.
     pub opened: u64,
-    /// Pairs of AABBs that it compared.
+    /// Pairs of AABBs that the query compared.
     pub box_tests: u64,
-    /// Pairs of triangles that it tested exactly.
+    /// Pairs of triangles that the query tested exactly.
     pub triangle_tests: u64,
     /// Number of queries of the whole file.
     pub queries: usize,
@@ -68,9 +68,9 @@ pub struct DetectionAnswer<'a> {
     pub frames: usize,
     /// Times of all frames (s), in an animation.
     pub frame_times: Option<&'a [f64]>,
-    /// The mesh at the frame; none without [`has_positions`](super::Detection::has_positions).
+    /// The mesh at the frame; None without [`has_positions`](super::Detection::has_positions).
     pub shape: Option<ShapeInMotion<'a>>,
-    /// The other mesh at the frame, likewise.
+    /// The other mesh at the frame; None without `has_positions` or without another mesh.
     pub other: Option<ShapeInMotion<'a>>,
 }
 
@@ -83,11 +83,11 @@ pub struct ShapeInMotion<'a> {
     pub mesh: &'a TriMesh,
     /// Positions of its vertices at the frame.
     pub x_t0: &'a [DVec3],
-    /// Positions at the next frame, of continuous queries; else empty.
+    /// Positions at the next frame, for continuous queries; else empty.
     pub x_t1: &'a [DVec3],
 }
 
-/// Returns the `limit` earliest impacts (None: all), sorted by pair.
+/// Returns the `limit` earliest impacts, sorted by pair. None means all impacts.
 pub(super) fn earliest_impacts(impacts: &[Impact], limit: Option<usize>) -> Vec<Impact> {
     let mut kept = impacts.to_vec();
     if let Some(limit) = limit.filter(|limit| *limit < kept.len()) {

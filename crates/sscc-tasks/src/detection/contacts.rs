@@ -6,7 +6,7 @@ use sscc::parts::{
 };
 use sscc::{Error, Pair};
 
-/// What discrete queries compute of the contacts of their pairs.
+/// Options of discrete queries for the contacts of their pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactOptions {
     /// Depth and direction of each pair.

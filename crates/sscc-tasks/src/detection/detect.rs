@@ -19,14 +19,14 @@ use crate::error::Result;
 use crate::watch::check_cancelled;
 use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 
-/// Calls `take` with each file and the answer to each query: mesh by mesh, node by node (each with all nodes of the other mesh),
-/// frame by frame; then, frame by frame, every two nodes of a scene that collide with each other. `take` can end that early.
-/// Several meshes at rest are read and answered in parallel.
+/// Calls `take` with each file and the answer to each query: mesh by mesh, node by node (each with all nodes of the other
+/// mesh), frame by frame; then, frame by frame, for every two nodes of a scene that collide with each other. `take` can end
+/// the run early. Several meshes at rest are read and answered in parallel.
 ///
-/// Of a file that cannot be answered, `take` receives the error. It returns that to end the run, or goes on with the next file.
+/// If a file cannot be answered, `take` receives the error. It returns the error to end the run, or continues with the next file.
 ///
-/// Frames from files are checked before the first answer. Memory is that of one mesh and a few frames for each thread;
-/// meshes of a folder of frames are kept up to 1 GiB.
+/// Frames from files are checked before the first answer. Memory holds one mesh and a few frames for each thread; meshes of a
+/// folder of frames are kept up to 1 GiB.
 ///
 /// # Errors
 /// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when it
@@ -51,7 +51,7 @@ pub fn detect<E: From<TaskError>>(
     Ok(())
 }
 
-/// Answers the queries of one file, in parallel; `take` receives its error.
+/// Answers the queries of one file, in parallel. `take` receives the error of the file.
 fn by_itself<E: From<TaskError>>(
     file: &Path,
     is_last: bool,
@@ -81,7 +81,7 @@ impl<E> From<TaskError> for Failure<E> {
     }
 }
 
-/// Answers the queries of one file, in parallel. `is_last`: whether no other file follows.
+/// Answers the queries of one file, in parallel. `is_last` states whether no other file follows.
 fn in_motion<E>(
     file: &Path,
     is_last: bool,
@@ -139,7 +139,7 @@ fn in_motion<E>(
     )
 }
 
-/// Answers several files at rest, each on one thread; scenes by themselves, in their turn.
+/// Answers several files at rest, each on one thread. Scenes are answered one by one, at their place in the order.
 fn at_rest<E: From<TaskError>>(
     request: &Detection,
     watch: &dyn Watch,
@@ -149,7 +149,7 @@ fn at_rest<E: From<TaskError>>(
     let count = request.meshes.len();
     let work = |(): &mut (), index: usize| {
         let file = &request.meshes[index];
-        // Files whose nodes cannot be compared are refused there.
+        // `by_itself` refuses files whose nodes cannot be compared.
         if request.between_nodes || is_scene(file, request) {
             return Ok(None);
         }
@@ -158,7 +158,7 @@ fn at_rest<E: From<TaskError>>(
         let mesh = MovingMesh::at_rest(&source, 0, request, watch)?;
         let last = (index + 1 == count).then_some(0);
         let found = Worker::new(request, &mesh, None, last).answer(0)?;
-        // Its detector is no longer needed: it is far larger than the mesh.
+        // The detector is dropped: it is far larger than the mesh.
         Ok(Some((mesh.mesh, mesh.left_out, found)))
     };
     in_order(
@@ -181,7 +181,7 @@ fn at_rest<E: From<TaskError>>(
                     };
                     take(file, Ok(&answer(mesh, None, 0, (&found, request.clearance), [1, 1])))
                 }
-                // A scene, or a file that is refused.
+                // The file is a scene, or is refused.
                 Ok(None) => by_itself(file, index + 1 == count, request, watch, &mut take),
                 Err(error) => take(file, Err(error)),
             }?;

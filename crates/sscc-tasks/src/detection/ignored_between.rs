@@ -1,4 +1,4 @@
-//! The pairs of different nodes that collide at the first frame, and those around them, which never count.
+//! The ignored pairs of different nodes: pairs that collide at the first frame, and pairs around them.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,8 @@ use crate::error::{At, Result};
 pub(super) struct IgnoredBetween(BTreeMap<[usize; 2], Vec<Pair>>);
 
 impl IgnoredBetween {
-    /// Finds them where the request ignores pairs at rest. Each mesh leaves out those with later meshes, and says so.
+    /// Finds the pairs if the request ignores pairs at rest. Adds their number to the ignored pairs of the mesh with the
+    /// lower number.
     pub fn find(request: &Detection, meshes: &mut [MovingMesh<'_>]) -> Result<Self> {
         let Some(rings) = request.ignore_rest else { return Ok(Self::default()) };
         let mut found = BTreeMap::new();
@@ -44,7 +45,7 @@ impl IgnoredBetween {
         Ok(Self(found))
     }
 
-    /// The ignored pairs of two meshes, in the order of their numbers.
+    /// Returns the ignored pairs of two meshes, in the order of the meshes' numbers.
     pub fn of(&self, meshes: [usize; 2]) -> &[Pair] {
         self.0.get(&meshes).map_or(&[], Vec::as_slice)
     }

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-/// Results that a thread may be ahead of the one taken. It bounds memory.
+/// Number of results that a thread may compute in advance. It bounds memory.
 const AHEAD: usize = 2;
 
-/// Calls `work` for 0 to `count - 1` on threads with a state each, and `take` with each result in order, on the thread of
-/// the caller. Thread t does the items t, t + threads, ... Ends early when `take` breaks or fails.
+/// Calls `work` for 0 to `count - 1` on threads, each with its own state, and `take` with each result in order, on the thread
+/// of the caller. Thread t computes the items t, t + threads, ... Ends early when `take` breaks or fails.
 pub(super) fn in_order<S, T: Send, E>(
     count: usize,
     threads: usize,
@@ -32,12 +32,12 @@ pub(super) fn in_order<S, T: Send, E>(
             let (state, work) = (&state, &work);
             scope.spawn(move || {
                 let mut state = state();
-                // Without a receiver nobody needs further results.
+                // Without a receiver no further results are needed.
                 (first..count).step_by(threads).all(|item| sender.send(work(&mut state, item)).is_ok())
             });
             receiver
         };
-        // Dropped at the end, before the scope waits for its threads.
+        // The receivers are dropped at the end, before the scope waits for its threads.
         let receivers: Vec<_> = (0..threads).map(start).collect();
         for item in 0..count {
             // A thread that panicked sends nothing. The scope passes its panic on.

@@ -1,4 +1,4 @@
-//! A file with a mesh at rest, at each of its places.
+//! A file with a mesh at rest, at each of its places. A place is the mesh as one node of the file shows it.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -18,14 +18,14 @@ use crate::error::Result;
 use crate::groups::{GroupRules, MeshGroups};
 use crate::watch::Watch;
 
-/// Weights whose sums differ from 1 by more than this are no rounding.
+/// Maximum difference of a sum of weights from 1 that is treated as rounding.
 pub(super) const MAX_WEIGHT_ERROR: f64 = 1e-2;
 
-/// A mesh of a file, read once. The nodes of a glTF file give it places; other meshes are where they are.
+/// A mesh of a file, read once. The nodes of a glTF file give it places; other meshes have one place.
 pub(super) struct MeshSource {
     /// The file as in the request, which may name the mesh (`FILE#NAME`).
     pub file: PathBuf,
-    /// Name of the mesh beside the file.
+    /// Name of the mesh, given in addition to the file.
     pub name: Option<String>,
     /// Groups that hold between the mesh and the other one of the request.
     pub groups: Option<TriangleGroups>,
@@ -38,10 +38,10 @@ enum Content {
 }
 
 impl MeshSource {
-    /// Reads a mesh. `name` is that of a mesh of a glTF file.
+    /// Reads a mesh. `name` is the name of a mesh of a glTF file.
     pub fn read(file: &Path, name: Option<&str>, watch: &dyn Watch) -> Result<Self> {
         let (path, name_of_path) = split_mesh_name(file);
-        // Both names at once are an error of the reader.
+        // If both names are given, the reader returns an error.
         let content = match is_gltf(&path) && (name_of_path.is_none() || name.is_none()) {
             true => Content::Placed(Box::new(read_placed_mesh(&path, name_of_path.as_deref().or(name))?)),
             false => {
@@ -55,7 +55,7 @@ impl MeshSource {
         Ok(source)
     }
 
-    /// Warns of a mesh that no node shows, and of skin weights that break the standard.
+    /// Warns if no node shows the mesh, and if skin weights break the standard.
     fn warn(&self, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
         let warn = |text: &str| watch.warn(&format!("{}: {text}", self.file.display()));
@@ -71,10 +71,10 @@ impl MeshSource {
         }
     }
 
-    /// Warns if the first place does not represent all: skins deform a mesh, and a scale of 0 flattens it.
+    /// Warns if the first place does not represent all places: skins deform a mesh, and a scale of 0 flattens it.
     pub fn warn_of_other_places(&self, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
-        // Places with the same skin are one.
+        // Places with the same skin count as one.
         let is_other = |place: &usize| match placed.skin(*place) {
             None => placed.skin(0).is_some() || placed.is_flattened(*place) || placed.is_flattened(0),
             skin => skin != placed.skin(0),
@@ -89,7 +89,7 @@ impl MeshSource {
         }
     }
 
-    /// Number of places, at least 1.
+    /// Returns the number of places, at least 1.
     pub fn places(&self) -> usize {
         match &self.content {
             Content::Plain(_) => 1,
@@ -97,7 +97,7 @@ impl MeshSource {
         }
     }
 
-    /// Number of the node at a place, where there are several places.
+    /// Returns the number of the node at a place, if there are several places.
     pub fn node(&self, place: usize) -> Option<usize> {
         match &self.content {
             Content::Placed(placed) if placed.places() > 1 => placed.node(place),
@@ -105,7 +105,7 @@ impl MeshSource {
         }
     }
 
-    /// Warns of the first `places` nodes that flatten the mesh.
+    /// Warns of those among the first `places` nodes that flatten the mesh.
     pub fn warn_of_flattened_places(&self, places: usize, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
         for node in
@@ -129,7 +129,7 @@ impl MeshSource {
         }
     }
 
-    /// Positions in the mesh's own coordinates, by which vertices are welded: rounding at a place joins and parts none.
+    /// Returns positions in the mesh's own coordinates. Vertices are welded by these, so that rounding at a place has no effect.
     pub fn own_positions(&self) -> &[DVec3] {
         match &self.content {
             Content::Plain(mesh) => mesh.rest_positions(),
@@ -137,7 +137,7 @@ impl MeshSource {
         }
     }
 
-    /// Classes of the vertices that are one at a place. A skin may part vertices of equal position.
+    /// Returns classes of the vertices that are welded at a place. A skin may separate vertices of equal position.
     pub fn weld_classes(&self, place: usize) -> WeldClasses {
         let of_skin = match &self.content {
             Content::Plain(_) => None,
@@ -146,7 +146,7 @@ impl MeshSource {
         of_skin.map_or_else(|| WeldClasses::at(self.own_positions()), WeldClasses::from)
     }
 
-    /// Gives two meshes the groups that hold between them, if rules say so.
+    /// Assigns the groups that hold between two meshes to both, if `rules` has any.
     pub fn set_groups(rules: &GroupRules, meshes: [&mut Self; 2]) -> Result<()> {
         let [a, b] = meshes;
         if rules.is_empty() && rules.by.is_none() {
@@ -168,7 +168,7 @@ impl MeshSource {
         Ok(())
     }
 
-    /// The groups of its triangles by their names, at the first place.
+    /// Returns the groups of its triangles by their names, at the first place.
     fn named_groups(&self, by: GroupsBy) -> Result<NamedGroups, IoError> {
         match &self.content {
             Content::Plain(_) => read_base_groups(&self.file, self.name.as_deref(), by),
@@ -178,7 +178,7 @@ impl MeshSource {
         }
     }
 
-    /// Refuses to compare a mesh with itself at the same place. Meshes with the same frames are so at any nodes.
+    /// Refuses to compare a mesh with itself at the same place. With the same frames, all nodes count as the same place.
     pub fn check_differs(&self, other: &Self, has_frames: bool) -> Result<()> {
         let real = |source: &Self| fs::canonicalize(split_mesh_name(&source.file).0).ok();
         if real(self) != real(other) {

@@ -25,7 +25,7 @@ pub(super) struct MovingMesh<'w> {
     pub name: Option<String>,
     pub mesh: TriMesh,
     pub detector: Detector,
-    /// The pairs that its answers leave out.
+    /// The pairs that its queries do not test.
     pub left_out: LeftOut,
     motion: Motion,
     watch: &'w dyn Watch,
@@ -40,12 +40,12 @@ enum Motion {
 /// An animation of a node at given times.
 struct Evaluation {
     scene: Arc<AnimatedScene>,
-    /// None: the scene as it is stored.
+    /// Number of the animation; None means the scene as it is stored.
     animation: Option<usize>,
     node: usize,
     weights: SkinWeights,
     times: Arc<[f64]>,
-    /// Whether the caller was warned that the node is flattened.
+    /// Whether the warning that the node is flattened was sent.
     is_warned: AtomicBool,
 }
 
@@ -61,7 +61,7 @@ impl<'w> MovingMesh<'w> {
         Self::with_motion(source, place, request, (watch, classes), |_, _| Ok(Motion::Rest))
     }
 
-    /// Returns a mesh with frames, and checks all frames. Nodes do not move frames, which have positions of their own.
+    /// Returns a mesh with frames, and checks all frames. Nodes do not move frames, which have their own positions.
     pub fn with_frames(
         source: &MeshSource,
         frames: &Path,
@@ -71,7 +71,7 @@ impl<'w> MovingMesh<'w> {
         let classes = || WeldClasses::at(source.own_positions());
         Self::with_motion(source, 0, request, (watch, classes), |mesh, mut classes| {
             let mut reader = FrameReader::open(frames, mesh, &source.file)?;
-            // A collection that is the mesh, too, has told them.
+            // If the mesh is in the same collection, its reader has sent the warnings.
             let lines = if frames == source.file { &[] } else { reader.warnings() };
             lines.iter().for_each(|line| watch.warn(&format!("{}: {line}", frames.display())));
             watch.begin(Stage::Reading);
@@ -113,13 +113,13 @@ impl<'w> MovingMesh<'w> {
         let left_out = match request.against {
             Some(_) => left_out.between_meshes(),
             None => {
-                // Frames are at no node.
+                // Frames are independent of nodes.
                 let is_shown_again = matches!(motion, Motion::Rest) && source.places() > 1;
                 let left_out = if is_shown_again { left_out.and_between_nodes() } else { left_out };
                 if request.meshes.len() > 1 { left_out.and_between_files() } else { left_out }
             }
         };
-        // Frames are at no node.
+        // Frames are independent of nodes.
         let is_placed = request.against.is_some() && matches!(motion, Motion::Rest);
         let node = source.node(place).filter(|_| is_placed);
         Ok(Self { file: file.to_owned(), node, name: None, mesh, detector, left_out, motion, watch })
@@ -224,7 +224,7 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
-    /// Replaces `positions` by those at a frame. A mesh with one frame has it at all times.
+    /// Replaces `positions` by the positions at a frame. A mesh with one frame has it at all times.
     pub fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<()> {
         let frame = frame.min(self.frames() - 1);
         match &self.motion {
@@ -236,7 +236,7 @@ impl<'w> MovingMesh<'w> {
             Motion::Animation(evaluation) => {
                 let is_flat =
                     evaluation.positions(frame, positions).map_err(|error| in_file(error, &self.file))?;
-                // Which frame is first depends on the threads, so the warning names none.
+                // The first such frame depends on the threads, so the warning names no frame.
                 if is_flat && !evaluation.is_warned.swap(true, Ordering::Relaxed) {
                     self.watch.warn(&format!(
                         "{}: node {}: a scale of 0 flattens the mesh at some time, so that its triangles touch",
@@ -251,7 +251,7 @@ impl<'w> MovingMesh<'w> {
 }
 
 impl Evaluation {
-    /// Replaces `positions` by those at a frame. Returns whether a scale of 0 flattens triangles.
+    /// Replaces `positions` by the positions at a frame. Returns whether a scale of 0 flattens triangles.
     fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<bool, FormatError> {
         let pose = self.scene.pose(self.animation, self.times[frame])?;
         pose.positions(self.node, self.weights, positions)?;
@@ -273,8 +273,8 @@ fn filter(request: &Detection, weld: bool, groups: Option<TriangleGroups>) -> Co
     }
 }
 
-/// Makes a detector under a filter, which ignores pairs that collide at rest if the request says so. Returns also what the
-/// filter leaves out.
+/// Creates a detector with a filter, which ignores pairs that collide at rest if the request requires it. Also returns the
+/// pairs that the filter excludes.
 fn detector(
     mesh: &TriMesh,
     filter: ContactFilter,

@@ -1,4 +1,4 @@
-//! Which triangles are nearer than a clearance, and the smallest distance.
+//! The pairs of triangles nearer than a clearance, and the smallest distance.
 
 use sscc::{Error, NearPair, Pair};
 
@@ -7,15 +7,15 @@ use sscc::{Error, NearPair, Pair};
 pub struct Near {
     /// Distance of each pair nearer than the clearance (model unit).
     pub distances: Vec<f64>,
-    /// The nearest pair that counts, also where it is not nearer than the clearance; none where no pair counts, and where it is not
-    /// nearer and certificates leave its distance open.
+    /// The nearest pair that counts, even if it is not nearer than the clearance. None if no pair counts, or if it is not
+    /// nearer and certificates do not determine its distance.
     pub nearest: Option<NearPair>,
-    /// Whether no pair is near, and certificates leave the smallest distance open.
+    /// Whether no pair is near, and certificates do not determine the smallest distance.
     pub is_open: bool,
 }
 
 impl Near {
-    /// The distances of some of these pairs, at least one of which is near.
+    /// Returns the distances of some of these pairs, at least one of which is near.
     pub(super) fn of_pairs(&self, pairs: &[Pair], kept: &[usize]) -> Self {
         let near = |i: &usize| NearPair { pair: pairs[*i], distance: self.distances[*i] };
         Self {
@@ -25,7 +25,7 @@ impl Near {
         }
     }
 
-    /// Returns the near pairs and their distances; the nearest pair only where one is near.
+    /// Returns the near pairs and their distances. The nearest pair is known only if a pair is near.
     pub(super) fn of_certified(found: Vec<NearPair>) -> (Vec<Pair>, Self) {
         let nearest = found.iter().copied().min_by(|a, b| a.distance.total_cmp(&b.distance));
         let distances = found.iter().map(|near| near.distance).collect();
@@ -33,7 +33,7 @@ impl Near {
         (found.into_iter().map(|near| near.pair).collect(), near)
     }
 
-    /// Returns the near pairs and their distances. `nearest` searches for the nearest pair, where none is near.
+    /// Returns the near pairs and their distances. `nearest` searches for the nearest pair if no pair is near.
     pub(super) fn of(
         found: Vec<NearPair>,
         nearest: impl FnOnce() -> Result<Option<NearPair>, Error>,

@@ -1,4 +1,4 @@
-//! The meshes of the nodes of a scene against each other, frame by frame.
+//! Queries of the meshes of the nodes of a scene against each other, frame by frame.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ impl<'m, 'w> NodePairs<'m, 'w> {
         Self { request, sides: meshes.iter().map(|mesh| Side::new(mesh)).collect(), ignored }
     }
 
-    /// Answers the queries of all pairs of meshes at a frame. Returns those with colliding (or near) pairs, in order.
+    /// Answers the queries of all pairs of meshes at a frame. Returns the answers with colliding (or near) pairs, in order.
     pub fn answer(&mut self, frame: usize) -> Result<Vec<([usize; 2], QueryResult)>> {
         let Self { request, sides, ignored } = self;
         sides.iter_mut().try_for_each(|side| side.read(frame, request.is_continuous))?;

@@ -11,10 +11,10 @@ use crate::GroupRules;
 /// Meshes, their motion, and which pairs of triangles count.
 #[derive(Clone, Debug)]
 pub struct Detection {
-    /// Files of meshes; each is answered by itself. Frames and another mesh need exactly one. `FILE#NAME` names a mesh of
-    /// a glTF file ([`sscc_io::split_mesh_name`]).
+    /// Files of meshes; each is answered separately. Frames and another mesh need exactly one file. `FILE#NAME` names a mesh
+    /// of a glTF file ([`sscc_io::split_mesh_name`]).
     pub meshes: Vec<PathBuf>,
-    /// Name of the mesh in a glTF file with several meshes; of `meshes` alone, not of the other mesh.
+    /// Name of the mesh in a glTF file with several meshes. It applies only to `meshes`, not to the other mesh.
     pub mesh_name: Option<String>,
     /// Motion of the meshes.
     pub motion: MeshMotion,
@@ -22,37 +22,38 @@ pub struct Detection {
     pub against: Option<OtherMesh>,
     /// Which triangles that share a vertex count.
     pub neighbours: Neighbours,
-    /// Whether equal vertices are one vertex for adjacency: those of equal position at rest and in all frames; in animations
-    /// those of equal rest position, morph displacements and influences. None: as the
-    /// mesh has it ([`sscc::ContactFilter::of`]); in animations they are.
+    /// Whether equal vertices are one vertex for adjacency: vertices of equal position at rest and in all frames; in
+    /// animations vertices of equal rest position, morph displacements and influences. None means as the mesh requires it
+    /// ([`sscc::ContactFilter::of`]), and true in animations.
     pub weld: Option<bool>,
     /// Whether pairs that collide at rest never count.
     pub ignore_rest: Option<u32>,
-    /// Whether the meshes of different nodes of an animation are also compared with each other; those of a scene of several
-    /// meshes at rest are in any case. Where pairs at rest are ignored, so are the pairs of different nodes that collide at the first
-    /// time, and those around them.
+    /// Whether the meshes of different nodes of an animation are also compared with each other. The nodes of a scene of
+    /// several meshes at rest are always compared. If pairs at rest are ignored, so are the pairs of different nodes that
+    /// collide at the first time, and the pairs around them.
     pub between_nodes: bool,
-    /// Which pairs of groups of triangles count; with another mesh, or between nodes, also those between the meshes.
+    /// Rules for pairs of groups of triangles; with another mesh, or between nodes, they also apply between the meshes.
     pub groups: GroupRules,
     /// Whether to answer continuous queries, from each frame to the next, every vertex on a straight line.
     pub is_continuous: bool,
-    /// Maximum number of pairs for each query; of continuous queries the earliest. None: more than
-    /// [`sscc::Detector::MAX_PAIRS`] are an error.
+    /// Maximum number of pairs for each query; for continuous queries, of the earliest pairs. None means no limit, and more
+    /// than [`sscc::Detector::MAX_PAIRS`] pairs are an error.
     pub limit: Option<usize>,
-    /// Asks for the pairs nearer than this, with their distances, in place of those that collide. For discrete queries without a limit.
+    /// Requests the pairs nearer than this, with their distances, instead of colliding pairs. Only for discrete queries
+    /// without a limit.
     pub clearance: Option<Clearance>,
-    /// Asks of two meshes, both closed, for the volume that they share and the largest ball inside of both. For discrete queries.
+    /// Requests for two closed meshes the volume inside both and the largest ball inside both. Only for discrete queries.
     pub penetration: bool,
-    /// What discrete queries compute of the contacts of their pairs.
+    /// Options of discrete queries for the contacts of their pairs.
     pub contacts: ContactOptions,
     /// Whether answers have the positions of each frame, as reports need them.
     pub has_positions: bool,
-    /// Number of threads; none: all cores. Answers do not depend on it.
+    /// Number of threads. None means all cores. Answers do not depend on it.
     pub threads: Option<usize>,
 }
 
 impl Default for Detection {
-    /// No mesh; everything else as for a mesh at rest, with all pairs.
+    /// Returns a request without meshes. All other values are those for a mesh at rest, with all pairs.
     fn default() -> Self {
         Self {
             meshes: Vec::new(),
@@ -78,9 +79,9 @@ impl Default for Detection {
 /// Motion of a mesh.
 #[derive(Clone, Debug)]
 pub enum MeshMotion {
-    /// The mesh as it is in its file: of glTF at the first node that shows it. With another mesh, every node of both meshes
-    /// has an answer. Of a glTF file with several meshes, none of which is named, the scene: every node with a mesh, and every two
-    /// nodes.
+    /// The mesh as it is in its file; a glTF mesh at the first node that shows it. With another mesh, every node of both
+    /// meshes has an answer. A glTF file with several meshes, none of which is named, is a scene: every node with a mesh, and
+    /// every two nodes, have an answer.
     Rest,
     /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
     Frames(PathBuf),
@@ -88,21 +89,21 @@ pub enum MeshMotion {
     Animation(AnimationMotion),
 }
 
-/// An animation of a glTF file, and when it is answered.
+/// An animation of a glTF file, and the times of its queries.
 #[derive(Clone, Debug)]
 pub struct AnimationMotion {
-    /// Name of the animation, or its number; none: the scene as it is stored, at one time.
+    /// Name of the animation, or its number. None means the scene as it is stored, at one time.
     pub animation: Option<String>,
     /// Times of the queries.
     pub times: Times,
-    /// Number or name of the node; none: every node that shows a mesh with triangles.
+    /// Number or name of the node. None means every node that shows a mesh with triangles.
     pub node: Option<String>,
     /// Reading of weights that do not sum to 1.
     pub weights: SkinWeights,
 }
 
 impl AnimationMotion {
-    /// The scene as it is stored.
+    /// Returns the scene as it is stored.
     pub(super) fn at_rest() -> Self {
         Self { animation: None, times: Times::List(vec![0.0]), node: None, weights: SkinWeights::default() }
     }
@@ -111,14 +112,14 @@ impl AnimationMotion {
 /// Times of an animation.
 #[derive(Clone, Debug)]
 pub enum Times {
-    /// So many a second, from 0 to the last key frame, both included.
+    /// This number of times per second, from 0 to the last key frame, both included.
     PerSecond(f64),
-    /// These (s).
+    /// A list of times (s).
     List(Vec<f64>),
 }
 
 impl Default for Times {
-    /// 30 times a second.
+    /// Returns 30 times per second.
     fn default() -> Self {
         Self::PerSecond(30.0)
     }
@@ -131,6 +132,6 @@ pub struct OtherMesh {
     pub mesh: PathBuf,
     /// Name of the mesh in a glTF file with several meshes.
     pub mesh_name: Option<String>,
-    /// Its frames, as many as those of the mesh; none: it does not move.
+    /// Frames of the mesh, as many as those of the first mesh. None means that it does not move.
     pub frames: Option<PathBuf>,
 }

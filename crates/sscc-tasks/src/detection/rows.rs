@@ -20,38 +20,39 @@ use crate::{LeftOut, TaskError};
 pub struct RowQueries<'a> {
     /// The model of the query.
     pub model: &'a ReducedModel,
-    /// The q of each query; of continuous ones that of the start, and the next row that of the end.
+    /// The q of each query. For continuous queries it is the q at the start, and the next row is the q at the end.
     pub rows: &'a Rows,
     /// Whether to answer continuous queries.
     pub is_continuous: bool,
-    /// Maximum number of pairs for each query; of continuous queries the earliest. None: all.
+    /// Maximum number of pairs for each query; for continuous queries, of the earliest pairs. None means all pairs.
     pub limit: Option<usize>,
-    /// Asks for the pairs nearer than this, in place of those that collide. For discrete queries without a limit.
+    /// Requests the pairs nearer than this, instead of colliding pairs. Only for discrete queries without a limit.
     pub clearance: Option<Clearance>,
-    /// Whether the certificates of the query are for the clearance. Then the smallest distance is told only where it is below the
-    /// clearance: they do not prove how large it is beyond.
+    /// Whether the certificates of the query are for the clearance. Then the smallest distance is reported only if it is
+    /// below the clearance: the certificates do not prove larger ones.
     pub is_certified: bool,
-    /// Number of threads for discrete queries of several q. None: all cores.
+    /// Number of threads for discrete queries of several q. None means all cores.
     pub threads: Option<usize>,
     /// Options for the contacts of the pairs that discrete queries find.
     pub contacts: ContactOptions,
 }
 
-/// Maximum number of q that are answered together. The first one is answered alone, and then twice as many each time, so that
-/// answers come soon.
+/// Maximum number of q that are answered together. The first q is answered alone, and the number then doubles each time, so
+/// that the first answers come soon.
 const MAX_BLOCK: usize = 256;
 
-/// Queries that take less time than this are answered one by one, because threads do not start as fast.
+/// Queries that take less time than this are answered one by one, because starting threads would take longer.
 const MIN_MICROSECONDS: f64 = 20.0;
 
-/// Blocks are smaller where the q of a block would have more pairs together than this, at the largest number so far.
+/// Maximum number of pairs of a block, estimated from the largest number of pairs so far. Blocks with more pairs are made
+/// smaller.
 const MAX_BLOCK_PAIRS: usize = 1 << 24;
 
-/// Calls `take` with the answer to each query, in order. `take` can end that early. Discrete queries of several q are answered
-/// together ([`Query::batch`]), with the same answers.
+/// Calls `take` with the answer to each query, in order. `take` can end the run early. Discrete queries of several q are
+/// answered together ([`Query::batch`]), with the same answers.
 ///
 /// # Errors
-/// When a row is no q of the model, `progress` cancels, or `take` fails.
+/// When a row is not a configuration of the model, `progress` cancels, or `take` fails.
 pub fn check_rows<E: From<TaskError>>(
     query: &mut Query,
     requests: &RowQueries<'_>,
@@ -84,7 +85,7 @@ pub fn check_rows<E: From<TaskError>>(
         };
         let microseconds = start.elapsed().as_secs_f64() * 1e6 / (end - next) as f64;
         check_cancelled(progress)?;
-        // One row is no configuration: those before it have answers.
+        // One row is not a configuration: the rows before it have answers.
         if answers.is_err() && end - next > 1 {
             single = end;
             continue;
@@ -139,13 +140,13 @@ pub fn check_rows<E: From<TaskError>>(
 
 /// The answers to the queries of a block.
 enum Answers {
-    /// That to a single q, which the query holds.
+    /// The answer to a single q, which the query holds.
     One,
-    /// Those to several q.
+    /// The answers to several q.
     Batch(Vec<Answer>),
     /// All impacts of a motion.
     Motion(Vec<Impact>),
-    /// Those of a clearance, and the cost of the near pairs.
+    /// The near pairs of a clearance with their distances, and the cost of the query.
     Near(Vec<Pair>, Near, Statistics),
 }
 
@@ -159,7 +160,7 @@ struct Found<'a> {
 }
 
 impl Answers {
-    /// Returns one answer of the block. Of a motion, it has the earliest impacts up to `limit`.
+    /// Returns one answer of the block. For a motion, it has the earliest impacts up to `limit`.
     fn get<'a>(&'a self, number: usize, query: &'a Query, limit: Option<usize>) -> Found<'a> {
         let of_query = |pairs: Cow<'a, [Pair]>, times| Found {
             pairs,
@@ -215,7 +216,7 @@ fn near(
     Ok(Answers::Near(pairs, near, statistics))
 }
 
-/// Returns the contacts at a q that the requests ask for.
+/// Returns the contacts at a q that the request requires.
 fn contacts_of(
     requests: &RowQueries<'_>,
     rows: &[&[f64]],

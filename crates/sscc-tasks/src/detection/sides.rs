@@ -1,4 +1,4 @@
-//! The meshes of one file of a request, and the other mesh, pair by pair.
+//! The meshes of one file of a request, each paired with the other mesh.
 
 use std::fs;
 use std::path::Path;
@@ -15,14 +15,14 @@ use crate::TaskError;
 use crate::error::Result;
 use crate::watch::Watch;
 
-/// Maximum number of pairs of places of two meshes, each of which makes a detector. More are a mistake, or a hostile file.
+/// Maximum number of pairs of places of two meshes, each of which needs a detector. More indicate a mistake or a hostile file.
 const MAX_PLACES: usize = 10_000;
 
-/// A mesh, and the other one.
+/// A mesh, and the other mesh if there is one.
 pub(super) type MeshPair<'w> = (Arc<MovingMesh<'w>>, Option<Arc<MovingMesh<'w>>>);
 
 /// The meshes of one file, each with each place of the other mesh. At most two meshes with their detectors are in memory,
-/// apart from those of an animation.
+/// except for those of an animation.
 pub(super) struct Sides<'r, 'w> {
     request: &'r Detection,
     watch: &'w dyn Watch,
@@ -30,7 +30,7 @@ pub(super) struct Sides<'r, 'w> {
     other: Option<Side<'w>>,
     /// Number of frames of the motion, at least 1.
     pub frames: usize,
-    /// Of an animation or a scene whose nodes are also compared with each other the pairs that do not count.
+    /// The pairs that do not count between nodes, for an animation or a scene whose nodes are also compared with each other.
     compared: Option<IgnoredBetween>,
     /// The mesh of the last pair, with its number.
     last: Option<(usize, Arc<MovingMesh<'w>>)>,
@@ -111,7 +111,7 @@ impl<'r, 'w> Sides<'r, 'w> {
         }
     }
 
-    /// The meshes that are compared with each other, if any, and the pairs between them that do not count.
+    /// Returns the meshes that are compared with each other, if any, and the pairs between them that do not count.
     pub fn compared(&self) -> Option<(&[Arc<MovingMesh<'w>>], &IgnoredBetween)> {
         match (&self.mesh, &self.compared) {
             (Side::Moving(meshes), Some(ignored)) if meshes.len() > 1 => Some((meshes, ignored)),
@@ -154,7 +154,7 @@ impl<'r, 'w> Sides<'r, 'w> {
         Ok(sides)
     }
 
-    /// Number of pairs: of meshes, without another mesh.
+    /// Returns the number of pairs of meshes; without another mesh, the number of meshes.
     pub fn len(&self) -> usize {
         self.mesh.len().saturating_mul(self.others())
     }
@@ -163,7 +163,7 @@ impl<'r, 'w> Sides<'r, 'w> {
         self.other.as_ref().map_or(1, Side::len)
     }
 
-    /// Returns a pair, by its number: mesh by mesh, each with all places of the other one.
+    /// Returns a pair by its number. The order is mesh by mesh, each with all places of the other mesh.
     pub fn get(&mut self, number: usize) -> Result<MeshPair<'w>> {
         let (of_mesh, of_other) = (number / self.others(), number % self.others());
         let mesh = match self.last.take().filter(|(last, _)| *last == of_mesh) {
@@ -176,7 +176,7 @@ impl<'r, 'w> Sides<'r, 'w> {
     }
 }
 
-/// Reads the other mesh, which must be another one than `mesh` or have other frames.
+/// Reads the other mesh, which must differ from `mesh` or have other frames.
 fn other_source(
     other: &OtherMesh,
     mesh: &MeshSource,
@@ -198,7 +198,7 @@ fn side<'w>(
     watch: &'w dyn Watch,
 ) -> Result<Side<'w>> {
     let is_everywhere = frames.is_none() && request.against.is_some();
-    // A pair of places makes its meshes again, so the warnings are here. Too many places are refused without them.
+    // Each pair of places creates its meshes again, so the warnings are sent here, at most for the allowed places.
     source.warn_of_flattened_places(if is_everywhere { source.places().min(MAX_PLACES) } else { 1 }, watch);
     Ok(match frames {
         Some(frames) => {
@@ -209,23 +209,23 @@ fn side<'w>(
             Side::Places(Box::new(source), places)
         }
         None => {
-            // An affine map does not change which triangles of a mesh intersect, so its first place represents all.
+            // An affine map does not change which triangles of a mesh intersect, so its first place represents all places.
             source.warn_of_other_places(watch);
             Side::Places(Box::new(source), 1)
         }
     })
 }
 
-/// Whether a file is checked as a scene: it is glTF, has several meshes (or the nodes of one are compared), and the request names
-/// none.
+/// Whether a file is checked as a scene: it is glTF, has several meshes (or its nodes are compared), and the request names no
+/// mesh.
 pub(super) fn is_scene(file: &Path, request: &Detection) -> bool {
     let is_whole =
         request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
-    // What is malformed is left to the reader.
+    // The reader refuses malformed files.
     is_whole && is_gltf(file) && (request.between_nodes || count_meshes(file).is_ok_and(|count| count > 1))
 }
 
-/// Refuses a file without animations. A missing file is left to its reader.
+/// Refuses a file without animations. The reader reports a missing file.
 fn check_animated(file: &Path) -> Result<()> {
     if is_gltf(file) || !file.exists() && split_mesh_name(file).1.is_none() {
         return Ok(());

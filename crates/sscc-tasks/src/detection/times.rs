@@ -2,17 +2,17 @@
 
 use super::request::Times;
 
-/// Maximum number of times. More are a mistake in the unit of the rate or of the animation.
+/// Maximum number of times. More indicate a mistake in the unit of the rate or of the animation.
 const MAX_TIMES: f64 = 1e7;
 
-/// A time closer to the last one than this share of a step is the last one.
+/// A time that is closer to the last one than this share of a step equals the last one.
 const SAME: f64 = 1e-6;
 
 impl Times {
-    /// Returns the times of an animation that ends at `last_time` (s); at least one.
+    /// Returns the times of an animation that ends at `last_time` (s). There is at least one.
     ///
     /// # Errors
-    /// The cause, when a time is not finite, or there are none or too many.
+    /// A text with the cause, when a time is not finite, or there are none or too many.
     pub fn of(&self, last_time: f64) -> Result<Vec<f64>, String> {
         let rate = match self {
             Self::List(times) => match times.iter().find(|time| !time.is_finite()) {
@@ -46,7 +46,7 @@ mod tests {
         assert_eq!(times(2.0, 1.25), [0.0, 0.5, 1.0, 1.25]);
         assert_eq!(times(30.0, 0.0), [0.0]);
         assert_eq!(times(30.0, -1.0), [0.0]);
-        // 0.8333333 s as float32 is 20 steps of a 24th of a second, and a rounding.
+        // 0.8333333 s as float32 is 20 steps of a 24th of a second, plus a rounding error.
         let rounded = times(24.0, f64::from(0.833_333_3_f32));
         assert_eq!((rounded.len(), rounded[20]), (21, f64::from(0.833_333_3_f32)));
         assert_eq!(times(30.0, 1.0).len(), 31);

@@ -1,22 +1,22 @@
-//! Weld classes of a mesh: vertices that a reader joins, or that are at one position at rest and in every frame.
+//! Weld classes of a mesh: vertices that a reader joins, or that are at equal positions at rest and in every frame.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 use sscc::parts::weld_classes_of_positions;
 
-/// Classes of vertices that have been at equal positions so far. Each class has the number of its first vertex.
+/// Classes of vertices that have been at equal positions so far. The number of a class is that of its first vertex.
 pub(super) struct WeldClasses(Vec<u32>);
 
 impl From<&[u32]> for WeldClasses {
-    /// Takes the class of each vertex: the number of its first vertex.
+    /// Creates the classes from the class of each vertex, which is the number of its first vertex.
     fn from(classes: &[u32]) -> Self {
         Self(classes.to_vec())
     }
 }
 
 impl WeldClasses {
-    /// The classes at some positions.
+    /// Returns the classes at some positions.
     pub fn at(positions: &[DVec3]) -> Self {
         Self(weld_classes_of_positions(positions))
     }
@@ -33,7 +33,7 @@ impl WeldClasses {
         }
         let mut first = HashMap::new();
         for (vertex, (class, x)) in self.0.iter_mut().zip(positions).enumerate() {
-            // 0 and -0 are equal.
+            // Adding 0 makes 0 and -0 equal.
             let place = (*x + DVec3::ZERO).to_array().map(f64::to_bits);
             *class = *first.entry((*class, place)).or_insert(vertex as u32);
         }

@@ -18,7 +18,7 @@ pub(super) struct Worker<'m, 'w> {
     request: &'m Detection,
     side: Side<'m, 'w>,
     other: Option<Side<'m, 'w>>,
-    /// The frame of the last answer of the run, if this mesh has it.
+    /// The frame of the last answer of the run; None if another mesh has it.
     last: Option<usize>,
 }
 
@@ -42,12 +42,12 @@ pub(super) struct QueryResult {
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: Statistics,
-    /// Positions of the mesh and of the other one, at the start and the end; empty unless the request asks for them.
+    /// Positions of the mesh and of the other mesh, at the start and the end; empty unless the request requires them.
     pub positions: Vec<[Vec<DVec3>; 2]>,
 }
 
 impl QueryResult {
-    /// The same without these pairs (sorted), and with at most `limit` of the others: of a motion the earliest.
+    /// Returns the result without these pairs (sorted), and with at most `limit` of the others; for a motion, of the earliest.
     pub fn without(mut self, ignored: &[Pair], limit: Option<usize>) -> Self {
         if ignored.is_empty() {
             return self;
@@ -74,7 +74,7 @@ impl QueryResult {
 }
 
 impl<'m, 'w> Worker<'m, 'w> {
-    /// `last`: the frame of the last answer of the run, if this mesh has it.
+    /// Creates a worker. `last` is the frame of the last answer of the run, if this mesh has it.
     pub fn new(
         request: &'m Detection,
         mesh: &'m MovingMesh<'w>,
@@ -84,7 +84,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         Self { request, side: Side::new(mesh), other: other.map(Side::new), last }
     }
 
-    /// Answers the query at a frame, or from it to the next one.
+    /// Answers the query at a frame, or from the frame to the next one.
     pub fn answer(&mut self, frame: usize) -> Result<QueryResult> {
         let is_continuous = self.request.is_continuous;
         self.side.read(frame, is_continuous)?;
@@ -117,11 +117,11 @@ impl<'m, 'w> Worker<'m, 'w> {
     }
 }
 
-/// A mesh of a query, and the other one.
+/// A mesh of a query, and the other mesh if there is one.
 pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
-/// Answers one query at the positions that the sides have read, with at most `limit` pairs. `is_last`: whether it is the last query of the run, the only
-/// one whose contact curves are asked for.
+/// Answers one query at the positions that the sides have read, with at most `limit` pairs. `is_last` states whether it is
+/// the last query of the run, the only one with contact curves.
 pub(super) fn query(
     request: &Detection,
     limit: Option<usize>,
@@ -205,12 +205,12 @@ impl<'m, 'w> Side<'m, 'w> {
         Self { mesh, detector: mesh.detector.clone(), x_t0: Vec::new(), x_t1: Vec::new() }
     }
 
-    /// The mesh at the start of the motion.
+    /// Returns the mesh at the start of the motion.
     fn surface(&self) -> Surface<'_> {
         Surface { faces: self.mesh.mesh.faces(), positions: &self.x_t0 }
     }
 
-    /// Reads the positions at a frame, of a motion also those at the next one.
+    /// Reads the positions at a frame; for a motion, also at the next frame.
     pub fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
         self.mesh.positions(frame, &mut self.x_t0)?;
         if is_continuous {

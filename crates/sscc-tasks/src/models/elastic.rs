@@ -9,12 +9,14 @@ use super::new_model::{NewModel, SolidFacts};
 use super::source::SolidSource;
 use crate::TaskError;
 
-/// Default numbers of modes.
+/// Default number of linear modes.
 const LINEAR_RANK: usize = 20;
+
+/// Default number of nonlinear modes.
 const NONLINEAR_RANK: usize = 30;
 
-/// Maximum number of tetrahedra whose stiffness is compared with that in second order, which has about seven times as many
-/// vertices.
+/// Maximum number of tetrahedra whose stiffness is compared with that of the same tetrahedra in second order, which have
+/// about seven times as many vertices.
 const MAX_COMPARED: usize = 5000;
 
 /// Cause of the error if polynomial modes are requested with a rank or with fixed vertices.
@@ -51,7 +53,7 @@ pub(crate) struct ElasticModes {
 }
 
 impl ElasticModes {
-    /// Computes the modes; takes up to some minutes.
+    /// Computes the modes. This takes up to some minutes.
     pub fn new(
         source: &SolidSource,
         kind: ModesKind,
@@ -83,8 +85,8 @@ impl ElasticModes {
     }
 }
 
-/// Computes a model of a solid with fixed vertices (numbers of the solid, ascending). Without a rank it has 20 linear
-/// or 30 nonlinear modes. `name` is that of the source, for the provenance.
+/// Computes a model of a solid with fixed vertices (numbers of the solid, ascending). Without a rank it has 20 linear or 30
+/// nonlinear modes. `name` is the name of the source, for the provenance.
 ///
 /// # Errors
 /// When polynomial modes are requested with a rank or fixed vertices, the material is out of range, the solid has fewer
@@ -142,13 +144,13 @@ fn first_of_second_order(
     if !solid.cubes().is_empty() || !solid.tets10().is_empty() || solid.tets().len() > MAX_COMPARED {
         return Ok(None);
     }
-    // Nearly flat tetrahedra are none of second order.
+    // Nearly flat tetrahedra cannot be elevated to second order.
     let Ok((elevated, edges)) = solid.elevated() else { return Ok(None) };
     let is_fixed = |v: &u32| fixed.binary_search(v).is_ok();
     let corners = solid.vertices().len();
     let middles = edges.iter().zip(corners as u32..).filter(|(edge, _)| edge.iter().all(is_fixed));
     let fixed: Vec<u32> = fixed.iter().copied().chain(middles.map(|(_, v)| v)).collect();
-    // It is for a note alone, so only a cancellation ends the run.
+    // The result is only for a note, so only a cancellation ends the run.
     match linear_modes(&elevated, &fixed, 1, progress) {
         Ok(modes) => Ok(modes.frequencies().first().copied()),
         Err(error) if progress.is_cancelled() => Err(error.into()),

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use sscc::ReducedModel;
 
-/// Whether two vertices of triangles have equal positions and modes, as along seams: certificates should weld them.
+/// Whether two vertices of triangles have equal positions and modes, as along texture seams. Certificates should then weld them.
 pub fn has_equal_vertices(model: &ReducedModel) -> bool {
     let of = |v: u32| {
         let position = std::iter::once(&model.mesh().rest_positions()[v as usize]);

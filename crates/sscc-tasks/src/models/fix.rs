@@ -12,7 +12,7 @@ use crate::error::At;
 /// Selected vertices, before the solid exists.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fix {
-    /// All vertices in a box with these two corners, its faces included.
+    /// All vertices in a box with these two corners, including vertices on its faces.
     Box([DVec3; 2]),
     /// Vertices of the source's file, counted from 0.
     Numbers(Vec<u32>),
@@ -57,7 +57,7 @@ impl Fix {
     /// solid that hold the selected vertices of the surface.
     ///
     /// # Errors
-    /// When a vertex does not exist, or none is selected.
+    /// When a vertex does not exist, or no vertex is selected.
     pub fn vertices(&self, source: &SolidSource) -> Result<Vec<u32>, TaskError> {
         let mut fixed = Vec::new();
         match self {

@@ -1,8 +1,8 @@
-//! Where the numbers of a body's material come from: the caller, the solid's file, or the default material.
+//! The origin of the numbers of a body's material: the caller, the solid's file, or the default material.
 
 use sscc_solid::{Material, PartialMaterial};
 
-/// Where the numbers of a body's material come from.
+/// The origin of the numbers of a body's material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialOrigin {
     /// Text for the model's provenance.
@@ -27,7 +27,7 @@ impl MaterialOrigin {
             poisson_ratio: default.poisson_ratio.filter(|_| known.poisson_ratio.is_none()),
             density: default.density.filter(|_| known.density.is_none()),
         };
-        // Numbers that do not come from the file.
+        // These numbers do not come from the file.
         let others = given.or(&missing);
         let provenance = if others == given.or(&default) {
             others.to_string()

@@ -8,9 +8,9 @@ use sscc_io::ModelInfo;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct NewModel {
-    /// The model. Its metric is the strain energy for a solid, else the displacement.
+    /// The model. Its metric is the strain energy for a solid, else the displacement metric.
     pub model: ReducedModel,
-    /// Provenance; for a solid also the stiffness and the forces.
+    /// Provenance, and for a solid the stiffness and the forces.
     pub info: ModelInfo,
     /// Size, mass and frequencies of a solid.
     pub solid: Option<SolidFacts>,
@@ -29,8 +29,8 @@ pub struct SolidFacts {
     pub mass: f64,
     /// Frequency of each mode (Hz).
     pub frequencies: Vec<f64>,
-    /// First frequency (Hz) with the same tetrahedra in second order: linear ones are too stiff by the difference. None
-    /// where it was not computed.
+    /// First frequency (Hz) with the same tetrahedra in second order. The difference shows by how much linear tetrahedra are
+    /// too stiff. None if it was not computed.
     pub second_order: Option<f64>,
 }
 

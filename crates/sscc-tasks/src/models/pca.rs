@@ -24,7 +24,7 @@ pub fn pca_model(
     let count = frames.len();
     let explained = found.shares.iter().sum();
     let mut info = ModelInfo::new("", format!("mean and principal components of {count} {name}"));
-    // The modes are scaled by their deviations.
+    // The modes are scaled by their standard deviations.
     info.deviations = Some(vec![1.0; found.modes.rank()]);
     Ok(NewModel {
         model: ReducedModel::new(found.mesh, found.modes)?,

@@ -1,4 +1,4 @@
-//! Models with polynomial modes of a surface alone.
+//! Models with polynomial modes of a surface without a volume.
 
 use sscc::{ReducedModel, TriMesh};
 use sscc_io::ModelInfo;
@@ -7,7 +7,7 @@ use sscc_modes::polynomial_modes;
 use super::new_model::NewModel;
 use crate::TaskError;
 
-/// Computes a model with polynomial modes of a surface, without a volume and without stiffness. `name` is that of the
+/// Computes a model with polynomial modes of a surface, without a volume and without stiffness. `name` is the name of the
 /// surface, for the provenance.
 ///
 /// # Errors

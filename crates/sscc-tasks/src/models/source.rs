@@ -1,5 +1,4 @@
-//! The solid that modes are computed for: from a file, with or without a surface of its own, or a lattice around a
-//! surface.
+//! The solid for which modes are computed: from a file, with or without a separate surface, or a lattice around a surface.
 
 use std::path::Path;
 
@@ -23,9 +22,9 @@ pub enum SolidSource {
     Around {
         /// The surface.
         mesh: TriMesh,
-        /// The lattice, and how it moves the surface.
+        /// The lattice, and the map from its vertices to those of the surface.
         embedded: EmbeddedSurface,
-        /// Where its material comes from.
+        /// Origin of its material.
         material: MaterialOrigin,
         /// Lines about content of its file whose meaning is not clear.
         warnings: Vec<String>,
@@ -34,13 +33,13 @@ pub enum SolidSource {
     Within {
         /// The surface.
         mesh: TriMesh,
-        /// The solid, and how it moves the surface.
+        /// The solid, and the map from its vertices to those of the surface.
         embedded: EmbeddedSurface,
-        /// Vertex of the solid for each vertex of its file; None for those of elements that were left out.
+        /// Vertex of the solid for each vertex of its file; None for vertices of elements that were omitted.
         vertices: Vec<Option<u32>>,
-        /// Number of elements that were left out.
+        /// Number of elements that were omitted.
         left_out: usize,
-        /// Where its material comes from.
+        /// Origin of its material.
         material: MaterialOrigin,
         /// Lines about content of the surface's file whose meaning is not clear.
         warnings: Vec<String>,
@@ -51,7 +50,7 @@ pub enum SolidSource {
         meshed: MeshedSolid,
         /// The surface of its elements.
         boundary: Boundary,
-        /// Where its material comes from.
+        /// Origin of its material.
         material: MaterialOrigin,
     },
 }
@@ -62,7 +61,7 @@ pub fn is_solid(path: &Path) -> bool {
 }
 
 impl SolidSource {
-    /// Builds a lattice around a surface, with `cells` cubes along its longest side; none: about 20,000 cubes in all.
+    /// Builds a lattice around a surface, with `cells` cubes along its longest side. None means about 20,000 cubes in total.
     ///
     /// # Errors
     /// When the surface is open or meets itself, the material is out of range, or `progress` cancels.
@@ -95,7 +94,7 @@ impl SolidSource {
         Ok(Self::Within { mesh, embedded, vertices, left_out: outside, material, warnings: Vec::new() })
     }
 
-    /// Takes a solid with its boundary. Numbers of `material` override those of the solid.
+    /// Creates the source from a solid with its boundary. Numbers of `material` override those of the solid.
     ///
     /// # Errors
     /// When the solid is invalid, or the material is out of range.
@@ -110,7 +109,7 @@ impl SolidSource {
     /// multiplied by `scale`.
     ///
     /// # Errors
-    /// When a file cannot be read or is of another kind, and those of [`SolidSource::embedded`].
+    /// When a file cannot be read or is of another kind; also the errors of [`SolidSource::embedded`].
     pub fn read_within(
         surface: &Path,
         solid: &Path,
@@ -125,8 +124,8 @@ impl SolidSource {
         Ok(source.with_warnings(warnings))
     }
 
-    /// Reads a solid, or a surface and builds a lattice around it with `resolution` cubes along its longest side.
-    /// All lengths of the file are multiplied by `scale`. Numbers of `material` override those of the file.
+    /// Reads a solid, or reads a surface and builds a lattice around it with `resolution` cubes along its longest side. All
+    /// lengths of the file are multiplied by `scale`. Numbers of `material` override those of the file.
     ///
     /// # Errors
     /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
@@ -182,7 +181,7 @@ impl SolidSource {
         }
     }
 
-    /// Returns a note on elements that were left out, on vertices of the surface outside the solid, and on content of the
+    /// Returns a note on elements that were omitted, on vertices of the surface outside the solid, and on content of the
     /// surface's file whose meaning is not clear, if there are any.
     pub fn note(&self) -> Option<String> {
         let (left_out, outside, warnings) = match self {
@@ -215,7 +214,7 @@ impl SolidSource {
         }
     }
 
-    /// Returns the surface alone. One that is closed only when equal vertices are one has split vertices.
+    /// Returns the surface. If it is closed only when equal vertices are welded, it is a mesh with split vertices.
     pub fn into_mesh(self) -> TriMesh {
         match self {
             Self::Around { mesh, embedded, .. } if embedded.is_split() => mesh.with_split_vertices(),
@@ -235,7 +234,7 @@ impl SolidSource {
         }
     }
 
-    /// Returns the vertices of the solid that move a vertex of the file; of an embedded surface, of the solid's file.
+    /// Returns the vertices of the solid that move a vertex of the file; for an embedded surface, a vertex of the solid's file.
     ///
     /// # Errors
     /// When the file has fewer vertices.
@@ -257,7 +256,7 @@ impl SolidSource {
         }
     }
 
-    /// The vertices of the solid in a box, and those that hold vertices of the surface there.
+    /// Returns the vertices of the solid in a box, and the vertices that move vertices of the surface in the box.
     pub fn within(&self, low: DVec3, high: DVec3) -> Vec<u32> {
         let inside = |p: &DVec3| p.cmpge(low).all() && p.cmple(high).all();
         let solid = self.solid().vertices();
@@ -285,7 +284,7 @@ pub(crate) fn read_embedded(path: &Path) -> Result<(TriMesh, Vec<String>), TaskE
 /// Reads a surface for modes, with lines about content of its file whose meaning is not clear.
 ///
 /// # Errors
-/// When the ending is that of no mesh file; as [`sscc_io::read_mesh`].
+/// When the file extension is not that of a mesh file; also the errors of [`sscc_io::read_mesh`].
 pub fn read_surface(path: &Path) -> Result<(TriMesh, Vec<String>), IoError> {
     if path.exists() && !is_mesh_name(path) {
         let (what, supported) = (

@@ -19,7 +19,7 @@ pub struct Cache {
 }
 
 impl Cache {
-    /// Opens the folder `wanted`, else `sscc` in the system's cache folder.
+    /// Opens the folder `wanted`, or by default `sscc` in the system's cache folder.
     ///
     /// # Errors
     /// When the folder cannot be written to.
@@ -59,7 +59,7 @@ impl Cache {
         Ok(self.program.get_or_init(|| hasher.finalize().to_hex().to_string()))
     }
 
-    /// Reads a file. Makes and writes it if it is missing or damaged.
+    /// Reads a file. Creates it if it is missing or damaged.
     pub(crate) fn get<T>(
         &self,
         name: &str,

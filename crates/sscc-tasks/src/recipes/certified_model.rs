@@ -15,9 +15,9 @@ use crate::{TaskError, Watch};
 pub struct CertifiedModel {
     /// The name of its recipe.
     pub name: String,
-    /// Where its shape comes from.
+    /// Origin of its shape.
     pub source: String,
-    /// A note for people, for example on an embedded shape in place of a file.
+    /// A note, for example on an embedded shape in place of a file.
     pub note: Option<String>,
     /// The model.
     pub model: ReducedModel,
@@ -48,7 +48,7 @@ impl CertifiedModel {
         Ok(Self { name: name.clone(), source, note, model, elasticity, mass, full, paper: None })
     }
 
-    /// Returns the model with certificates as in the paper, too.
+    /// Returns the model with certificates as in the paper in addition.
     ///
     /// # Errors
     /// The errors of [`CertifiedModel::get`].
@@ -65,8 +65,8 @@ impl CertifiedModel {
     }
 }
 
-/// Returns at most `count` vibrations of a shape with their eigenvalues (1/s^2), from the cache or computed; of a model
-/// file, those of its modes.
+/// Returns at most `count` vibrations of a shape with their eigenvalues (1/s^2), from the cache or computed; for a model
+/// file, the vibrations of its modes.
 ///
 /// # Errors
 /// When the modes cannot be computed or written, or `watch` cancels.

@@ -1,4 +1,4 @@
-//! Models of files that have modes already: with their forces and their mass, in SI units.
+//! Models from files that contain modes: with their forces and their mass, in SI units.
 
 use std::path::{Path, PathBuf};
 
@@ -21,15 +21,15 @@ pub struct ModelFiles {
     pub modes: Option<PathBuf>,
     /// Reduced forces of the modes: VegaFEM's `.cub`.
     pub forces: Option<PathBuf>,
-    /// Whether the dynamics are linear; None: they are as the forces of the files.
+    /// Whether the dynamics are linear. None means as the forces of the files are.
     pub is_linear: Option<bool>,
 }
 
-/// A model of files, with all that its motion needs.
+/// A model from files, with all data for its motion.
 pub struct GivenModel {
     /// Surface and mass-orthonormal modes.
     pub model: ReducedModel,
-    /// Forces. Linear ones are diagonal.
+    /// Forces. Linear forces are diagonal.
     pub elasticity: Elasticity,
     /// Mass and support.
     pub mass: MassData,
@@ -40,10 +40,10 @@ pub struct GivenModel {
 /// Names of the unit of length in scenes.
 const METRES: [&str; 6] = ["", "m", "metre", "metres", "meter", "meters"];
 
-/// Maximum displacement of a fixed vertex, relative to the largest of all: zeros in single precision.
+/// Maximum displacement of a fixed vertex, relative to the largest displacement of all: zeros in single precision.
 const STILL: f64 = 1e-9;
 
-/// Minimum number of fixed vertices that hold a body. Fewer may be at rest by chance.
+/// Minimum number of fixed vertices for which a body is held. Fewer may be at rest by chance.
 const MIN_FIXED: usize = 3;
 
 impl GivenModel {
@@ -103,7 +103,7 @@ impl GivenModel {
         })
     }
 
-    /// Multiplies all lengths of the body by the factor; its material stays the same.
+    /// Multiplies all lengths of the body by the factor. Its material stays the same.
     fn scaled(self, factor: f64) -> Result<Self, TaskError> {
         if factor == 1.0 {
             return Ok(self);
@@ -159,7 +159,7 @@ fn elasticity(files: &ModelFiles, info: &ModelInfo, rank: usize) -> Result<Elast
     }
 }
 
-/// Returns mass and support: those of the file, or from a density; with a text on assumptions.
+/// Returns mass and support, from the file or from a density, and a text on assumptions.
 fn mass(
     path: &Path,
     model: &ReducedModel,

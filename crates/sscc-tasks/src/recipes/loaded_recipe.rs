@@ -19,15 +19,14 @@ use crate::{Stage, TaskError, Watch};
 /// A recipe with its shape; modes are not computed yet.
 pub struct LoadedRecipe<'a> {
     recipe: &'a Recipe,
-    /// Material of elements whose file names none.
+    /// Material of elements whose file states none.
     material: Material,
     matter: Matter,
     /// Factor on the lengths of its files.
     factor: f64,
-    /// Where the shape comes from.
+    /// Origin of the shape.
     pub source: String,
-    /// A note for people: the file that an embedded shape replaces, or the numbers of a file that the material
-    /// overrides.
+    /// A note: the file that an embedded shape replaces, or the numbers of a file that the material overrides.
     pub note: Option<String>,
     /// Rotation from the axes of the file to those of an upright shape, z up.
     pub upright: DQuat,
@@ -66,7 +65,7 @@ impl<'a> LoadedRecipe<'a> {
         self.recipe
     }
 
-    /// Returns the model of a recipe that has its modes already.
+    /// Returns the model of a recipe whose file contains modes.
     pub(crate) fn given(&self) -> Option<&GivenModel> {
         if let Matter::Model(given) = &self.matter { Some(given) } else { None }
     }
@@ -109,7 +108,7 @@ impl<'a> LoadedRecipe<'a> {
         Ok(self.around.get_or_init(|| around))
     }
 
-    /// Computes modes; takes up to some minutes.
+    /// Computes modes. This takes up to some minutes.
     pub(crate) fn modes(
         &self,
         modes: ModesSpec,
@@ -154,7 +153,7 @@ mod tests {
         assert_ne!(key(None), key(Some(30 + 1)));
     }
 
-    /// One tetrahedron of a soft material.
+    /// A tetrahedron of a soft material.
     const SOFT: &str = "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n\
         *MATERIAL soft\nENU, 1000, 1e6, 0.4\n*REGION\nallElements, soft\n";
 

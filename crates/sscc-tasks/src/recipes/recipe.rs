@@ -20,13 +20,13 @@ pub struct Recipe {
     pub modes: ModesSpec,
     /// Overrides the materials in the file of a solid.
     pub material: PartialMaterial,
-    /// Cubes along the longest side of the lattice around a surface; none: the default of the shape.
+    /// Number of cubes along the longest side of the lattice around a surface. None means the default of the shape.
     pub cells: Option<usize>,
     /// Size of the body; the default is that of its files.
     pub resize: Resize,
-    /// Vertices that do not move; none: a free body.
+    /// Vertices that do not move. None means a free body.
     pub fix: Option<Fix>,
-    /// The typical amplitude of each mode: the unit in which certificates measure q. None: the model's metric.
+    /// The typical amplitude of each mode: the unit in which certificates measure q. None means the model's metric.
     pub amplitudes: Option<Vec<f64>>,
 }
 
@@ -39,12 +39,12 @@ pub enum ModesSpec {
     Nonlinear(usize),
     /// The 24 quadratic polynomials.
     Polynomial,
-    /// Those of a model file.
+    /// The modes of a model file.
     Given,
 }
 
 impl ModesSpec {
-    /// Returns the number of modes r; None if a file that is not yet read has them.
+    /// Returns the number of modes r; None if it is in a file that is not yet read.
     pub fn rank(self) -> Option<usize> {
         match self {
             Self::Linear(rank) | Self::Nonlinear(rank) => Some(rank),
@@ -72,7 +72,7 @@ impl Recipe {
         }
     }
 
-    /// Returns the cubes along the longest side of the lattice; None: the default of all surfaces.
+    /// Returns the number of cubes along the longest side of the lattice; None means the default of all surfaces.
     pub(super) fn cells(&self) -> Option<usize> {
         let default = matches!(self.shape, Shape::Spring { .. }).then_some(SPRING_CELLS);
         self.cells.or(default)

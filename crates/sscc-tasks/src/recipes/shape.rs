@@ -1,4 +1,4 @@
-//! Shapes of recipes: embedded ones and files.
+//! Shapes of recipes: embedded shapes and files.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::resize::{Resize, scaled};
 use crate::text::file_name;
 use crate::{TaskError, Watch};
 
-/// Rings of the embedded spring, and vertices of each.
+/// Number of rings of the embedded spring, and number of vertices of each ring.
 pub const SPRING_RINGS: [usize; 2] = [500, 16];
 
 /// Shape of a recipe.
@@ -25,12 +25,12 @@ pub enum Shape {
     Spring {
         /// Number of rings.
         rings: usize,
-        /// Vertices of each.
+        /// Number of vertices of each ring.
         around: usize,
     },
-    /// The bunny; without files the embedded hare.
+    /// The bunny; the embedded hare if there are no files.
     Bunny,
-    /// The dragon; without files the embedded serpent.
+    /// The dragon; the embedded serpent if there are no files.
     Dragon,
     /// A surface or a solid.
     File(PathBuf),
@@ -41,7 +41,7 @@ pub enum Shape {
         /// The solid.
         solid: PathBuf,
     },
-    /// A model that has its modes.
+    /// A model whose file contains modes.
     Model(ModelFiles),
 }
 
@@ -49,9 +49,9 @@ pub enum Shape {
 pub(super) enum Matter {
     /// A surface, without a lattice.
     Surface(TriMesh),
-    /// A solid from a file, with or without a surface of its own.
+    /// A solid from a file, with or without a separate surface.
     Solid(Box<SolidSource>),
-    /// A model that has its modes.
+    /// A model whose file contains modes.
     Model(Box<GivenModel>),
 }
 
@@ -59,7 +59,7 @@ pub(super) enum Matter {
 pub(super) struct LoadedShape {
     pub matter: Matter,
     pub source: String,
-    /// A note for people.
+    /// A note, for example on an embedded shape in place of a file.
     pub note: Option<String>,
     /// Factor on the lengths of its files.
     pub factor: f64,
@@ -136,7 +136,7 @@ impl Shape {
     }
 }
 
-/// Returns the folder of real models: `wanted`, else that of the environment variable `SSCC_MODELS`, else None.
+/// Returns the folder of real models: `wanted`, else the folder in the environment variable `SSCC_MODELS`, else None.
 ///
 /// # Errors
 /// When the folder does not exist.

@@ -36,9 +36,9 @@ pub struct CertificateCost {
 }
 
 impl TimedCertificates {
-    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle). Without a
-    /// budget they are those of the paper, without local certificates; else these have the default budget. They ignore pairs that collide at rest.
-    /// `source` names the origin of the model in errors.
+    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle). Without
+    /// a budget they are those of the paper, without local certificates; else local certificates have the default budget.
+    /// They ignore pairs that collide at rest. `source` is the origin of the model in errors.
     pub(crate) fn get(
         cache: &Cache,
         name: &str,
@@ -104,7 +104,7 @@ impl TimedCertificates {
     }
 }
 
-/// The budget of local certificates beside this one of the pair tree.
+/// Returns the budget of local certificates for this budget of the pair tree.
 fn local_budget(budget: usize) -> usize {
     if budget == 0 { 0 } else { DEFAULT_LOCAL_BUDGET }
 }

@@ -1,4 +1,4 @@
-//! Pairs of modes that collide together: what neither weight causes alone.
+//! Combinations of two modes that collide in pairs which neither weight causes alone.
 
 use serde::Serialize;
 use sscc::parts::largest_depth;
@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::text::{counted, length, one_line};
 use crate::watch::CancelledBy;
 
-/// Two modes, both at the upper end of their ranges: the keys of a JSON line.
+/// Two modes, both at the upper end of their ranges. The fields are the keys of a JSON line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CombinationRow {
     /// The names of both modes, or their numbers.
@@ -20,7 +20,7 @@ pub struct CombinationRow {
     pub to: [f64; 2],
     /// Number of colliding pairs.
     pub count: usize,
-    /// Number of those that collide neither with one of these weights alone nor at the start.
+    /// Number of these pairs that collide neither with one of these weights alone nor at the start.
     pub new: usize,
     /// The largest penetration depth of a new pair (model unit).
     pub depth: f64,
@@ -29,20 +29,20 @@ pub struct CombinationRow {
 /// The combinations of a model that collide in new pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combinations {
-    /// Those with new pairs, in the order of their modes.
+    /// The combinations with new pairs, in the order of their modes.
     pub rows: Vec<CombinationRow>,
     /// Number of all combinations.
     pub all: usize,
 }
 
-/// Combinations that are answered together, which bounds the memory of their answers.
+/// Number of combinations that are answered together. It bounds the memory of their answers.
 const BLOCK: usize = 256;
 
-/// Finds the combinations of two modes, both at the upper end of their ranges and all others as at the start, in which pairs
-/// collide that collide with neither weight alone.
+/// Finds the combinations of two modes in which pairs collide that collide with neither weight alone. Both modes are at the
+/// upper end of their ranges, and all others keep their weight at the start.
 ///
 /// # Errors
-/// As [`SweepRequest::prepare`]; when the certificates are of another model, or `progress` cancels.
+/// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, or `progress` cancels.
 pub fn sweep_model_combinations(
     loaded: &LoadedModel,
     certificates: &Certificates,

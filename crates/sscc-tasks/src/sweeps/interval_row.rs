@@ -6,7 +6,7 @@ use sscc::{WeightInterval, WeightIntervals, WeightSample};
 use super::sweep_row::{MAX_NAME, weight};
 use crate::text::{counted, length, one_line};
 
-/// The intervals of one mode: the keys of its JSON line.
+/// The intervals of one mode. The fields are the keys of its JSON line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct IntervalRow {
     /// The name of the mode, or its number.
@@ -24,17 +24,17 @@ pub struct IntervalRow {
 /// One interval, see [`WeightInterval`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// Its first weight.
+    /// The first weight of the interval.
     pub from: f64,
-    /// Its last weight.
+    /// The last weight of the interval.
     pub to: f64,
-    /// Up to this weight the shape is proven free; null at the end of the range.
+    /// The shape is proven free up to this weight; null at the end of the range.
     pub free_until: Option<f64>,
-    /// From this weight on it is proven free; null at the end of the range.
+    /// The shape is proven free from this weight; null at the end of the range.
     pub free_from: Option<f64>,
-    /// Whether it collides at `from` and `to`.
+    /// Whether the shape collides at `from` and `to`.
     pub exact: bool,
-    /// The most colliding pairs.
+    /// The maximum number of colliding pairs.
     pub pairs: usize,
     /// The largest penetration depth of a pair (model unit).
     pub depth: f64,
@@ -51,7 +51,7 @@ impl From<WeightInterval> for Interval {
 }
 
 impl IntervalRow {
-    /// `mode_names`: all names, or none.
+    /// Creates the row. `mode_names` has all names, or is empty.
     pub fn new(found: WeightIntervals, mode_names: &[String]) -> Self {
         let mode = found.range.mode;
         let sample = |sample: &WeightSample| (sample.weight, sample.pairs, sample.depth);

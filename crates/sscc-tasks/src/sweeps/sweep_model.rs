@@ -15,18 +15,18 @@ use crate::{make_folder, read_configuration};
 /// Options of [`sweep_model`].
 #[derive(Clone, Debug, Default)]
 pub struct SweepRequest {
-    /// The weights at which the sweeps begin (`--q`); none: the centre of the certificates.
+    /// The weights at which the sweeps begin (`--q`). None means the centre of the certificates.
     pub q: Option<String>,
-    /// The range of all weights (`--range`), two numbers; none: [`SweepRange::of_model`].
+    /// The range of all weights (`--range`), two numbers. None means [`SweepRange::of_model`].
     pub range: Option<String>,
     /// The folder for the poses at the hits (`--pose`).
     pub pose: Option<PathBuf>,
-    /// Number of threads; none: all cores.
+    /// Number of threads. None means all cores.
     pub threads: Option<usize>,
 }
 
 impl SweepRequest {
-    /// Returns how far the weights go: the range of `--range`, else the default of the model.
+    /// Returns the range of the weights: that of `--range`, else the default of the model.
     ///
     /// # Errors
     /// When the range is not two finite numbers in ascending order.
@@ -34,11 +34,11 @@ impl SweepRequest {
         self.range.as_deref().map_or_else(|| Ok(SweepRange::of_model(loaded)), SweepRange::parse)
     }
 
-    /// Returns the weights at the start and the range of each mode, and makes the folder for poses: all that can be
-    /// refused before long work.
+    /// Returns the weights at the start and the range of each mode, and creates the folder for poses. It reports all errors
+    /// that can be found before long work.
     ///
     /// # Errors
-    /// When the q or the range is not one of the model, or the folder cannot be written to.
+    /// When the q or the range does not fit the model, or the folder cannot be written to.
     pub fn prepare(&self, loaded: &LoadedModel, center: &[f64]) -> Result<(Vec<f64>, Vec<[f64; 2]>)> {
         let q = self
             .q
@@ -49,7 +49,7 @@ impl SweepRequest {
         Ok((q, ranges))
     }
 
-    /// As [`Self::prepare`], with the numbers of the modes.
+    /// Returns the result of [`Self::prepare`] with the numbers of the modes.
     pub(super) fn ways(
         &self,
         loaded: &LoadedModel,
@@ -65,8 +65,8 @@ impl SweepRequest {
 /// files are written after the last sweep.
 ///
 /// # Errors
-/// As [`SweepRequest::prepare`]; when the certificates are of another model, `progress` cancels, or a pose cannot be
-/// written.
+/// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, `progress` cancels, or a pose
+/// cannot be written.
 pub fn sweep_model(
     loaded: &LoadedModel,
     certificates: &Certificates,
@@ -91,11 +91,11 @@ pub fn sweep_model(
     Ok(rows)
 }
 
-/// Finds for every mode the intervals of its weight over which the shape collides, by so many samples.
+/// Finds for every mode the intervals of its weight over which the shape collides, with this number of samples.
 ///
 /// # Errors
-/// As [`SweepRequest::prepare`]; when the certificates are of another model, there are too few or too many samples, or `progress`
-/// cancels.
+/// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, there are too few or too many
+/// samples, or `progress` cancels.
 pub fn sweep_model_intervals(
     loaded: &LoadedModel,
     certificates: &Certificates,
@@ -109,7 +109,7 @@ pub fn sweep_model_intervals(
     Ok(found.into_iter().map(|found| IntervalRow::new(found, &loaded.mode_names)).collect())
 }
 
-/// Writes the shape at q, where the file puts it, with the triangles of these pairs marked.
+/// Writes the shape at q, in the coordinates of the file, with the triangles of these pairs marked.
 fn write_pose(
     path: &Path,
     model: &ReducedModel,

@@ -9,7 +9,7 @@ use super::sweep_row::weight;
 use crate::TaskError;
 use crate::error::Result;
 
-/// How far sweeps of principal components go, in standard deviations. They contain 99.7% of a normal distribution.
+/// Range of sweeps of principal components, in standard deviations. It contains 99.7% of a normal distribution.
 const DEVIATIONS: f64 = 3.0;
 
 /// The ranges of the weights of all modes.
@@ -17,11 +17,11 @@ const DEVIATIONS: f64 = 3.0;
 pub enum SweepRange {
     /// The same range for every weight.
     Given([f64; 2]),
-    /// From 0 to 1: modes with names, which are morph targets.
+    /// From 0 to 1, for modes with names, which are morph targets.
     Targets,
-    /// Three standard deviations below and above the mean: principal components. Has the deviation of each weight.
+    /// Three standard deviations below and above the mean, for principal components. Holds the deviation of each weight.
     Deviations(Vec<f64>),
-    /// As far below and above the weight at the start as moves some vertex by half the diagonal of the AABB.
+    /// The change of the weight, below and above its start, that moves some vertex by half the diagonal of the AABB.
     HalfDiagonal,
 }
 
@@ -49,7 +49,7 @@ impl SweepRange {
         Self::of_modes(&loaded.mode_names, loaded.info.deviations.as_deref())
     }
 
-    /// As [`Self::of_model`], for the names of the modes (or none) and the standard deviations of q, if known.
+    /// Returns the default range for the names of the modes (or no names) and the standard deviations of q, if known.
     pub fn of_modes(mode_names: &[String], deviations: Option<&[f64]>) -> Self {
         match deviations {
             _ if !mode_names.is_empty() => Self::Targets,
@@ -104,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    /// A triangle with two modes.
+    /// Returns a triangle with two modes.
     fn model() -> ReducedModel {
         let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
         let modes = Modes::from_matrix(3, 2, |row, k| f64::from(u8::from(row == 3 * k))).unwrap();
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(known.to_string(), "each weight from -3 to 3 standard deviations, listed in units of q");
         let unit = range(&[], Some(&[1.0, 1.0])).to_string();
         assert_eq!(unit, "each weight from -3 to 3 standard deviations, the unit of q");
-        // Without variance, and with one beyond all numbers.
+        // One component has no variance, one has a variance beyond the range of numbers.
         let unusual = range(&[], Some(&[0.0, 1e308]));
         assert_eq!(unusual.ends(&model, &q), range(&[], None).ends(&model, &q));
         let names = ["a", "b"].map(str::to_owned);

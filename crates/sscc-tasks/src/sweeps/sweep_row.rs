@@ -5,7 +5,7 @@ use sscc::{Pair, Sweep, SweepOutcome};
 
 use crate::text::{counted, length, one_line};
 
-/// The result of one sweep: the keys of its JSON line.
+/// The result of one sweep. The fields are the keys of its JSON line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepRow {
     /// The mode, from 0.
@@ -21,18 +21,18 @@ pub struct SweepRow {
     pub first_free: Option<f64>,
     /// The first weight at which it collides.
     pub first_hit: Option<f64>,
-    /// The pairs that collide there.
+    /// The pairs that collide at `first_hit`.
     pub pairs: Vec<Pair>,
-    /// What is unusual about the result.
+    /// The outcome in words, if it is unusual.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
-    /// How the sweep ended.
+    /// The outcome of the sweep.
     #[serde(skip)]
     pub outcome: SweepOutcome,
 }
 
 impl SweepRow {
-    /// `mode_names`: all names, or none.
+    /// Creates the row. `mode_names` has all names, or is empty.
     pub(super) fn new(sweep: Sweep, mode_names: &[String]) -> Self {
         let is_usual = matches!(sweep.outcome, SweepOutcome::Free | SweepOutcome::Hit);
         Self {
@@ -48,7 +48,7 @@ impl SweepRow {
         }
     }
 
-    /// The name of the file for the pose at the hit: number, name and direction of the mode.
+    /// Returns the name of the file for the pose at the hit: number, name and direction of the mode.
     pub(super) fn file_name(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
         let name: String = self.name.chars().take(60).map(plain).collect();
@@ -73,11 +73,11 @@ impl SweepRow {
     }
 }
 
-/// Longest name of a line, in characters.
+/// Maximum length of the name in a line (characters).
 pub(super) const MAX_NAME: usize = 40;
 
-/// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs are one line;
-/// `remedy` is what the caller can change about them.
+/// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs share one line;
+/// `remedy` is an advice on them.
 pub fn sweep_table(rows: &[SweepRow], remedy: &str) -> Vec<String> {
     let lines = listed(rows);
     let cells: Vec<[String; 3]> = lines.iter().map(|same| cells(same, rows.len())).collect();
@@ -103,8 +103,8 @@ pub fn sweep_table(rows: &[SweepRow], remedy: &str) -> Vec<String> {
     table
 }
 
-/// Returns the rows of each line, in the order of their first rows: those that collide at the start with the same pairs
-/// together, and each other row alone.
+/// Returns the rows of each line, in the order of their first rows. Rows that collide at the start with the same pairs share
+/// a line; each other row has its own line.
 fn listed(rows: &[SweepRow]) -> Vec<Vec<&SweepRow>> {
     let mut lines: Vec<Vec<&SweepRow>> = Vec::new();
     for row in rows {
@@ -121,7 +121,7 @@ fn listed(rows: &[SweepRow]) -> Vec<Vec<&SweepRow>> {
     lines
 }
 
-/// Returns the name and the ends of a line of the table. `all`: number of all rows.
+/// Returns the name and the ends of a line of the table. `all` is the number of all rows.
 fn cells(same: &[&SweepRow], all: usize) -> [String; 3] {
     match same {
         [row] => [one_line(&row.name), weight(row.from), weight(row.to)],
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(lines.len(), 4, "{lines:?}");
         assert_eq!(lines[1], "all               COLLIDING at the start  2 pairs, first 0 7");
         assert_eq!(lines[3], "67 sweeps: 0 free, 67 not; free means proven free at every weight");
-        // Sweeps from elsewhere have lines of their own.
+        // Sweeps from other starts have separate lines.
         let mut mixed = rows.clone();
         mixed[5] = row(SweepOutcome::Free, Some(-1.5), None, &[]);
         mixed[6] = at_start(3, &[(5, 6)]);

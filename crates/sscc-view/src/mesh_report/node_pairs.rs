@@ -15,7 +15,7 @@ pub(super) struct NodePairs {
 }
 
 impl NodePairs {
-    /// Size of the pairs and segments in a report (bytes).
+    /// Returns the size of the pairs and segments in a report (bytes).
     pub fn bytes(&self) -> usize {
         12 * self.pairs.len() + 4 * self.impacts.len() + 24 * self.segments.len()
     }

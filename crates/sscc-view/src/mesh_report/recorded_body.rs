@@ -101,7 +101,7 @@ impl RecordedBody {
         self.impacts.extend(answer.times.into_iter().flatten().map(|time| *time as f32));
     }
 
-    /// Size of the pairs and segments (bytes).
+    /// Returns the size of the pairs and segments (bytes).
     pub fn contact_bytes(&self) -> usize {
         8 * self.pairs.len() + 4 * self.impacts.len() + 24 * self.segments.len()
     }

@@ -193,7 +193,7 @@ fn surface(shape: ShapeInMotion<'_>) -> Surface<'_> {
     Surface { faces: shape.mesh.faces(), positions: shape.x_t0 }
 }
 
-/// Size of the positions and faces of a body in a report (bytes).
+/// Returns the size of the positions and faces of a body in a report (bytes).
 fn planned_bytes(mesh: &TriMesh, frames: usize) -> u64 {
     let frame = 12 * mesh.rest_positions().len() as u64;
     // The first frame is stored twice.

@@ -43,7 +43,7 @@ impl Camera {
         Self { right, up, towards, center, scale, size: [side(extent.x), side(extent.y)] }
     }
 
-    /// Width and height of a view (pixels).
+    /// Returns the width and height of a view (pixels).
     pub fn size(&self) -> [usize; 2] {
         self.size
     }

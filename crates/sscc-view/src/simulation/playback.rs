@@ -95,7 +95,7 @@ pub fn playback(
     Ok((Some(playback), notes))
 }
 
-/// For each frame the number of self-colliding pairs of all bodies, as the maximum over the states strictly between the
+/// Returns for each frame the number of self-colliding pairs of all bodies, as the maximum over the states strictly between the
 /// previous frame and this one. The frames themselves miss contacts shorter than a frame.
 fn pairs_since(history: &History, frames: &[usize]) -> Vec<u64> {
     let largest =

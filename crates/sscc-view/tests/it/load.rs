@@ -65,7 +65,7 @@ fn dawdle(client: &Client, end: Instant) {
     }
 }
 
-/// Resident memory of this process in kB, on Linux.
+/// Returns the resident memory of this process in kB, on Linux.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok())

@@ -124,8 +124,8 @@ impl ElasticEnergy {
     fn add(&mut self, degree: usize, part: &[f64]) -> Result<(), DynamicsError> {
         let (r, largest) = (self.rank, part.iter().fold(0.0_f64, |m, x| m.max(x.abs())));
         let monomials = monomials::all(r, degree);
-        // The coefficient of m in the energy is that of m / q_i in f_i, divided by the power of q_i in m: for each q_i in
-        // m the same. The mean over all factors of m is taken.
+        // The coefficient of m in the energy is that of m / q_i in f_i, divided by the power of q_i in m. It is the same for
+        // each q_i in m, so the mean over all factors of m is used.
         let products = |i: usize, row: &'_ [f64]| -> Vec<(usize, f64, f64)> {
             let of = |(m, c): (&Vec<usize>, &f64)| {
                 let mut factors = [0; 4];
@@ -323,7 +323,7 @@ mod tests {
     use super::*;
     use sscc_solid::Stiffness;
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of a fixed sequence of pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0

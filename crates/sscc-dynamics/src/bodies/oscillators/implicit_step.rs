@@ -34,7 +34,7 @@ pub(crate) enum Rule {
     /// Newmark's average acceleration: the mean of the forces at both ends.
     Newmark,
     /// The mean of the forces on the straight line between both ends (average vector field). Forces are cubic, so Simpson's
-    /// rule gives it exactly, and its work is the change of the elastic energy: a step adds no energy.
+    /// quadrature gives this mean exactly, and its work is the change of the elastic energy: a step adds no energy.
     Conserving,
 }
 

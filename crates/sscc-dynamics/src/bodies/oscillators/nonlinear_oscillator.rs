@@ -1,5 +1,5 @@
-//! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5), with a rule that conserves
-//! energy, and shorter steps, where Newmark's method fails.
+//! Integrator for reduced nonlinear dynamics: implicit Newmark (Barbic and James 2005, section 5). Where Newmark's method
+//! fails, it uses a mean force that conserves energy, and shorter steps.
 
 use std::sync::Arc;
 
@@ -59,9 +59,9 @@ impl NonlinearOscillator {
         Ok(Self { step, solver: ImplicitStep::new(Arc::clone(&energy), damping, step), energy })
     }
 
-    /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration
-    /// `g - f(q)` under the forces g (r numbers each), the q whose derivative the step begins with (rest), the elastic energy
-    /// at q, and the energy that steps have added, less what they have lost (0).
+    /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration `g -
+    /// f(q)` under the forces g (r numbers each), the q whose derivative the step begins with (rest), the elastic energy at
+    /// q, and the energy that steps have added, less the energy that they have lost (0).
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
         let mut undamped = vec![0.0; 2 * q.len() + 2];
         self.update(q, &mut undamped, g, buffers);
@@ -288,8 +288,8 @@ mod tests {
         }
     }
 
-    /// Newmark's method alone multiplies the energy by 4 and by 12, and the two fastest motions end within 40 steps. The mean
-    /// force alone finds no solution of some whole step of them.
+    /// Newmark's method alone multiplies the energy by 4 and by 12, and the two fastest motions end within 40 steps. With the
+    /// mean force alone, some whole step of each motion has no solution.
     #[test]
     fn steps_too_long_for_their_forces_add_no_energy() {
         let forces = forces(4e3, 9e3, 1e8);

@@ -48,7 +48,7 @@ mod tests {
         let inverse_mass = DMat3::from_diagonal(DVec3::new(2.0, 0.5, 0.0));
         let sliding = DVec3::new(0.0, 3.0, 0.0);
         assert_eq!(sliding + inverse_mass * stop_sliding(sliding, &inverse_mass), DVec3::ZERO);
-        // One mode moves the points along x alone, up to rounding.
+        // One mode moves the points only along x, up to rounding.
         let one_mode = DMat3::from_diagonal(DVec3::new(2.0, 1e-17, -1e-17));
         for sliding in [DVec3::Y, DVec3::Z, DVec3::ZERO, DVec3::Y * 1e-17] {
             assert_eq!(stop_sliding(sliding, &one_mode), DVec3::ZERO);

@@ -111,7 +111,7 @@ mod tests {
     use crate::packed_rows::dispatch;
     use crate::{Body, Shape, Start, WorldOptions};
 
-    /// Fixed pseudo-random numbers in [-1, 1).
+    /// Returns the next of a fixed sequence of pseudo-random numbers in [-1, 1).
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 33) as f64 / 2.0_f64.powi(30) - 1.0
@@ -121,7 +121,7 @@ mod tests {
         DVec3::new(random(state), random(state), random(state))
     }
 
-    /// A tetrahedron with any modes.
+    /// Returns a tetrahedron with random modes.
     fn shape(rank: usize, state: &mut u64) -> Shape {
         let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
         let mesh = TriMesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
@@ -144,7 +144,7 @@ mod tests {
     }
 
     impl Contacts {
-        /// `shapes`: one for each body, the last of which is held.
+        /// Creates the contacts. `shapes` has one shape for each body, the last of which is held.
         fn new(shapes: &[Shape], count: usize, state: &mut u64) -> Self {
             let mut all = Vec::new();
             for (n, shape) in shapes.iter().enumerate() {
@@ -219,7 +219,7 @@ mod tests {
         }
     }
 
-    /// The same computation without rows: the oracle.
+    /// Oracle: the same computation without rows.
     struct Plain<'c> {
         contacts: &'c Contacts,
         masses: Vec<RigidVelocity>,
@@ -312,7 +312,7 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) -> Vec<DVec3> {
             for (n, impulse) in self.impulses.iter().enumerate() {
                 let along = self.rows.axes(n).map(|axis| axis.dot(*impulse));
-                // In two parts, of which the first is along the normal.
+                // The impulse is applied in two parts. The first is along the normal.
                 self.rows.push_along_normal(simd, n, 0.5 * along[0]);
                 self.rows.push_along_axes(simd, n, [0.5 * along[0], along[1], along[2]]);
             }

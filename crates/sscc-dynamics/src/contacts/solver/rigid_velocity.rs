@@ -1,4 +1,4 @@
-//! Velocities and inverse masses of a body: what an impulse changes.
+//! Velocities and inverse masses of a body, by which an impulse changes its motion.
 
 use glam::{DMat3, DVec3};
 

@@ -95,7 +95,7 @@ pub fn elastic(solid: &Solid, rank: usize, large: bool, fixed: &[u32]) -> Shape 
     shape.with_moments(moments).unwrap()
 }
 
-/// Soft rubber.
+/// Returns the material of soft rubber.
 pub fn rubber() -> Material {
     Material::new(&PartialMaterial { youngs_modulus: Some(1e5), ..PartialMaterial::default() }).unwrap()
 }

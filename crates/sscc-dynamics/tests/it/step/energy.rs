@@ -19,7 +19,7 @@ const STEPS: usize = 200;
 /// the energy of the modes.
 const MAX_ENERGY: f64 = 1.02;
 
-/// A random scene and its shape.
+/// Returns a random scene and its shape.
 fn draw(random: &mut Random) -> (RandomScene, Shape) {
     loop {
         let scene = RandomScene::draw(random);
