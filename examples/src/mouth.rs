@@ -11,8 +11,10 @@ use serde_json::{Value, json};
 use sscc_io::npy;
 use zip::{ZipWriter, write::SimpleFileOptions};
 
-/// The mouth is a sheet of skin around an opening, with vertices on rings: 2 x 64 x 6 triangles.
+/// Number of vertices of each ring. The mouth is a sheet of skin around an opening, with 2 x 64 x 6 triangles.
 const AROUND: usize = 64;
+
+/// Number of rings of triangles.
 const RINGS: usize = 6;
 
 /// The names of the modes.

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: runs all tests of all crates with the examples in their documentation, then at the same time those of
 //! the Python package, of the page, of the site and of C, and the lemmas, since none of these keeps two cores busy. With
-//! arguments for `cargo test` it runs only the tests of the crates. The package for npm has its own task, `cargo xtask wasm
-//! --test`.
+//! arguments for `cargo test` it runs only the tests of the crates. The package for npm has its own task,
+//! `cargo xtask wasm --test`.
 //!
 //! The task forwards the output line by line. Then it lists the skipped tests, and prints `N passed, N failed` as the
 //! last line. Skipped tests fail the run when `SSCC_NO_SKIPS` is set and not empty.

@@ -28,8 +28,10 @@ use sscc_tasks::{Cache, models_folder};
 /// Simulated time of each scene (s).
 const DURATION: f64 = 0.6;
 
-/// Models of all scenes, at this stiffness (Pa).
+/// Young's modulus of the models of all scenes (Pa).
 const YOUNGS: f64 = 1e6;
+
+/// Models of all scenes.
 const MODELS: &str = r#"
 steps_per_second = 1000
 duration = 1

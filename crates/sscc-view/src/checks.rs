@@ -14,8 +14,10 @@ use sscc_io::{ModelInfo, read_whole};
 use crate::error::check_certificates;
 use crate::{Arrays, ViewError};
 
-/// The files of the npm package that a report contains.
+/// The script of the npm package that a report contains.
 const SCRIPT: &str = "script/sscc.js";
+
+/// The WebAssembly module of the npm package that a report contains.
 const MODULE: &str = "sscc_bg.wasm";
 
 /// The file of the package with its version.

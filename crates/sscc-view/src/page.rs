@@ -5,8 +5,10 @@ use serde::Serialize;
 /// The page as built from `viewer/`: one HTML file.
 pub const PAGE: &str = include_str!("../page/index.html");
 
-/// Start and end of the element with the data of a report; empty in live pages.
+/// Start of the element with the data of a report, which is empty in live pages.
 const BEFORE: &str = "<script type=\"application/json\" id=\"sscc-report\">";
+
+/// End of this element.
 const AFTER: &str = "</script>";
 
 /// Content security policy of reports. A report loads nothing, not even from its own folder.

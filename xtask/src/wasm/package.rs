@@ -11,8 +11,10 @@ use crate::program::{cargo, root, succeed};
 /// The file of the module.
 const MODULE: &str = "sscc_bg.wasm";
 
-/// The files of `crates/sscc-wasm/npm`, and the licences.
+/// The files of the package in `crates/sscc-wasm/npm`.
 const FILES: [&str; 4] = ["package.json", "node.js", "queries.js", "README.md"];
+
+/// The licences, which are in the root of the project.
 const LICENCES: [&str; 2] = ["LICENSE-APACHE", "LICENSE-MIT"];
 
 /// Builds the package that is published in `folder`. It is small and fast, and contains no paths of this machine.

@@ -2,12 +2,22 @@
 
 use std::fmt::Write;
 
-/// Size and margins of a plot (pixels).
+/// Width of a plot (pixels).
 const WIDTH: f64 = 860.0;
+
+/// Height of a plot (pixels).
 const HEIGHT: f64 = 260.0;
+
+/// Left margin of a plot (pixels).
 const LEFT: f64 = 70.0;
+
+/// Right margin of a plot (pixels).
 const RIGHT: f64 = 20.0;
+
+/// Upper margin of a plot (pixels).
 const TOP: f64 = 34.0;
+
+/// Lower margin of a plot (pixels).
 const BOTTOM: f64 = 44.0;
 /// Height of the title of a plot that is stacked.
 const TITLE: f64 = 24.0;

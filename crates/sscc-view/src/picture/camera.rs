@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
-/// The longer side of a view, and the smallest shorter side (pixels).
+/// The longer side of a view (pixels).
 const MAX_SIDE: f64 = 400.0;
+
+/// Minimum of the shorter side of a view (pixels).
 const MIN_SIDE: f64 = 160.0;
 
 /// Empty space around the shape (pixels).

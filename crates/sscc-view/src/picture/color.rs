@@ -8,8 +8,10 @@ pub const BACKGROUND: [u8; 3] = [246, 246, 244];
 /// The colour of text (sRGB).
 pub const INK: [u8; 3] = [40, 46, 54];
 
-/// Colours of vertices with the smallest and the largest displacement (sRGB).
+/// Colour of vertices with the smallest displacement (sRGB).
 const STILL_COLOR: [u8; 3] = [176, 186, 198];
+
+/// Colour of vertices with the largest displacement (sRGB).
 const MOVED_COLOR: [u8; 3] = [216, 130, 72];
 
 /// The direction of the main light: from the left, above and in front of the surface.

@@ -20,8 +20,10 @@ const RATE: f64 = 44_100.0;
 /// Natural frequencies of the first mode (Hz) of stiffer materials, beside the spring's own.
 const STIFFER: [f64; 3] = [2.0, 20.0, 200.0];
 
-/// Duration of the motion in periods of the first mode, and number of blocks of steps spread over it.
+/// Duration of the motion in periods of the first mode.
 const PERIODS: f64 = 5.0;
+
+/// Number of blocks of steps, which are spread over the motion.
 const BLOCKS: usize = 10;
 
 /// Number of steps, drawn from all strata, on which comparators run.

@@ -7,16 +7,22 @@ use crate::error::Error;
 use crate::sampling::{directions, half_diagonal, largest_displacement, scaled};
 use crate::scenarios::oscillators::Oscillators;
 
-/// States for the choice of the amplitude: periods of the first mode, and states in each.
+/// Number of periods of the first mode in the states for the choice of the amplitude.
 const PERIODS: usize = 5;
+
+/// Number of these states in each period.
 const STATES_PER_PERIOD: usize = 12;
+
+/// Number of states for the choice of the amplitude.
 const STATES: usize = PERIODS * STATES_PER_PERIOD;
 
 /// Number of these states that should collide.
 const COLLIDING: usize = STATES / 8;
 
-/// Range of the amplitude (percent), and number of bisections of its logarithm.
+/// Range of the amplitude (percent).
 const SHARES: [f64; 2] = [0.1, 100.0];
+
+/// Number of bisections of the logarithm of the amplitude.
 const BISECTIONS: usize = 10;
 
 /// A body that vibrates: `q_k(t) = a_k cos(omega_k t + phase_k)`. The amplitudes are proportional to the first of the

@@ -84,9 +84,9 @@ impl LinearOscillator {
 }
 
 impl Step {
-    /// Coefficients for a step of h seconds. With `a = c / 2` and `d = lambda - a^2`: `q = e^(-a t) (q0 (C + a S) + v0
-    /// S)` for `C = cos(t root d)` and `S = sin(t root d) / root d`, hyperbolic where d is negative. A constant force
-    /// adds the integral of `e^(-a t) S`.
+    /// Computes the coefficients for a step of h seconds. With `a = c / 2` and `d = lambda - a^2`, the motion is
+    /// `q = e^(-a t) (q0 (C + a S) + v0 S)` for `C = cos(t root d)` and `S = sin(t root d) / root d`, hyperbolic where d is
+    /// negative. A constant force adds the integral of `e^(-a t) S`.
     fn new(lambda: f64, damping: f64, h: f64) -> Self {
         let a = damping / 2.0;
         let (c, s) = decaying(lambda, a, h);

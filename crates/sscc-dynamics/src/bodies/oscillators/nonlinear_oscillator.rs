@@ -59,8 +59,8 @@ impl NonlinearOscillator {
         Ok(Self { step, solver: ImplicitStep::new(Arc::clone(&energy), damping, step), energy })
     }
 
-    /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration `g -
-    /// f(q)` under the forces g (r numbers each), the q whose derivative the step begins with (rest), the elastic energy at
+    /// Returns the memory of the integrator (2 r + 2 numbers), which the first step needs: the undamped acceleration
+    /// `g - f(q)` under the forces g (r numbers each), the q whose derivative the step begins with (rest), the elastic energy at
     /// q, and the energy that steps have added, less the energy that they have lost (0).
     pub fn undamped_acceleration(&self, q: &[f64], g: &[f64], buffers: &mut NewmarkBuffers) -> Vec<f64> {
         let mut undamped = vec![0.0; 2 * q.len() + 2];
