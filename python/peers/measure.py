@@ -3,8 +3,8 @@
 Usage: python measure.py --models DIR --out record.csv [--only TESTER] [--seconds N] [MESH ...]
 
 Each tester answers each mesh in a process of its own, on one core (Linux), so that no library runs on several threads. A
-time is the median of up to five repetitions, in milliseconds of processor time of the process, which other programs disturb
-less than the clock. `all_ms`, `first_ms` and `yes_no_ms` are from two NumPy arrays to the answer, with the tester's own mesh and
+time is the median of up to five readings, each the mean of calls that take 50 ms, in milliseconds of processor time of the
+process, which other programs disturb less than the clock. `all_ms`, `first_ms` and `yes_no_ms` are from two NumPy arrays to the answer, with the tester's own mesh and
 hierarchy made anew each time; `prepare_ms` is the part in which the mesh is made, as far as a call makes it alone. `again_ms`
 (all pairs) and `again_yes_no_ms` are times from a mesh that is kept and was asked before. `memory_mb` is the largest memory of
 all that, above that of the arrays and imports.
@@ -49,17 +49,28 @@ MESHES = {
 
 COLUMNS = (
     "mesh triangles pairs tester version licence arithmetic prepare_ms all_ms first_ms yes_no_ms again_ms again_yes_no_ms lists missing extra right"
-    " memory_mb note"
+    " memory_mb date note"
 ).split()
 
 
+# Some systems count processor time in ticks of 4 ms. Each reading is longer than ten.
+READING = 0.05
+
+
 def seconds_of(call: Callable[[], Any]) -> tuple[float, Any]:
-    """The median of up to five repetitions, of two seconds in all, and the last answer."""
+    """The median of up to five readings, of two seconds in all, and the last answer. A reading is the mean of calls, as many as take
+    [`READING`]."""
     times: list[float] = []
-    while not times or (len(times) < 5 and sum(times) < 2.0):
+    total = 0.0
+    while not times or (len(times) < 5 and total < 2.0):
         begin = time.process_time()
-        answer = call()
-        times.append(time.process_time() - begin)
+        taken, calls = 0.0, 0
+        while taken < READING:
+            answer = call()
+            calls += 1
+            taken = time.process_time() - begin
+        times.append(taken / calls)
+        total += taken
     return statistics.median(times), answer
 
 
@@ -182,6 +193,7 @@ def main() -> None:
             for name in names:
                 row = {"note": skipped[name]} if skipped[name] else ask(name, data, arguments.seconds)
                 row |= {"mesh": mesh, "triangles": len(f), "pairs": len(pairs), "tester": name}
+                row["date"] = time.strftime("%Y-%m-%d")
                 times = {key: f"{row[key]:.4g}" for key in row if key.endswith(("_ms", "_mb"))}
                 writer.writerow(row | times)
                 file.flush()
