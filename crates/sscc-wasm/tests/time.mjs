@@ -1,5 +1,5 @@
-// The side in Node of `benches/wasm_against_native.rs`: node time.mjs PACKAGE DIR REPETITIONS, where DIR has the files of `sscc demo --out`.
-// Each line of its input asks for `frames` or `certificates`; a line of JSON answers with nanoseconds.
+// The process in Node of `benches/wasm_against_native.rs`: node time.mjs PACKAGE DIR REPETITIONS, where DIR contains the files of
+// `sscc demo --out`. Each line of its input is `frames` or `certificates`; the answer is a line of JSON with nanoseconds.
 import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
