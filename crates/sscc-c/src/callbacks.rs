@@ -22,7 +22,7 @@ impl Callbacks {
         self.user.load(Ordering::Relaxed)
     }
 
-    /// A cancelled computation stays cancelled.
+    /// Records the answer of a callback. A cancelled computation stays cancelled.
     fn set(&self, answer: std::ffi::c_int) {
         if answer != 0 {
             self.is_cancelled.store(true, Ordering::Relaxed);

@@ -19,7 +19,7 @@ impl<T> Output<T> {
     }
 }
 
-/// Memory of the caller for one result.
+/// Checks the memory of the caller for one result.
 ///
 /// # Errors
 /// When the pointer is NULL or misaligned.
@@ -32,7 +32,7 @@ pub unsafe fn output<T>(pointer: *mut T, name: &str) -> Result<Output<T>> {
     Ok(Output(pointer))
 }
 
-/// Memory for an optional result, for which the caller may pass NULL.
+/// Checks the memory for an optional result, for which the caller may pass NULL.
 ///
 /// # Errors
 /// When the pointer is misaligned.

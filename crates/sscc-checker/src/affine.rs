@@ -53,7 +53,7 @@ impl AffineMap {
         Self { gradient, products }
     }
 
-    /// Whether the witness proves two triangles apart below a radius.
+    /// Whether the witness proves that two triangles are separate below a radius.
     pub(crate) fn separates(
         &self,
         model: &ScaledModel,
@@ -82,7 +82,7 @@ impl AffineMap {
         stays_open(&(&gap - &(&length * &rest_error)), &closing, &Dyadic::default(), radius)
     }
 
-    /// The largest squared residual of the nine pairs of corners.
+    /// Returns the largest squared residual of the nine pairs of corners.
     fn largest_residual(&self, x: &Triangle, y: &Triangle, differences: &[Vector]) -> Dyadic {
         let rank = self.gradient.len() / 9;
         let mut largest = Dyadic::default();
@@ -123,7 +123,7 @@ impl AffineMap {
         halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))
     }
 
-    /// `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
+    /// Returns `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
     fn squared_form(&self, u: &Vector, v: &Vector) -> Dyadic {
         let parts: [Dyadic; 6] = std::array::from_fn(|part| match part {
             0..3 => &u[part] * &v[part],

@@ -89,13 +89,13 @@ impl Certificates {
         Ok(this)
     }
 
-    /// The triangles of a node.
+    /// Returns the triangles of a node.
     pub(crate) fn triangles(&self, n: u32) -> &[u32] {
         let node = self.nodes[n as usize];
         &self.order[node.first as usize..][..node.count as usize]
     }
 
-    /// The pairs of triangles between two nodes, or within one.
+    /// Returns the pairs of triangles between two nodes, or within one.
     pub(crate) fn pairs(&self, [n, m]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
         let [x, y] = [n, m].map(|n| self.triangles(n));
         let rest = move |i: usize| if n == m { &y[i + 1..] } else { y };
@@ -118,7 +118,7 @@ impl Certificates {
         Some(children.map(|child| if is_first { [child, m] } else { [n, child] }).collect())
     }
 
-    /// The stored pairs of a node's children.
+    /// Returns the stored pairs of a node's children.
     pub(crate) fn stored_of_node(&self, n: u32) -> Result<Vec<StoredPair>, Refusal> {
         let start = self.starts[n as usize];
         if start == NO_PAIRS { Ok(Vec::new()) } else { self.stored(start) }

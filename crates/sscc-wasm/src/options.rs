@@ -24,7 +24,7 @@ export interface CertifyOptions extends FilterOptions {
     reach?: number;
     /** The q from which radii are measured; 0 by default. */
     center?: number[] | Float64Array;
-    /** Pairs that collide at rest never count, nor do those within so many rings of them. */
+    /** Pairs that collide at rest never count, and neither do those within this number of rings of them. */
     ignoreRest?: number;
 }
 "#;
@@ -62,7 +62,7 @@ extern "C" {
     #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
     fn is_typed_array(value: &JsValue) -> bool;
 
-    /// A plain array of the same items.
+    /// Returns a plain array of the same items.
     #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
     fn plain_array(value: &JsValue) -> Result<JsValue, JsValue>;
 }

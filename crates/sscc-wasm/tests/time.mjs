@@ -13,7 +13,7 @@ const file = (name) => readFileSync(join(demo, name));
 const model = Model.load(file("spring.model.safetensors"));
 const query = new Query(model, Certificates.load(file("spring.sscc.safetensors")));
 const frames = readRows(join(demo, "spring.npy")).map((row) => Float64Array.from(row));
-/** Each frame as often as it is asked for, as one batch. */
+/** Each frame, repeated, as one batch. */
 const batches = new Map(frames.map((q) => [q, Float64Array.from({ length: repetitions * q.length }, (_, i) => q[i % q.length])]));
 
 function time(ask, times) {

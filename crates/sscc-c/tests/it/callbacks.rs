@@ -125,7 +125,7 @@ fn answers_are_cancelled() {
     }
 }
 
-/// A callback that uses the handle of the query which calls it.
+/// Uses the handle of the query which calls this callback.
 extern "C" fn use_again(user: *mut c_void, _pair: sscc_pair) -> c_int {
     let query = user.cast::<sscc_query>();
     let mut count = 9;

@@ -57,7 +57,7 @@ impl<const E: usize> Default for CoarseMotion<E> {
 }
 
 impl<const E: usize> CoarseMotion<E> {
-    /// The error bound of coarse positions in the frame of the search.
+    /// Returns the error bound of coarse positions in the frame of the search.
     pub(crate) fn search_error(&self) -> f32 {
         let maps = self.maps.as_ref();
         maps.map_or(self.error, |maps| maps.iter().fold(0.0, |most, map| map.error().max(most)))

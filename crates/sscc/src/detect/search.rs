@@ -83,7 +83,7 @@ impl<const E: usize, M: VertexMotion<E>> Side<'_, E, M> {
         self.volumes.move_corners(vertices, self.motion);
     }
 
-    /// A triangle of the mesh with the indices of its vertices in the layout.
+    /// Returns a triangle of the mesh with the indices of its vertices in the layout.
     pub(crate) fn triangle(&self, triangle: u32) -> TriangleVertices {
         let face = self.context.filter.faces()[triangle as usize];
         TriangleVertices { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }

@@ -58,7 +58,7 @@ fn curves_between(x: &Soup, y: &Soup) -> ContactCurves {
     found
 }
 
-/// Asserts what must hold for any input: curves consist of the segments of their contacts, bit for bit; every segment
+/// Asserts properties of the curves of any input: they consist of the segments of their contacts, bit for bit; every segment
 /// is on exactly one curve; a curve passes through every point with two segments.
 fn check(found: &ContactCurves) {
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);

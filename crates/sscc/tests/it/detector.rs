@@ -251,7 +251,7 @@ fn welded_vertices_can_move_apart() {
         detector_with_weld_classes(&mesh, &[u32::MAX, 1, 2, u32::MAX, 4, 5], &filter).unwrap()
     };
     let a = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0)];
-    // The second triangle goes through the first; the edge opposite to its welded corner does not.
+    // The second triangle crosses the first; the edge opposite to its welded corner does not.
     let b = [at(0.2, 0.25, -1.0), at(0.2, 0.25, 1.0), at(5.0, 5.5, 1.0)];
     let x = [a, b].concat();
     assert_eq!(detector(&x).discrete(&x).unwrap(), [(0, 1)]);

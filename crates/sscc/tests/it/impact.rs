@@ -15,7 +15,7 @@ fn corners(size: i32) -> impl Strategy<Value = [DVec3; 3]> {
     )
 }
 
-/// Any motion, rest, a translation, a motion to a segment or a point, or a motion in a plane.
+/// Returns any motion: rest, a translation, a motion to a segment or a point, a motion in a plane, or another one.
 fn moving(size: i32) -> impl Strategy<Value = MovingTriangle> {
     (corners(size), corners(size), 0..8).prop_map(|(t0, t1, kind)| match kind {
         0 => MovingTriangle { t0, t1: t0 },

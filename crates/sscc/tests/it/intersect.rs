@@ -18,7 +18,7 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2,
 ///
 /// Phase one of the simplex method in exact numbers: from one artificial variable for each equation, it
 /// minimises their sum, which becomes 0 exactly if the equations have a solution. Bland's rule (the lowest
-/// index enters, the lowest leaves) keeps it from cycling. All entries are whole numbers over one common
+/// index enters, the lowest leaves) prevents cycles. All entries are whole numbers over one common
 /// denominator, the last pivot, by which every step divides without remainder (fraction-free elimination).
 fn oracle<T: Num + PartialOrd + Clone>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> bool {
     const VARIABLES: usize = 6;
@@ -71,7 +71,7 @@ fn oracle<T: Num + PartialOrd + Clone>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> bool
     }
 }
 
-/// The oracle on the exact values of the coordinates, all times 2^1075.
+/// Calls the oracle with the exact values of the coordinates, all times 2^1075.
 fn intersect_exactly(a: &Triangle, b: &Triangle) -> bool {
     let whole = |x: f64| {
         let (mantissa, exponent, sign) = x.integer_decode();
@@ -87,7 +87,7 @@ fn intersect_exactly(a: &Triangle, b: &Triangle) -> bool {
     oracle(&triangles[0], &triangles[1])
 }
 
-/// The oracle on whole coordinates up to a hundred, fast.
+/// Calls the oracle with whole coordinates up to a hundred, which is fast.
 fn intersect_whole(a: &Triangle, b: &Triangle) -> bool {
     let whole = |t: &Triangle| t.map(|p| p.to_array().map(|x| x as i128));
     oracle(&whole(a), &whole(b))

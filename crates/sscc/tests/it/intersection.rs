@@ -26,7 +26,7 @@ pub fn check(a: &Triangle, b: &Triangle) {
     assert_eq!(corners, common_corners(&a.map(exact), &b.map(exact)), "{a:?} {b:?}");
 }
 
-/// Asserts that other orders of the triangles and of their corners give the same points, bit for bit.
+/// Asserts that the points are the same, bit for bit, for other orders of the triangles and of their corners.
 fn assert_symmetric(a: &Triangle, b: &Triangle, found: Option<&Intersection>) {
     let sorted = |found: Option<&Intersection>| {
         let mut points: Vec<_> =

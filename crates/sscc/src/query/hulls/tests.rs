@@ -398,7 +398,7 @@ fn hulls_are_apart_only_where_their_triangles_are() {
         for i in 0..side * side {
             let (x, y) = (i % side, i / side);
             positions.push(DVec3::new(f64::from(x), f64::from(y), height));
-            // Vertices of both sheets that are one above the other move towards each other, or apart.
+            // Vertices of both sheets that are one above the other move towards or away from each other.
             let is_up = (x + y) % 2 == 0;
             modes.push(if is_up == (height == 0.0) { DVec3::Z } else { DVec3::NEG_Z });
         }
@@ -439,7 +439,7 @@ fn hulls_are_apart_only_where_their_triangles_are() {
     assert!(apart > 20 && met > 100, "{apart} of {}, {met}", pairs.len());
 }
 
-/// Points whose distance is known apart from rounding, along normals of any length.
+/// The distance of the points is exact up to rounding; normals have any length.
 #[test]
 fn gaps_are_rounded_down() {
     let coordinates = [[0.0; CORE_POINTS]; 3];

@@ -58,7 +58,7 @@ impl StepHistory {
         self.last_q.extend_from_slice(q);
     }
 
-    /// Whether the last two steps are known.
+    /// Whether the last two steps are recorded.
     pub(super) fn is_known(&self) -> bool {
         self.count == 2
     }
