@@ -220,7 +220,7 @@ fn the_largest_ball_is_that_of_all_planes() {
 
 /// An inverted part would reduce the volume, so all parts must have the same orientation.
 #[test]
-fn parts_must_have_the_same_orientation() {
+fn parts_face_one_way() {
     let inverted =
         |mesh: &TriMesh| -> Vec<[u32; 3]> { mesh.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect() };
     let (large, small) =

@@ -279,7 +279,7 @@ fn enclosed_components_are_counted() {
 }
 
 #[test]
-fn a_component_whose_welded_vertices_are_apart_is_open() {
+fn a_component_whose_welded_vertices_part_is_open() {
     let (large, small) = (cubes(&[(DVec3::ZERO, 4.0)]), cubes(&[(DVec3::ZERO, 1.0)]));
     let corners = large.faces().iter().flatten().map(|v| large.rest_positions()[*v as usize]);
     let soup =

@@ -80,7 +80,7 @@ fn plates(heights: &[f64]) -> ReducedModel {
 }
 
 #[test]
-fn each_plate_is_an_interval_for_any_number_of_samples() {
+fn each_plate_is_an_interval_whatever_the_samples() {
     let model = plates(&[1.0, 2.0, 3.0]);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let query = Query::new(&model, &certificates).unwrap();
