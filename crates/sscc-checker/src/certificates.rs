@@ -31,7 +31,7 @@ impl Node {
 #[derive(Clone, Copy)]
 pub(crate) struct StoredPair {
     pub(crate) radius: f64,
-    /// Its index among its siblings, stored or not.
+    /// The index among all siblings, including those that are not stored.
     pub(crate) which: u32,
     /// The start of the list of its children.
     pub(crate) start: u32,

@@ -18,7 +18,7 @@ use crate::hierarchy::NodePair;
 /// Triangle tests between two checks whether the search was cancelled: one test may take a millisecond.
 const TESTS_PER_CHECK: u64 = 64;
 
-/// Nodes visited between two checks. A visit takes at most about 10 microseconds, triangle tests apart.
+/// Nodes visited between two checks. A visit takes at most about 10 microseconds, without its triangle tests.
 const VISITS_PER_CHECK: u32 = 1024;
 
 /// Boxes of single triangles compared between two checks.

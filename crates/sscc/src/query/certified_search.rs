@@ -21,7 +21,7 @@ pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) locals: Option<LocalProofs<E>>,
 }
 
-/// Which pairs a search finds.
+/// The pairs that a search finds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sought {
     /// All pairs that count.

@@ -9,7 +9,7 @@ use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, Patc
 use crate::hierarchy::Hierarchy;
 use crate::vectors::LANES;
 
-/// No certificate.
+/// The index for a node without a certificate.
 const NONE: u32 = u32::MAX;
 
 /// Local certificates, and the positions of the numbers of each node's certificate.

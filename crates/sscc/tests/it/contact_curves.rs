@@ -263,7 +263,7 @@ fn sheets_that_cross_meet_in_one_open_curve() {
         let positions =
             positions.map(|(i, j)| p(f64::from(i) / f64::from(n), f64::from(j) / f64::from(n))).collect();
         let faces = grid_faces(n + 1, n + 1);
-        // Without the quads that wrap around.
+        // Removes the quads that wrap around.
         let wraps =
             |i: &usize| i / 2 % (n as usize + 1) == n as usize || i / 2 / (n as usize + 1) == n as usize;
         (positions, (0..faces.len()).filter(|i| !wraps(i)).map(|i| faces[i]).collect())

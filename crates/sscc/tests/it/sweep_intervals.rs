@@ -107,7 +107,7 @@ fn each_plate_is_an_interval_whatever_the_samples() {
     assert_eq!((last.free_from, last.to), (None, 2.9));
     // The deepest sample: half of the small triangle is above.
     assert!((0.1..0.2).contains(&found.intervals[1].deepest.depth), "{found:?}");
-    // No weight collides, all weights collide, and a range of one weight.
+    // Ranges in which no weight or every weight collides, and a range of one weight.
     assert!(find(-3.0, 0.7, 9).intervals.is_empty());
     let all = find(1.5, 1.9, 2);
     assert!(matches!(all.intervals[..], [i] if i.free_from.is_none() && i.free_until.is_some()), "{all:?}");

@@ -20,7 +20,7 @@ pub(super) type FrameRate = [Vec4; 4];
 
 /// The hull of a node. Its numbers are exact; the bounds cover all deviations from them.
 pub(super) struct NodeHull {
-    /// At rest, then for each mode.
+    /// The part of the frame at rest, then the part for each mode.
     pub(super) frame: Vec<FrameRate>,
     pub(super) shape: HullShape,
 }

@@ -205,7 +205,7 @@ fn vertices_are_within_the_radius_of_their_hull() {
                 let far = factors.map(|(x, s)| x * most * size / s.max(f64::MIN_POSITIVE));
                 at = far.collect();
             } else if i % 3 == 0 {
-                // One mode alone.
+                // Only one mode moves the shape.
                 let only = i % rank;
                 at.iter_mut().enumerate().filter(|(k, _)| *k != only).for_each(|(_, x)| *x = 0.0);
             }
@@ -380,7 +380,7 @@ fn only_gaps_wider_than_the_radii_separate() {
         assert!(!test(&points, [low], [high], 1.0, Vec3::Z * length), "{length}");
     }
     assert!([5e-4, 2e9].iter().all(|length| !test(&points, [low], [high], 0.9, Vec3::Z * *length)));
-    // At both configurations, in either order.
+    // The plane must separate the points at both configurations.
     assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
     assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));
     assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
