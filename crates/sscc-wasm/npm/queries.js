@@ -40,7 +40,7 @@ function find(query, q, limit) {
     return query.find(limit);
 }
 
-/** The array of all answers without pairs, and an empty view of its buffer, whose methods throw after the buffer was transferred: the fastest test. */
+/** The array of all answers without pairs, and an empty view of its buffer. The view throws after the buffer was transferred, which is the fastest test. */
 let none = new Uint32Array(0);
 let view = new DataView(none.buffer);
 
