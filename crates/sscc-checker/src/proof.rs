@@ -151,6 +151,7 @@ struct EntryReader<'a> {
     bytes: Bytes<'a>,
     /// The directions of the last list of triangles.
     directions: Vec<Direction>,
+    /// The last affine map of this list.
     map: Option<AffineMap>,
 }
 

@@ -30,6 +30,7 @@ pub(crate) struct ScaledModel {
     modes: Vec<Dyadic>,
     /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from `positions + A z'`.
     rest_errors: Vector,
+    /// See `rest_errors`.
     rate_errors: Vector,
     delta: Dyadic,
 }

@@ -28,14 +28,15 @@ pub(crate) struct Buckets {
     packets: Vec<u32>,
     /// For each packet its first slot, then the end.
     slots: Vec<u32>,
-    /// The triangle in each slot, and its vertices by their indices in the
-    /// [`VertexStore`](super::vertex_store::VertexStore).
+    /// The triangle in each slot.
     triangles: Vec<u32>,
+    /// For each slot the vertices of its triangle, by their indices in the [`VertexStore`](super::vertex_store::VertexStore).
     corners: Vec<[u32; 3]>,
     /// For each slot the vertex classes of its triangle.
     classes: Vec<[u32; 3]>,
     /// For each bucket its first vertex, then the end.
     vertex_starts: Vec<u32>,
+    /// The vertices of all buckets, bucket after bucket.
     vertices: Vec<u32>,
     /// The triangle pairs that never count, once they have been computed.
     adjacency: OnceLock<AdjacencyMasks>,

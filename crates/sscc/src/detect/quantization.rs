@@ -15,8 +15,9 @@ use crate::vectors::LANES;
 /// an additional first mode, whose coordinate is 1.
 #[derive(Default)]
 pub(crate) struct Quantization {
-    /// The centre of the rest pose's box, and the largest distance from it along an axis.
+    /// The centre of the box of the rest pose.
     center: DVec3,
+    /// The largest distance of a rest position from the centre along an axis.
     half: f64,
     /// The largest displacement by each mode.
     sizes: Vec<f64>,

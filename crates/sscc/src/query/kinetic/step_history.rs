@@ -19,8 +19,9 @@ const MAX_STEPS: f64 = 1000.0;
 pub(super) struct StepHistory {
     /// The last q; empty if there was none.
     pub(super) last_q: Vec<f64>,
-    /// The step to it, and the difference between the last two steps.
+    /// The step to the last q.
     step: Vec<f64>,
+    /// The difference between the last two steps.
     change: Vec<f64>,
     /// Number of steps since the last jump, at most 2.
     count: u32,
