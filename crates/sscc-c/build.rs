@@ -1,4 +1,4 @@
-//! Names the shared library by its ABI, as `sscc_abi_version` does, so that programs find the one that they were linked with.
+//! Names the shared library by its ABI version (`sscc_abi_version`), so that programs find the library with which they were linked.
 #![allow(clippy::print_stdout, reason = "how build scripts talk to cargo")]
 
 fn main() {

@@ -1,26 +1,26 @@
 /*
  * sscc: exact collision detection for deformable triangle meshes. C interface; C++ has sscc.hpp beside it.
  *
- * OUTCOMES. Functions return a status; sscc_error_message() says more. After another status than SSCC_STATUS_OK nothing was
- * written to outputs. Counts and radii are returned as they are. No panic and no error of the library crosses.
+ * OUTCOMES. Functions return a status; sscc_error_message() has the details. If the status is not SSCC_STATUS_OK, no output was
+ * written. Some functions return a count or a radius in place of a status. No panic of the library crosses the C interface.
  *
- * HANDLES. sscc_X_new, _load, _compute and _clone give a handle, which the caller owns until sscc_X_free. Freeing NULL does
- * nothing. Using a handle after it was freed, or freeing it twice, is the caller's error: undefined, but libraries built with debug
- * assertions refuse it with SSCC_STATUS_HANDLE. Handles share what they were made from, so each can be freed at any time.
+ * HANDLES. sscc_X_new, _load, _compute and _clone return a handle, which the caller owns until sscc_X_free. Freeing NULL has no
+ * effect. Using a handle after it was freed, or freeing it twice, is undefined behaviour; libraries with debug assertions refuse it
+ * with SSCC_STATUS_HANDLE. Handles share the data from which they were made, so each can be freed at any time.
  *
- * ARRAYS. They belong to the caller, have the stated length, and must not change during a call; nothing refers to them after
- * it. Inputs may be the same array. An output must not overlap an input. NULL is refused unless the length is 0 or the
- * function says otherwise; so are addresses that are not a multiple of the size of a number. Texts are UTF-8 and end with 0.
+ * ARRAYS. They belong to the caller, have the stated length, and must not change during a call; the library does not use them
+ * afterwards. Inputs may be the same array. An output must not overlap an input. NULL is refused unless the length is 0 or the
+ * function allows it. Addresses that are not a multiple of the size of a number are refused. Texts are UTF-8 and end with 0.
  *
- * THREADS. Each function states its rule. Models and certificates never change, so any number of threads may use them. A query, a
- * kinetic query, a detector and a shape serve one call at a time, in any thread: make a copy for each thread. Free a handle
- * when no call uses it.
+ * THREADS. Each function states which threads may call it. Models and certificates never change, so any number of threads may use
+ * them. A query, a kinetic query, a detector and a shape serve one call at a time, in any thread: make a copy for each thread. Free
+ * a handle when no call uses it.
  *
- * CALLBACKS. They must return: no exception and no longjmp may leave them. sscc.hpp catches exceptions and throws them again.
+ * CALLBACKS. They must return normally, without exceptions or longjmp. sscc.hpp catches exceptions and throws them again.
  *
  * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing.
  *
- * STABILITY. Within one SSCC_ABI_VERSION functions, constants and structs stay as they are; later versions of the library
+ * STABILITY. Within one SSCC_ABI_VERSION functions, constants and structs do not change; later versions of the library
  * add functions and constants, and fields at the end of structs that begin with their size. Programs need not be compiled again.
  */
 
@@ -33,7 +33,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The version of the header: that of a library is the same, or the program must be compiled again.
+// The ABI version of this header. If sscc_abi_version() returns another number, the program must be compiled again.
 #define SSCC_ABI_VERSION 1
 
 // The outcome of a call. Later versions may add values.
@@ -42,19 +42,19 @@ enum sscc_status
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // Done.
+  // The call succeeded.
   SSCC_STATUS_OK = 0,
   // A callback ended the call.
   SSCC_STATUS_CANCELLED = 1,
-  // A pointer is NULL that must not be.
+  // A pointer that must not be NULL is NULL.
   SSCC_STATUS_NULL = 2,
-  // A pointer is not a multiple of the size of the numbers at it.
+  // A pointer is not a multiple of the size of the numbers to which it points.
   SSCC_STATUS_MISALIGNED = 3,
-  // Arrays overlap, or elements of one matrix, or two handles are the same that must differ.
+  // Two arrays or two elements of a matrix overlap, or two handles that must differ are the same.
   SSCC_STATUS_OVERLAP = 4,
   // An argument has the wrong length, is out of range or not finite.
   SSCC_STATUS_ARGUMENT = 5,
-  // The pointer is no live handle of this type. Only libraries with debug assertions notice that.
+  // The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
   SSCC_STATUS_HANDLE = 6,
   // The handle is in use: by the function that called the callback, or by another thread.
   SSCC_STATUS_BUSY = 7,
@@ -62,11 +62,11 @@ enum sscc_status
   SSCC_STATUS_CAPACITY = 8,
   // The certificates are of another model.
   SSCC_STATUS_OTHER_MODEL = 9,
-  // More pairs collide than an answer can have.
+  // More pairs collide than an answer can contain.
   SSCC_STATUS_TOO_MANY = 10,
   // A file cannot be read or written, or its content is malformed.
   SSCC_STATUS_FILE = 11,
-  // A defect of this library; free the handles of the call.
+  // A defect of this library occurred; free the handles of the call.
   SSCC_STATUS_INTERNAL = 12,
 };
 #ifndef __cplusplus
@@ -77,13 +77,13 @@ typedef int32_t sscc_status;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Proof of an answer, exceptions apart.
+// The kind of proof of an answer, exceptions apart.
 enum sscc_proof
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A search.
+  // A search of the hierarchy.
   SSCC_PROOF_SEARCH = 0,
   // The root's radius: one comparison.
   SSCC_PROOF_RADIUS = 1,
@@ -104,15 +104,15 @@ enum sscc_metric
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // That of the model.
+  // The metric of the model.
   SSCC_METRIC_MODEL = 0,
-  // Each mode by its largest vertex displacement.
+  // Each mode is scaled by its largest vertex displacement.
   SSCC_METRIC_DISPLACEMENT = 1,
-  // Each mode by the root mean square displacement, weighted by area.
+  // Each mode is scaled by its root mean square displacement, weighted by area.
   SSCC_METRIC_MASS = 2,
-  // All weights 1.
+  // All weights are 1.
   SSCC_METRIC_IDENTITY = 3,
-  // S is diagonal, with `scales`.
+  // S is the diagonal matrix of `scales`.
   SSCC_METRIC_SCALES = 4,
 };
 #ifndef __cplusplus
@@ -133,8 +133,8 @@ enum sscc_neighbours
   SSCC_NEIGHBOURS_EXCLUDE = 0,
   // Pairs with exactly one common vertex count when they have another point in common.
   SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX = 1,
-  // Pairs with common vertices count when they have another point in common than these and the edges between them. For
-  // discrete queries of detectors alone.
+  // Pairs with common vertices count when they have a common point other than these and the edges between them. This is for
+  // discrete queries of detectors only.
   SSCC_NEIGHBOURS_INCLUDE_FOLDED = 2,
 };
 #ifndef __cplusplus
@@ -145,7 +145,7 @@ typedef int32_t sscc_neighbours;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// How much certificates store.
+// The kinds of radii that certificates store.
 enum sscc_scheme
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
@@ -153,7 +153,7 @@ enum sscc_scheme
  {
   // Radii of nodes and node pairs, and local certificates.
   SSCC_SCHEME_FULL = 0,
-  // One radius for each node, and for each pair of the root's children: little time and memory.
+  // One radius for each node, and for each pair of the root's children, which takes little time and memory.
   SSCC_SCHEME_PAPER = 1,
 };
 #ifndef __cplusplus
@@ -164,13 +164,13 @@ typedef int32_t sscc_scheme;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Whether vertices of equal positions (and modes) are one vertex, for adjacency alone.
+// Whether vertices of equal positions (and modes) are one vertex, for adjacency only.
 enum sscc_weld
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
+  // The default of the mesh: on for files of formats that split vertices (STL, glTF), otherwise off.
   SSCC_WELD_DEFAULT = 0,
   // Vertices of equal positions are one vertex.
   SSCC_WELD_ON = 1,
@@ -185,25 +185,25 @@ typedef int32_t sscc_weld;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Certificates of a model. They never change; queries share them, and they may be freed before them.
+// Certificates of a model. They never change. Queries share them, and they may be freed before the queries.
 typedef struct sscc_certificates sscc_certificates;
 
-// Answers which triangles of a mesh collide at given positions. Repeated answers allocate nothing.
+// A detector: finds the triangles of a mesh that collide at given positions. Repeated answers allocate nothing.
 typedef struct sscc_detector sscc_detector;
 
-// Answers as a query does, and uses its work again while q moves in small steps. Once warm, answers allocate nothing.
+// A kinetic query: answers as a query, and reuses its work while q moves in small steps. After a warm-up, answers allocate nothing.
 typedef struct sscc_kinetic sscc_kinetic;
 
-// A mesh with its modes. It never changes; certificates and queries share it, and it may be freed before them.
+// A mesh with its modes. It never changes. Certificates and queries share it, and it may be freed before them.
 typedef struct sscc_model sscc_model;
 
-// Answers which triangles of a model collide. Repeated answers allocate nothing.
+// A query: finds the triangles of a model that collide. Repeated answers allocate nothing.
 typedef struct sscc_query sscc_query;
 
-// A model at some q, somewhere in the world, to be tested against others. Repeated answers allocate nothing.
+// A model at some q and pose in the world, to be tested against others. Repeated answers allocate nothing.
 typedef struct sscc_shape sscc_shape;
 
-// Two triangles, counted from 0: of one mesh the lower number first, of two meshes the triangle of the first mesh first.
+// Two triangles, counted from 0. For one mesh the lower number is first, for two meshes the triangle of the first mesh.
 typedef struct sscc_pair {
   // The first triangle.
   uint32_t a;
@@ -211,7 +211,7 @@ typedef struct sscc_pair {
   uint32_t b;
 } sscc_pair;
 
-// Which pairs of triangles count. Set `size` to `sizeof(sscc_filter)` and leave the rest 0 for the default.
+// The contact filter: which pairs of triangles count. Set `size` to `sizeof(sscc_filter)`; all other fields are 0 by default.
 typedef struct sscc_filter {
   // `sizeof(sscc_filter)`.
   size_t size;
@@ -219,11 +219,11 @@ typedef struct sscc_filter {
   const struct sscc_pair *ignored;
   // Number of ignored pairs.
   size_t ignored_count;
-  // A group for each triangle (below 65,536); NULL for none, with `groups_count` 0.
+  // A group for each triangle (below 65,536). Without groups: NULL, with `groups_count` 0.
   const uint32_t *groups;
   // Number of triangles in `groups`.
   size_t groups_count;
-  // 1: of triangles of one group no pair counts, which needs `groups`. 0: all pairs count.
+  // 1: pairs within one group do not count, which needs `groups`. 0: all pairs count.
   int32_t between_groups_only;
   // One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
   int32_t weld;
@@ -233,15 +233,15 @@ typedef struct sscc_filter {
   int32_t reserved;
 } sscc_filter;
 
-// How certificates are computed. Set `size` to `sizeof(sscc_certify_options)` and leave the rest 0 for the defaults.
+// Options of certificates. Set `size` to `sizeof(sscc_certify_options)`; all other fields are 0 by default.
 typedef struct sscc_certify_options {
   // `sizeof(sscc_certify_options)`.
   size_t size;
-  // Relative tolerance of the root's radius, in (0, 1); 0: 0.1.
+  // Relative tolerance of the root's radius, in (0, 1); 0 means 0.1.
   double epsilon;
-  // How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
+  // The largest radius, in units of the paper's global radius, at least 1; 0 means 1.
   double reach;
-  // The q from which radii are measured; NULL, with `center_count` 0: q = 0.
+  // The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
   const double *center;
   // Number of entries of `center`.
   size_t center_count;
@@ -249,41 +249,41 @@ typedef struct sscc_certify_options {
   const double *scales;
   // Number of entries of `scales`.
   size_t scales_count;
-  // Which pairs count; NULL: the default of the mesh.
+  // Which pairs count; NULL means the default of the mesh.
   const struct sscc_filter *filter;
-  // Memory of the pair tree, in bytes for each triangle; 0: 64.
+  // Memory of the pair tree, in bytes for each triangle; 0 means 64.
   size_t budget;
-  // Memory of local certificates, in bytes for each triangle; 0: 64.
+  // Memory of local certificates, in bytes for each triangle; 0 means 64.
   size_t local_budget;
-  // Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
+  // The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles.
   size_t max_exceptions;
-  // Number of threads, of which at most 1024 are made; 0: all cores. The certificates are the same for any number.
+  // Number of threads, of which at most 1024 are started; 0 means all cores. The certificates are the same for any number.
   size_t threads;
   // One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
   int32_t metric;
-  // One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With the latter, leave both budgets 0.
+  // One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. For the latter both budgets must be 0.
   int32_t scheme;
-  // 1: pairs that collide at rest never count, nor do those within `ignore_rings` rings of them.
+  // 1: pairs that collide at rest never count, and neither do those within `ignore_rings` rings of them.
   int32_t ignore_rest;
   // Rings around pairs that collide at rest.
   uint32_t ignore_rings;
 } sscc_certify_options;
 
-// Receives that `done` of `total` steps of a long computation are finished. Another value than 0 cancels it.
+// Receives the progress of a long computation: `done` of `total` steps are finished. It returns another value than 0 to cancel.
 //
-// Threads of the library call it, never two at a time. It must not throw. It must not free the handles of the computation, nor
-// call this library with them in another way.
+// Threads of the library call it, never two at a time. It must not throw, and must not free or use the handles of the
+// computation.
 typedef int (*sscc_progress_fn)(void *user, size_t done, size_t total);
 
-// Returns another value than 0 to cancel. It is called often, so it should be quick. A computation calls it from threads of the
+// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from threads of the
 // library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
 // handles of the computation or the query.
 typedef int (*sscc_cancel_fn)(void *user);
 
 // A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
-// elements; both 0 stand for rows without gaps (`column_stride` 1, `row_stride` the number of columns).
+// elements. If both are 0, rows have no gaps (`column_stride` 1, `row_stride` the number of columns).
 //
-// Positions are V x 3; modes are 3V x r, with the rows x, y, z of the first vertex first.
+// Positions are V x 3; modes are 3V x r, beginning with the rows x, y, z of the first vertex.
 typedef struct sscc_matrix {
   // The first element.
   const double *data;
@@ -291,9 +291,9 @@ typedef struct sscc_matrix {
   size_t rows;
   // Number of columns.
   size_t columns;
-  // From a row to the next one, in elements.
+  // The distance from a row to the next one, in elements.
   size_t row_stride;
-  // From a column to the next one, in elements.
+  // The distance from a column to the next one, in elements.
   size_t column_stride;
 } sscc_matrix;
 
@@ -305,9 +305,9 @@ typedef struct sscc_index_matrix {
   size_t rows;
   // Number of columns.
   size_t columns;
-  // From a row to the next one, in elements.
+  // The distance from a row to the next one, in elements.
   size_t row_stride;
-  // From a column to the next one, in elements.
+  // The distance from a column to the next one, in elements.
   size_t column_stride;
 } sscc_index_matrix;
 
@@ -321,12 +321,12 @@ typedef struct sscc_impact {
   double time;
 } sscc_impact;
 
-// Receives one pair of an answer. Another value than 0 ends the visit. It must not throw.
+// Receives one pair of an answer. It returns another value than 0 to end the visit. It must not throw.
 typedef int (*sscc_visit_fn)(void *user, struct sscc_pair pair);
 
 // The cost of the last answer of a query or a detector.
 typedef struct sscc_statistics {
-  // |z| of q about the centre, in the metric of the certificates; 0 of a detector.
+  // |z| of q about the centre, in the metric of the certificates; 0 for a detector.
   double norm;
   // Nodes and node pairs that were opened.
   uint64_t opened;
@@ -334,13 +334,13 @@ typedef struct sscc_statistics {
   uint64_t box_tests;
   // Pairs of triangles that were tested exactly.
   uint64_t triangle_tests;
-  // Proof of the answer.
+  // The kind of proof of the answer.
   sscc_proof proof;
-  // 1 if the pairs are all that collide, 0 if a limit or an error stopped the search.
+  // 1 if all colliding pairs were found, 0 if a limit or an error stopped the search.
   int32_t complete;
 } sscc_statistics;
 
-// Where a shape is: `rotation * x + translation`. The matrix need not be a rotation.
+// The pose of a shape: `rotation * x + translation`. The matrix need not be a rotation.
 typedef struct sscc_pose {
   // A 3 x 3 matrix, row by row.
   double rotation[9];
@@ -360,10 +360,10 @@ typedef struct sscc_box {
 extern "C" {
 #endif // __cplusplus
 
-// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both get `user`.
-// Where one of them cancels, the outcome is SSCC_STATUS_CANCELLED, and there are no certificates.
+// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both receive `user`.
+// If one of them cancels, the status is SSCC_STATUS_CANCELLED, and there are no certificates.
 //
-// Threads: any. The computation has threads of its own.
+// Threads: any. The computation starts its own threads.
 sscc_status sscc_certificates_compute(const struct sscc_model *model,
                                       const struct sscc_certify_options *options,
                                       sscc_progress_fn progress,
@@ -371,14 +371,14 @@ sscc_status sscc_certificates_compute(const struct sscc_model *model,
                                       void *user,
                                       struct sscc_certificates **certificates);
 
-// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model. Certificates with a
-// clearance are refused: they prove nothing about collisions.
+// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model. Certificates
+// with a clearance are refused: they prove nothing about collisions.
 //
 // Threads: any.
 sscc_status sscc_certificates_load(const char *certificates_path,
                                    struct sscc_certificates **certificates);
 
-// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those of the command.
+// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the program writes.
 //
 // Threads: any.
 sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
@@ -389,18 +389,19 @@ sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
 // Threads: any, while no other call uses the certificates.
 sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
 
-// The root's radius: where |z| of q is below it, the shape is free at q, exceptions apart. Infinity: everywhere. 0 for NULL.
+// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. It is infinite if the shape is
+// free at every q, and 0 for NULL.
 //
 // Threads: any.
 double sscc_certificates_root_radius(const struct sscc_certificates *certificates);
 
-// The number of exceptions: pairs that collide at the centre, and that every query tests. 0 for NULL.
+// Returns the number of exceptions: pairs that collide at the centre, and that every query tests. 0 for NULL.
 //
 // Threads: any.
 size_t sscc_certificates_exception_count(const struct sscc_certificates *certificates);
 
-// Makes a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
-// not count. The arrays are copied. Rest positions choose the hierarchy, and what is welded.
+// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
+// not count. The arrays are copied. Rest positions determine the hierarchy, and which vertices are welded.
 //
 // Threads: any.
 sscc_status sscc_detector_new(struct sscc_matrix positions,
@@ -408,7 +409,7 @@ sscc_status sscc_detector_new(struct sscc_matrix positions,
                               const struct sscc_filter *filter,
                               struct sscc_detector **detector);
 
-// Makes a copy for another thread. Copies share what does not change.
+// Creates a copy for another thread. Copies share the data that does not change.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_clone(const struct sscc_detector *detector, struct sscc_detector **copy);
@@ -418,23 +419,23 @@ sscc_status sscc_detector_clone(const struct sscc_detector *detector, struct ssc
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_free(struct sscc_detector *detector);
 
-// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-// `user` must remain as long as the detector has them. A copy has none.
+// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+// and `user` must remain valid as long as the detector has them. A copy has no such function.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_set_cancel(struct sscc_detector *detector,
                                      sscc_cancel_fn cancel,
                                      void *user);
 
-// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs are a proof. sscc_detector_pairs
-// copies the pairs.
+// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs prove that the mesh is free.
+// sscc_detector_pairs copies the pairs.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_discrete(struct sscc_detector *detector,
                                    struct sscc_matrix positions,
                                    size_t *count);
 
-// Finds at most `limit` colliding pairs; which ones is not fixed. Where the limit ended the search, `complete` of the statistics
+// Finds at most `limit` colliding pairs; which ones is not fixed. If the limit ended the search, `complete` of the statistics
 // is 0.
 //
 // Threads: one call at a time for each detector.
@@ -462,7 +463,7 @@ sscc_status sscc_detector_continuous(struct sscc_detector *detector,
                                      size_t *count);
 
 // Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives their number.
-// The answer is that of `detector`. The other detector must be another one; for a mesh with itself, use a copy.
+// `detector` stores the answer. `other` must be a different detector; for a mesh with itself, use a copy.
 //
 // Threads: one call at a time for each of both detectors.
 sscc_status sscc_detector_against(struct sscc_detector *detector,
@@ -483,43 +484,43 @@ sscc_status sscc_detector_continuous_against(struct sscc_detector *detector,
                                              struct sscc_matrix y_t1,
                                              size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-// answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+// pairs of the answer.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_pairs(const struct sscc_detector *detector,
                                 struct sscc_pair *pairs,
                                 size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_detector_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_detector_pairs.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_impacts(const struct sscc_detector *detector,
                                   struct sscc_impact *impacts,
                                   size_t capacity);
 
-// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. Meanwhile other calls with this detector are refused.
+// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_visit_pairs(const struct sscc_detector *detector,
                                       sscc_visit_fn visit,
                                       void *user);
 
-// The cost of the last answer, and its proof.
+// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_statistics(const struct sscc_detector *detector,
                                      struct sscc_statistics *statistics);
 
-// Makes a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+// Creates a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
 //
 // Threads: any.
 sscc_status sscc_kinetic_new(const struct sscc_model *model,
                              const struct sscc_certificates *certificates,
                              struct sscc_kinetic **kinetic);
 
-// Makes a copy for another thread. Copies share what does not change.
+// Creates a copy for another thread. Copies share the data that does not change.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_clone(const struct sscc_kinetic *kinetic, struct sscc_kinetic **copy);
@@ -529,16 +530,16 @@ sscc_status sscc_kinetic_clone(const struct sscc_kinetic *kinetic, struct sscc_k
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_free(struct sscc_kinetic *kinetic);
 
-// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-// `user` must remain as long as the query has them. A copy has none.
+// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+// and `user` must remain valid as long as the query has them. A copy has no such function.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_set_cancel(struct sscc_kinetic *kinetic,
                                     sscc_cancel_fn cancel,
                                     void *user);
 
-// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_kinetic_pairs copies
-// the pairs.
+// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
+// sscc_kinetic_pairs copies the pairs.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_discrete(struct sscc_kinetic *kinetic,
@@ -556,35 +557,35 @@ sscc_status sscc_kinetic_continuous(struct sscc_kinetic *kinetic,
                                     size_t rank,
                                     size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-// answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+// pairs of the answer.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_pairs(const struct sscc_kinetic *kinetic,
                                struct sscc_pair *pairs,
                                size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_kinetic_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_kinetic_pairs.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_impacts(const struct sscc_kinetic *kinetic,
                                  struct sscc_impact *impacts,
                                  size_t capacity);
 
-// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_visit_pairs(const struct sscc_kinetic *kinetic,
                                      sscc_visit_fn visit,
                                      void *user);
 
-// The cost of the last answer, and its proof.
+// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_statistics(const struct sscc_kinetic *kinetic, struct sscc_statistics *statistics);
 
-// Makes a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
+// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
 // arrays are copied.
 //
 // Threads: any.
@@ -593,8 +594,8 @@ sscc_status sscc_model_new(struct sscc_matrix positions,
                            struct sscc_matrix modes,
                            struct sscc_model **model);
 
-// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, or a
-// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that have modes.
+// Loads a model from a file of any format that the program reads: a *.model.safetensors, a glTF file with morph targets, or a
+// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that contain modes.
 //
 // Threads: any.
 sscc_status sscc_model_load(const char *model_path,
@@ -611,17 +612,17 @@ sscc_status sscc_model_save(const struct sscc_model *model, const char *model_pa
 // Threads: any, while no other call uses the model.
 sscc_status sscc_model_free(struct sscc_model *model);
 
-// The number of modes r; 0 for NULL.
+// Returns the number of modes r; 0 for NULL.
 //
 // Threads: any.
 size_t sscc_model_rank(const struct sscc_model *model);
 
-// The number of vertices V; 0 for NULL.
+// Returns the number of vertices V; 0 for NULL.
 //
 // Threads: any.
 size_t sscc_model_vertex_count(const struct sscc_model *model);
 
-// The number of triangles F; 0 for NULL.
+// Returns the number of triangles F; 0 for NULL.
 //
 // Threads: any.
 size_t sscc_model_triangle_count(const struct sscc_model *model);
@@ -631,7 +632,8 @@ size_t sscc_model_triangle_count(const struct sscc_model *model);
 // Threads: any.
 sscc_status sscc_model_faces(const struct sscc_model *model, uint32_t *faces, size_t count);
 
-// Computes the positions at q, bit for bit those of all answers: x, y, z of each vertex. `count` is the number of vertices.
+// Computes the positions at q, bit for bit those to which all answers refer: x, y, z of each vertex. `count` is the number of
+// vertices.
 //
 // Threads: any.
 sscc_status sscc_model_positions(const struct sscc_model *model,
@@ -640,14 +642,14 @@ sscc_status sscc_model_positions(const struct sscc_model *model,
                                  double *positions,
                                  size_t count);
 
-// Makes a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+// Creates a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
 //
 // Threads: any.
 sscc_status sscc_query_new(const struct sscc_model *model,
                            const struct sscc_certificates *certificates,
                            struct sscc_query **query);
 
-// Makes a copy for another thread. Copies share what does not change.
+// Creates a copy for another thread. Copies share the data that does not change.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_clone(const struct sscc_query *query, struct sscc_query **copy);
@@ -657,16 +659,16 @@ sscc_status sscc_query_clone(const struct sscc_query *query, struct sscc_query *
 // Threads: one call at a time for each query.
 sscc_status sscc_query_free(struct sscc_query *query);
 
-// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-// `user` must remain as long as the query has them. A copy has none.
+// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+// and `user` must remain valid as long as the query has them. A copy has no such function.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_set_cancel(struct sscc_query *query,
                                   sscc_cancel_fn cancel,
                                   void *user);
 
-// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_query_pairs copies
-// the pairs.
+// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
+// sscc_query_pairs copies the pairs.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_discrete(struct sscc_query *query,
@@ -674,7 +676,7 @@ sscc_status sscc_query_discrete(struct sscc_query *query,
                                 size_t rank,
                                 size_t *count);
 
-// Finds at most `limit` colliding pairs at q; which ones is not fixed. Where the limit ended the search,
+// Finds at most `limit` colliding pairs at q; which ones is not fixed. If the limit ended the search,
 // `complete` of the statistics is 0.
 //
 // Threads: one call at a time for each query.
@@ -704,8 +706,8 @@ sscc_status sscc_query_continuous(struct sscc_query *query,
                                   size_t rank,
                                   size_t *count);
 
-// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinity where nothing moves.
-// It takes longer than an answer, and allocates.
+// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinite if no vertex
+// moves. It takes longer than an answer, and allocates.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_safe_scale(struct sscc_query *query,
@@ -713,35 +715,35 @@ sscc_status sscc_query_safe_scale(struct sscc_query *query,
                                   size_t rank,
                                   double *scale);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-// answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+// pairs of the answer.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_pairs(const struct sscc_query *query,
                              struct sscc_pair *pairs,
                              size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_query_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_query_pairs.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_impacts(const struct sscc_query *query,
                                struct sscc_impact *impacts,
                                size_t capacity);
 
-// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_visit_pairs(const struct sscc_query *query,
                                    sscc_visit_fn visit,
                                    void *user);
 
-// The cost of the last answer, and its proof.
+// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_statistics(const struct sscc_query *query, struct sscc_statistics *statistics);
 
-// Makes a shape at q = 0 in its own axes. `certificates` may be NULL; of them only the hierarchy is used. The shape shares
+// Creates a shape at q = 0 in its own axes. `certificates` may be NULL; only their hierarchy is used. The shape shares
 // both, which may be freed.
 //
 // Threads: any.
@@ -749,7 +751,7 @@ sscc_status sscc_shape_new(const struct sscc_model *model,
                            const struct sscc_certificates *certificates,
                            struct sscc_shape **shape);
 
-// Makes a copy for another thread. Copies share what does not change.
+// Creates a copy for another thread. Copies share the data that does not change.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_clone(const struct sscc_shape *shape, struct sscc_shape **copy);
@@ -759,8 +761,8 @@ sscc_status sscc_shape_clone(const struct sscc_shape *shape, struct sscc_shape *
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_free(struct sscc_shape *shape);
 
-// Deforms the shape by q (`rank` numbers) and moves it by a pose; NULL: not at all. `bounds` receives a box that contains it; it
-// may be NULL.
+// Deforms the shape by q (`rank` numbers) and moves it by a pose; without a pose (NULL) it is not moved. `bounds` receives a box
+// that contains the shape; it may be NULL.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_place(struct sscc_shape *shape,
@@ -769,9 +771,9 @@ sscc_status sscc_shape_place(struct sscc_shape *shape,
                              const struct sscc_pose *pose,
                              struct sscc_box *bounds);
 
-// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. The answer is
-// that of `shape`. `bounds` is an AABB that contains all shapes that are compared; it changes the time alone, and NULL is none.
-// The other shape must be another one.
+// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. `shape`
+// stores the answer. `bounds` is an AABB that contains all compared shapes, or NULL; it affects only the time. `other` must be
+// a different shape.
 //
 // Threads: one call at a time for each of both shapes.
 sscc_status sscc_shape_against(struct sscc_shape *shape,
@@ -779,34 +781,34 @@ sscc_status sscc_shape_against(struct sscc_shape *shape,
                                const struct sscc_box *bounds,
                                size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-// answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+// pairs of the answer.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_pairs(const struct sscc_shape *shape,
                              struct sscc_pair *pairs,
                              size_t capacity);
 
-// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. Meanwhile other calls with this shape are refused.
+// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_visit_pairs(const struct sscc_shape *shape,
                                    sscc_visit_fn visit,
                                    void *user);
 
-// The message of the last call of this thread that failed, on one line in UTF-8; empty if none has. It is valid until the next
-// failure of a call in this thread.
+// Returns the message of the last failed call of this thread, one line in UTF-8; empty if no call has failed. It is valid until
+// the next failure of a call in this thread.
 //
 // Threads: any; each has its own message.
 const char *sscc_error_message(void);
 
-// The version of the library, such as "0.1.0".
+// Returns the version of the library, such as "0.1.0".
 //
 // Threads: any.
 const char *sscc_version(void);
 
-// SSCC_ABI_VERSION of the library.
+// Returns the SSCC_ABI_VERSION of the library.
 //
 // Threads: any.
 uint32_t sscc_abi_version(void);

@@ -1,12 +1,12 @@
 // sscc for C++17: the C interface (sscc.h) with owning classes, views of arrays, callables and exceptions. Header-only.
 //
-// A failed call throws sscc::error. With SSCC_NO_EXCEPTIONS, or where the compiler has exceptions off, every function that can
-// fail returns sscc::result<T> instead, which has the status. returns<T> stands for both.
+// A failed call throws sscc::error. With SSCC_NO_EXCEPTIONS, or if the compiler has exceptions off, every function that can
+// fail returns sscc::result<T> instead, which contains the status. returns<T> is T or sscc::result<T>.
 //
-// Callables (progress, cancel, visit) may throw: the call ends, and what they have thrown leaves it. A callable that returns
-// something ends the call where that is true.
+// Callables (progress, cancel, visit) may throw: the call ends, and throws the same exception. A callable that returns a value
+// ends the call if the value is true.
 //
-// Views are valid until the next call with the same object. Threads: as sscc.h says.
+// Views are valid until the next call with the same object. Threads: as sscc.h states.
 #ifndef SSCC_HPP
 #define SSCC_HPP
 
@@ -31,7 +31,7 @@
 
 namespace sscc {
 
-// Both kinds of a program are different types for the linker.
+// Programs with and without exceptions have different types for the linker.
 #ifdef SSCC_NO_EXCEPTIONS
 inline namespace without_exceptions {
 #else
@@ -49,7 +49,7 @@ using index_matrix = sscc_index_matrix;
 
 namespace detail {
 
-// Whether the elements of a container are one after another. Of Eigen only vectors are, and only those without a stride: sscc::map
+// Whether the elements of a container are contiguous. Of the types of Eigen only vectors without a stride are contiguous; sscc::map
 // is for matrices, in any order of storage.
 template <class C, class = void>
 struct is_contiguous : std::true_type {};
@@ -59,14 +59,14 @@ struct is_contiguous<C, std::void_t<decltype(C::IsVectorAtCompileTime), decltype
 
 }  // namespace detail
 
-// A number of elements that another object owns, like std::span.
+// A view of contiguous elements that another object owns, like std::span.
 template <class T>
 class view {
  public:
   constexpr view() noexcept = default;
   constexpr view(T* data, std::size_t size) noexcept : data_(data), size_(size) {}
   // Any container with data() and size(): std::vector, std::array, std::span, Eigen::VectorXd, a column of a column-major matrix.
-  // Not a row of it, nor a matrix: their elements are elsewhere.
+  // Not a row of such a matrix, and not a matrix: their elements are not contiguous.
   template <class C, class P = decltype(std::declval<C&>().data()),
             class = std::enable_if_t<std::is_convertible_v<P, T*> && !std::is_same_v<std::decay_t<C>, view> &&
                                      detail::is_contiguous<std::decay_t<C>>::value>>
@@ -85,7 +85,7 @@ class view {
   std::size_t size_ = 0;
 };
 
-// Numbers without gaps, row by row, as a matrix with that many columns.
+// Returns numbers without gaps, row by row, as a matrix with that many columns.
 inline matrix rows(view<const double> numbers, std::size_t columns) noexcept {
   if (columns == 0 || numbers.size() % columns != 0) {
     return {numbers.data(), 1, numbers.size(), 0, 0};  // which the library refuses
@@ -93,10 +93,10 @@ inline matrix rows(view<const double> numbers, std::size_t columns) noexcept {
   return {numbers.data(), numbers.size() / columns, columns, 0, 0};
 }
 
-// Positions: x, y, z of each vertex, one after another. A matrix of Eigen is given by map().
+// Positions: x, y, z of each vertex, without gaps. Use map() for a matrix of Eigen.
 inline matrix positions(view<const double> xyz) noexcept { return rows(xyz, 3); }
 
-// Faces: three vertices for each triangle, one after another. A matrix of Eigen is given by map().
+// Faces: three vertices for each triangle, without gaps. Use map() for a matrix of Eigen.
 inline index_matrix faces(view<const std::uint32_t> vertices) noexcept {
   if (vertices.size() % 3 != 0) {
     return {vertices.data(), 1, vertices.size(), 0, 0};  // which the library refuses
@@ -104,7 +104,7 @@ inline index_matrix faces(view<const std::uint32_t> vertices) noexcept {
   return {vertices.data(), vertices.size() / 3, 3, 0, 0};
 }
 
-// A matrix, map or reference of Eigen in the memory where it is, in any order of storage. It must outlive the call.
+// Refers to a matrix, map or reference of Eigen without a copy, in any order of storage. It must outlive the call.
 template <class M>
 auto map(const M& m) noexcept {
   using scalar = std::remove_cv_t<std::remove_pointer_t<decltype(m.data())>>;
@@ -113,7 +113,7 @@ auto map(const M& m) noexcept {
     return matrix{m.data(), size(m.rows()), size(m.cols()), size(m.rowStride()), size(m.colStride())};
   } else {
     static_assert(std::is_integral_v<scalar> && sizeof(scalar) == 4, "double, or integers of 32 bits");
-    // Negative numbers are too large then, and refused.
+    // Negative numbers become too large, and are refused.
     const auto data = reinterpret_cast<const std::uint32_t*>(m.data());
     return index_matrix{data, size(m.rows()), size(m.cols()), size(m.rowStride()), size(m.colStride())};
   }
@@ -121,7 +121,7 @@ auto map(const M& m) noexcept {
 
 #ifdef SSCC_NO_EXCEPTIONS
 
-// The outcome of a call, with its value where the status is SSCC_STATUS_OK.
+// The outcome of a call, with its value if the status is SSCC_STATUS_OK.
 template <class T>
 class [[nodiscard]] result {
  public:
@@ -157,7 +157,7 @@ using returns = T;
 
 #endif
 
-// What a failed call throws.
+// The exception of a failed call.
 class error : public std::runtime_error {
  public:
   error(status s, const char* message) : std::runtime_error(message), status_(s) {}
@@ -202,7 +202,7 @@ template <class T>
 
 #endif
 
-// Calls callables for C, and keeps what they throw until the call of the library has returned.
+// Calls callables for C, and stores their exceptions until the call of the library has returned.
 class catcher {
  public:
   template <class F, class... A>
@@ -248,7 +248,7 @@ struct freer {
 template <class T>
 using owner = std::unique_ptr<T, freer>;
 
-// A callable that a handle asks whether to end, at an address that stays.
+// A callable that a handle checks for cancellation, at a fixed address.
 struct canceller {
   std::function<bool()> ask;
   catcher caught;
@@ -259,7 +259,7 @@ struct canceller {
   }
 };
 
-// What objects with an answer have in common. Api names the functions of C for the handle.
+// The base of objects with an answer. Api contains the functions of C for the handle.
 template <class Api>
 class answering {
  public:
@@ -268,7 +268,7 @@ class answering {
   // The pairs of the last answer.
   view<const pair> pairs() const noexcept { return pairs_; }
 
-  // Calls a callable with each pair of the last answer in the library's memory, in order. Where it returns true, the visit ends
+  // Calls a callable with each pair of the last answer in the library's memory, in order. If it returns true, the visit ends
   // with SSCC_STATUS_CANCELLED.
   template <class F>
   returns<void> visit_pairs(F&& visit) const {
@@ -302,21 +302,21 @@ class answering {
   std::vector<pair> pairs_;
 };
 
-// The same for objects with impacts, statistics and a callable that cancels.
+// The base of objects that also have impacts, statistics and a callable that cancels.
 template <class Api>
 class searching : public answering<Api> {
  public:
-  // The impacts of the last answer; none after a discrete one.
+  // The impacts of the last answer; a discrete answer has none.
   view<const impact> impacts() const noexcept { return impacts_; }
 
-  // The cost of the last answer, and its proof.
+  // Returns the cost of the last answer, and the kind of its proof.
   returns<statistics> cost() const {
     statistics found{};
     const status s = Api::statistics(this->handle_.get(), &found);
     return finish(s, found);
   }
 
-  // Makes later answers ask a callable now and then whether to end with SSCC_STATUS_CANCELLED. Copies do not.
+  // Sets a callable that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED. Copies have no callable.
   returns<void> cancel_when(std::function<bool()> ask) {
     auto next = std::make_unique<canceller>(canceller{std::move(ask), {}});
     const status s = Api::set_cancel(this->handle_.get(), canceller::c_function, next.get());
@@ -324,7 +324,7 @@ class searching : public answering<Api> {
     return finish(s);
   }
 
-  // Removes the callable: nothing cancels later answers.
+  // Removes the callable, so that later calls are not cancelled.
   returns<void> never_cancel() {
     const status s = Api::set_cancel(this->handle_.get(), nullptr, nullptr);
     if (s == SSCC_STATUS_OK) canceller_.reset();
@@ -352,7 +352,7 @@ class searching : public answering<Api> {
     return finish(s, view<const impact>(impacts_));
   }
 
-  // Forgets the last answer, also where the next one fails.
+  // Clears the last answer, also if the next call fails.
   void forget() noexcept {
     this->pairs_.clear();
     impacts_.clear();
@@ -366,7 +366,7 @@ class searching : public answering<Api> {
   std::unique_ptr<canceller> canceller_;
 };
 
-// Makes an object from the handle that a function of C gives.
+// Creates an object from the handle that a function of C returns.
 template <class Object, class Handle, class Make>
 returns<Object> make(Make&& make) {
   Handle* handle = nullptr;
@@ -409,12 +409,12 @@ struct shape_api {
 
 }  // namespace detail
 
-// Which pairs count: fields as in sscc.h.
+// The contact filter, with fields as in sscc.h.
 struct filter : sscc_filter {
   filter() noexcept : sscc_filter{} { size = sizeof(sscc_filter); }
 };
 
-// How certificates are computed: fields as in sscc.h.
+// Options of certificates, with fields as in sscc.h.
 struct certify_options : sscc_certify_options {
   certify_options() noexcept : sscc_certify_options{} { size = sizeof(sscc_certify_options); }
 };
@@ -444,14 +444,14 @@ class model {
   std::size_t vertex_count() const noexcept { return sscc_model_vertex_count(get()); }
   std::size_t triangle_count() const noexcept { return sscc_model_triangle_count(get()); }
 
-  // Three vertices for each triangle.
+  // Returns three vertices for each triangle.
   returns<std::vector<std::uint32_t>> faces() const {
     std::vector<std::uint32_t> found(3 * triangle_count());
     const status s = sscc_model_faces(get(), found.data(), triangle_count());
     return detail::finish(s, std::move(found));
   }
 
-  // x, y, z of each vertex at q.
+  // Returns x, y, z of each vertex at q.
   returns<std::vector<double>> positions(view<const double> q) const {
     std::vector<double> found(3 * vertex_count());
     const status s = sscc_model_positions(get(), q.data(), q.size(), found.data(), vertex_count());
@@ -476,13 +476,13 @@ class certificates {
     });
   }
 
-  // With progress(done, total), which cancels where it throws or returns true. Threads of the library call it, one at a time.
+  // Calls progress(done, total), which cancels if it throws or returns true. Threads of the library call it, one at a time.
   template <class Progress>
   static returns<certificates> compute(const model& m, const certify_options& options, Progress&& progress) {
     return compute(m, options, std::forward<Progress>(progress), [] { return false; });
   }
 
-  // With progress(done, total) and cancel(), which is called often.
+  // Calls progress(done, total), and cancel(), which is called often.
   template <class Progress, class Cancel>
   static returns<certificates> compute(const model& m, const certify_options& options, Progress&& progress,
                                        Cancel&& cancel) {
@@ -526,7 +526,8 @@ class certificates {
   detail::owner<sscc_certificates> handle_;
 };
 
-// Which triangles of a model collide at q, or between two q. One thread at a time: clone() makes a copy for another one.
+// Finds the triangles of a model that collide at q, or between two q. One thread at a time may use it: clone() makes a copy for
+// another thread.
 class query : public detail::searching<detail::query_api> {
  public:
   query() = default;
@@ -540,7 +541,7 @@ class query : public detail::searching<detail::query_api> {
     return detail::make<query, sscc_query>([&](auto out) { return sscc_query_clone(get(), out); });
   }
 
-  // All colliding pairs at q, sorted. None: proven free.
+  // Returns all colliding pairs at q, sorted. If there are none, the shape is proven free.
   returns<view<const pair>> discrete(view<const double> q,
                                      std::size_t limit = std::numeric_limits<std::size_t>::max()) {
     std::size_t count = 0;
@@ -548,14 +549,14 @@ class query : public detail::searching<detail::query_api> {
     return discrete_answer(s, count);
   }
 
-  // One colliding pair, or none.
+  // Returns one colliding pair, or none.
   returns<view<const pair>> first(view<const double> q) {
     std::size_t count = 0;
     const status s = sscc_query_first(get(), q.data(), q.size(), nullptr, &count);
     return discrete_answer(s, count);
   }
 
-  // All pairs that collide between two q, sorted, with their times of impact.
+  // Returns all pairs that collide between two q, sorted, with their times of impact.
   returns<view<const impact>> continuous(view<const double> q_t0, view<const double> q_t1) {
     if (q_t0.size() != q_t1.size()) return detail::refuse<view<const impact>>("q_t0 and q_t1 differ in length");
     std::size_t count = 0;
@@ -563,7 +564,7 @@ class query : public detail::searching<detail::query_api> {
     return continuous_answer(s, count);
   }
 
-  // How far towards q the shape is proven free, as a share of the way from the centre.
+  // Returns the share of the way from the centre to q up to which the shape is proven free.
   returns<double> safe_scale(view<const double> q) {
     double scale = 0.0;
     const status s = sscc_query_safe_scale(get(), q.data(), q.size(), &scale);
@@ -573,7 +574,7 @@ class query : public detail::searching<detail::query_api> {
   }
 };
 
-// The same for motions in small steps.
+// Finds the same pairs as query, faster for motions in small steps.
 class kinetic : public detail::searching<detail::kinetic_api> {
  public:
   kinetic() = default;
@@ -601,7 +602,7 @@ class kinetic : public detail::searching<detail::kinetic_api> {
   }
 };
 
-// Which triangles of any mesh collide at given positions, or between two of them, or with another mesh.
+// Finds the triangles of any mesh that collide at given positions, during a motion between two positions, or with another mesh.
 class detector : public detail::searching<detail::detector_api> {
  public:
   detector() = default;
@@ -651,7 +652,7 @@ class detector : public detail::searching<detail::detector_api> {
   }
 };
 
-// A model at some q, somewhere in the world.
+// A model at some q and pose in the world.
 class shape : public detail::answering<detail::shape_api> {
  public:
   shape() = default;
@@ -669,15 +670,15 @@ class shape : public detail::answering<detail::shape_api> {
     return detail::make<shape, sscc_shape>([&](auto out) { return sscc_shape_clone(get(), out); });
   }
 
-  // Deforms and moves the shape; returns a box that contains it.
+  // Deforms and moves the shape. Returns a box that contains it.
   returns<box> place(view<const double> q, const pose& at) {
     box bounds{};
     const status s = sscc_shape_place(get(), q.data(), q.size(), &at, &bounds);
     return detail::finish(s, bounds);
   }
 
-  // All pairs (triangle of this shape, triangle of the other one) that collide, sorted. `bounds` is an AABB that contains all
-  // shapes that are compared, which changes the time alone.
+  // Returns all pairs (triangle of this shape, triangle of the other one) that collide, sorted. `bounds` is an AABB that contains
+  // all compared shapes; it affects only the time.
   returns<view<const pair>> against(shape& other, const box* bounds = nullptr) {
     std::size_t count = 0;
     const status s = sscc_shape_against(get(), other.get(), bounds, &count);
@@ -685,7 +686,7 @@ class shape : public detail::answering<detail::shape_api> {
   }
 };
 
-// The version of the library, such as "0.1.0".
+// Returns the version of the library, such as "0.1.0".
 inline const char* version() noexcept { return sscc_version(); }
 
 }  // inline namespace

@@ -1,5 +1,5 @@
 //! Time of queries through the functions of C against those of Rust, interleaved, on the spring of the demo:
-//! `sscc demo --out DIR`, then `cargo bench -p sscc-c -- DIR`. A query of C also copies its pairs, one of Rust reads them.
+//! `sscc demo --out DIR`, then `cargo bench -p sscc-c -- DIR`. A query through C also copies its pairs; one in Rust reads them.
 #![allow(unsafe_code, reason = "functions of C")]
 #![allow(clippy::print_stdout, clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
@@ -17,7 +17,7 @@ use sscc_io::{read_certificates, read_model, read_rows};
 /// Repetitions of each measurement.
 const REPETITIONS: usize = 301;
 
-/// The least time of a measurement: short queries are repeated within it.
+/// The smallest time of a measurement: short queries are repeated within it.
 const LEAST: Duration = Duration::from_micros(200);
 
 /// Prints the medians of both, and their ratio: calls through C first, then the same in Rust.
@@ -28,7 +28,7 @@ fn compare(name: &str, mut c: impl FnMut(), mut rust: impl FnMut()) {
     }
     let mut times = [Vec::new(), Vec::new()];
     for repetition in 0..REPETITIONS {
-        // Each goes first in every second repetition.
+        // The sides alternate in being first.
         for side in [repetition % 2, 1 - repetition % 2] {
             times[side].push(if side == 0 { time(count, &mut c) } else { time(count, &mut rust) });
         }
@@ -75,7 +75,7 @@ fn main() {
         let is_radius = query.statistics().proof == Proof::Radius;
         classes[if is_radius { 0 } else { 1 + usize::from(!is_free) }].push(*q);
     }
-    // SAFETY: arrays have the stated lengths, handles live.
+    // SAFETY: arrays have the stated lengths, and handles are live.
     unsafe {
         let (mut c_model, mut c_certificates) = (null_mut(), null_mut());
         let (mut c_query, mut c_detector) = (null_mut(), null_mut());
@@ -93,7 +93,7 @@ fn main() {
         println!("{:<34} {:>15} {:>15}", "median of a query", "C", "Rust");
         let names = ["free by the root's radius", "free, radius reached", "colliding"];
         for (name, class) in names.into_iter().zip(&classes) {
-            // One after the other in each measurement, as in an animation.
+            // The frames follow each other in each measurement, as in an animation.
             let [mut i, mut j] = [0; 2];
             compare(
                 name,

@@ -1,11 +1,11 @@
-# The targets of sscc, of a build or of an installation: SSCC_INCLUDE_DIR and SSCC_LIBRARY_DIR, SSCC_SHARED and SSCC_LINK name it.
+# The targets of sscc for a build or an installation, given by SSCC_INCLUDE_DIR, SSCC_LIBRARY_DIR, SSCC_SHARED and SSCC_LINK.
 if(NOT TARGET sscc::sscc)
   add_library(sscc::sscc_shared SHARED IMPORTED GLOBAL)
   set_target_properties(sscc::sscc_shared PROPERTIES
     IMPORTED_LOCATION "${SSCC_LIBRARY_DIR}/${SSCC_SHARED}"
     IMPORTED_SONAME "${SSCC_SHARED}"
     INTERFACE_INCLUDE_DIRECTORIES "${SSCC_INCLUDE_DIR}")
-  # What the static library needs of the system.
+  # The system libraries that the static library needs.
   add_library(sscc::sscc_static STATIC IMPORTED GLOBAL)
   set_target_properties(sscc::sscc_static PROPERTIES
     IMPORTED_LOCATION "${SSCC_LIBRARY_DIR}/libsscc.a"

@@ -1,4 +1,4 @@
-//! The last answer of a handle, in memory that the next answers use again.
+//! The last answer of a handle, in memory that later answers reuse.
 
 use std::ffi::c_void;
 
@@ -16,7 +16,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Forgets the answer, before the next one is known.
+    /// Clears the answer, before the next one is computed.
     #[inline(always)]
     pub fn forget(&mut self) {
         self.pairs.clear();
@@ -32,7 +32,7 @@ impl Answer {
         pairs.len()
     }
 
-    /// Copies pairs, out of line: an answer without pairs takes nanoseconds and does not come here.
+    /// Copies pairs. It is not inlined, because an answer without pairs takes nanoseconds and does not call it.
     #[inline(never)]
     fn add(&mut self, pairs: &[Pair]) {
         self.pairs.extend(pairs.iter().copied().map(sscc_pair::from));
@@ -69,7 +69,7 @@ impl Answer {
     /// Calls back with each pair, in order.
     ///
     /// # Errors
-    /// When there is no function, or it ends the visit.
+    /// When the function is NULL, or it ends the visit.
     pub fn visit(&self, visit: sscc_visit_fn, user: *mut c_void) -> Result<()> {
         let Some(visit) = visit else { return Err(Failure::new(sscc_status::Null, "visit is NULL")) };
         let is_ended = self.pairs.iter().any(|pair| visit(user, *pair) != 0);

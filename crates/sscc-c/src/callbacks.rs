@@ -8,7 +8,7 @@ use sscc::{CancelToken, Progress};
 
 use crate::types::{sscc_cancel_fn, sscc_progress_fn};
 
-/// The callbacks of one computation, and whether they have cancelled it. They are called by one thread at a time.
+/// The callbacks of one computation, and whether they have cancelled it. Only one thread at a time calls them.
 struct Callbacks {
     progress: sscc_progress_fn,
     cancel: sscc_cancel_fn,
@@ -22,7 +22,7 @@ impl Callbacks {
         self.user.load(Ordering::Relaxed)
     }
 
-    /// A cancelled computation stays cancelled.
+    /// Records the answer of a callback. A cancelled computation stays cancelled.
     fn set(&self, answer: std::ffi::c_int) {
         if answer != 0 {
             self.is_cancelled.store(true, Ordering::Relaxed);
@@ -39,7 +39,7 @@ impl Callbacks {
 
     fn is_cancelled(&self) -> bool {
         if let (Some(cancel), false) = (self.cancel, self.is_cancelled.load(Ordering::Relaxed)) {
-            // While another thread is in a callback, this one works on.
+            // While another thread is in a callback, this thread continues its work.
             if let Ok(_lock) = self.lock.try_lock() {
                 self.set(cancel(self.user()));
             }
@@ -79,7 +79,7 @@ impl Progress for Reporter {
     }
 }
 
-/// A token that a query asks; none without a function.
+/// Returns a token that queries check; `None` without a function.
 pub fn cancel_token(cancel: sscc_cancel_fn, user: *mut c_void) -> Option<CancelToken> {
     let (cancel, user) = (cancel?, AtomicPtr::new(user));
     Some(CancelToken::when(move || cancel(user.load(Ordering::Relaxed)) != 0))

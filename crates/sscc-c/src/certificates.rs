@@ -14,20 +14,20 @@ use crate::pointers::{output, path};
 use crate::status::{Failure, guard, sscc_status};
 use crate::types::{sscc_cancel_fn, sscc_progress_fn};
 
-/// Certificates of a model. They never change; queries share them, and they may be freed before them.
+/// Certificates of a model. They never change. Queries share them, and they may be freed before the queries.
 pub struct sscc_certificates(pub(crate) Certificates);
 
 impl Handle for sscc_certificates {
     const NAME: &'static str = "certificates";
 }
 
-/// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both get `user`.
-/// Where one of them cancels, the outcome is SSCC_STATUS_CANCELLED, and there are no certificates.
+/// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both receive `user`.
+/// If one of them cancels, the status is SSCC_STATUS_CANCELLED, and there are no certificates.
 ///
-/// Threads: any. The computation has threads of its own.
+/// Threads: any. The computation starts its own threads.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_compute(
     model: *const sscc_model,
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn sscc_certificates_compute(
     certificates: *mut *mut sscc_certificates,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(certificates, "certificates") }?;
         let model = &unsafe { borrow(model) }?.model;
         let options = unsafe { certify_options(options, model) }?;
@@ -52,20 +52,20 @@ pub unsafe extern "C" fn sscc_certificates_compute(
     })
 }
 
-/// Loads certificates from a *.sscc.safetensors file. A query finds out whether they are of its model. Certificates with a
-/// clearance are refused: they prove nothing about collisions.
+/// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model. Certificates
+/// with a clearance are refused: they prove nothing about collisions.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of texts.
+/// As the header states for texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_load(
     certificates_path: *const c_char,
     certificates: *mut *mut sscc_certificates,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(certificates, "certificates") }?;
         let path = unsafe { path(certificates_path, "certificates_path") }?;
         let certificates = read_certificates(path)?;
@@ -78,19 +78,19 @@ pub unsafe extern "C" fn sscc_certificates_load(
     })
 }
 
-/// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those of the command.
+/// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the program writes.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles and texts.
+/// As the header states for handles and texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_save(
     certificates: *const sscc_certificates,
     certificates_path: *const c_char,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let certificates = &unsafe { borrow(certificates) }?.0;
         Ok(write_certificates(unsafe { path(certificates_path, "certificates_path") }?, certificates)?)
     })
@@ -101,33 +101,34 @@ pub unsafe extern "C" fn sscc_certificates_save(
 /// Threads: any, while no other call uses the certificates.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_free(certificates: *mut sscc_certificates) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(certificates) })
 }
 
-/// The root's radius: where |z| of q is below it, the shape is free at q, exceptions apart. Infinity: everywhere. 0 for NULL.
+/// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. It is infinite if the shape is
+/// free at every q, and 0 for NULL.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_root_radius(certificates: *const sscc_certificates) -> f64 {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(certificates) }.map_or(0.0, |certificates| certificates.0.root_radius())
 }
 
-/// The number of exceptions: pairs that collide at the centre, and that every query tests. 0 for NULL.
+/// Returns the number of exceptions: pairs that collide at the centre, and that every query tests. 0 for NULL.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_certificates_exception_count(certificates: *const sscc_certificates) -> usize {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(certificates) }.map_or(0, |certificates| certificates.0.exceptions().len())
 }

@@ -17,10 +17,10 @@ use crate::pointers::{optional_output, output, output_array};
 use crate::status::{Failure, Result, guard, sscc_status};
 use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
 
-/// Answers which triangles of a mesh collide at given positions. Repeated answers allocate nothing.
+/// A detector: finds the triangles of a mesh that collide at given positions. Repeated answers allocate nothing.
 pub struct sscc_detector(Exclusive<State>);
 
-/// A detector, its last answer, and copies of positions that are not without gaps.
+/// A detector, its last answer, and copies of positions that have gaps in memory.
 struct State {
     detector: Detector,
     answer: Answer,
@@ -28,7 +28,7 @@ struct State {
 }
 
 impl State {
-    /// A copy without the token, whose function need not remain for it.
+    /// Returns a copy without the token, so that the copy does not need the token's function.
     fn copy(&self) -> Self {
         Self {
             detector: self.detector.clone().cancelled_by(None),
@@ -46,13 +46,13 @@ impl Handle for sscc_detector {
     }
 }
 
-/// Makes a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
-/// not count. The arrays are copied. Rest positions choose the hierarchy, and what is welded.
+/// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
+/// not count. The arrays are copied. Rest positions determine the hierarchy, and which vertices are welded.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of arrays.
+/// As the header states for arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_new(
     positions: sscc_matrix,
@@ -61,7 +61,7 @@ pub unsafe extern "C" fn sscc_detector_new(
     detector: *mut *mut sscc_detector,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(detector, "detector") }?;
         let mesh = unsafe { model::mesh(&positions, &faces) }?;
         let detector = Detector::with_filter(&mesh, &unsafe { contact_filter(filter, &mesh) }?)?;
@@ -71,19 +71,19 @@ pub unsafe extern "C" fn sscc_detector_new(
     })
 }
 
-/// Makes a copy for another thread. Copies share what does not change.
+/// Creates a copy for another thread. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_clone(
     detector: *const sscc_detector,
     copy: *mut *mut sscc_detector,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(copy, "copy") }?;
         let state = unsafe { borrow(detector) }?.0.lock()?.copy();
         give(sscc_detector(Exclusive::new(state)), out);
@@ -96,20 +96,20 @@ pub unsafe extern "C" fn sscc_detector_clone(
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_free(detector: *mut sscc_detector) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(detector) })
 }
 
-/// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-/// `user` must remain as long as the detector has them. A copy has none.
+/// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+/// and `user` must remain valid as long as the detector has them. A copy has no such function.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_set_cancel(
     detector: *mut sscc_detector,
@@ -117,20 +117,20 @@ pub unsafe extern "C" fn sscc_detector_set_cancel(
     user: *mut c_void,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         let mut state = unsafe { borrow(detector) }?.0.lock()?;
         state.detector = state.detector.clone().cancelled_by(cancel_token(cancel, user));
         Ok(())
     })
 }
 
-/// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs are a proof. sscc_detector_pairs
-/// copies the pairs.
+/// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs prove that the mesh is free.
+/// sscc_detector_pairs copies the pairs.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_discrete(
     detector: *mut sscc_detector,
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn sscc_detector_discrete(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
         let out = unsafe { output(count, "count") }?;
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
@@ -148,13 +148,13 @@ pub unsafe extern "C" fn sscc_detector_discrete(
     })
 }
 
-/// Finds at most `limit` colliding pairs; which ones is not fixed. Where the limit ended the search, `complete` of the statistics
+/// Finds at most `limit` colliding pairs; which ones is not fixed. If the limit ended the search, `complete` of the statistics
 /// is 0.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_discrete_at_most(
     detector: *mut sscc_detector,
@@ -163,7 +163,7 @@ pub unsafe extern "C" fn sscc_detector_discrete_at_most(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
         let out = unsafe { output(count, "count") }?;
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn sscc_detector_discrete_at_most(
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_first(
     detector: *mut sscc_detector,
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn sscc_detector_first(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
         let (pair, out) = unsafe { (optional_output(pair, "pair")?, output(count, "count")?) };
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
@@ -208,7 +208,7 @@ pub unsafe extern "C" fn sscc_detector_first(
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_continuous(
     detector: *mut sscc_detector,
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn sscc_detector_continuous(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers: [b0, b1, ..] } =
             &mut *unsafe { borrow(detector) }?.0.lock()?;
         let out = unsafe { output(count, "count") }?;
@@ -230,12 +230,12 @@ pub unsafe extern "C" fn sscc_detector_continuous(
 }
 
 /// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives their number.
-/// The answer is that of `detector`. The other detector must be another one; for a mesh with itself, use a copy.
+/// `detector` stores the answer. `other` must be a different detector; for a mesh with itself, use a copy.
 ///
 /// Threads: one call at a time for each of both detectors.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_against(
     detector: *mut sscc_detector,
@@ -246,7 +246,7 @@ pub unsafe extern "C" fn sscc_detector_against(
 ) -> sscc_status {
     guard(|| {
         check_distinct(detector, other)?;
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers: [bx, by, ..] } =
             &mut *unsafe { borrow(detector) }?.0.lock()?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.detector;
@@ -264,7 +264,7 @@ pub unsafe extern "C" fn sscc_detector_against(
 /// Threads: one call at a time for each of both detectors.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_continuous_against(
     detector: *mut sscc_detector,
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn sscc_detector_continuous_against(
 ) -> sscc_status {
     guard(|| {
         check_distinct(detector, other)?;
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.detector;
         let out = unsafe { output(count, "count") }?;
@@ -299,13 +299,13 @@ fn check_distinct(detector: *mut sscc_detector, other: *mut sscc_detector) -> Re
     Ok(())
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-/// answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+/// pairs of the answer.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_pairs(
     detector: *const sscc_detector,
@@ -313,18 +313,18 @@ pub unsafe extern "C" fn sscc_detector_pairs(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(detector) }?.0.lock()?;
         state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_detector_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_detector_pairs.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_impacts(
     detector: *const sscc_detector,
@@ -332,42 +332,42 @@ pub unsafe extern "C" fn sscc_detector_impacts(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(detector) }?.0.lock()?;
         state.answer.copy_impacts(&unsafe { output_array(impacts, capacity, "impacts") }?)
     })
 }
 
-/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this detector are refused.
+/// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_visit_pairs(
     detector: *const sscc_detector,
     visit: sscc_visit_fn,
     user: *mut c_void,
 ) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { borrow(detector) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and its proof.
+/// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 ///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_detector_statistics(
     detector: *const sscc_detector,
     statistics: *mut sscc_statistics,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(statistics, "statistics") }?;
         out.write(unsafe { borrow(detector) }?.0.lock()?.detector.statistics().into());
         Ok(())

@@ -1,4 +1,4 @@
-//! State that one call at a time uses.
+//! `Exclusive`: state that only one call at a time uses.
 #![allow(unsafe_code, reason = "a lock that costs no atomic exchange")]
 
 use std::cell::UnsafeCell;
@@ -10,11 +10,11 @@ use crate::status::{Failure, Result, sscc_status};
 
 const IDLE: u8 = 0;
 const IN_USE: u8 = 1;
-/// A call has panicked: the state may be anything.
+/// The usage after a call has panicked: the state may be invalid.
 const BROKEN: u8 = 2;
 
-/// State that one call at a time uses. The caller promises that calls of several threads do not overlap; calls from a callback
-/// within another call are refused.
+/// State that only one call at a time uses. The caller guarantees that calls of several threads do not overlap; calls from a
+/// callback within another call are refused.
 pub struct Exclusive<T> {
     usage: AtomicU8,
     state: UnsafeCell<T>,
@@ -28,13 +28,13 @@ impl<T> Exclusive<T> {
         Self { usage: AtomicU8::new(IDLE), state: UnsafeCell::new(state) }
     }
 
-    /// The state for one call.
+    /// Returns the state for one call.
     ///
     /// # Errors
     /// When another call is using it, or has panicked.
     #[inline(always)]
     pub fn lock(&self) -> Result<Lock<'_, T>> {
-        // With debug assertions, threads that break their promise are noticed, too.
+        // With debug assertions, overlapping calls of several threads are refused, too.
         let usage = if cfg!(debug_assertions) {
             let exchanged = self.usage.compare_exchange(IDLE, IN_USE, Ordering::Acquire, Ordering::Relaxed);
             exchanged.unwrap_or_else(|usage| usage)
@@ -48,7 +48,7 @@ impl<T> Exclusive<T> {
         if usage == IDLE { Ok(Lock(self)) } else { Err(refused(usage)) }
     }
 
-    /// Refuses to free what a call is using.
+    /// Refuses to free state that a call is using.
     pub fn check_idle(&self) -> Result<()> {
         if self.usage.load(Ordering::Relaxed) == IN_USE { Err(refused(IN_USE)) } else { Ok(()) }
     }

@@ -7,7 +7,7 @@ use crate::status::{Failure, Result, sscc_status};
 
 /// An object that C owns by a pointer.
 pub trait Handle: Sized {
-    /// Its name in messages.
+    /// The name of the type in messages.
     const NAME: &'static str;
 
     /// Refuses to be freed during a call that uses it.
@@ -16,27 +16,27 @@ pub trait Handle: Sized {
     }
 }
 
-/// Gives an object to C.
+/// Passes ownership of an object to C.
 pub fn give<T: Handle>(object: T, out: Output<*mut T>) {
     let pointer = Box::into_raw(Box::new(object));
     live::add(pointer.addr(), T::NAME);
     out.write(pointer);
 }
 
-/// The object of a handle.
+/// Returns the object of a handle.
 ///
 /// # Errors
-/// When it is NULL; with debug assertions, when it is no live handle of the type.
+/// When the handle is NULL; with debug assertions, when it is not a live handle of the type.
 ///
 /// # Safety
-/// The pointer is NULL or a live handle that [`give`] made, and nobody frees it while the object is used.
+/// The pointer is NULL or a live handle that [`give`] made, and it is not freed while the object is used.
 #[inline(always)]
 pub unsafe fn borrow<'a, T: Handle>(handle: *const T) -> Result<&'a T> {
     if handle.is_null() {
         return Err(missing(T::NAME));
     }
     live::check(handle.addr(), T::NAME)?;
-    // SAFETY: by the caller's promise the object exists.
+    // SAFETY: by the caller's guarantee the object exists.
     Ok(unsafe { &*handle })
 }
 
@@ -48,15 +48,15 @@ fn missing(name: &str) -> Failure {
 /// Frees the object of a handle; NULL is ignored.
 ///
 /// # Errors
-/// When a call is using it; with debug assertions, when it is no live handle of the type.
+/// When a call is using the handle; with debug assertions, when it is not a live handle of the type.
 ///
 /// # Safety
-/// The pointer is NULL or a live handle that [`give`] made, and nobody uses it any more.
+/// The pointer is NULL or a live handle that [`give`] made, and it is not used any more.
 pub unsafe fn free<T: Handle>(handle: *mut T) -> Result<()> {
     if handle.is_null() {
         return Ok(());
     }
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(handle) }?.check_idle()?;
     live::remove(handle.addr());
     // SAFETY: `give` made the pointer of a box, which is given back once.

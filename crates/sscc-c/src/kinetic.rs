@@ -15,7 +15,7 @@ use crate::pointers::{output, output_array, slice};
 use crate::status::{Result, guard, sscc_status};
 use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
 
-/// Answers as a query does, and uses its work again while q moves in small steps. Once warm, answers allocate nothing.
+/// A kinetic query: answers as a query, and reuses its work while q moves in small steps. After a warm-up, answers allocate nothing.
 pub struct sscc_kinetic(Exclusive<State>);
 
 /// A kinetic query and its last answer.
@@ -25,7 +25,7 @@ struct State {
 }
 
 impl State {
-    /// A copy without the token, whose function need not remain for it.
+    /// Returns a copy without the token, so that the copy does not need the token's function.
     fn copy(&self) -> Self {
         Self { kinetic: self.kinetic.clone().cancelled_by(None), answer: self.answer.clone() }
     }
@@ -39,12 +39,12 @@ impl Handle for sscc_kinetic {
     }
 }
 
-/// Makes a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+/// Creates a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_new(
     model: *const sscc_model,
@@ -52,7 +52,7 @@ pub unsafe extern "C" fn sscc_kinetic_new(
     kinetic: *mut *mut sscc_kinetic,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(kinetic, "kinetic") }?;
         let (model, certificates) = unsafe { (borrow(model)?, borrow(certificates)?) };
         let kinetic = KineticQuery::new(&model.model, &certificates.0)?;
@@ -61,19 +61,19 @@ pub unsafe extern "C" fn sscc_kinetic_new(
     })
 }
 
-/// Makes a copy for another thread. Copies share what does not change.
+/// Creates a copy for another thread. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_clone(
     kinetic: *const sscc_kinetic,
     copy: *mut *mut sscc_kinetic,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(copy, "copy") }?;
         let state = unsafe { borrow(kinetic) }?.0.lock()?.copy();
         give(sscc_kinetic(Exclusive::new(state)), out);
@@ -86,20 +86,20 @@ pub unsafe extern "C" fn sscc_kinetic_clone(
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_free(kinetic: *mut sscc_kinetic) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(kinetic) })
 }
 
-/// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-/// `user` must remain as long as the query has them. A copy has none.
+/// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+/// and `user` must remain valid as long as the query has them. A copy has no such function.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_set_cancel(
     kinetic: *mut sscc_kinetic,
@@ -107,20 +107,20 @@ pub unsafe extern "C" fn sscc_kinetic_set_cancel(
     user: *mut c_void,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         let mut state = unsafe { borrow(kinetic) }?.0.lock()?;
         state.kinetic = state.kinetic.clone().cancelled_by(cancel_token(cancel, user));
         Ok(())
     })
 }
 
-/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_kinetic_pairs copies
-/// the pairs.
+/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
+/// sscc_kinetic_pairs copies the pairs.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_discrete(
     kinetic: *mut sscc_kinetic,
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn sscc_kinetic_discrete(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn sscc_kinetic_discrete(
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_continuous(
     kinetic: *mut sscc_kinetic,
@@ -154,7 +154,7 @@ pub unsafe extern "C" fn sscc_kinetic_continuous(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
         let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
         let out = unsafe { output(count, "count") }?;
@@ -164,13 +164,13 @@ pub unsafe extern "C" fn sscc_kinetic_continuous(
     })
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-/// answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+/// pairs of the answer.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_pairs(
     kinetic: *const sscc_kinetic,
@@ -178,18 +178,18 @@ pub unsafe extern "C" fn sscc_kinetic_pairs(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(kinetic) }?.0.lock()?;
         state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_kinetic_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_kinetic_pairs.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_impacts(
     kinetic: *const sscc_kinetic,
@@ -197,42 +197,42 @@ pub unsafe extern "C" fn sscc_kinetic_impacts(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(kinetic) }?.0.lock()?;
         state.answer.copy_impacts(&unsafe { output_array(impacts, capacity, "impacts") }?)
     })
 }
 
-/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+/// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_visit_pairs(
     kinetic: *const sscc_kinetic,
     visit: sscc_visit_fn,
     user: *mut c_void,
 ) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { borrow(kinetic) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and its proof.
+/// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_kinetic_statistics(
     kinetic: *const sscc_kinetic,
     statistics: *mut sscc_statistics,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(statistics, "statistics") }?;
         out.write(unsafe { borrow(kinetic) }?.0.lock()?.kinetic.statistics().into());
         Ok(())

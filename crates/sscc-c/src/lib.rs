@@ -1,9 +1,9 @@
 //! The C interface of sscc: `include/sscc/sscc.h`, which cbindgen writes from this crate, and which `tests/header.rs` compares.
 //!
-//! Modules of nouns (`model`, `query`, ...) have the exported functions, `sscc_<noun>_<verb>`. Each of these borrows its handles
-//! (`handle`), checks its arrays (`pointers`, `matrix`) and calls the core, within `guard` (`status`), which turns errors and
-//! panics into a status. Pointers are used in `exclusive`, `handle`, `pointers` and `matrix`; the other modules pass on the
-//! promise of the caller.
+//! Modules of nouns (`model`, `query`, ...) have the exported functions, `sscc_<noun>_<verb>`. Each function borrows its handles
+//! (`handle`), checks its arrays (`pointers`, `matrix`) and calls the core, within `guard` (`status`), which converts errors and
+//! panics to a status. Pointers are used in `exclusive`, `handle`, `pointers` and `matrix`; the other modules rely on the
+//! guarantee of the caller.
 #![allow(non_camel_case_types, reason = "names of C")]
 #![allow(clippy::missing_errors_doc, reason = "a status says it")]
 

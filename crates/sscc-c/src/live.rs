@@ -1,11 +1,11 @@
-//! The handles that exist, in libraries with debug assertions: they refuse pointers that are no handle any more.
+//! The list of live handles, by which libraries with debug assertions refuse pointers that are not live handles.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::status::{Failure, Result, sscc_status};
 
-/// Addresses of handles, and what they are.
+/// Addresses of handles, and the names of their types.
 static LIVE: Mutex<BTreeMap<usize, &'static str>> = Mutex::new(BTreeMap::new());
 
 fn live() -> MutexGuard<'static, BTreeMap<usize, &'static str>> {
@@ -19,7 +19,7 @@ pub fn add(address: usize, name: &'static str) {
     }
 }
 
-/// Refuses what is no handle of that name.
+/// Refuses an address that is not a live handle of that type.
 #[inline(always)]
 pub fn check(address: usize, name: &'static str) -> Result<()> {
     if cfg!(debug_assertions) && live().get(&address) != Some(&name) {

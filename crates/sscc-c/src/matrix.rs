@@ -7,9 +7,9 @@ use crate::pointers;
 use crate::status::{Failure, Result, sscc_status};
 
 /// A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
-/// elements; both 0 stand for rows without gaps (`column_stride` 1, `row_stride` the number of columns).
+/// elements. If both are 0, rows have no gaps (`column_stride` 1, `row_stride` the number of columns).
 ///
-/// Positions are V x 3; modes are 3V x r, with the rows x, y, z of the first vertex first.
+/// Positions are V x 3; modes are 3V x r, beginning with the rows x, y, z of the first vertex.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sscc_matrix {
@@ -19,9 +19,9 @@ pub struct sscc_matrix {
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// From a row to the next one, in elements.
+    /// The distance from a row to the next one, in elements.
     pub row_stride: usize,
-    /// From a column to the next one, in elements.
+    /// The distance from a column to the next one, in elements.
     pub column_stride: usize,
 }
 
@@ -35,9 +35,9 @@ pub struct sscc_index_matrix {
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// From a row to the next one, in elements.
+    /// The distance from a row to the next one, in elements.
     pub row_stride: usize,
-    /// From a column to the next one, in elements.
+    /// The distance from a column to the next one, in elements.
     pub column_stride: usize,
 }
 
@@ -52,21 +52,21 @@ pub struct Matrix<T> {
 }
 
 impl<T: Copy> Matrix<T> {
-    /// An element.
+    /// Returns an element.
     #[inline(always)]
     pub fn get(&self, row: usize, column: usize) -> T {
         assert!(row < self.rows && column < self.columns);
-        // SAFETY: `new` has checked that the element is within the matrix, and its caller promises that it is there.
+        // SAFETY: `new` has checked that the element is within the matrix, and its caller guarantees that it exists.
         unsafe { self.data.add(row * self.row_stride + column * self.column_stride).read() }
     }
 
     /// Checks a matrix.
     ///
     /// # Errors
-    /// When it is NULL, misaligned, larger than memory, or two elements overlap.
+    /// When the data is NULL, misaligned or larger than memory, or two elements overlap.
     ///
     /// # Safety
-    /// All its elements are initialized, and nobody changes them during the call.
+    /// All elements are initialized, and do not change during the call.
     #[inline]
     unsafe fn new(
         data: *const T,
@@ -86,7 +86,7 @@ impl<T: Copy> Matrix<T> {
         let Some(length) = row.checked_add(column).and_then(|last| last.checked_add(1)) else {
             return Err(Failure::argument(format!("{name} is larger than memory")));
         };
-        // Either rows lie one after the other, or columns do.
+        // Either rows follow each other without overlap, or columns do.
         let is_nested = |outer: [usize; 2], inner: [usize; 2], inner_extent: usize| {
             (outer[0] == 1 || outer[1] > inner_extent) && (inner[0] == 1 || inner[1] > 0)
         };
@@ -101,7 +101,7 @@ impl<T: Copy> Matrix<T> {
 }
 
 impl Matrix<f64> {
-    /// The matrix of positions.
+    /// Checks a matrix of positions.
     ///
     /// # Errors
     /// As [`Matrix::new`], and when it does not have three columns.
@@ -110,12 +110,12 @@ impl Matrix<f64> {
     /// As [`Matrix::new`].
     #[inline]
     pub unsafe fn positions(matrix: &sscc_matrix, name: &str) -> Result<Self> {
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         let matrix = unsafe { Self::any(matrix, name) }?;
         if matrix.columns == 3 { Ok(matrix) } else { Err(not_three(matrix.columns, name)) }
     }
 
-    /// Any matrix.
+    /// Checks any matrix.
     ///
     /// # Errors
     /// As [`Matrix::new`].
@@ -125,11 +125,11 @@ impl Matrix<f64> {
     #[inline]
     pub unsafe fn any(matrix: &sscc_matrix, name: &str) -> Result<Self> {
         let sscc_matrix { data, rows, columns, row_stride, column_stride } = *matrix;
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         unsafe { Self::new(data, [rows, columns], [row_stride, column_stride], name) }
     }
 
-    /// The rows as vectors: the caller's memory where they are without gaps, else a copy in `buffer`.
+    /// Returns the rows as vectors: the caller's memory if rows have no gaps, otherwise a copy in `buffer`.
     #[inline]
     pub fn vectors<'a>(&'a self, buffer: &'a mut Vec<DVec3>) -> &'a [DVec3] {
         const { assert!(size_of::<DVec3>() == 24 && align_of::<DVec3>() == align_of::<f64>()) };
@@ -144,7 +144,7 @@ impl Matrix<f64> {
 }
 
 impl Matrix<u32> {
-    /// The matrix of faces.
+    /// Checks a matrix of faces.
     ///
     /// # Errors
     /// As [`Matrix::positions`].
@@ -153,12 +153,12 @@ impl Matrix<u32> {
     /// As [`Matrix::new`].
     pub unsafe fn faces(matrix: &sscc_index_matrix, name: &str) -> Result<Self> {
         let sscc_index_matrix { data, rows, columns, row_stride, column_stride } = *matrix;
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         let matrix = unsafe { Self::new(data, [rows, columns], [row_stride, column_stride], name) }?;
         if matrix.columns == 3 { Ok(matrix) } else { Err(not_three(matrix.columns, name)) }
     }
 
-    /// The rows.
+    /// Returns the rows.
     pub fn triples(&self) -> Vec<[u32; 3]> {
         (0..self.rows).map(|i| [0, 1, 2].map(|j| self.get(i, j))).collect()
     }

@@ -11,7 +11,7 @@ use crate::matrix::{Matrix, sscc_index_matrix, sscc_matrix};
 use crate::pointers::{output, output_array, path, slice};
 use crate::status::{Failure, Result, guard, sscc_status};
 
-/// A mesh with its modes. It never changes; certificates and queries share it, and it may be freed before them.
+/// A mesh with its modes. It never changes. Certificates and queries share it, and it may be freed before them.
 pub struct sscc_model {
     pub(crate) model: ReducedModel,
     info: ModelInfo,
@@ -21,13 +21,13 @@ impl Handle for sscc_model {
     const NAME: &'static str = "model";
 }
 
-/// Makes a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
+/// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
 /// arrays are copied.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of arrays.
+/// As the header states for arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_new(
     positions: sscc_matrix,
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn sscc_model_new(
     model: *mut *mut sscc_model,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(model, "model") }?;
         let mesh = unsafe { mesh(&positions, &faces) }?;
         let modes = unsafe { Matrix::any(&modes, "modes") }?;
@@ -54,25 +54,25 @@ pub unsafe extern "C" fn sscc_model_new(
     })
 }
 
-/// A mesh of the caller.
+/// Creates a mesh from arrays of the caller.
 ///
 /// # Safety
 /// As [`Matrix::positions`].
 pub unsafe fn mesh(positions: &sscc_matrix, faces: &sscc_index_matrix) -> Result<TriMesh> {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     let (positions, faces) =
         unsafe { (Matrix::positions(positions, "positions")?, Matrix::faces(faces, "faces")?) };
     let positions = positions.vectors(&mut Vec::new()).to_vec();
     Ok(TriMesh::new(positions, faces.triples())?)
 }
 
-/// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, or a
-/// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that have modes.
+/// Loads a model from a file of any format that the program reads: a *.model.safetensors, a glTF file with morph targets, or a
+/// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that contain modes.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of texts.
+/// As the header states for texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_load(
     model_path: *const c_char,
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn sscc_model_load(
     model: *mut *mut sscc_model,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(model, "model") }?;
         let model_path = unsafe { path(model_path, "model_path") }?;
         let modes_path =
@@ -96,11 +96,11 @@ pub unsafe extern "C" fn sscc_model_load(
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles and texts.
+/// As the header states for handles and texts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_save(model: *const sscc_model, model_path: *const c_char) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let sscc_model { model, info } = unsafe { borrow(model) }?;
         Ok(write_model(unsafe { path(model_path, "model_path") }?, model, info)?)
     })
@@ -111,46 +111,46 @@ pub unsafe extern "C" fn sscc_model_save(model: *const sscc_model, model_path: *
 /// Threads: any, while no other call uses the model.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_free(model: *mut sscc_model) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(model) })
 }
 
-/// The number of modes r; 0 for NULL.
+/// Returns the number of modes r; 0 for NULL.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_rank(model: *const sscc_model) -> usize {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(model) }.map_or(0, |model| model.model.rank())
 }
 
-/// The number of vertices V; 0 for NULL.
+/// Returns the number of vertices V; 0 for NULL.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_vertex_count(model: *const sscc_model) -> usize {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(model) }.map_or(0, |model| model.model.mesh().rest_positions().len())
 }
 
-/// The number of triangles F; 0 for NULL.
+/// Returns the number of triangles F; 0 for NULL.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_triangle_count(model: *const sscc_model) -> usize {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     unsafe { borrow(model) }.map_or(0, |model| model.model.mesh().faces().len())
 }
 
@@ -159,7 +159,7 @@ pub unsafe extern "C" fn sscc_model_triangle_count(model: *const sscc_model) -> 
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_faces(
     model: *const sscc_model,
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn sscc_model_faces(
     count: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let of_model = unsafe { borrow(model) }?.model.mesh().faces();
         let out = unsafe { output_array(faces, numbers(count, of_model.len(), "faces")?, "faces") }?;
         for (i, vertex) in of_model.as_flattened().iter().enumerate() {
@@ -177,12 +177,13 @@ pub unsafe extern "C" fn sscc_model_faces(
     })
 }
 
-/// Computes the positions at q, bit for bit those of all answers: x, y, z of each vertex. `count` is the number of vertices.
+/// Computes the positions at q, bit for bit those to which all answers refer: x, y, z of each vertex. `count` is the number of
+/// vertices.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_model_positions(
     model: *const sscc_model,
@@ -192,7 +193,7 @@ pub unsafe extern "C" fn sscc_model_positions(
     count: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let model = &unsafe { borrow(model) }?.model;
         let vertices = model.mesh().rest_positions().len();
         let q = unsafe { slice(q, rank, "q") }?;
@@ -208,7 +209,7 @@ pub unsafe extern "C" fn sscc_model_positions(
     })
 }
 
-/// The numbers of an array of three for each element, whose count the caller states.
+/// Returns the length of an array of three numbers for each element, after a check of the number of elements that the caller states.
 fn numbers(count: usize, wanted: usize, name: &str) -> Result<usize> {
     if count == wanted {
         return Ok(3 * count);

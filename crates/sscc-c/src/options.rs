@@ -9,7 +9,7 @@ use crate::pointers::{Versioned, read_versioned, slice};
 use crate::status::{Failure, Result};
 use crate::types::sscc_pair;
 
-/// As many threads as a machine may have; more would exhaust the system.
+/// The largest number of threads: as many as a machine may have. More would exhaust the system.
 const MAX_THREADS: usize = 1024;
 
 /// Whether triangles that share vertices count.
@@ -20,16 +20,16 @@ pub enum sscc_neighbours {
     Exclude = 0,
     /// Pairs with exactly one common vertex count when they have another point in common.
     IncludeOneVertex = 1,
-    /// Pairs with common vertices count when they have another point in common than these and the edges between them. For
-    /// discrete queries of detectors alone.
+    /// Pairs with common vertices count when they have a common point other than these and the edges between them. This is for
+    /// discrete queries of detectors only.
     IncludeFolded = 2,
 }
 
-/// Whether vertices of equal positions (and modes) are one vertex, for adjacency alone.
+/// Whether vertices of equal positions (and modes) are one vertex, for adjacency only.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_weld {
-    /// As the mesh says: on for files of formats that split vertices (STL, glTF), else off.
+    /// The default of the mesh: on for files of formats that split vertices (STL, glTF), otherwise off.
     Default = 0,
     /// Vertices of equal positions are one vertex.
     On = 1,
@@ -37,7 +37,7 @@ pub enum sscc_weld {
     Off = 2,
 }
 
-/// Which pairs of triangles count. Set `size` to `sizeof(sscc_filter)` and leave the rest 0 for the default.
+/// The contact filter: which pairs of triangles count. Set `size` to `sizeof(sscc_filter)`; all other fields are 0 by default.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sscc_filter {
@@ -47,11 +47,11 @@ pub struct sscc_filter {
     pub ignored: *const sscc_pair,
     /// Number of ignored pairs.
     pub ignored_count: usize,
-    /// A group for each triangle (below 65,536); NULL for none, with `groups_count` 0.
+    /// A group for each triangle (below 65,536). Without groups: NULL, with `groups_count` 0.
     pub groups: *const u32,
     /// Number of triangles in `groups`.
     pub groups_count: usize,
-    /// 1: of triangles of one group no pair counts, which needs `groups`. 0: all pairs count.
+    /// 1: pairs within one group do not count, which needs `groups`. 0: all pairs count.
     pub between_groups_only: i32,
     /// One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
     pub weld: i32,
@@ -71,39 +71,39 @@ unsafe impl Versioned for sscc_filter {}
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_metric {
-    /// That of the model.
+    /// The metric of the model.
     Model = 0,
-    /// Each mode by its largest vertex displacement.
+    /// Each mode is scaled by its largest vertex displacement.
     Displacement = 1,
-    /// Each mode by the root mean square displacement, weighted by area.
+    /// Each mode is scaled by its root mean square displacement, weighted by area.
     Mass = 2,
-    /// All weights 1.
+    /// All weights are 1.
     Identity = 3,
-    /// S is diagonal, with `scales`.
+    /// S is the diagonal matrix of `scales`.
     Scales = 4,
 }
 
-/// How much certificates store.
+/// The kinds of radii that certificates store.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_scheme {
     /// Radii of nodes and node pairs, and local certificates.
     Full = 0,
-    /// One radius for each node, and for each pair of the root's children: little time and memory.
+    /// One radius for each node, and for each pair of the root's children, which takes little time and memory.
     Paper = 1,
 }
 
-/// How certificates are computed. Set `size` to `sizeof(sscc_certify_options)` and leave the rest 0 for the defaults.
+/// Options of certificates. Set `size` to `sizeof(sscc_certify_options)`; all other fields are 0 by default.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sscc_certify_options {
     /// `sizeof(sscc_certify_options)`.
     pub size: usize,
-    /// Relative tolerance of the root's radius, in (0, 1); 0: 0.1.
+    /// Relative tolerance of the root's radius, in (0, 1); 0 means 0.1.
     pub epsilon: f64,
-    /// How far radii may reach, in units of the paper's global radius, at least 1; 0: 1.
+    /// The largest radius, in units of the paper's global radius, at least 1; 0 means 1.
     pub reach: f64,
-    /// The q from which radii are measured; NULL, with `center_count` 0: q = 0.
+    /// The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
     pub center: *const f64,
     /// Number of entries of `center`.
     pub center_count: usize,
@@ -111,27 +111,27 @@ pub struct sscc_certify_options {
     pub scales: *const f64,
     /// Number of entries of `scales`.
     pub scales_count: usize,
-    /// Which pairs count; NULL: the default of the mesh.
+    /// Which pairs count; NULL means the default of the mesh.
     pub filter: *const sscc_filter,
-    /// Memory of the pair tree, in bytes for each triangle; 0: 64.
+    /// Memory of the pair tree, in bytes for each triangle; 0 means 64.
     pub budget: usize,
-    /// Memory of local certificates, in bytes for each triangle; 0: 64.
+    /// Memory of local certificates, in bytes for each triangle; 0 means 64.
     pub local_budget: usize,
-    /// Pairs that may collide at the centre and be tested in every query; 0: half the number of triangles.
+    /// The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles.
     pub max_exceptions: usize,
-    /// Number of threads, of which at most 1024 are made; 0: all cores. The certificates are the same for any number.
+    /// Number of threads, of which at most 1024 are started; 0 means all cores. The certificates are the same for any number.
     pub threads: usize,
     /// One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
     pub metric: i32,
-    /// One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With the latter, leave both budgets 0.
+    /// One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. For the latter both budgets must be 0.
     pub scheme: i32,
-    /// 1: pairs that collide at rest never count, nor do those within `ignore_rings` rings of them.
+    /// 1: pairs that collide at rest never count, and neither do those within `ignore_rings` rings of them.
     pub ignore_rest: i32,
     /// Rings around pairs that collide at rest.
     pub ignore_rings: u32,
 }
 
-// As for `sscc_filter`. With pointers of 32 bits, most targets would have padding before `epsilon`.
+// No padding, as for `sscc_filter`. With pointers of 32 bits, most targets would have padding before `epsilon`.
 const _: () = assert!(
     size_of::<sscc_certify_options>()
         == 10 * size_of::<usize>() + 2 * size_of::<f64>() + 4 * size_of::<i32>()
@@ -140,15 +140,15 @@ const _: () = assert!(
 // SAFETY: zeros are valid, the size is first, there is no padding.
 unsafe impl Versioned for sscc_certify_options {}
 
-/// The contact filter of a mesh.
+/// Returns the contact filter of a mesh.
 ///
 /// # Errors
-/// When a field has no valid value.
+/// When a field has an invalid value.
 ///
 /// # Safety
 /// As [`read_versioned`], and the arrays have as many elements as the struct states.
 pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Result<ContactFilter> {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     let filter = unsafe { read_versioned(filter, "filter") }?;
     let neighbours = choose(
         &[Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded],
@@ -157,7 +157,7 @@ pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Resu
     )?;
     let weld = choose(&[mesh.has_split_vertices(), true, false], filter.weld, "filter.weld")?;
     let is_between_only = choose(&[false, true], filter.between_groups_only, "filter.between_groups_only")?;
-    // SAFETY: by the caller's promise, here and below.
+    // SAFETY: by the caller's guarantee, here and below.
     let ignored = unsafe { slice(filter.ignored, filter.ignored_count, "filter.ignored") }?;
     let groups = unsafe { slice(filter.groups, filter.groups_count, "filter.groups") }?;
     if filter.reserved != 0 {
@@ -180,10 +180,10 @@ pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Resu
     Ok(chosen)
 }
 
-/// The options for certificates of a model.
+/// Returns the options for certificates of a model.
 ///
 /// # Errors
-/// When a field has no valid value.
+/// When a field has an invalid value.
 ///
 /// # Safety
 /// As [`contact_filter`].
@@ -191,7 +191,7 @@ pub unsafe fn certify_options(
     options: *const sscc_certify_options,
     model: &ReducedModel,
 ) -> Result<CertifyOptions> {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     let given = unsafe { read_versioned(options, "options") }?;
     let mut options = CertifyOptions::default();
     let is_paper = choose(&[false, true], given.scheme, "options.scheme")?;
@@ -218,16 +218,16 @@ pub unsafe fn certify_options(
     if choose(&[false, true], given.ignore_rest, "options.ignore_rest")? {
         options = options.ignore_rest(given.ignore_rings);
     }
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     let center = unsafe { slice(given.center, given.center_count, "options.center") }?;
     if !given.center.is_null() {
         options = options.center(center.to_vec());
     }
     if !given.filter.is_null() {
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         options = options.filter(unsafe { contact_filter(given.filter, model.mesh()) }?);
     }
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     let scales = unsafe { slice(given.scales, given.scales_count, "options.scales") }?;
     let some = |count: usize| (count > 0).then_some(count);
     Ok(options
@@ -236,7 +236,7 @@ pub unsafe fn certify_options(
         .threads(some(given.threads.min(MAX_THREADS))))
 }
 
-/// The metric that an option names; none for the model's.
+/// Returns the metric of an option; `None` for the metric of the model.
 fn metric(kind: i32, scales: &[f64], model: &ReducedModel) -> Result<Option<Metric>> {
     let (mesh, modes) = (model.mesh(), model.modes());
     if !scales.is_empty() && kind != sscc_metric::Scales as i32 {
@@ -258,7 +258,7 @@ fn metric(kind: i32, scales: &[f64], model: &ReducedModel) -> Result<Option<Metr
     })
 }
 
-/// The value of that number.
+/// Returns the value with that number.
 fn choose<T: Copy>(values: &[T], number: i32, name: &str) -> Result<T> {
     let value = usize::try_from(number).ok().and_then(|i| values.get(i).copied());
     value.ok_or_else(|| no_value(name, number))

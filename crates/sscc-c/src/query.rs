@@ -15,7 +15,7 @@ use crate::pointers::{optional_output, output, output_array, slice};
 use crate::status::{Result, guard, sscc_status};
 use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
 
-/// Answers which triangles of a model collide. Repeated answers allocate nothing.
+/// A query: finds the triangles of a model that collide. Repeated answers allocate nothing.
 pub struct sscc_query(Exclusive<State>);
 
 /// A query and its last answer.
@@ -25,7 +25,7 @@ struct State {
 }
 
 impl State {
-    /// A copy without the token, whose function need not remain for it.
+    /// Returns a copy without the token, so that the copy does not need the token's function.
     fn copy(&self) -> Self {
         Self { query: self.query.clone().cancelled_by(None), answer: self.answer.clone() }
     }
@@ -39,12 +39,12 @@ impl Handle for sscc_query {
     }
 }
 
-/// Makes a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+/// Creates a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_new(
     model: *const sscc_model,
@@ -52,7 +52,7 @@ pub unsafe extern "C" fn sscc_query_new(
     query: *mut *mut sscc_query,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(query, "query") }?;
         let (model, certificates) = unsafe { (borrow(model)?, borrow(certificates)?) };
         let query = Query::new(&model.model, &certificates.0)?;
@@ -61,19 +61,19 @@ pub unsafe extern "C" fn sscc_query_new(
     })
 }
 
-/// Makes a copy for another thread. Copies share what does not change.
+/// Creates a copy for another thread. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_clone(
     query: *const sscc_query,
     copy: *mut *mut sscc_query,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(copy, "copy") }?;
         let state = unsafe { borrow(query) }?.0.lock()?.copy();
         give(sscc_query(Exclusive::new(state)), out);
@@ -86,20 +86,20 @@ pub unsafe extern "C" fn sscc_query_clone(
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_free(query: *mut sscc_query) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(query) })
 }
 
-/// Makes later answers ask `cancel` now and then whether to end with SSCC_STATUS_CANCELLED; NULL: no longer. The function and
-/// `user` must remain as long as the query has them. A copy has none.
+/// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
+/// and `user` must remain valid as long as the query has them. A copy has no such function.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_set_cancel(
     query: *mut sscc_query,
@@ -107,20 +107,20 @@ pub unsafe extern "C" fn sscc_query_set_cancel(
     user: *mut c_void,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise.
+        // SAFETY: by the caller's guarantee.
         let mut state = unsafe { borrow(query) }?.0.lock()?;
         state.query = state.query.clone().cancelled_by(cancel_token(cancel, user));
         Ok(())
     })
 }
 
-/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs are a proof. sscc_query_pairs copies
-/// the pairs.
+/// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
+/// sscc_query_pairs copies the pairs.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_discrete(
     query: *mut sscc_query,
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn sscc_query_discrete(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
@@ -138,13 +138,13 @@ pub unsafe extern "C" fn sscc_query_discrete(
     })
 }
 
-/// Finds at most `limit` colliding pairs at q; which ones is not fixed. Where the limit ended the search,
+/// Finds at most `limit` colliding pairs at q; which ones is not fixed. If the limit ended the search,
 /// `complete` of the statistics is 0.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_discrete_at_most(
     query: *mut sscc_query,
@@ -154,7 +154,7 @@ pub unsafe extern "C" fn sscc_query_discrete_at_most(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
@@ -169,7 +169,7 @@ pub unsafe extern "C" fn sscc_query_discrete_at_most(
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_first(
     query: *mut sscc_query,
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn sscc_query_first(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         let pair = unsafe { optional_output(pair, "pair") }?;
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn sscc_query_first(
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_continuous(
     query: *mut sscc_query,
@@ -209,7 +209,7 @@ pub unsafe extern "C" fn sscc_query_continuous(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
         let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
         let out = unsafe { output(count, "count") }?;
@@ -219,13 +219,13 @@ pub unsafe extern "C" fn sscc_query_continuous(
     })
 }
 
-/// A scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinity where nothing moves.
-/// It takes longer than an answer, and allocates.
+/// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinite if no vertex
+/// moves. It takes longer than an answer, and allocates.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_safe_scale(
     query: *mut sscc_query,
@@ -234,7 +234,7 @@ pub unsafe extern "C" fn sscc_query_safe_scale(
     scale: *mut f64,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(scale, "scale")?) };
         state.answer.forget();
@@ -243,13 +243,13 @@ pub unsafe extern "C" fn sscc_query_safe_scale(
     })
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-/// answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+/// pairs of the answer.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_pairs(
     query: *const sscc_query,
@@ -257,18 +257,18 @@ pub unsafe extern "C" fn sscc_query_pairs(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(query) }?.0.lock()?;
         state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; none after a discrete one. `capacity` is as for sscc_query_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_query_pairs.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_impacts(
     query: *const sscc_query,
@@ -276,42 +276,42 @@ pub unsafe extern "C" fn sscc_query_impacts(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(query) }?.0.lock()?;
         state.answer.copy_impacts(&unsafe { output_array(impacts, capacity, "impacts") }?)
     })
 }
 
-/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this query are refused.
+/// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_visit_pairs(
     query: *const sscc_query,
     visit: sscc_visit_fn,
     user: *mut c_void,
 ) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { borrow(query) }?.0.lock()?.answer.visit(visit, user))
 }
 
-/// The cost of the last answer, and its proof.
+/// Returns the cost of the last answer, and the kind of its proof, in `statistics`.
 ///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_query_statistics(
     query: *const sscc_query,
     statistics: *mut sscc_statistics,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(statistics, "statistics") }?;
         out.write(unsafe { borrow(query) }?.0.lock()?.query.statistics().into());
         Ok(())

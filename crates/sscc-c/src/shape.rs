@@ -1,4 +1,4 @@
-//! Shapes in the world: collisions between two of them.
+//! Shapes in the world, and collisions between two of them.
 #![allow(unsafe_code, reason = "functions for C")]
 
 use std::ffi::c_void;
@@ -16,7 +16,7 @@ use crate::pointers::{optional, optional_output, output, output_array, slice};
 use crate::status::{Failure, Result, guard, sscc_status};
 use crate::types::{sscc_box, sscc_pair, sscc_pose, sscc_visit_fn};
 
-/// A model at some q, somewhere in the world, to be tested against others. Repeated answers allocate nothing.
+/// A model at some q and pose in the world, to be tested against others. Repeated answers allocate nothing.
 pub struct sscc_shape(Exclusive<State>);
 
 /// A shape, the pairs of a search, and its last answer.
@@ -35,13 +35,13 @@ impl Handle for sscc_shape {
     }
 }
 
-/// Makes a shape at q = 0 in its own axes. `certificates` may be NULL; of them only the hierarchy is used. The shape shares
+/// Creates a shape at q = 0 in its own axes. `certificates` may be NULL; only their hierarchy is used. The shape shares
 /// both, which may be freed.
 ///
 /// Threads: any.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_new(
     model: *const sscc_model,
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn sscc_shape_new(
     shape: *mut *mut sscc_shape,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(shape, "shape") }?;
         let model = &unsafe { borrow(model) }?.model;
         let shape = if certificates.is_null() {
@@ -62,19 +62,19 @@ pub unsafe extern "C" fn sscc_shape_new(
     })
 }
 
-/// Makes a copy for another thread. Copies share what does not change.
+/// Creates a copy for another thread. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each shape.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_clone(
     shape: *const sscc_shape,
     copy: *mut *mut sscc_shape,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let out = unsafe { output(copy, "copy") }?;
         let state = unsafe { borrow(shape) }?.0.lock()?.clone();
         give(sscc_shape(Exclusive::new(state)), out);
@@ -87,20 +87,20 @@ pub unsafe extern "C" fn sscc_shape_clone(
 /// Threads: one call at a time for each shape.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_free(shape: *mut sscc_shape) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { free(shape) })
 }
 
-/// Deforms the shape by q (`rank` numbers) and moves it by a pose; NULL: not at all. `bounds` receives a box that contains it; it
-/// may be NULL.
+/// Deforms the shape by q (`rank` numbers) and moves it by a pose; without a pose (NULL) it is not moved. `bounds` receives a box
+/// that contains the shape; it may be NULL.
 ///
 /// Threads: one call at a time for each shape.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_place(
     shape: *mut sscc_shape,
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn sscc_shape_place(
     bounds: *mut sscc_box,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(shape) }?.0.lock()?;
         let (q, pose) = unsafe { (slice(q, rank, "q")?, optional(pose, "pose")?) };
         let out = unsafe { optional_output(bounds, "bounds") }?;
@@ -128,14 +128,14 @@ fn rust_pose(pose: sscc_pose) -> Pose {
     Pose { rotation, translation: DVec3::from_array(pose.translation) }
 }
 
-/// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. The answer is
-/// that of `shape`. `bounds` is an AABB that contains all shapes that are compared; it changes the time alone, and NULL is none.
-/// The other shape must be another one.
+/// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. `shape`
+/// stores the answer. `bounds` is an AABB that contains all compared shapes, or NULL; it affects only the time. `other` must be
+/// a different shape.
 ///
 /// Threads: one call at a time for each of both shapes.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_against(
     shape: *mut sscc_shape,
@@ -148,7 +148,7 @@ pub unsafe extern "C" fn sscc_shape_against(
             let message = "shape and other are the same: use a copy";
             return Err(Failure::new(sscc_status::Overlap, message));
         }
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let State { shape, found, answer } = &mut *unsafe { borrow(shape) }?.0.lock()?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.shape;
         let (bounds, out) = unsafe { (optional(bounds, "bounds")?, output(count, "count")?) };
@@ -169,13 +169,13 @@ fn rust_box(bounds: sscc_box) -> Result<Aabb> {
     Err(Failure::argument("bounds are not finite"))
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that the array can have, at least that of the
-/// answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
+/// pairs of the answer.
 ///
 /// Threads: one call at a time for each shape.
 ///
 /// # Safety
-/// As the header says of handles and arrays.
+/// As the header states for handles and arrays.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_pairs(
     shape: *const sscc_shape,
@@ -183,25 +183,25 @@ pub unsafe extern "C" fn sscc_shape_pairs(
     capacity: usize,
 ) -> sscc_status {
     guard(|| {
-        // SAFETY: by the caller's promise, here and below.
+        // SAFETY: by the caller's guarantee, here and below.
         let state = unsafe { borrow(shape) }?.0.lock()?;
         state.answer.copy_pairs(&unsafe { output_array(pairs, capacity, "pairs") }?)
     })
 }
 
-/// Calls `visit` with each pair of the last answer, in order. Where it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. Meanwhile other calls with this shape are refused.
+/// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused.
 ///
 /// Threads: one call at a time for each shape.
 ///
 /// # Safety
-/// As the header says of handles.
+/// As the header states for handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sscc_shape_visit_pairs(
     shape: *const sscc_shape,
     visit: sscc_visit_fn,
     user: *mut c_void,
 ) -> sscc_status {
-    // SAFETY: by the caller's promise.
+    // SAFETY: by the caller's guarantee.
     guard(|| unsafe { borrow(shape) }?.0.lock()?.answer.visit(visit, user))
 }

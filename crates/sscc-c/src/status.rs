@@ -13,19 +13,19 @@ use sscc_io::IoError;
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_status {
-    /// Done.
+    /// The call succeeded.
     Ok = 0,
     /// A callback ended the call.
     Cancelled = 1,
-    /// A pointer is NULL that must not be.
+    /// A pointer that must not be NULL is NULL.
     Null = 2,
-    /// A pointer is not a multiple of the size of the numbers at it.
+    /// A pointer is not a multiple of the size of the numbers to which it points.
     Misaligned = 3,
-    /// Arrays overlap, or elements of one matrix, or two handles are the same that must differ.
+    /// Two arrays or two elements of a matrix overlap, or two handles that must differ are the same.
     Overlap = 4,
     /// An argument has the wrong length, is out of range or not finite.
     Argument = 5,
-    /// The pointer is no live handle of this type. Only libraries with debug assertions notice that.
+    /// The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
     Handle = 6,
     /// The handle is in use: by the function that called the callback, or by another thread.
     Busy = 7,
@@ -33,15 +33,15 @@ pub enum sscc_status {
     Capacity = 8,
     /// The certificates are of another model.
     OtherModel = 9,
-    /// More pairs collide than an answer can have.
+    /// More pairs collide than an answer can contain.
     TooMany = 10,
     /// A file cannot be read or written, or its content is malformed.
     File = 11,
-    /// A defect of this library; free the handles of the call.
+    /// A defect of this library occurred; free the handles of the call.
     Internal = 12,
 }
 
-/// Why a call failed. It is a pointer, so that a result has one word, which a call that succeeds passes on in a register.
+/// The reason why a call failed. It is a pointer, so that a result is one word, which a successful call returns in a register.
 #[derive(Debug)]
 pub struct Failure(Box<Cause>);
 
@@ -71,7 +71,7 @@ impl Failure {
         Self::new(sscc_status::Argument, message)
     }
 
-    /// The failure of a call that a callback has ended.
+    /// Returns the failure of a call that a callback has ended.
     pub fn cancelled() -> Self {
         Error::Cancelled.into()
     }
@@ -110,10 +110,10 @@ thread_local! {
     static MESSAGE: RefCell<Option<CString>> = const { RefCell::new(None) };
 }
 
-/// Runs a call, and stores the message of its failure. A panic is a failure, too.
+/// Runs a call, and stores the message of its failure. A panic is also a failure.
 #[inline(always)]
 pub fn guard(call: impl FnOnce() -> Result<()>) -> sscc_status {
-    // The failure is stored within the barrier, so that one number leaves it.
+    // The failure is stored within the barrier for panics, so that only a number is returned from it.
     let call = || match call() {
         Ok(()) => sscc_status::Ok,
         Err(failure) => store(failure),
@@ -133,13 +133,13 @@ fn store_panic(payload: Box<dyn Any + Send>) -> sscc_status {
 #[inline(never)]
 fn store(failure: Failure) -> sscc_status {
     let text = failure.message.replace('\0', " ");
-    // A thread that ends has no message any more.
+    // While a thread ends, its message no longer exists.
     let _ = MESSAGE.try_with(|message| message.replace(CString::new(text).ok()));
     failure.status
 }
 
-/// The message of the last call of this thread that failed, on one line in UTF-8; empty if none has. It is valid until the next
-/// failure of a call in this thread.
+/// Returns the message of the last failed call of this thread, one line in UTF-8; empty if no call has failed. It is valid until
+/// the next failure of a call in this thread.
 ///
 /// Threads: any; each has its own message.
 #[allow(unsafe_code, reason = "the name is exported")]
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_panic_crosses() {
+    fn a_panic_becomes_a_status_and_a_message() {
         assert_eq!(guard(|| Ok(())), sscc_status::Ok);
         assert_eq!(guard(|| panic!("vertex {}", 7)), sscc_status::Internal);
         // SAFETY: the message is valid until the next failure.
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_end_at_no_zero_inside() {
+    fn zeros_in_messages_are_replaced() {
         assert_eq!(guard(|| Err(Failure::argument("a\0b"))), sscc_status::Argument);
         // SAFETY: as above.
         assert_eq!(unsafe { CStr::from_ptr(sscc_error_message()) }, c"a b");

@@ -1,10 +1,10 @@
-//! Structs and constants of answers. They never change; later versions add new ones beside them.
+//! Structs and constants of answers. They never change; later versions add new ones.
 
 use std::ffi::{c_int, c_void};
 
 use sscc::{Impact, Pair, Proof, Statistics};
 
-/// Two triangles, counted from 0: of one mesh the lower number first, of two meshes the triangle of the first mesh first.
+/// Two triangles, counted from 0. For one mesh the lower number is first, for two meshes the triangle of the first mesh.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct sscc_pair {
@@ -26,11 +26,11 @@ pub struct sscc_impact {
     pub time: f64,
 }
 
-/// Proof of an answer, exceptions apart.
+/// The kind of proof of an answer, exceptions apart.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_proof {
-    /// A search.
+    /// A search of the hierarchy.
     Search = 0,
     /// The root's radius: one comparison.
     Radius = 1,
@@ -42,7 +42,7 @@ pub enum sscc_proof {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct sscc_statistics {
-    /// |z| of q about the centre, in the metric of the certificates; 0 of a detector.
+    /// |z| of q about the centre, in the metric of the certificates; 0 for a detector.
     pub norm: f64,
     /// Nodes and node pairs that were opened.
     pub opened: u64,
@@ -50,9 +50,9 @@ pub struct sscc_statistics {
     pub box_tests: u64,
     /// Pairs of triangles that were tested exactly.
     pub triangle_tests: u64,
-    /// Proof of the answer.
+    /// The kind of proof of the answer.
     pub proof: sscc_proof,
-    /// 1 if the pairs are all that collide, 0 if a limit or an error stopped the search.
+    /// 1 if all colliding pairs were found, 0 if a limit or an error stopped the search.
     pub complete: i32,
 }
 
@@ -66,7 +66,7 @@ pub struct sscc_box {
     pub upper: [f64; 3],
 }
 
-/// Where a shape is: `rotation * x + translation`. The matrix need not be a rotation.
+/// The pose of a shape: `rotation * x + translation`. The matrix need not be a rotation.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct sscc_pose {
@@ -76,18 +76,18 @@ pub struct sscc_pose {
     pub translation: [f64; 3],
 }
 
-/// Receives that `done` of `total` steps of a long computation are finished. Another value than 0 cancels it.
+/// Receives the progress of a long computation: `done` of `total` steps are finished. It returns another value than 0 to cancel.
 ///
-/// Threads of the library call it, never two at a time. It must not throw. It must not free the handles of the computation, nor
-/// call this library with them in another way.
+/// Threads of the library call it, never two at a time. It must not throw, and must not free or use the handles of the
+/// computation.
 pub type sscc_progress_fn = Option<extern "C" fn(user: *mut c_void, done: usize, total: usize) -> c_int>;
 
-/// Returns another value than 0 to cancel. It is called often, so it should be quick. A computation calls it from threads of the
+/// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from threads of the
 /// library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
 /// handles of the computation or the query.
 pub type sscc_cancel_fn = Option<extern "C" fn(user: *mut c_void) -> c_int>;
 
-/// Receives one pair of an answer. Another value than 0 ends the visit. It must not throw.
+/// Receives one pair of an answer. It returns another value than 0 to end the visit. It must not throw.
 pub type sscc_visit_fn = Option<extern "C" fn(user: *mut c_void, pair: sscc_pair) -> c_int>;
 
 impl From<Pair> for sscc_pair {

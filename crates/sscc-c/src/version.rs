@@ -3,10 +3,10 @@
 
 use std::ffi::c_char;
 
-/// The version of the header: that of a library is the same, or the program must be compiled again.
+/// The ABI version of this header. If sscc_abi_version() returns another number, the program must be compiled again.
 pub const SSCC_ABI_VERSION: u32 = 1;
 
-/// The version of the library, such as "0.1.0".
+/// Returns the version of the library, such as "0.1.0".
 ///
 /// Threads: any.
 #[unsafe(no_mangle)]
@@ -15,7 +15,7 @@ pub extern "C" fn sscc_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
-/// SSCC_ABI_VERSION of the library.
+/// Returns the SSCC_ABI_VERSION of the library.
 ///
 /// Threads: any.
 #[unsafe(no_mangle)]

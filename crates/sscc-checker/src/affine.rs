@@ -1,36 +1,37 @@
-//! Affine witnesses of two triangles that are near and move almost as one.
+//! Affine witnesses of two triangles that are near each other and move almost together.
 //!
-//! With any affine map G of the modes, `A_j - A_i = G d_ij + E_ij` at the corners, and so for all points of the two triangles
-//! with convex combinations of E. Let d be the difference of two points at the centre and `u = d / |d|`. Their difference at z
-//! has along u at least
+//! For any affine map G of the modes, `A_j - A_i = G d_ij + E_ij` at the corners, and so for all points of the two triangles,
+//! with convex combinations of E. Let d be the difference of two points at the centre and `u = d / |d|`. The component along u
+//! of their difference at z is at least
 //!
 //! ```text
 //! |d| - (g |d| + e) |z|,    g >= |u'G(.)u| for all u in the cone of the d,   e >= |E_ij|
 //! ```
 //!
-//! and `|d|` is at least the smallest gap of the corners along a direction n over `|n|`. So the two are apart where
-//! `delta - e0 - (g delta + e + e1) |z|` is positive, with the rounding e0 and e1 of computed positions along u.
+//! and `|d|` is at least delta, the smallest gap of the corners along a direction n divided by `|n|`. So the two triangles are
+//! separate if `delta - e0 - (g delta + e + e1) |z|` is positive, with the rounding e0 and e1 of computed positions along u.
 //!
-//! The cone: four directions, a pyramid that contains all differences of corners, and so of points. On the cone of three
-//! directions `|u'G u| |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric part of `u_i'G u_j`.
-//! Where that is more than g, the cone is halved.
+//! The cone is given by four directions: a pyramid that contains all differences of corners, and so of points. On the cone of
+//! three directions `|u'G u| |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric part of
+//! `u_i'G u_j`. If that is more than g, the cone is halved.
 
 use crate::corners::{Triangle, differences};
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
 use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 
-/// Cones of a witness, at most, and cones within cones, each of which makes numbers longer.
+/// The largest number of cones of a witness.
 const MAX_CONES: usize = 1024;
+/// The largest depth of halved cones, each of which makes numbers longer.
 const MAX_DEPTH: usize = 64;
 
-/// An affine map: nine rows, `G_cj` at `3 c + j`; and the products of its six symmetric parts.
+/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts.
 pub(crate) struct AffineMap {
     gradient: Vec<Dyadic>,
     products: [[Dyadic; 6]; 6],
 }
 
-/// What a proof gives beside the map.
+/// The numbers of a witness in addition to its map.
 pub(crate) struct AffineWitness {
     pub(crate) dir: Vector,
     pub(crate) rate: f64,
@@ -52,7 +53,7 @@ impl AffineMap {
         Self { gradient, products }
     }
 
-    /// Whether the witness proves two triangles apart below a radius.
+    /// Whether the witness proves that two triangles are separate below a radius.
     pub(crate) fn separates(
         &self,
         model: &ScaledModel,
@@ -74,14 +75,14 @@ impl AffineMap {
         }
         let Some(gap) = differences.iter().map(|d| dot(dir, d)).min() else { return false };
         let residual = self.largest_residual(x, y, &differences).root_up();
-        // All but the gap is for a unit direction, whose components are at most 1.
+        // All terms except the gap are for a unit direction, whose components are at most 1.
         let length = squared_norm(dir).root_up();
         let [rest_error, rate_error] = model.errors(&std::array::from_fn(|_| Dyadic::new(1, 0)));
         let closing = &(&gap * &rate) + &(&length * &(&residual + &rate_error));
         stays_open(&(&gap - &(&length * &rest_error)), &closing, &Dyadic::default(), radius)
     }
 
-    /// The largest squared residual of the nine pairs of corners.
+    /// Returns the largest squared residual of the nine pairs of corners.
     fn largest_residual(&self, x: &Triangle, y: &Triangle, differences: &[Vector]) -> Dyadic {
         let rank = self.gradient.len() / 9;
         let mut largest = Dyadic::default();
@@ -105,7 +106,7 @@ impl AffineMap {
             let cosine = dot(cone[i], cone[j]);
             cosine.is_positive() && squared_rate * &cosine.square() >= self.squared_form(cone[i], cone[j])
         };
-        // A direction of the cone that is itself too fast stays in one of the halves.
+        // If the rate does not hold for one of the three directions, halving would not help: one of the halves contains it.
         if !pairs[..3].iter().all(is_slow) {
             return false;
         }
@@ -122,7 +123,7 @@ impl AffineMap {
         halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))
     }
 
-    /// `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
+    /// Returns `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
     fn squared_form(&self, u: &Vector, v: &Vector) -> Dyadic {
         let parts: [Dyadic; 6] = std::array::from_fn(|part| match part {
             0..3 => &u[part] * &v[part],
@@ -135,8 +136,9 @@ impl AffineMap {
     }
 }
 
-/// Whether the cones of the directions 0, 1, 2 and 0, 2, 3 of a pyramid contain all these vectors: both turn the same way, and
-/// each vector is on the inner side of the four planes. The plane through 0 and 2 then tells in which of the two it is.
+/// Whether the cones of the directions 0, 1, 2 and 0, 2, 3 of a pyramid contain all these vectors: both cones have the same
+/// orientation, and each vector is on the inner side of the four planes. Its side of the plane through 0 and 2 then determines
+/// which of the two cones contains it.
 fn is_inside(pyramid: &[Vector; 4], vectors: &[Vector]) -> bool {
     let [u0, u1, u2, u3] = pyramid;
     let turns = |u: &Vector, v: &Vector, w: &Vector| dot(&cross(u, v), w).is_positive();

@@ -3,13 +3,13 @@
 use crate::container::Container;
 use crate::refusal::{Refusal, claim, proof, require};
 
-/// A bucket has at most so many triangles, and is not the root. The pair tree ends at buckets. Leaves have no more, either.
+/// A bucket has at most this many triangles, and is not the root. The pair tree ends at buckets. Leaves also have at most this many.
 const BUCKET: u32 = 64;
-/// Children of a node, at most.
+/// The largest number of children of a node.
 const MAX_CHILDREN: u32 = 4;
-/// Levels of a hierarchy, at most.
+/// The largest number of levels of a hierarchy.
 const MAX_LEVELS: usize = 256;
-/// No pair of a node's children is stored.
+/// The start of a node without stored pairs of its children.
 const NO_PAIRS: u32 = u32::MAX;
 
 /// A node: its triangles are a range of the order, its children a range of the nodes.
@@ -31,9 +31,9 @@ impl Node {
 #[derive(Clone, Copy)]
 pub(crate) struct StoredPair {
     pub(crate) radius: f64,
-    /// Its index among its siblings, stored or not.
+    /// The index among all siblings, including those that are not stored.
     pub(crate) which: u32,
-    /// Where the list of its children starts.
+    /// The start of the list of its children.
     pub(crate) start: u32,
 }
 
@@ -44,11 +44,11 @@ pub(crate) struct Certificates {
     order: Vec<u32>,
     pub(crate) node_radii: Vec<f64>,
     pub(crate) root_pair_radii: Vec<f64>,
-    /// 0: there is no pair tree.
+    /// The limit of the pair tree; 0 if there is no pair tree.
     pub(crate) pair_limit: f64,
     starts: Vec<u32>,
     radii: Vec<f32>,
-    /// One for each node pair of the pair tree.
+    /// A link for each node pair of the pair tree.
     pub(crate) links: Vec<u32>,
 }
 
@@ -89,25 +89,25 @@ impl Certificates {
         Ok(this)
     }
 
-    /// The triangles of a node.
+    /// Returns the triangles of a node.
     pub(crate) fn triangles(&self, n: u32) -> &[u32] {
         let node = self.nodes[n as usize];
         &self.order[node.first as usize..][..node.count as usize]
     }
 
-    /// The pairs of triangles between two nodes, or within one.
+    /// Returns the pairs of triangles between two nodes, or within one.
     pub(crate) fn pairs(&self, [n, m]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
         let [x, y] = [n, m].map(|n| self.triangles(n));
         let rest = move |i: usize| if n == m { &y[i + 1..] } else { y };
         x.iter().enumerate().flat_map(move |(i, a)| rest(i).iter().map(move |b| [*a, *b]))
     }
 
-    /// Whether queries test a node as a whole: the pair tree has no pairs within it.
+    /// Whether queries test a node as a whole, so that the pair tree has no pairs within it.
     pub(crate) fn is_bucket(&self, n: u32) -> bool {
         n != 0 && self.nodes[n as usize].count <= BUCKET
     }
 
-    /// The children of a node pair in the pair tree; none where both are at most as large as buckets.
+    /// Returns the children of a node pair in the pair tree; `None` if both nodes are at most as large as buckets.
     pub(crate) fn split(&self, [n, m]: [u32; 2]) -> Option<Vec<[u32; 2]>> {
         let [node_n, node_m] = [n, m].map(|n| self.nodes[n as usize]);
         if node_n.count.max(node_m.count) <= BUCKET || (node_n.children == 0 && node_m.children == 0) {
@@ -118,13 +118,13 @@ impl Certificates {
         Some(children.map(|child| if is_first { [child, m] } else { [n, child] }).collect())
     }
 
-    /// The stored pairs of a node's children.
+    /// Returns the stored pairs of a node's children.
     pub(crate) fn stored_of_node(&self, n: u32) -> Result<Vec<StoredPair>, Refusal> {
         let start = self.starts[n as usize];
         if start == NO_PAIRS { Ok(Vec::new()) } else { self.stored(start) }
     }
 
-    /// The list of siblings from a start on.
+    /// Returns the list of siblings that begins at `start`.
     pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>, Refusal> {
         let mut list = Vec::new();
         for (&radius, &link) in self.radii.iter().zip(&self.links).skip(start as usize).take(8) {
@@ -138,7 +138,7 @@ impl Certificates {
     }
 }
 
-/// Whether each triangle is listed once, and the triangles of each node are the disjoint union of its children's.
+/// Checks that each triangle is listed once, and that the triangles of each node are the disjoint union of those of its children.
 fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
     let mut sorted = order.to_vec();
     sorted.sort_unstable();

@@ -1,4 +1,4 @@
-//! Reader of sealed safetensors files: a length, a header in JSON, data; the header has the BLAKE3 of all other bytes.
+//! Reads sealed safetensors files: a length, a header in JSON, and data. The header contains the BLAKE3 digest of all other bytes.
 
 use std::collections::BTreeMap;
 
@@ -6,16 +6,16 @@ use serde_json::Value;
 
 use crate::refusal::{Refusal, input, require};
 
-/// What comes before the 64 digits of the digest.
+/// The text before the 64 digits of the digest.
 const PREFIX: &str = r#"{"__metadata__":{"blake3":""#;
-/// Bytes of the header's length.
+/// The number of bytes of the header's length.
 const LENGTH: usize = 8;
-/// Where the digits of the digest are.
+/// The range of the digits of the digest.
 const DIGITS: std::ops::Range<usize> = LENGTH + PREFIX.len()..LENGTH + PREFIX.len() + 64;
-/// Bytes of a header, at most.
+/// The largest size of a header, in bytes.
 const MAX_HEADER: usize = 1 << 20;
 
-/// The tensors and texts of a file whose digest is right.
+/// The tensors and texts of a file whose digest matches.
 pub(crate) struct Container<'a> {
     texts: BTreeMap<String, String>,
     tensors: BTreeMap<String, Tensor<'a>>,
@@ -27,7 +27,7 @@ struct Tensor<'a> {
     bytes: &'a [u8],
 }
 
-/// Types of numbers.
+/// A type of numbers in tensors.
 pub(crate) trait Number: Sized + Copy {
     const DTYPE: &'static str;
     fn list(bytes: &[u8]) -> Vec<Self>;
@@ -47,7 +47,7 @@ macro_rules! numbers {
 numbers!(f64 = "F64", u64 = "U64", f32 = "F32", u32 = "U32", u8 = "U8");
 
 impl<'a> Container<'a> {
-    /// Parses a file. `format`: its kind; `newest`: the newest version that is understood.
+    /// Parses a file. `format`: its kind; `newest`: the newest supported version.
     pub(crate) fn parse(bytes: &'a [u8], format: &str, newest: u64) -> Result<Self, Refusal> {
         let is_sealed = bytes.len() >= DIGITS.end && bytes[LENGTH..].starts_with(PREFIX.as_bytes());
         require(is_sealed, "not a file written by sscc")?;
@@ -97,7 +97,7 @@ impl<'a> Container<'a> {
         self.tensors.contains_key(name)
     }
 
-    /// The numbers of a tensor and the lengths of its axes.
+    /// Returns the numbers of a tensor and the lengths of its axes.
     pub(crate) fn tensor<T: Number>(&self, name: &str) -> Result<(Vec<T>, &[usize]), Refusal> {
         let Some(tensor) = self.tensors.get(name) else {
             return input(format!("tensor '{name}' is missing"));
@@ -111,7 +111,7 @@ impl<'a> Container<'a> {
         Ok((numbers, &tensor.shape))
     }
 
-    /// The numbers of a tensor with these axes; `None` matches any length.
+    /// Returns the numbers of a tensor with these axes; `None` matches any length.
     pub(crate) fn shaped<T: Number>(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<T>, Refusal> {
         let (numbers, shape) = self.tensor(name)?;
         let fits = |(found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| wanted == *found);
@@ -121,7 +121,7 @@ impl<'a> Container<'a> {
         Ok(numbers)
     }
 
-    /// The pairs of a tensor of two columns, which must be ascending, the smaller number first.
+    /// Returns the pairs of a tensor of two columns, which must be ascending, each with the smaller number first.
     pub(crate) fn pairs(&self, name: &str) -> Result<Vec<[u32; 2]>, Refusal> {
         let numbers = self.shaped::<u32>(name, &[None, Some(2)])?;
         let pairs = numbers.as_chunks().0.to_vec();

@@ -1,4 +1,4 @@
-//! Simplex pairs, and quarters of them, with their exact positions and modes; directions that separate them.
+//! Pairs of triangles or edges, and quarters of them, with exact positions and modes, and the directions that separate them.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
-/// A point of a triangle: its position at the centre and its modes, three rows.
+/// A point of a triangle: its position at the centre and its modes (three rows).
 #[derive(Clone)]
 pub(crate) struct Corner {
     pub(crate) position: Vector,
@@ -29,7 +29,7 @@ impl Corner {
         Self { position: std::array::from_fn(|c| half(&self.position[c], &other.position[c])), modes }
     }
 
-    /// Position and modes along a direction.
+    /// Returns position and modes along a direction.
     fn along(&self, dir: &Vector) -> (Dyadic, Vec<Dyadic>) {
         let rank = self.modes.len() / 3;
         let row = (0..rank).map(|k| (0..3).map(|c| &dir[c] * &self.modes[c * rank + k]).sum());
@@ -37,19 +37,19 @@ impl Corner {
     }
 }
 
-/// The four quarters of a triangle by the middles of its edges.
+/// Returns the four quarters of a triangle, cut at the middles of its edges.
 pub(crate) fn quarters([p, q, r]: &Triangle) -> [Triangle; 4] {
     let (pq, qr, rp) = (p.middle(q), q.middle(r), r.middle(p));
     let quarter = |a: &Corner, b: &Corner, c: &Corner| [a.clone(), b.clone(), c.clone()];
     [quarter(p, &pq, &rp), quarter(&pq, q, &qr), quarter(&rp, &qr, r), quarter(&pq, &qr, &rp)]
 }
 
-/// The nine differences of corners, from the first triangle to the second.
+/// Returns the nine differences of corners, from the first triangle to the second.
 pub(crate) fn differences(x: &Triangle, y: &Triangle) -> Vec<Vector> {
     x.iter().flat_map(|i| y.iter().map(move |j| minus(&j.position, &i.position))).collect()
 }
 
-/// A direction, and what is known of vertices along it.
+/// A direction, and the positions and modes of vertices along it that have been computed.
 pub(crate) struct Direction {
     dir: Vector,
     errors: [Dyadic; 2],
@@ -63,7 +63,8 @@ impl Direction {
         Self { dir, errors, vertices: HashMap::new(), apart: HashMap::new() }
     }
 
-    /// Whether two simplices stay apart below a radius, always the same for one direction: all nine pairs of corners do.
+    /// Whether the direction separates two simplices below a radius, which is always the same for one direction: whether it separates
+    /// all nine pairs of corners.
     pub(crate) fn separates(&mut self, model: &ScaledModel, [x, y]: Simplices, radius: &Radius) -> bool {
         for i in x.into_iter().chain(y) {
             self.vertices.entry(i).or_insert_with(|| Corner::of(model, i).along(&self.dir));
@@ -74,7 +75,7 @@ impl Direction {
         })
     }
 
-    /// The same for any triangles.
+    /// Whether the direction separates any two triangles below a radius.
     pub(crate) fn separates_corners(&self, x: &Triangle, y: &Triangle, radius: &Radius) -> bool {
         let [x, y] = [x, y].map(|triangle| triangle.each_ref().map(|corner| corner.along(&self.dir)));
         x.iter().all(|i| y.iter().all(|j| are_apart(i, j, &self.errors, radius)))

@@ -1,9 +1,10 @@
-//! The digest by which certificates recognise their model and scope.
+//! The digest of model and scope that certificates contain.
 
 use crate::model::Model;
 use crate::scope::Scope;
 
-/// BLAKE3 of the model and the scope: named lists one after the other, each with its length; all numbers in 64 bits.
+/// Returns the BLAKE3 digest of the model and the scope: of named lists one after the other, each with its length; all numbers
+/// have 64 bits.
 pub(crate) fn digest(model: &Model, scope: &Scope, classes: &[u32]) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     let mut list = |name: &str, count: usize, numbers: &mut dyn Iterator<Item = u64>| {
@@ -16,7 +17,7 @@ pub(crate) fn digest(model: &Model, scope: &Scope, classes: &[u32]) -> [u8; 32] 
     list("faces", model.faces.len(), &mut integers(model.faces.as_flattened()));
     list("positions", vertices, &mut reals(model.positions.as_flattened()));
     list("rank", rank, &mut std::iter::empty());
-    // Vector by vector: the three components of each mode of a vertex.
+    // The modes follow vertex by vertex: three components for each mode.
     let mut modes = (0..vertices).flat_map(|i| {
         let rows = model.modes_of(i);
         (0..rank).flat_map(move |k| (0..3).map(move |c| rows[c * rank + k].to_bits()))

@@ -1,4 +1,4 @@
-//! Numbers `m 2^e` with an integer m of any length: sums and products are exact, and every f64 is one.
+//! Numbers `m 2^e` with an integer m of any length: sums and products are exact, and every finite f64 is such a number.
 
 use std::cmp::Ordering;
 use std::iter::Sum;
@@ -14,7 +14,7 @@ pub(crate) struct Dyadic {
     exponent: i64,
 }
 
-/// Roots and quotients have at least this many binary digits.
+/// The smallest number of binary digits of roots and quotients.
 const ROOT_BITS: usize = 64;
 
 impl Dyadic {
@@ -22,7 +22,7 @@ impl Dyadic {
         Self { mantissa: mantissa.into(), exponent }
     }
 
-    /// The exact value of a finite number; 0 for others, which readers refuse.
+    /// Returns the exact value of a finite number; 0 for other numbers, which files may not contain.
     pub(crate) fn of(x: f64) -> Self {
         let bits = x.to_bits();
         let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
@@ -31,7 +31,7 @@ impl Dyadic {
         if mantissa == 0 || biased == 0x7ff {
             return Self::default();
         }
-        // Short mantissas make short products.
+        // Trailing zeros are removed, because short mantissas make short products.
         let zeros = mantissa.trailing_zeros();
         let mantissa = mantissa >> zeros;
         Self::new(if x < 0.0 { -mantissa } else { mantissa }, exponent + i64::from(zeros))
@@ -49,12 +49,12 @@ impl Dyadic {
         Self { mantissa: self.mantissa.clone().unsigned_abs().into(), exponent: self.exponent }
     }
 
-    /// The number times a power of two.
+    /// Returns the number times a power of two.
     pub(crate) fn times_power(&self, power: i64) -> Self {
         Self { mantissa: self.mantissa.clone(), exponent: self.exponent + power }
     }
 
-    /// Takes the larger one of this number and another.
+    /// Replaces this number by another one that is larger.
     pub(crate) fn raise(&mut self, other: Self) {
         if other > *self {
             *self = other;
@@ -65,7 +65,7 @@ impl Dyadic {
         self * self
     }
 
-    /// A number with at most `bits` digits that is at least this one, which is not negative.
+    /// Returns a number with at most `bits` digits that is at least this one, which must not be negative.
     pub(crate) fn round_up(&self, bits: usize) -> Self {
         let cut = self.mantissa.bit_len().saturating_sub(bits);
         if cut == 0 {
@@ -74,7 +74,7 @@ impl Dyadic {
         Self { mantissa: (&self.mantissa >> cut) + IBig::ONE, exponent: self.exponent + cut as i64 }
     }
 
-    /// An upper bound of the root of a number that is not negative: too large by less than a part of 2^-60.
+    /// Returns an upper bound of the root of a non-negative number, too large by a relative error of less than 2^-60.
     pub(crate) fn root_up(&self) -> Self {
         if !self.is_positive() {
             return Self::default();
@@ -86,7 +86,7 @@ impl Dyadic {
         Self { mantissa: IBig::from(shifted.sqrt()) + IBig::ONE, exponent: (exponent - shift as i64) / 2 }
     }
 
-    /// The quotient by a positive number to about so many digits.
+    /// Returns the quotient by a positive number, with about `bits` digits.
     pub(crate) fn divided_by(&self, divisor: &Self, bits: usize) -> Self {
         let shift = (bits + divisor.mantissa.bit_len()).saturating_sub(self.mantissa.bit_len());
         let exponent = self.exponent - divisor.exponent - shift as i64;
@@ -149,17 +149,17 @@ impl Ord for Dyadic {
     }
 }
 
-/// `a . b` of two rows.
+/// Returns `a . b` for two rows.
 pub(crate) fn dot(a: &[Dyadic], b: &[Dyadic]) -> Dyadic {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The sum of the squares of a row.
+/// Returns the sum of the squares of a row.
 pub(crate) fn squared_norm(row: &[Dyadic]) -> Dyadic {
     row.iter().map(Dyadic::square).sum()
 }
 
-/// Three numbers.
+/// A vector of three numbers.
 pub(crate) type Vector = [Dyadic; 3];
 
 pub(crate) fn vector(x: [f64; 3]) -> Vector {
@@ -192,12 +192,12 @@ mod tests {
                 assert_eq!(&(&a + &b).square() - &(&a - &b).square(), (&a * &b).times_power(2));
             }
         }
-        // 0.1 + 0.2 is not 0.3 in f64, and none of them is a tenth of an integer.
+        // The exact sum of the f64 0.1 and 0.2 differs from the f64 nearest to it.
         assert_ne!(&Dyadic::of(0.1) + &Dyadic::of(0.2), Dyadic::of(0.1 + 0.2));
     }
 
     #[test]
-    fn roots_and_rounding_go_up_and_not_far() {
+    fn roots_and_rounded_numbers_are_tight_upper_bounds() {
         for x in [2.0, 4.0, 1e-320, 3e300, 0.1, 1.0 + f64::EPSILON] {
             for exact in [Dyadic::of(x), Dyadic::of(x).square(), &Dyadic::of(x).square() + &Dyadic::of(x)] {
                 let root = exact.root_up();

@@ -1,20 +1,20 @@
-//! Entries: node pairs that together have all pairs of triangles, each with the largest radius that a query relies on.
+//! Entries: node pairs that together contain all pairs of triangles, each with the largest radius that a query relies on.
 //!
-//! The traversal begins at the root and follows the hierarchy and the pair tree alone, so no pair of triangles is missing: the
+//! The traversal begins at the root and follows only the hierarchy and the pair tree, so no pair of triangles is missing: the
 //! pairs within a node are those within each child and those between two children, and the pairs between two nodes are those
-//! between the parts of one and the other.
+//! between the children of one and the other.
 
 use crate::certificates::{Certificates, StoredPair};
 use crate::refusal::{Refusal, proof};
 
-/// Two nodes, or one twice, and the radius below which their pairs that count must be free.
+/// Two nodes, or the same node twice, and the radius below which their pairs that count must be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) nodes: [u32; 2],
     pub(crate) radius: f64,
 }
 
-/// All entries, in the order in which proofs number them.
+/// Returns all entries, in the order in which proofs number them.
 pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal> {
     let mut traversal = Traversal { certificates, entries: Vec::new(), visited: 0 };
     traversal.within(0, 0.0)?;
@@ -24,12 +24,12 @@ pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal
 struct Traversal<'a> {
     certificates: &'a Certificates,
     entries: Vec<Entry>,
-    /// Stored pairs so far; more visits than pairs mean a circle.
+    /// Stored pairs visited so far. More visits than pairs mean that the links form a circle.
     visited: usize,
 }
 
 impl Traversal<'_> {
-    /// The pairs within a node that is inside nodes with a radius.
+    /// Adds the entries of the pairs within a node. `around`: the largest radius of the nodes that contain it.
     fn within(&mut self, n: u32, around: f64) -> Result<(), Refusal> {
         let certificates = self.certificates;
         let radius = around.max(certificates.node_radii[n as usize]);
@@ -45,14 +45,14 @@ impl Traversal<'_> {
         let pairs: Vec<[u32; 2]> =
             children.clone().flat_map(|a| (a + 1..children.end).map(move |b| [a, b])).collect();
         let of_root = |which: usize| if n == 0 { certificates.root_pair_radii[which] } else { 0.0 };
-        // Without a pair tree, and within a bucket, no pairs are stored, and the others are free below no limit.
+        // Without a pair tree, and within a bucket, no pairs are stored, and the limit does not apply.
         let has_pairs = certificates.pair_limit > 0.0 && !certificates.is_bucket(n);
         let stored = if has_pairs { certificates.stored_of_node(n)? } else { Vec::new() };
         let limit = if has_pairs { certificates.pair_limit } else { 0.0 };
         self.siblings(&pairs, &stored, limit, &|which| radius.max(of_root(which)))
     }
 
-    /// Siblings in the pair tree: those that are stored, and the others, which are free below the limit.
+    /// Adds the entries of siblings in the pair tree: those that are stored, and the others, which are free below the limit.
     fn siblings(
         &mut self,
         pairs: &[[u32; 2]],

@@ -1,11 +1,11 @@
-//! Exceptions: pairs that count and collide at the centre. Queries test them always, so a pair too many costs time alone.
+//! Exceptions: pairs that count and collide at the centre. Every query tests them, so an unnecessary exception costs only time.
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
 use crate::model::Model;
 use crate::refusal::{Refusal, proof};
 use crate::scope::{CountedPairs, Scope};
 
-/// Checks that exceptions are what the rule says.
+/// Checks that each exception counts and collides at the centre.
 pub(crate) fn check(model: &Model, scope: &Scope, counted: &CountedPairs<'_>) -> Result<(), Refusal> {
     for &[a, b] in &scope.exceptions {
         let simplices = counted.with_exceptions(a, b);
@@ -22,8 +22,8 @@ pub(crate) fn check(model: &Model, scope: &Scope, counted: &CountedPairs<'_>) ->
 }
 
 /// Whether two closed triangles (segments, points) have no common point, exactly. Two disjoint polytopes have a separating
-/// plane that is parallel to a face of one, or to an edge of each; directions within planes and along lines are for those that
-/// have no volume.
+/// plane that is parallel to a face of one, or to an edge of each. Directions within planes and along lines are needed because
+/// these polytopes have no volume.
 fn are_disjoint(x: &[Vector; 3], y: &[Vector; 3]) -> bool {
     let edges = |t: &[Vector; 3]| [minus(&t[1], &t[0]), minus(&t[2], &t[1]), minus(&t[0], &t[2])];
     let (of_x, of_y) = (edges(x), edges(y));
@@ -32,7 +32,7 @@ fn are_disjoint(x: &[Vector; 3], y: &[Vector; 3]) -> bool {
     let normals = [cross(&of_x[0], &of_x[1]), cross(&of_y[0], &of_y[1])];
     let of_edges = of_x.iter().flat_map(|e| of_y.iter().map(move |f| cross(e, f)));
     let in_planes = normals.iter().flat_map(|n| all.iter().map(move |e| cross(n, e)));
-    // In the plane of an edge and a point, across the edge: of parallel edges and of segments.
+    // Directions across an edge in the plane of the edge and a point separate parallel edges and segments.
     let across = of_x.iter().chain(&of_y).flat_map(|e| between.iter().map(move |d| cross(&cross(e, d), e)));
     let mut directions = normals.iter().cloned().chain(of_edges).chain(in_planes).chain(across);
     let is_separating = |dir: &Vector| {
@@ -63,7 +63,7 @@ mod tests {
             (shifted(4.0_f64.next_up(), 0.0, 0.0), true),
             (shifted(2.0, 2.0, 0.0), false),
             (shifted(2.0, 2.0_f64.next_up(), 0.0), true),
-            // An edge that pierces, touches, and misses.
+            // An edge that pierces the triangle, touches it, and misses it.
             (of([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), false),
             (of([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), false),
             (of([[1.0, 1.0, tiny], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), true),

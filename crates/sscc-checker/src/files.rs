@@ -1,4 +1,4 @@
-//! Models as files give them: a mesh of triangles (.obj) with a matrix of modes (.npy), or one `*.model.safetensors`.
+//! Reads models from files: a mesh of triangles (.obj) with a matrix of modes (.npy), or one `*.model.safetensors`.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use crate::container::Number;
 use crate::model::Model;
 use crate::refusal::{Refusal, input};
 
-/// Reads a file whole.
+/// Reads all bytes of a file.
 ///
 /// # Errors
 /// When the system reports an error.
@@ -16,10 +16,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
 }
 
 impl Model {
-    /// Reads a model: a mesh and its modes, or without modes a file that has both.
+    /// Reads a model: from a mesh and its modes, or, without `modes`, from one file with both.
     ///
     /// # Errors
-    /// When a file cannot be read, or is not what it should be.
+    /// When a file cannot be read, or its content is invalid.
     pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self, Refusal> {
         let bytes = read(mesh)?;
         let named = |path: &Path| {
@@ -61,7 +61,7 @@ fn parse_obj(text: &str) -> Result<Mesh, Refusal> {
     Ok((positions, faces))
 }
 
-/// The modes (3V x r by rows) of an array of f64 of the shape (3V, r) or (V, 3, r), and r.
+/// Returns the modes (3V x r by rows) of an array of f64 of the shape (3V, r) or (V, 3, r), and r.
 fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal> {
     let parsed = || {
         let length = match (bytes.strip_prefix(b"\x93NUMPY")?, bytes.get(6)?) {

@@ -1,10 +1,10 @@
-//! The inequality of all witnesses: a gap stays open below a radius.
+//! The inequality of all witnesses: a gap is positive below a radius.
 
 use crate::dyadic::Dyadic;
 use crate::scaled::Radius;
 
-/// Whether `gap - (rate + root(square)) |z'|` is positive for all z' below a radius: it is at `z' = 0`, and not negative at
-/// the radius, where the root is compared by squares.
+/// Whether `gap - (rate + root(square)) |z'|` is positive for all z' below a radius: it must be positive at `z' = 0` and not
+/// negative at the radius, where the root is compared by squares.
 pub(crate) fn stays_open(gap: &Dyadic, rate: &Dyadic, square: &Dyadic, radius: &Radius) -> bool {
     let Radius::Finite(radius) = radius else {
         return gap.is_positive() && rate.is_zero() && square.is_zero();
@@ -23,11 +23,11 @@ mod tests {
         let is_open = |gap: f64, rate: f64, square: f64, radius: f64| {
             stays_open(&of(gap), &of(rate), &of(square), &Radius::Finite(of(radius)))
         };
-        // 10 - (2 + 3) |z|: closed at 2.
+        // The gap 10 - (2 + 3) |z| is 0 at 2.
         assert!(is_open(10.0, 2.0, 9.0, 2.0));
         assert!(!is_open(10.0, 2.0, 9.0, 2.0_f64.next_up()) && !is_open(10.0, 2.0, 9.0_f64.next_up(), 2.0));
         assert!(!is_open(10.0_f64.next_down(), 2.0, 9.0, 2.0) && !is_open(0.0, 0.0, 0.0, 1.0));
-        // A negative left side must not pass by its square.
+        // A negative left side must fail, although its square is large enough.
         assert!(!is_open(1.0, 100.0, 1.0, 1.0));
         let infinite =
             |rate: f64, square: f64| stays_open(&of(1.0), &of(rate), &of(square), &Radius::Infinite);

@@ -1,8 +1,8 @@
-//! Checks proofs of certificates in exact arithmetic. It shares no code with the program that computes them, and trusts
-//! nothing that they or a proof say: `docs/guarantees.md`, "The checker", has the statement that it confirms.
+//! Checks proofs of certificates in exact arithmetic. It shares no code with the program that computes certificates, and trusts
+//! neither certificates nor proofs. `docs/guarantees.md`, "The checker", has the statement that it confirms.
 //!
-//! `entries` lists what must be proven, from the certificates alone. `proof` reads the witnesses and has them checked by
-//! `node_maps`, `corners` and `affine`. `scaled` bounds the rounding of computed positions.
+//! `entries` lists the statements that must be proven, from the certificates alone. `proof` reads the witnesses, which `node_maps`,
+//! `corners` and `affine` check. `scaled` bounds the rounding of computed positions.
 
 mod affine;
 mod certificates;
@@ -30,20 +30,22 @@ use proof::{Check, Proof};
 use refusal::require;
 use scope::{CountedPairs, Scope};
 
-/// What was confirmed: radii, of the pairs that count.
+/// The result of a check that confirmed the radii of pairs that count.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confirmed {
-    /// The entries into which all pairs of triangles are divided.
+    /// The number of entries into which all pairs of triangles are divided.
     pub entries: usize,
-    /// Those that were proven: all of them, or a sample.
+    /// The number of entries that were proven: all of them, or a sample.
     pub proven: usize,
-    /// What was not checked, as text: numbers of pairs, groups of triangles, local certificates.
+    /// The parts that were not checked, as text: numbers of pairs, groups of triangles, local certificates.
     pub left_out: String,
 }
 
 impl Confirmed {
+    /// Checks that the proof was not a sample.
+    ///
     /// # Errors
-    /// When not all entries were proven: whoever wrote the proof chose the sample.
+    /// When not all entries were proven: the author of the proof chose the sample.
     pub fn of_all_entries(self) -> Result<Self, Refusal> {
         let Self { entries, proven, .. } = &self;
         let cause =
@@ -55,7 +57,7 @@ impl Confirmed {
 /// Checks a proof. `certificates`, `proof`: the bytes of the files.
 ///
 /// # Errors
-/// [`Refusal::Input`] where a file is damaged, of another model, or of a kind that is not checked; [`Refusal::Proof`] where the
+/// [`Refusal::Input`] if a file is damaged, of another model, or of a kind that is not checked; [`Refusal::Proof`] if the
 /// proof does not hold.
 pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");

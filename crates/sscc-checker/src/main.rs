@@ -1,4 +1,4 @@
-//! `sscc-checker MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds and has all entries, 1 if not, 2 on other errors.
+//! `sscc-checker MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds for all entries, 1 if not, 2 on other errors.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -3,24 +3,24 @@
 use crate::container::Container;
 use crate::refusal::{Refusal, input, require};
 
-/// Coordinates are at most 2^200.
+/// The largest magnitude of coordinates, 2^200.
 const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
 
-/// A mesh and its modes, as a file gives them.
+/// A mesh and its modes, with the numbers of the file.
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) faces: Vec<[u32; 3]>,
     pub(crate) rank: usize,
-    /// `modes[(3 vertex + component) rank + k]`
+    /// The component of mode k of a vertex is `modes[(3 vertex + component) rank + k]`.
     pub(crate) modes: Vec<f64>,
 }
 
 impl Model {
-    /// A model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
+    /// Creates a model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
     ///
     /// # Errors
-    /// When sizes do not fit each other, a face names no vertex, or a number is not finite or beyond 2^200.
+    /// When sizes do not fit each other, a face names a vertex that does not exist, or a number is not finite or beyond 2^200.
     pub fn new(
         positions: Vec<[f64; 3]>,
         faces: Vec<[u32; 3]>,
@@ -40,7 +40,7 @@ impl Model {
     /// Parses a `*.model.safetensors` file.
     ///
     /// # Errors
-    /// When it is damaged, of another kind or version, or no model.
+    /// When the file is damaged, of another kind or version, or not a model.
     pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
         let file = Container::parse(bytes, "sscc.model", 3)?;
         let positions = file.shaped::<f64>("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
@@ -52,12 +52,12 @@ impl Model {
         }
     }
 
-    /// The three rows of a vertex.
+    /// Returns the three rows of a vertex.
     pub(crate) fn modes_of(&self, vertex: usize) -> &[f64] {
         &self.modes[vertex * 3 * self.rank..][..3 * self.rank]
     }
 
-    /// The position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
+    /// Returns the position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
     pub(crate) fn computed_position(&self, vertex: usize, q: &[f64]) -> [f64; 3] {
         let modes = self.modes_of(vertex);
         std::array::from_fn(|c| {

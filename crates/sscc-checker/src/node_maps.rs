@@ -1,8 +1,8 @@
 //! Witnesses of node pairs: a direction, with an affine map of the modes of each node.
 //!
-//! A proof gives for each node a centre c and an affine map, `A_i ~ M + G (p_i - c)`. Any will do: the checker computes the box
-//! of the node about c and the residuals of its vertices. All vertices lie in the hull of the eight corners of the box, whose
-//! modes are those of the map, up to the residuals; so the corners of two boxes stand for all their pairs of vertices.
+//! A proof contains for each node a centre c and an affine map, `A_i ~ M + G (p_i - c)`. Any map is valid: the checker computes the
+//! box of the node about c and the residuals of its vertices. All vertices lie in the hull of the eight corners of the box, whose
+//! modes are those of the map, up to the residuals. So it is enough to check the pairs of corners of two boxes.
 
 use std::sync::OnceLock;
 
@@ -12,12 +12,13 @@ use crate::inequality::stays_open;
 use crate::model::Model;
 use crate::scaled::{Radius, ScaledModel};
 
-/// Numbers of the map of a node: its centre, M by components, then G: for each direction three components, a row each.
+/// Returns the number of numbers of a node's map: its centre, M by components, then G (for each direction three components, a row
+/// each).
 pub(crate) fn numbers_of_map(rank: usize) -> usize {
     3 + 12 * rank
 }
 
-/// The maps of all nodes, and what was computed from those that were needed.
+/// The maps of all nodes, and the boxes of those that have been needed.
 pub(crate) struct NodeMaps<'a> {
     model: &'a Model,
     scaled: &'a ScaledModel,
@@ -30,14 +31,14 @@ struct NodeBox {
     center: Vector,
     /// Half extents about the centre.
     half: Vector,
-    /// For each axis the largest residual.
+    /// The largest residual along each axis.
     residual: Vector,
     modes: Vec<Dyadic>,
     gradient: Vec<Dyadic>,
 }
 
 impl<'a> NodeMaps<'a> {
-    /// `numbers`: [`numbers_of_map`] for each node, eight bytes each.
+    /// Creates the maps. `numbers`: [`numbers_of_map`] numbers of eight bytes for each node.
     pub(crate) fn new(
         model: &'a Model,
         scaled: &'a ScaledModel,
@@ -48,7 +49,7 @@ impl<'a> NodeMaps<'a> {
         Self { model, scaled, certificates, numbers, boxes }
     }
 
-    /// Whether all vertices of two nodes stay apart along a direction below a radius.
+    /// Whether a direction separates all vertices of two nodes below a radius.
     pub(crate) fn are_apart(&self, [n, m]: [u32; 2], dir: &Vector, radius: &Radius) -> bool {
         let [n, m] = [n, m].map(|n| self.boxes[n as usize].get_or_init(|| self.compute(n)));
         let [rest_error, rate_error] = self.scaled.errors(dir);
@@ -92,7 +93,7 @@ impl<'a> NodeMaps<'a> {
 }
 
 impl NodeBox {
-    /// Position and modes of the eight corners along a direction.
+    /// Returns position and modes of the eight corners along a direction.
     fn corners(&self, dir: &Vector, rank: usize) -> Vec<(Dyadic, Vec<Dyadic>)> {
         let along = |rows: &[Dyadic], k: usize| (0..3).map(|c| &dir[c] * &rows[c * rank + k]).sum::<Dyadic>();
         let center: Vec<Dyadic> = (0..rank).map(|k| along(&self.modes, k)).collect();

@@ -15,7 +15,7 @@ use crate::scaled::{Radius, ScaledModel};
 use crate::scope::{CountedPairs, Simplices};
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
-/// Quarters within quarters, at most.
+/// The largest depth of quarters within quarters.
 const MAX_DEPTH: usize = 64;
 
 /// Witnesses of node pairs.
@@ -24,7 +24,7 @@ const NOTHING_COUNTS: u8 = b'n';
 const SPLIT_FIRST: u8 = b'1';
 const SPLIT_SECOND: u8 = b'2';
 const TRIANGLES: u8 = b't';
-/// Witnesses of triangle pairs; smaller numbers are those of a direction that came before.
+/// Witnesses of triangle pairs; smaller numbers are the index of an earlier direction.
 const NEW_DIRECTION: u8 = 255;
 const NEW_MAP: u8 = 254;
 const LAST_MAP: u8 = 253;
@@ -34,7 +34,7 @@ const QUARTER_SECOND: u8 = 251;
 /// The parts of a proof.
 pub(crate) struct Proof<'a> {
     pub(crate) digest: &'a [u8],
-    /// How many entries there are, proven or not.
+    /// The number of all entries, proven or not.
     pub(crate) entries: u64,
     rank: u32,
     nodes: u32,
@@ -43,7 +43,7 @@ pub(crate) struct Proof<'a> {
     pub(crate) proven: Vec<(usize, &'a [u8])>,
 }
 
-/// Bytes that are read from the front.
+/// The bytes that have not been read yet.
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -95,7 +95,7 @@ impl<'a> Proof<'a> {
     }
 }
 
-/// What the checks of all entries share.
+/// The data that the checks of all entries share.
 pub(crate) struct Check<'a> {
     pub(crate) certificates: &'a Certificates,
     pub(crate) counted: &'a CountedPairs<'a>,
@@ -135,7 +135,7 @@ impl Check<'_> {
         let radius = self.scaled.radius(entry.radius);
         let (bytes, directions) = (Bytes(bytes), Vec::new());
         let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
-        // Nothing is closer to the centre than it is.
+        // An entry of radius 0 needs no witness.
         if entry.radius > 0.0 {
             reader.nodes(entry.nodes)?;
         }
@@ -149,13 +149,14 @@ struct EntryReader<'a> {
     maps: &'a NodeMaps<'a>,
     radius: Radius,
     bytes: Bytes<'a>,
-    /// Of the last list of triangles: its directions, and the last affine map.
+    /// The directions of the last list of triangles.
     directions: Vec<Direction>,
+    /// The last affine map of this list.
     map: Option<AffineMap>,
 }
 
 impl EntryReader<'_> {
-    /// All pairs between two nodes, or within one.
+    /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         let Check { certificates, counted, .. } = self.check;
         let children = |n: u32| certificates.nodes[n as usize].children();
@@ -206,10 +207,10 @@ impl EntryReader<'_> {
         }
     }
 
-    /// The number of the direction that a witness names, if it names one; a new one is read.
+    /// Returns the index of the direction of a witness, if it has one; reads a new direction.
     fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
         if tag == NEW_DIRECTION {
-            // One beyond those with a number is forgotten.
+            // Only as many directions are kept as have an index; a further one replaces the last.
             self.directions.truncate(QUARTER_SECOND.into());
             self.directions.push(Direction::new(self.check.scaled, self.bytes.vector()?));
             return Ok(Some(self.directions.len() - 1));
@@ -218,7 +219,7 @@ impl EntryReader<'_> {
         Ok(is_known.then_some(tag.into()))
     }
 
-    /// Whether a witness holds for triangles, or parts of them.
+    /// Whether a witness holds for two triangles, or parts of them.
     fn parts(&mut self, [x, y]: [&Triangle; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
         let scaled = self.check.scaled;
         if let Some(number) = self.direction(tag)? {

@@ -1,8 +1,8 @@
-//! Why a proof, or a file, is refused.
+//! `Refusal`: the reason why a proof or a file is refused.
 
 use std::fmt;
 
-/// One line: the place and the cause.
+/// A refusal, with a message of one line: the place and the cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// A file cannot be read, is damaged, or is of another model: nothing was checked.
@@ -21,7 +21,7 @@ impl fmt::Display for Refusal {
 impl std::error::Error for Refusal {}
 
 impl Refusal {
-    /// The same with the name of the file before it.
+    /// Adds the name of the file before the message.
     pub(crate) fn of(mut self, name: &str) -> Self {
         let (Self::Input(line) | Self::Proof(line)) = &mut self;
         line.insert_str(0, &format!("{name}: "));
@@ -29,22 +29,22 @@ impl Refusal {
     }
 }
 
-/// Refuses an input.
+/// Returns the refusal of an input.
 pub(crate) fn input<T>(line: impl Into<String>) -> Result<T, Refusal> {
     Err(Refusal::Input(line.into()))
 }
 
-/// Refuses an input unless something holds.
+/// Refuses an input unless a condition holds.
 pub(crate) fn require(holds: bool, line: &str) -> Result<(), Refusal> {
     if holds { Ok(()) } else { input(line) }
 }
 
-/// Refuses certificates unless something holds.
+/// Refuses certificates unless a condition holds.
 pub(crate) fn claim(holds: bool, line: &str) -> Result<(), Refusal> {
     if holds { Ok(()) } else { proof(line) }
 }
 
-/// Refuses a proof.
+/// Returns the refusal of a proof.
 pub(crate) fn proof<T>(line: impl Into<String>) -> Result<T, Refusal> {
     Err(Refusal::Proof(line.into()))
 }

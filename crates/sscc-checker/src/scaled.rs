@@ -1,21 +1,21 @@
-//! The model in coordinates z about the centre, exactly, and bounds of the rounding of computed positions.
+//! The model in coordinates z' about the centre, exactly, and bounds of the rounding of computed positions.
 //!
-//! `q - center = T z'` with a matrix T of short numbers that is nearly the inverse of the factor S: `S T = I + D`, `|D| <=
-//! delta` in the Frobenius norm. Then `z = S (q - center) = (I + D) z'`, and `|z| < R` implies `|z'| < R / (1 - delta)`. All
-//! rates are over z', with the modes `A = U T`; so nothing else is rounded but R, upwards.
+//! Let `q - center = T z'` with a matrix T of short numbers that is nearly the inverse of the factor S: `S T = I + D`, with
+//! `|D| <= delta` in the Frobenius norm. Then `z = S (q - center) = (I + D) z'`, and `|z| < R` implies `|z'| < R / (1 - delta)`.
+//! All rates are per unit of z', with the modes `A = U T`; so only R is rounded, upwards.
 //!
-//! The positions at the centre are the computed ones, from which witnesses are found. How far they are from the exact ones is
-//! part of the rounding.
+//! The positions at the centre are the computed ones, from which witnesses are found. Their distance from the exact ones is part of
+//! the rounding.
 
 use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
 use crate::model::Model;
 use crate::refusal::{Refusal, input};
 use crate::scope::Scope;
 
-/// Digits of T: of a dense factor more, for those that cancel.
+/// Binary digits of T for a diagonal and for a dense factor, which needs more, because products cancel.
 const DIGITS: [usize; 2] = [64, 192];
 
-/// A radius, over z'.
+/// A radius for `|z'|`.
 #[derive(Clone, Debug)]
 pub(crate) enum Radius {
     Finite(Dyadic),
@@ -26,10 +26,11 @@ pub(crate) enum Radius {
 pub(crate) struct ScaledModel {
     pub(crate) rank: usize,
     pub(crate) positions: Vec<Vector>,
-    /// Three rows for each vertex.
+    /// The modes A: three rows for each vertex.
     modes: Vec<Dyadic>,
-    /// For each axis a bound of the difference of each computed coordinate to `positions + A z'`: this, and `rate_errors |z'|`.
+    /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from `positions + A z'`.
     rest_errors: Vector,
+    /// See `rest_errors`.
     rate_errors: Vector,
     delta: Dyadic,
 }
@@ -71,7 +72,7 @@ impl ScaledModel {
                 this.rate_errors[c].raise(squared_norm(&magnitudes).root_up());
             }
         }
-        // Rounding to nearest: each product once, each of r sums once, so at most gamma_(r+1) <= (r + 2) 2^-53 of the
+        // Each product and each of r sums is rounded to nearest once. So the error is at most gamma_(r+1) <= (r + 2) 2^-53 times the
         // magnitudes, and 2^-1075 for each product that underflows.
         let (gamma, least) = (Dyadic::new(rank as i64 + 2, -53), Dyadic::new(rank as i64 + 2, -1074));
         let error = |c: usize| &(&this.rest_errors[c] * &gamma) + &center_errors[c];
@@ -80,12 +81,12 @@ impl ScaledModel {
         Ok(this)
     }
 
-    /// The row of a vertex and a component.
+    /// Returns the row of the modes for a vertex and a component.
     pub(crate) fn row(&self, vertex: u32, component: usize) -> &[Dyadic] {
         &self.modes[(3 * vertex as usize + component) * self.rank..][..self.rank]
     }
 
-    /// A radius over z'.
+    /// Converts a radius of z to one of z', rounded up.
     pub(crate) fn radius(&self, radius: f64) -> Radius {
         if radius.is_infinite() {
             return Radius::Infinite;
@@ -95,8 +96,8 @@ impl ScaledModel {
         Radius::Finite((&radius + &(&radius * &self.delta.times_power(1))).round_up(128))
     }
 
-    /// By how much the gap of two computed points along a direction may be smaller than the exact one: the first number, and
-    /// the second times `|z'|`.
+    /// Returns two bounds e0 and e1: the gap of two computed points along a direction is smaller than the exact one by at most
+    /// `e0 + e1 |z'|`.
     pub(crate) fn errors(&self, dir: &Vector) -> [Dyadic; 2] {
         [&self.rest_errors, &self.rate_errors].map(|errors| {
             let sum: Dyadic = dir.iter().zip(errors).map(|(d, e)| &d.abs() * e).sum();
@@ -105,10 +106,10 @@ impl ScaledModel {
     }
 }
 
-/// A column of T: its entries that are not 0, with their rows.
+/// A column of T: its nonzero entries, with their rows.
 type Column = Vec<(usize, Dyadic)>;
 
-/// The columns of T, and delta.
+/// Returns the columns of T, and delta.
 fn inverse(scope: &Scope, rank: usize) -> Result<(Vec<Column>, Dyadic), Refusal> {
     let digits = DIGITS[usize::from(scope.is_dense)];
     let entry = |i: usize, j: usize| match scope.is_dense {
@@ -119,7 +120,7 @@ fn inverse(scope: &Scope, rank: usize) -> Result<(Vec<Column>, Dyadic), Refusal>
     let first = |l: usize| if scope.is_dense { 0 } else { l };
     let (mut columns, mut error) = (Vec::new(), Dyadic::default());
     for l in 0..rank {
-        // Back substitution: S t = e_l.
+        // Solves S t = e_l by back substitution.
         let mut t = vec![Dyadic::default(); rank];
         for i in (first(l)..=l).rev() {
             let known: Dyadic = (i + 1..=l).map(|j| &entry(i, j) * &t[j]).sum();

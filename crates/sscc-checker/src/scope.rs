@@ -1,4 +1,4 @@
-//! What certificates hold for beside the model: metric, centre, and which pairs of triangles count.
+//! The scope of certificates: metric, centre, and which pairs of triangles count.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use crate::refusal::{Refusal, input, require};
 
 /// Metric, centre and contact filter of certificates.
 pub(crate) struct Scope {
-    /// The factor S: its diagonal, or all of it by rows, upper triangular.
+    /// The factor S: its diagonal, or the whole upper triangular matrix by rows.
     pub(crate) factor: Vec<f64>,
     pub(crate) is_dense: bool,
     pub(crate) center: Vec<f64>,
@@ -20,7 +20,7 @@ pub(crate) struct Scope {
     pub(crate) groups: Option<Groups>,
 }
 
-/// The group of each triangle, and the pairs of groups that count, or do not.
+/// The group of each triangle, and the pairs of groups that count or do not count.
 pub(crate) struct Groups {
     pub(crate) of_triangles: Vec<u32>,
     pub(crate) others_count: bool,
@@ -65,20 +65,20 @@ impl Scope {
     }
 }
 
-/// Whether a text of the file is the second one of two.
+/// Whether a text of the file is the second of two possible values.
 fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
     let which = values.iter().position(|value| Ok(*value) == file.text(key));
     which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
 }
 
-/// Two simplices by vertices: triangles, or an edge whose last vertex is there twice.
+/// Two simplices by their vertices: triangles, or edges, whose last vertex is repeated.
 pub(crate) type Simplices = [[u32; 3]; 2];
 
-/// Which pairs of triangles count.
+/// The pairs of triangles that count.
 pub(crate) struct CountedPairs<'a> {
     model: &'a Model,
     scope: &'a Scope,
-    /// For each vertex the lowest one with the same position and modes; without welds itself.
+    /// For each vertex the lowest vertex with the same position and modes; without welds the vertex itself.
     pub(crate) classes: Vec<u32>,
 }
 
@@ -98,15 +98,15 @@ impl<'a> CountedPairs<'a> {
         Self { model, scope, classes }
     }
 
-    /// The simplices of which two meet where two triangles collide, in a way that counts: none for a pair that never
-    /// counts, or is an exception.
+    /// Returns pairs of simplices such that one pair meets if two triangles collide in a way that counts; no pairs for triangles
+    /// that never count together, or are an exception.
     pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
         let pair = [a.min(b), a.max(b)];
         let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
         if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
     }
 
-    /// The same for exceptions, too.
+    /// Returns the pairs of simplices of [`Self::simplices`], also for exceptions.
     pub(crate) fn with_exceptions(&self, a: u32, b: u32) -> Vec<Simplices> {
         let pair = [a.min(b), a.max(b)];
         if a == b || self.scope.ignored.binary_search(&pair).is_ok() || !self.groups_count(a, b) {
@@ -121,7 +121,7 @@ impl<'a> CountedPairs<'a> {
         if !self.scope.one_vertex || !is_one {
             return Vec::new();
         }
-        // Two triangles with one common vertex that have another common point: the edge opposite to the vertex of one
+        // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them
         // meets the other triangle (follow the ray from the vertex through that point to the first of the two edges).
         let opposite = |face: [u32; 3]| {
             let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
@@ -129,7 +129,7 @@ impl<'a> CountedPairs<'a> {
         };
         match (opposite(faces[0]), opposite(faces[1])) {
             (Some(x), Some(y)) => vec![[x, faces[1]], [faces[0], y]],
-            // A face that is the vertex alone.
+            // One face consists of the common vertex alone.
             _ => Vec::new(),
         }
     }

@@ -1,11 +1,11 @@
-//! The program: exit codes and messages of one line.
+//! Tests of the program: exit codes, and messages of one line.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use std::fs;
 use std::process::Command;
 
 #[test]
-fn files_that_are_not_what_they_should_be_are_refused_in_one_line() {
+fn invalid_files_are_refused_with_one_line() {
     let folder = std::env::temp_dir().join(format!("sscc-checker-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();

@@ -1,8 +1,8 @@
 //! Time of queries in WebAssembly against native ones on one thread, interleaved, on the spring of the demo: `cargo xtask wasm`, `sscc demo
-//! --out DIR`, then `cargo bench -p sscc-wasm -- DIR PACKAGE [ROUNDS]` (absolute paths). Prints the record `docs/records/webassembly.csv`.
+//! --out DIR`, then `cargo bench -p sscc-wasm -- DIR PACKAGE [REPETITIONS]` (absolute paths). Prints the record `docs/records/webassembly.csv`.
 //!
-//! In each round every frame is asked for natively and in Node (`tests/time.mjs`), each side first in every second round. A time is the
-//! median over the rounds of a frame, in the mean over the frames of its kind. Certificates are computed twice, in processor time.
+//! In each repetition every frame is queried natively and in Node (`tests/time.mjs`); the sides alternate in being first. A time is the
+//! mean over the frames of a kind of the median over the repetitions. Certificates are computed twice, and measured in processor time.
 #![allow(clippy::print_stdout)]
 
 use std::collections::BTreeMap;
@@ -19,16 +19,16 @@ use sscc_io::{read_certificates, read_model, read_rows};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// Nanoseconds by how is asked: of each frame of a kind, or of certificates.
+/// Nanoseconds by kind of query: for each frame of a kind, or for certificates.
 type Times = BTreeMap<String, Vec<f64>>;
 
-/// How often a frame is asked for that the root's radius answers, in one reading of the clock.
+/// Queries in one measurement of a frame that the root's radius answers.
 const REPETITIONS: usize = 1000;
 
-/// Rounds before any is counted, in which engines compile.
+/// Warm-up repetitions, which are not counted, in which engines compile.
 const WARM_UP: usize = 5;
 
-/// Rows of the record: name, and what is measured natively and in Node.
+/// Rows of the record: name, and the kinds of query that are measured natively and in Node.
 const ROWS: [(&str, &str, &str); 6] = [
     ("free by the root's radius, one of a batch", "radius", "radius, batch"),
     ("free by the root's radius, `isColliding`", "radius", "radius, isColliding"),
@@ -71,14 +71,14 @@ fn main() -> Outcome<()> {
     Ok(())
 }
 
-/// A time with its unit.
+/// Formats a time with its unit.
 fn shown(nanoseconds: f64) -> String {
     let units = [("s", 1e9), ("ms", 1e6), ("us", 1e3)];
     let (unit, size) = units.into_iter().find(|(_, size)| nanoseconds >= *size).unwrap_or(("ns", 1.0));
     format!("{:.1} {unit}", nanoseconds / size)
 }
 
-/// The mean over the frames of the lower median over the rounds.
+/// Returns the mean over the frames of the lower median over the repetitions.
 fn typical(rounds: &[Times], name: &str) -> f64 {
     let frames = rounds[0][name].len();
     let median = |frame: usize| {
@@ -104,7 +104,7 @@ impl Native {
         Ok(Self { query: Query::new(&model, &certificates)?, model, frames })
     }
 
-    /// Asks for each frame, one after the other as in an animation.
+    /// Queries the frames in their order, as in an animation.
     fn frames(&mut self) -> Outcome<Times> {
         let mut times = Times::new();
         for q in &self.frames {
@@ -131,7 +131,7 @@ impl Native {
     }
 }
 
-/// Nanoseconds of an answer.
+/// A query whose answers are timed, in nanoseconds.
 trait Timed {
     fn time(&mut self, q: &[f64], repetitions: usize) -> Outcome<f64>;
 }
@@ -146,7 +146,7 @@ impl Timed for Query {
     }
 }
 
-/// The side in Node.
+/// The process of Node.
 struct Node {
     _child: Child,
     questions: ChildStdin,
@@ -164,7 +164,7 @@ impl Node {
         Ok(Self { _child: child, questions, answers })
     }
 
-    /// One line of question, one line of answer.
+    /// Writes a line with a question, and reads the line of its answer.
     fn ask(&mut self, question: &str) -> Outcome<Times> {
         writeln!(self.questions, "{question}")?;
         let mut line = String::new();

@@ -1,4 +1,4 @@
-// The package in Node: the module is ready once it is imported.
+// The package in Node: the module is ready after the import.
 import { readFileSync } from "node:fs";
 import { initSync } from "./sscc.js";
 

@@ -1,11 +1,12 @@
-// The package. Queries take a Float64Array and answer without pairs by a way of their own, since the module's own methods allocate memory for each q, pack
-// results into arrays and make a new array for no pairs, all of which takes longer than the query. These methods do all else, errors too.
+// The package. A q in a Float64Array is written directly to the memory of the module, and answers without pairs share one array. The
+// module's own methods allocate memory for each q and an array for each answer, which takes longer than the query. They do all other
+// work, including errors.
 import { Batch, Impacts, Query, initSync } from "./sscc.js";
 
 export * from "./sscc.js";
 export { default } from "./sscc.js";
 
-/** The memory of the module as numbers; without any before the first answer, and again where that memory has grown. */
+/** The memory of the module as numbers; both arrays are empty before the first answer, and after that memory has grown. */
 let doubles = new Float64Array(0);
 let integers = new Uint32Array(0);
 
@@ -15,18 +16,18 @@ function renew() {
     integers = new Uint32Array(memory.buffer);
 }
 
-/** All pairs: in the module this is the largest number. */
+/** The limit for all pairs: in the module it is the largest number. */
 const ALL = -1;
 
-/** Properties of a query: where in `doubles` the module reads q, and how many numbers that are. A freed one has no length. */
+/** Properties of a query: the index in `doubles` at which the module reads q, and the length of q. A freed query has no length. */
 const AT = Symbol("at");
 const LENGTH = Symbol("length");
 
 const { discrete, isColliding, count, free } = Query.prototype;
 
-/** The number of pairs at q, at most `limit`; -1 where only the method of the module may answer. */
+/** Returns the number of pairs at q, at most `limit`; -1 if only the method of the module can answer. */
 function find(query, q, limit) {
-    // Other arrays may have values that are no numbers.
+    // Other arrays may have values that are not numbers.
     if (!(q instanceof Float64Array)) return -1;
     if (q.length !== query[LENGTH]) {
         const address = query.addressOfQ(q.length);
@@ -39,7 +40,7 @@ function find(query, q, limit) {
     return query.find(limit);
 }
 
-/** The array of all answers without pairs. A view without bytes as well throws once their buffer was transferred, and tells it fastest. */
+/** The array of all answers without pairs, and an empty view of its buffer. The view throws after the buffer was transferred, which is the fastest test. */
 let none = new Uint32Array(0);
 let view = new DataView(none.buffer);
 

@@ -1,11 +1,11 @@
-//! Numbers of JavaScript as points, triangles, limits and pairs.
+//! Conversions between numbers of JavaScript and points, triangles, limits and pairs.
 
 use std::fmt;
 
 use glam::DVec3;
 use sscc::Pair;
 
-/// An array whose length is no multiple of its rows.
+/// The error that the length of an array is not a multiple of its row length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthError {
     pub name: &'static str,
@@ -22,7 +22,7 @@ impl fmt::Display for LengthError {
 
 impl std::error::Error for LengthError {}
 
-/// A number that is no count and no vertex number.
+/// The error that a number is not a valid count or vertex number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberError(String);
 
@@ -34,12 +34,12 @@ impl fmt::Display for NumberError {
 
 impl std::error::Error for NumberError {}
 
-/// The points of an array with 3 coordinates for each.
+/// Returns the points of an array with 3 coordinates for each.
 pub fn points(name: &'static str, numbers: &[f64]) -> Result<Vec<DVec3>, LengthError> {
     Ok(rows::<3, _>(name, numbers)?.iter().copied().map(DVec3::from).collect())
 }
 
-/// The rows of an array.
+/// Returns the rows of an array.
 pub fn rows<'a, const N: usize, T>(
     name: &'static str,
     numbers: &'a [T],
@@ -50,7 +50,7 @@ pub fn rows<'a, const N: usize, T>(
     }
 }
 
-/// The vertex numbers of triangles, which JavaScript gives as any numbers.
+/// Returns the vertex numbers of triangles, which may be any numbers in JavaScript.
 pub fn triangles(numbers: &[f64]) -> Result<Vec<[u32; 3]>, NumberError> {
     let rows = rows::<3, _>("faces", numbers).map_err(|error| NumberError(error.to_string()))?;
     let is_vertex = |number: &f64| number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number);
@@ -59,12 +59,12 @@ pub fn triangles(numbers: &[f64]) -> Result<Vec<[u32; 3]>, NumberError> {
             let found = numbers[at];
             Err(NumberError(format!("faces[{at}] is {found}; it must be a vertex number, counted from 0")))
         }
-        // They are integers of 32 bits, so the conversion is exact.
+        // All of them are integers of 32 bits, so the conversion is exact.
         None => Ok(rows.iter().map(|row| row.map(|number| number as u32)).collect()),
     }
 }
 
-/// The largest count of pairs: no limit for `undefined` and infinity.
+/// Returns the largest number of pairs: no limit for `undefined` and infinity.
 pub fn limit(number: Option<f64>) -> Result<usize, NumberError> {
     match number {
         None | Some(f64::INFINITY) => Ok(usize::MAX),
@@ -76,12 +76,12 @@ pub fn limit(number: Option<f64>) -> Result<usize, NumberError> {
     }
 }
 
-/// The numbers of points.
+/// Returns the coordinates of points.
 pub fn coordinates(points: &[DVec3]) -> Vec<f64> {
     points.iter().flat_map(DVec3::to_array).collect()
 }
 
-/// The numbers of pairs.
+/// Returns the triangle numbers of pairs.
 pub fn numbers(pairs: &[Pair]) -> Vec<u32> {
     pairs.iter().flat_map(|&(a, b)| [a, b]).collect()
 }
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_is_an_integer_or_none() {
+    fn a_limit_is_an_integer_or_undefined() {
         assert_eq!(
             [limit(None), limit(Some(f64::INFINITY)), limit(Some(1e300))],
             [const { Ok(usize::MAX) }; 3]

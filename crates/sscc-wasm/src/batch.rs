@@ -1,4 +1,4 @@
-//! Answers of many q.
+//! The answers at many q.
 
 use std::fmt;
 
@@ -13,12 +13,12 @@ pub struct Batch {
     pairs: Vec<u32>,
 }
 
-/// Why a batch has no answers.
+/// The reason why a batch has no answers.
 #[derive(Debug)]
 pub enum BatchError {
-    /// The numbers are no rows.
+    /// The number of numbers is not a multiple of the row length.
     Length(LengthError),
-    /// A row is no configuration of the model.
+    /// A row is not a configuration of the model.
     Row(usize, sscc::Error),
 }
 
@@ -34,10 +34,10 @@ impl fmt::Display for BatchError {
 impl std::error::Error for BatchError {}
 
 impl Batch {
-    /// The answers of a query at configurations of so many numbers.
+    /// Returns the answers of a query at configurations of `rank` numbers each.
     ///
     /// # Errors
-    /// When the numbers are not that many for each, and that of the first q that has one.
+    /// When the length is not a multiple of `rank`; the error of the first q that has one.
     pub(crate) fn answer(query: &mut sscc::Query, rank: usize, numbers: &[f64]) -> Result<Self, BatchError> {
         if !numbers.len().is_multiple_of(rank) {
             return Err(BatchError::Length(LengthError { name: "rows", length: numbers.len(), row: rank }));
@@ -48,7 +48,7 @@ impl Batch {
         for (row, q) in numbers.chunks_exact(rank).enumerate() {
             let found = query.discrete(q).map_err(|error| BatchError::Row(row, error))?;
             pairs.extend(found.iter().flat_map(|&(a, b)| [a, b]));
-            // All pairs have 8 bytes each, so memory ends before 32 bits do.
+            // Each pair has 8 bytes, so the memory is used up before 32 bits overflow.
             offsets.push((pairs.len() / 2) as u32);
         }
         Ok(Self { offsets, pairs })
@@ -63,13 +63,13 @@ impl Batch {
         self.offsets.len() - 1
     }
 
-    /// The pairs of all configurations, those of each sorted, 2 triangle numbers for each pair.
+    /// The pairs of all configurations, sorted for each configuration, with 2 triangle numbers for each pair.
     #[wasm_bindgen(getter)]
     pub fn pairs(&self) -> Vec<u32> {
         self.pairs.clone()
     }
 
-    /// Where the pairs of each configuration begin, and where the last ones end (n + 1): those of number i are
+    /// The start of the pairs of each configuration, then the end (n + 1 numbers): the pairs of configuration i are
     /// `pairs.subarray(2 * offsets[i], 2 * offsets[i + 1])`.
     #[wasm_bindgen(getter)]
     pub fn offsets(&self) -> Vec<u32> {

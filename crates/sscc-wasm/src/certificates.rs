@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::arrays::numbers;
 
-/// Radii in q-space within which parts of a shape cannot collide with each other. They hold for one model, to the last bit.
+/// Radii in q-space within which parts of a shape cannot collide with each other. They hold for exactly one model.
 #[wasm_bindgen]
 pub struct Certificates(pub(crate) sscc::Certificates);
 
@@ -16,7 +16,7 @@ impl Certificates {
         Ok(Self(container::certificates_from_bytes(bytes)?))
     }
 
-    /// The bytes of a `.sscc.safetensors` file, the same as those of `sscc certify`.
+    /// Returns the bytes of a `.sscc.safetensors` file, the same as those of `sscc certify`.
     #[wasm_bindgen(js_name = toBytes)]
     pub fn to_bytes(&self) -> Result<Vec<u8>, JsError> {
         Ok(container::certificates_to_bytes(&self.0)?)
@@ -40,7 +40,7 @@ impl Certificates {
         numbers(self.0.exceptions())
     }
 
-    /// The norm |z| of q in the metric of the certificates, rounded up.
+    /// Returns the norm |z| of q in the metric of the certificates, rounded up.
     pub fn norm(&self, q: &[f64]) -> Result<f64, JsError> {
         Ok(self.0.norm(q)?)
     }

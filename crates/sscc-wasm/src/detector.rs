@@ -14,7 +14,7 @@ pub struct Detector(sscc::Detector);
 
 #[wasm_bindgen]
 impl Detector {
-    /// Makes a detector. `positions`: 3 coordinates for each vertex, at any pose. `faces`: 3 vertex numbers for each triangle.
+    /// Creates a detector. `positions`: 3 coordinates for each vertex, in any pose. `faces`: 3 vertex numbers for each triangle.
     #[wasm_bindgen(constructor)]
     pub fn new(
         positions: &[f64],
@@ -26,23 +26,25 @@ impl Detector {
         Ok(Self(sscc::Detector::with_filter(&mesh, &filter)?))
     }
 
-    /// All colliding pairs at these positions (3V numbers), sorted, 2 triangle numbers for each. No pairs are a proof.
+    /// Returns all colliding pairs at these positions (3V numbers), sorted, 2 triangle numbers for each. If there are none, the mesh is
+    /// proven free.
     pub fn discrete(&mut self, positions: &[f64]) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.0.discrete(&points("positions", positions)?)?))
     }
 
-    /// At most so many of the pairs, all without a limit; which ones is not fixed. `statistics.complete` tells whether they are all.
+    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is true if the pairs are
+    /// all.
     #[wasm_bindgen(js_name = discreteAtMost)]
     pub fn discrete_at_most(&mut self, positions: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.0.discrete_at_most(&points("positions", positions)?, arrays::limit(limit)?)?))
     }
 
-    /// The pairs that touch while all vertices move on straight lines from `x0` to `x1`.
+    /// Returns the pairs that touch while all vertices move on straight lines from `x0` to `x1`.
     pub fn continuous(&mut self, x0: &[f64], x1: &[f64]) -> Result<Impacts, JsError> {
         Ok(self.0.continuous(&points("x0", x0)?, &points("x1", x1)?)?.into())
     }
 
-    /// What the last answer took.
+    /// The cost of the last answer.
     #[wasm_bindgen(getter)]
     pub fn statistics(&self) -> Statistics {
         self.0.statistics().into()

@@ -3,7 +3,7 @@
 use sscc::Impact;
 use wasm_bindgen::prelude::*;
 
-/// The pairs of triangles that touch in a motion.
+/// The pairs of triangles that touch during a motion.
 #[wasm_bindgen]
 pub struct Impacts(Vec<Impact>);
 

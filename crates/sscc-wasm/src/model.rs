@@ -19,7 +19,7 @@ pub struct Model {
 
 #[wasm_bindgen]
 impl Model {
-    /// Makes a model of V vertices, F triangles and r modes. `positions`: 3 coordinates for each vertex. `faces`: 3 vertex numbers for
+    /// Creates a model of V vertices, F triangles and r modes. `positions`: 3 coordinates for each vertex. `faces`: 3 vertex numbers for
     /// each triangle. `modes`: the matrix of 3V rows and r columns, row by row.
     #[wasm_bindgen(constructor)]
     pub fn new(
@@ -60,7 +60,7 @@ impl Model {
         Ok(Self { model, info, mode_names: read.target_names, default_q: Some(read.default_weights) })
     }
 
-    /// The bytes of a `.model.safetensors` file, which `sscc` reads.
+    /// Returns the bytes of a `.model.safetensors` file, which `sscc` reads.
     #[wasm_bindgen(js_name = toBytes)]
     pub fn to_bytes(&self) -> Result<Vec<u8>, JsError> {
         Ok(container::model_to_bytes(&self.model, &self.info)?)
@@ -93,7 +93,7 @@ impl Model {
         self.model.rank()
     }
 
-    /// The names of morph targets (r), or none.
+    /// The names of morph targets (r), or an empty array.
     #[wasm_bindgen(getter, js_name = modeNames)]
     pub fn mode_names(&self) -> Vec<String> {
         self.mode_names.clone()
@@ -111,13 +111,13 @@ impl Model {
         self.model.mesh().faces().as_flattened().to_vec()
     }
 
-    /// The coordinates of all vertices at q (3V). Queries decide about these numbers, bit for bit.
+    /// Returns the coordinates of all vertices at q (3V). The answers of queries refer to these numbers, bit for bit.
     pub fn positions(&self, q: &[f64]) -> Result<Vec<f64>, JsError> {
         Ok(coordinates(&self.model.positions(q)?))
     }
 }
 
-/// Whether bytes are a glTF file: binary, or JSON. A container begins with a number of 8 bytes.
+/// Whether bytes are a glTF file (binary, or JSON). Other files (`.safetensors`) begin with a number of 8 bytes.
 fn is_gltf(bytes: &[u8]) -> bool {
     let is_container = bytes.get(8) == Some(&b'{');
     bytes.starts_with(b"glTF") || (!is_container && bytes.trim_ascii_start().starts_with(b"{"))
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn containers_are_told_from_gltf_files() {
+    fn containers_and_gltf_files_are_distinguished() {
         let bytes = two().to_bytes().ok().unwrap();
         assert!(!is_gltf(&bytes) && !is_gltf(b"") && !is_gltf(b"solid"));
         assert!(is_gltf(b"glTF\x02\0\0\0{") && is_gltf(b" \n{\"asset\":{}}"));

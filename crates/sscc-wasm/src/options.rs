@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 const TYPES: &str = r#"
 /** Which pairs of triangles count. */
 export interface FilterOptions {
-    /** Whether pairs with common vertices count; "exclude" by default. "include-folded" is for detectors alone. */
+    /** Whether pairs with common vertices count; "exclude" by default. "include-folded" is for detectors only. */
     neighbours?: "exclude" | "include-one-vertex" | "include-folded";
     /** Whether vertices of equal positions (and modes) are one, for adjacency alone; by default in models of glTF files. */
     weld?: boolean;
@@ -16,7 +16,7 @@ export interface FilterOptions {
 
 /** How certificates are computed. */
 export interface CertifyOptions extends FilterOptions {
-    /** "full" by default; "paper" takes less time and memory, and queries beyond the root's radius more. */
+    /** "full" by default. With "paper", certificates take less time and memory, and queries beyond the root's radius take more time. */
     scheme?: "full" | "paper";
     /** Relative tolerance of the root's radius, in (0, 1); 0.1 by default. */
     epsilon?: number;
@@ -24,12 +24,12 @@ export interface CertifyOptions extends FilterOptions {
     reach?: number;
     /** The q from which radii are measured; 0 by default. */
     center?: number[] | Float64Array;
-    /** Pairs that collide at rest never count, nor do those within so many rings of them. */
+    /** Pairs that collide at rest never count, and neither do those within this number of rings of them. */
     ignoreRest?: number;
 }
 "#;
 
-/// Options as they are given.
+/// The given options.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 pub struct Options {
@@ -51,7 +51,7 @@ enum Scheme {
 
 #[wasm_bindgen]
 extern "C" {
-    /// None for what has no JSON. An error for circles, and where the replacement of a value fails.
+    /// Returns `None` for a value without JSON, and an error for circles, and if the replacement of a value fails.
     #[wasm_bindgen(js_namespace = JSON, catch)]
     fn stringify(
         value: &JsValue,
@@ -62,15 +62,15 @@ extern "C" {
     #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
     fn is_typed_array(value: &JsValue) -> bool;
 
-    /// A plain array of the same items.
+    /// Returns a plain array of the same items.
     #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
     fn plain_array(value: &JsValue) -> Result<JsValue, JsValue>;
 }
 
-/// What is said of options that are none at all.
+/// The message for options that are not an object.
 const NO_OBJECT: &str = "it is no plain object";
 
-/// An object as JSON; none for `undefined`.
+/// Returns an object as JSON; `None` for `undefined`.
 pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
     if options.is_undefined() {
         return Ok(None);
@@ -83,7 +83,7 @@ pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
     }
 }
 
-/// What JSON has in place of a value. An error for values that JSON would leave out, or make null.
+/// Returns the replacement of a value in JSON. An error for values that JSON would omit or replace by null.
 fn replaced(key: String, value: JsValue) -> Result<JsValue, JsValue> {
     let refused = |cause: String| Err(JsValue::from_str(&cause));
     if key.is_empty() && !value.is_object() {
@@ -103,7 +103,7 @@ fn replaced(key: String, value: JsValue) -> Result<JsValue, JsValue> {
     }
 }
 
-/// How a message names a key: those of arrays are numbers.
+/// Returns the name of a key in messages. Keys of arrays are numbers.
 fn name(key: &str) -> String {
     match key.parse::<usize>() {
         Ok(at) => format!("item {at} of an array"),
@@ -112,7 +112,7 @@ fn name(key: &str) -> String {
 }
 
 impl Options {
-    /// Reads options from JSON. An unknown key is an error.
+    /// Parses options from JSON. An unknown key is an error.
     pub fn parse(json: Option<&str>) -> Result<Self, OptionsError> {
         json.map_or(Ok(Self::default()), |json| {
             if !json.starts_with('{') {
@@ -126,7 +126,7 @@ impl Options {
         })
     }
 
-    /// The options for certificates of a model with this mesh.
+    /// Returns the options for certificates of a model with this mesh.
     pub fn for_mesh(self, mesh: &TriMesh) -> Result<CertifyOptions, sscc::Error> {
         let mut options = CertifyOptions::default()
             .filter(self.filter(mesh)?)
@@ -144,7 +144,7 @@ impl Options {
         Ok(options)
     }
 
-    /// The contact filter, where there are no other options.
+    /// Returns the contact filter, if there are no other options.
     pub fn filter_alone(&self, mesh: &TriMesh) -> Result<ContactFilter, OptionsError> {
         let Self { neighbours: _, weld: _, scheme, epsilon, reach, center, ignore_rest } = self;
         if scheme.is_some()
@@ -170,7 +170,7 @@ impl Options {
     }
 }
 
-/// Options that are none.
+/// The error that options are invalid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OptionsError(String);
 
@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn options_that_are_none_are_refused_in_one_line() {
+    fn invalid_options_are_refused_with_one_line() {
         let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
         let refused = |json: &str| {
             Options::parse(Some(json)).and_then(|options| options.filter_alone(&mesh).map(|_| ()))

@@ -13,27 +13,28 @@ use crate::statistics::Statistics;
 #[wasm_bindgen]
 pub struct Query {
     query: sscc::Query,
-    /// Where `queries.js` writes q (r numbers).
+    /// The memory to which `queries.js` writes q (r numbers).
     q: Vec<f64>,
-    /// Where it reads pairs.
+    /// The memory from which `queries.js` reads pairs.
     pairs: Vec<u32>,
 }
 
 #[wasm_bindgen]
 impl Query {
-    /// Makes a query. Certificates of another model are refused.
+    /// Creates a query. Certificates of another model are refused.
     #[wasm_bindgen(constructor)]
     pub fn new(model: &Model, certificates: &Certificates) -> Result<Query, JsError> {
         let query = sscc::Query::new(&model.model, &certificates.0)?;
         Ok(Self { query, q: vec![0.0; model.model.rank()], pairs: Vec::new() })
     }
 
-    /// All colliding pairs at q (r numbers), sorted, 2 triangle numbers for each. No pairs are a proof.
+    /// Returns all colliding pairs at q (r numbers), sorted, 2 triangle numbers for each. If there are none, the shape is proven free.
     pub fn discrete(&mut self, q: &[f64]) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.query.discrete(q)?))
     }
 
-    /// At most so many of the pairs, all without a limit; which ones is not fixed. `statistics.complete` tells whether they are all.
+    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is true if the pairs are
+    /// all.
     #[wasm_bindgen(js_name = discreteAtMost)]
     pub fn discrete_at_most(&mut self, q: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.query.discrete_at_most(q, arrays::limit(limit)?)?))
@@ -45,50 +46,50 @@ impl Query {
         Ok(self.query.first(q)?.is_some())
     }
 
-    /// The number of colliding pairs at q.
+    /// Returns the number of colliding pairs at q.
     pub fn count(&mut self, q: &[f64]) -> Result<usize, JsError> {
         Ok(self.query.count(q)?)
     }
 
-    /// All colliding pairs at each of n configurations (n r numbers, q after q), in one call, which is faster than n calls. The statistics
-    /// are then those of the last q. The error is that of the first q that has one.
+    /// Returns all colliding pairs at each of n configurations (n r numbers, q after q), in one call, which is faster than n calls. The
+    /// statistics are then those of the last q. An error is that of the first q that has one.
     pub fn batch(&mut self, rows: &[f64]) -> Result<Batch, JsError> {
         Ok(Batch::answer(&mut self.query, self.q.len(), rows)?)
     }
 
-    /// The pairs that touch while all vertices move on straight lines from their positions at `q0` to those at `q1`.
+    /// Returns the pairs that touch while all vertices move on straight lines from their positions at `q0` to those at `q1`.
     pub fn continuous(&mut self, q0: &[f64], q1: &[f64]) -> Result<Impacts, JsError> {
         Ok(self.query.continuous(q0, q1)?.into())
     }
 
-    /// The largest certified s: `centre + t (q - centre)` is free for all t from 0 to s.
+    /// Returns a scale s such that `centre + t (q - centre)` is proven free for all t from 0 to s.
     #[wasm_bindgen(js_name = safeScale)]
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, JsError> {
         Ok(self.query.safe_scale(q)?)
     }
 
-    /// What the last answer took.
+    /// The cost of the last answer.
     #[wasm_bindgen(getter)]
     pub fn statistics(&self) -> Statistics {
         self.query.statistics().into()
     }
 
-    // Parts of an answer without copies: `queries.js` calls them.
+    // `queries.js` calls the following functions, to avoid copies.
 
-    /// The address at which [`Self::find`] reads q; null where it has not this length.
+    /// Returns the address at which [`Self::find`] reads q; null if q does not have this length.
     #[wasm_bindgen(js_name = addressOfQ, skip_typescript)]
     pub fn address_of_q(&mut self, length: usize) -> *mut f64 {
         if length == self.q.len() { self.q.as_mut_ptr() } else { std::ptr::null_mut() }
     }
 
-    /// The number of colliding pairs, at most `limit`, at the q that was written; -1 where there is an error.
+    /// Returns the number of colliding pairs, at most `limit`, at the q that was written; -1 on an error.
     #[wasm_bindgen(skip_typescript)]
     pub fn find(&mut self, limit: usize) -> i32 {
-        // An answer has less than 2^31 pairs, because memory ends before.
+        // An answer has less than 2^31 pairs, because the memory is used up before.
         self.query.discrete_at_most(&self.q, limit).map_or(-1, |pairs| pairs.len() as i32)
     }
 
-    /// The address of the pairs of the last answer (2 triangle numbers for each).
+    /// Returns the address of the pairs of the last answer (2 triangle numbers for each).
     #[wasm_bindgen(js_name = addressOfPairs, skip_typescript)]
     pub fn address_of_pairs(&mut self) -> *const u32 {
         self.pairs.clear();

@@ -2,7 +2,7 @@
 
 use wasm_bindgen::prelude::*;
 
-/// What the last answer of a query or a detector took.
+/// The cost of the last answer of a query or a detector.
 #[wasm_bindgen]
 pub struct Statistics(sscc::Statistics);
 
@@ -14,7 +14,7 @@ impl From<sscc::Statistics> for Statistics {
 
 #[wasm_bindgen]
 impl Statistics {
-    /// |z|, rounded up; of a continuous query the larger one of both ends; 0 for a detector.
+    /// |z|, rounded up; for a continuous query the larger one of both ends; 0 for a detector.
     #[wasm_bindgen(getter)]
     pub fn norm(&self) -> f64 {
         self.0.norm
@@ -26,14 +26,14 @@ impl Statistics {
         self.0.root_certified
     }
 
-    /// What proved the answer, apart from exceptions.
+    /// The kind of proof of the answer, apart from exceptions.
     #[wasm_bindgen(getter, unchecked_return_type = "\"radius\" | \"local\" | \"search\"")]
     pub fn proof(&self) -> String {
         let name: &'static str = self.0.proof.into();
         name.to_owned()
     }
 
-    /// Whether the pairs are all; false where a limit ended the search.
+    /// Whether all pairs are listed; false if a limit ended the search.
     #[wasm_bindgen(getter)]
     pub fn complete(&self) -> bool {
         self.0.complete

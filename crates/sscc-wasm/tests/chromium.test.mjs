@@ -1,5 +1,5 @@
-// The package in Chromium, and a report that checks shapes with the network off. SSCC_PACKAGE is the package's folder, SSCC_DIGESTS that
-// of the native bytes.
+// Tests of the package in Chromium, and of a report that checks shapes without a network. SSCC_PACKAGE is the package's folder,
+// SSCC_DIGESTS that of the native bytes.
 import assert from "node:assert/strict";
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -90,7 +90,7 @@ test("sliders of a report check every shape with the network off", async () => {
         assert.equal(await page.getByRole("button", { name }).count(), 0, name);
     await page.getByRole("tab", { name: "About" }).click();
     assert.match(await page.locator(".about").innerText(), /checks each shape itself/);
-    // Nor has it one for the nodes that these keys show in the live page.
+    // A report also has no server for the nodes that these keys show in the live page.
     for (const key of ["k", "b"]) {
         await page.keyboard.press(key);
         assert.ok(await page.locator(".message").isHidden(), `${key}: ${await page.locator(".message").innerText()}`);

@@ -1,4 +1,4 @@
-// The programs in docs/wasm.md and in the package's README. SSCC_PACKAGE is the package's folder.
+// Runs the programs in docs/wasm.md and in the package's README. SSCC_PACKAGE is the package's folder.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";

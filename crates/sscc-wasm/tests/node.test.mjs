@@ -1,4 +1,4 @@
-// The package in Node. SSCC_PACKAGE is its folder, SSCC_DIGESTS that of the native bytes.
+// Tests of the package in Node. SSCC_PACKAGE is its folder, SSCC_DIGESTS that of the native bytes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -77,13 +77,13 @@ test("typed arrays, other arrays and freed queries have the answers and errors t
             assert.equal(query.isColliding(q), pairs.length > 0);
         }
     }
-    // An answer without pairs may be given to another thread, as may any other.
+    // An answer without pairs can be transferred to another thread, as can any other.
     for (let i = 0; i < 3; i++) {
         const found = query.discrete(Float64Array.of(-0.5));
         assert.deepEqual([found.length, found.buffer.byteLength], [0, 0]);
         structuredClone(found, { transfer: [found.buffer] });
     }
-    // Views of the memory are made anew once it has grown.
+    // Views of the memory are created again after the memory has grown.
     const { memory } = sscc.initSync();
     const before = memory.buffer.byteLength;
     const large = Array.from({ length: 8 }, () => new Detector(new Float64Array(900_000), Uint32Array.of(0, 1, 2)));

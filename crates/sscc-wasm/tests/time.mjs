@@ -1,5 +1,5 @@
-// The side in Node of `benches/wasm_against_native.rs`: node time.mjs PACKAGE DIR REPETITIONS, where DIR has the files of `sscc demo --out`.
-// Each line of its input asks for `frames` or `certificates`; a line of JSON answers with nanoseconds.
+// The process in Node of `benches/wasm_against_native.rs`: node time.mjs PACKAGE DIR REPETITIONS, where DIR contains the files of
+// `sscc demo --out`. Each line of its input is `frames` or `certificates`; the answer is a line of JSON with nanoseconds.
 import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
@@ -13,7 +13,7 @@ const file = (name) => readFileSync(join(demo, name));
 const model = Model.load(file("spring.model.safetensors"));
 const query = new Query(model, Certificates.load(file("spring.sscc.safetensors")));
 const frames = readRows(join(demo, "spring.npy")).map((row) => Float64Array.from(row));
-/** Each frame as often as it is asked for, as one batch. */
+/** Each frame, repeated, as one batch. */
 const batches = new Map(frames.map((q) => [q, Float64Array.from({ length: repetitions * q.length }, (_, i) => q[i % q.length])]));
 
 function time(ask, times) {

@@ -1,4 +1,4 @@
-// The types of the package: a program in TypeScript, checked by the compiler of viewer/. SSCC_PACKAGE is the package's folder.
+// Tests the types of the package by a program in TypeScript, checked by the compiler of viewer/. SSCC_PACKAGE is the package's folder.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
@@ -28,7 +28,7 @@ const pairs: Uint32Array = query.discrete(q);
 const some: Uint32Array[] = [query.discreteAtMost(q, Infinity), query.discreteAtMost(q)];
 const batch: Batch = query.batch(q);
 const offsets: Uint32Array = batch.offsets;
-// @ts-expect-error A part of the package that is for its own script.
+// @ts-expect-error A part of the package that only its own script uses.
 query.addressOfQ(1);
 const proof: "radius" | "local" | "search" = query.statistics.proof;
 const times: Float64Array = query.continuous(q, q).times;
@@ -38,7 +38,7 @@ const detector = new Detector(x, new Uint32Array(6), { neighbours: "include-fold
 model.certify({ neighbour: "exclude" });
 // @ts-expect-error A value that does not exist.
 new Detector(x, new Uint32Array(6), { neighbours: "all" });
-// @ts-expect-error Options of certificates are none of a detector.
+// @ts-expect-error A detector does not have the options of certificates.
 new Detector(x, new Uint32Array(6), { epsilon: 0.1 });
 // @ts-expect-error Certificates are computed or loaded.
 new Certificates();

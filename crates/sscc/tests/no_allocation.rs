@@ -1,11 +1,11 @@
-//! A query that the root's certificate answers allocates nothing, and neither does a repeated query.
+//! Tests that a query which the root's certificate answers allocates nothing, and neither does a repeated query.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use glam::DVec3;
 use sscc::{Certificates, CertifyOptions, Detector, Method, Modes, Query, ReducedModel, TriMesh};
 
-/// A zigzag strip of `2 n` triangles, bent by modes that grow along it.
+/// Returns a zigzag strip of `2 n` triangles, bent by modes whose displacements grow along it.
 fn strip(n: usize, rank: usize) -> ReducedModel {
     let positions: Vec<DVec3> = (0..2 * n + 2)
         .map(|i| DVec3::new((i / 2) as f64, (i % 2) as f64, 0.1 * ((i / 2) % 3) as f64))

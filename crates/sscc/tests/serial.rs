@@ -1,5 +1,5 @@
-//! A small model through all that may use threads. `cargo xtask serial` runs this program without the feature `parallel`, and
-//! `cargo test` with it: the expected bits are the same.
+//! Calls all functions that may use threads on a small model. `cargo xtask serial` runs this program without the feature
+//! `parallel`, and `cargo test` with it: the expected bits are the same.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use glam::DVec3;
@@ -11,11 +11,11 @@ use sscc::{
 /// Squares along each side of a sheet.
 const SIDE: u32 = 6;
 
-/// A digest of the root's radius, of all pairs and of all times, with the feature `parallel` and without it.
+/// The expected digest of the root's radius, of all pairs and of all times, with the feature `parallel` and without it.
 const EXPECTED: u64 = 0x777c_5166_4806_4a47;
 
-/// Two sheets, 1 apart. The modes of the upper one: it bends, sinks and tilts. All numbers are sums and products, which are
-/// the same on every machine.
+/// Returns two sheets at a distance of 1. The modes bend, lower and tilt the upper one. All numbers are sums and products, which
+/// are the same on every machine.
 fn sheets() -> ReducedModel {
     let (mut positions, mut faces, mut displacements) = (Vec::new(), Vec::new(), Vec::new());
     for z in [0.0, 1.0] {
@@ -33,12 +33,12 @@ fn sheets() -> ReducedModel {
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(3, displacements).unwrap()).unwrap()
 }
 
-/// Configurations, of which some collide.
+/// Returns configurations, some of which collide.
 fn samples() -> Vec<[f64; 3]> {
     (0..32).map(|i| f64::from(i) / 32.0).map(|t| [t - 0.4, 1.6 * t, 0.5 - t * t]).collect()
 }
 
-/// FNV-1a.
+/// Adds a number to a digest by FNV-1a.
 fn add(hash: &mut u64, number: u64) {
     number
         .to_le_bytes()

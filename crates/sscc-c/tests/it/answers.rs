@@ -1,4 +1,4 @@
-//! Answers are those of the core.
+//! Tests that answers are those of the core.
 
 use std::ffi::{CStr, c_int, c_void};
 use std::ptr::{null, null_mut};
@@ -9,10 +9,10 @@ use crate::common::{FACES, Handles, MODE, TWO, done, faces, lifted, made, matrix
 
 const PAIR: sscc_pair = sscc_pair { a: 0, b: 1 };
 
-// SAFETY: of all calls here: arrays have the stated lengths, handles live.
+// SAFETY: in all calls here arrays have the stated lengths, and handles are live.
 
 #[test]
-fn a_query_tells_pairs_impacts_and_proofs() {
+fn a_query_returns_pairs_impacts_and_proofs() {
     let all = Handles::new();
     let (mut count, mut pair) = (9, sscc_pair { a: 7, b: 7 });
     unsafe {
@@ -89,7 +89,7 @@ fn a_kinetic_query_follows_a_motion() {
 fn a_detector_takes_positions_in_any_order_of_storage() {
     let all = Handles::new();
     let [rest, met, passed] = [0.0, 1.0, 2.0].map(|q| all.positions(q));
-    // Columns one after the other, and rows in structs of five numbers.
+    // Positions by columns, and rows in structs of five numbers.
     let columns: Vec<f64> = (0..18).map(|i| met[3 * (i % 6) + i / 6]).collect();
     let by_columns =
         sscc_matrix { data: columns.as_ptr(), rows: 6, columns: 3, row_stride: 1, column_stride: 6 };
@@ -119,7 +119,7 @@ fn a_detector_takes_positions_in_any_order_of_storage() {
         done(sscc_detector_statistics(all.detector, &mut statistics));
         assert_eq!((statistics.norm, statistics.triangle_tests > 0), (0.0, true));
 
-        // Two meshes: each triangle of one coincides with one of the other.
+        // Each triangle of one mesh coincides with one of the other.
         let other = made(|out| sscc_detector_clone(all.detector, out));
         let mut pairs = [PAIR; 2];
         done(sscc_detector_against(all.detector, matrix(&rest, 3), other, matrix(&rest, 3), &mut count));
@@ -152,11 +152,11 @@ fn shapes_in_the_world_meet() {
         done(sscc_shape_place(other, &0.0, 1, &lifted(0.5), null_mut()));
         done(sscc_shape_against(all.shape, other, null(), &mut count));
         assert_eq!(count, 0);
-        // A copy is where the shape was.
+        // A copy has the pose of the shape.
         done(sscc_shape_place(copy, &0.0, 1, null(), null_mut()));
         done(sscc_shape_against(all.shape, copy, null(), &mut count));
         assert_eq!(count, 2);
-        // The rotation is given row by row: x to y.
+        // The rotation is given row by row, and maps x to y.
         let mut turned = lifted(0.0);
         turned.rotation = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
         done(sscc_shape_place(copy, &0.0, 1, &turned, &mut bounds));
@@ -190,7 +190,7 @@ fn answers_are_visited_until_the_callback_ends_it() {
 }
 
 #[test]
-fn options_change_what_they_name() {
+fn each_option_has_its_effect() {
     let all = Handles::new();
     unsafe {
         let compute = |options: &sscc_certify_options| {
@@ -232,7 +232,7 @@ fn options_change_what_they_name() {
         assert_eq!(statistics.norm, 0.0);
         done(sscc_query_free(query));
         done(sscc_certificates_free(certificates));
-        // They collide at this centre, unless the pair is ignored, or its triangles are in one group.
+        // The triangles collide at this centre, unless the pair is ignored, or its triangles are in one group.
         let center = [1.0];
         options.center = center.as_ptr();
         let certificates = compute(&options);
@@ -281,7 +281,7 @@ fn a_filter_decides_which_neighbours_count() {
     assert_eq!(count(&filter), 1);
     filter.neighbours = sscc_neighbours::IncludeFolded as i32;
     assert_eq!(count(&filter), 1);
-    // With split vertices they are neighbours only where these are welded.
+    // With split vertices the triangles are adjacent only if these are welded.
     filter.neighbours = sscc_neighbours::Exclude as i32;
     let (x, split) = ([&x[..9], &x[..3], &x[9..]].concat(), [0, 1, 2, 3, 4, 5]);
     for (weld, wanted) in [(sscc_weld::Default, 1), (sscc_weld::Off, 1), (sscc_weld::On, 0)] {
@@ -297,7 +297,7 @@ fn a_filter_decides_which_neighbours_count() {
 }
 
 #[test]
-fn a_model_tells_its_sizes_faces_and_positions() {
+fn a_model_returns_its_sizes_faces_and_positions() {
     let all = Handles::new();
     let mut found = [0; 6];
     unsafe {
@@ -305,7 +305,7 @@ fn a_model_tells_its_sizes_faces_and_positions() {
         assert_eq!(sscc_model_vertex_count(all.model), 6);
         assert_eq!(sscc_model_triangle_count(all.model), 2);
         done(sscc_model_faces(all.model, found.as_mut_ptr(), 2));
-        // Modes column by column are the same model.
+        // Modes given column by column result in the same model.
         let by_columns =
             sscc_matrix { data: MODE.as_ptr(), rows: 18, columns: 1, row_stride: 1, column_stride: 18 };
         let model = made(|out| sscc_model_new(matrix(&TWO, 3), faces(&FACES), by_columns, out));

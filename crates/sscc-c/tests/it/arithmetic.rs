@@ -1,4 +1,5 @@
-//! Threads whose floating-point mode is not that of the proofs are refused. Here, because changing the mode needs `unsafe`.
+//! Tests that threads whose floating-point mode is not that of the proofs are refused. They are here because a change of the mode
+//! needs `unsafe`.
 
 use std::arch::asm;
 use std::thread;
@@ -9,7 +10,7 @@ use sscc::{
     Certificates, CertifyOptions, Detector, Error, KineticQuery, Method, Modes, Query, ReducedModel, TriMesh,
 };
 
-/// Bits of the control register of SSE: flush results, take small operands for zero, round down, up, to zero.
+/// Bits of the control register of SSE: flush results to zero, read subnormal operands as zero, round down, up, to zero.
 const MODES: [(u32, &str); 5] = [
     (1 << 15, "flushes small numbers"),
     (1 << 6, "flushes small numbers"),
@@ -44,13 +45,13 @@ fn mesh() -> Result<TriMesh, Error> {
     TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]])
 }
 
-/// Two triangles one unit apart, and a mode that lowers the second.
+/// Returns two triangles one unit apart, and a mode that lowers the second.
 fn model() -> ReducedModel {
     let lowers = |row, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
     ReducedModel::new(mesh().unwrap(), Modes::from_matrix(6, 1, lowers).unwrap()).unwrap()
 }
 
-/// Checks that a call is refused in every wrong mode, and is possible before and after.
+/// Checks that a call is refused in every wrong mode, and succeeds before and after.
 fn refused<T>(name: &str, mut call: impl FnMut() -> Result<T, Error>) {
     for (bits, what) in MODES {
         assert!(call().is_ok(), "{name}");
@@ -61,7 +62,7 @@ fn refused<T>(name: &str, mut call: impl FnMut() -> Result<T, Error>) {
 }
 
 #[test]
-fn what_is_made_in_another_mode_is_refused() {
+fn objects_are_not_created_in_another_mode() {
     let model = model();
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     refused("mesh", mesh);
@@ -105,7 +106,7 @@ fn searches_in_another_mode_are_refused() {
     });
 }
 
-/// The mode belongs to a thread: others are not refused.
+/// Each thread has its own mode, so that other threads are not refused.
 #[test]
 fn other_threads_have_their_own_mode() {
     let old = mode();

@@ -1,4 +1,4 @@
-//! What is refused, with which status and message: for each function its pointers, arrays and numbers.
+//! Tests of the status and message with which each function refuses pointers, arrays and numbers.
 
 use std::ptr::{null, null_mut};
 
@@ -7,9 +7,9 @@ use sscc_c::*;
 
 use crate::common::{FACES, Handles, MODE, TWO, done, faces, lifted, matrix, message, refused};
 
-// SAFETY: of all calls here: they are refused before anything wrong is used, or have valid arguments.
+// SAFETY: all calls here are refused before an invalid argument is used, or have valid arguments.
 
-/// A pointer that is no multiple of the size of a number.
+/// Returns a pointer that is not a multiple of the size of a number.
 fn misaligned<T>(array: &[T]) -> *const T {
     array.as_ptr().cast::<u8>().wrapping_add(1).cast()
 }
@@ -79,7 +79,7 @@ fn null_handles() {
     for (i, (_, status)) in calls.iter().enumerate() {
         assert_eq!(*status, Null, "call {i}");
     }
-    // Messages name what is NULL; the last one is still there.
+    // Messages name the argument that is NULL; the last message is still available.
     assert_eq!(message(), format!("{} is NULL", calls.last().unwrap().0));
     assert_eq!((count, handles), (9, (null_mut(), null_mut(), null_mut(), null_mut())));
     unsafe {
@@ -353,7 +353,7 @@ fn arrays_for_answers() {
         ] {
             assert_eq!(status, wanted);
         }
-        // Place for more than the answer has.
+        // The array may be larger than the answer.
         done(sscc_query_pairs(all.query, p, 2));
     }
     assert_eq!((pairs[1].a, impacts[0].a), (7, 7));
@@ -380,7 +380,7 @@ fn arrays_of_a_model() {
             let status = sscc_model_positions(model, x.add(within), 1, x, 6);
             refused(status, Overlap, "q and positions overlap");
         }
-        // Beside each other they do not overlap.
+        // Adjacent arrays do not overlap.
         done(sscc_model_positions(model, x.add(18), 1, x, 6));
     }
 }
@@ -439,7 +439,7 @@ fn options() {
     );
     let groups = [0, 1, 70_000];
     with(&sscc_filter { groups: groups.as_ptr(), groups_count: 3, ..filter }, "group 70000");
-    // With a group of their own each, pairs of groups do not matter; so these are of another mesh.
+    // The groups are refused because they are of another mesh.
     let three = sscc_filter { groups: groups.as_ptr(), groups_count: 1, between_groups_only: 1, ..filter };
     with(&three, "groups");
     unsafe {

@@ -9,18 +9,18 @@ use sscc_c::*;
 use crate::common::{FACES, Handles, TWO, done, faces, made, matrix, refused};
 use crate::threads::Strip;
 
-/// What callbacks see.
+/// The calls of callbacks.
 #[derive(Default)]
 struct Seen {
     calls: AtomicUsize,
     is_inside: AtomicBool,
-    /// Cancels at that call, counted from 1.
+    /// The call at which the callback cancels, counted from 1.
     last: usize,
 }
 
 impl Seen {
     fn call(user: *mut c_void) -> c_int {
-        // SAFETY: the test's own.
+        // SAFETY: the pointer is that of the test.
         let seen = unsafe { &*user.cast::<Self>() };
         assert!(!seen.is_inside.swap(true, Ordering::SeqCst), "two calls at a time");
         let calls = seen.calls.fetch_add(1, Ordering::SeqCst) + 1;
@@ -46,7 +46,7 @@ extern "C" fn cancel(user: *mut c_void) -> c_int {
     Seen::call(user)
 }
 
-// SAFETY: of all calls here: arrays have the stated lengths, handles live.
+// SAFETY: in all calls here arrays have the stated lengths, and handles are live.
 
 #[test]
 fn a_computation_reports_and_is_cancelled() {
@@ -65,7 +65,7 @@ fn a_computation_reports_and_is_cancelled() {
     assert!(status == sscc_status::Ok && reports > 0);
     let (status, questions) = compute(None, Some(cancel), 0);
     assert!(status == sscc_status::Ok && questions > 0);
-    // After it has cancelled, no callback is called again, even if the work was done.
+    // After a callback has cancelled, no callback is called again, even if the work was done.
     for last in 1..=reports {
         assert_eq!(compute(Some(progress), None, last), (sscc_status::Cancelled, last));
     }
@@ -87,7 +87,7 @@ fn answers_are_cancelled() {
         refused(sscc_query_discrete(query, q, 3, n), sscc_status::Cancelled, "interrupted");
         assert_eq!((count, stop.count()), (9, 1));
         done(sscc_query_pairs(query, null_mut(), 0));
-        // A copy has no callback; nor has the query once it is removed.
+        // A copy has no callback, and neither has the query after the callback is removed.
         let copy = made(|out| sscc_query_clone(query, out));
         done(sscc_query_discrete(copy, q, 3, n));
         done(sscc_query_free(copy));
@@ -125,7 +125,7 @@ fn answers_are_cancelled() {
     }
 }
 
-/// A query with a copy of its handle's address, to be used from inside.
+/// Uses the handle of the query which calls this callback.
 extern "C" fn use_again(user: *mut c_void, _pair: sscc_pair) -> c_int {
     let query = user.cast::<sscc_query>();
     let mut count = 9;
@@ -134,7 +134,7 @@ extern "C" fn use_again(user: *mut c_void, _pair: sscc_pair) -> c_int {
         refused(sscc_query_pairs(query, null_mut(), 0), sscc_status::Busy, "in use");
         refused(sscc_query_clone(query, &mut null_mut()), sscc_status::Busy, "in use");
         refused(sscc_query_free(query), sscc_status::Busy, "in use");
-        // Other handles are free.
+        // Other handles can be used.
         let detector = made(|out| sscc_detector_new(matrix(&TWO, 3), faces(&FACES), null(), out));
         done(sscc_detector_free(detector));
     }

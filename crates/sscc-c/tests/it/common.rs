@@ -5,7 +5,7 @@ use std::ptr::{null, null_mut};
 
 use sscc_c::*;
 
-/// Two triangles one unit apart, and one mode that moves the second towards the first.
+/// The positions of two triangles one unit apart; one mode moves the second towards the first.
 pub const TWO: [f64; 18] =
     [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 1.0, 1.0];
 pub const FACES: [u32; 6] = [0, 1, 2, 3, 4, 5];
@@ -17,7 +17,7 @@ pub const MODE: [f64; 18] = {
     mode
 };
 
-/// Numbers without gaps as a matrix.
+/// Returns numbers without gaps as a matrix.
 pub fn matrix(numbers: &[f64], columns: usize) -> sscc_matrix {
     let rows = numbers.len() / columns;
     sscc_matrix { data: numbers.as_ptr(), rows, columns, row_stride: 0, column_stride: 0 }
@@ -28,14 +28,14 @@ pub fn faces(numbers: &[u32]) -> sscc_index_matrix {
     sscc_index_matrix { data: numbers.as_ptr(), rows, columns: 3, row_stride: 0, column_stride: 0 }
 }
 
-/// What a call must do.
+/// Checks that a call succeeded.
 pub fn done(status: sscc_status) {
     assert_eq!(status, sscc_status::Ok, "{}", message());
 }
 
-/// The message of the last failure.
+/// Returns the message of the last failure.
 pub fn message() -> String {
-    // SAFETY: a text that is valid until the next failure.
+    // SAFETY: the text is valid until the next failure.
     unsafe { CStr::from_ptr(sscc_error_message()) }.to_str().unwrap().to_owned()
 }
 
@@ -47,7 +47,7 @@ pub fn refused(status: sscc_status, wanted: sscc_status, text: &str) {
     assert!(message.contains(text) && !message.contains('\n'), "{message}");
 }
 
-/// The handle that a function gives.
+/// Returns the handle that a function makes.
 #[track_caller]
 pub fn made<T>(make: impl FnOnce(*mut *mut T) -> sscc_status) -> *mut T {
     let mut handle = null_mut();
@@ -55,7 +55,7 @@ pub fn made<T>(make: impl FnOnce(*mut *mut T) -> sscc_status) -> *mut T {
     handle
 }
 
-/// One handle of each type, of [`TWO`].
+/// One handle of each type, made from [`TWO`].
 pub struct Handles {
     pub model: *mut sscc_model,
     pub certificates: *mut sscc_certificates,
@@ -65,7 +65,7 @@ pub struct Handles {
     pub shape: *mut sscc_shape,
 }
 
-// SAFETY: of all functions here: arrays have the stated lengths, handles live.
+// SAFETY: in all functions here arrays have the stated lengths, and handles are live.
 impl Handles {
     pub fn new() -> Self {
         unsafe {
@@ -83,7 +83,7 @@ impl Handles {
         }
     }
 
-    /// The positions at q.
+    /// Returns the positions at q.
     pub fn positions(&self, q: f64) -> [f64; 18] {
         let mut positions = [0.0; 18];
         done(unsafe { sscc_model_positions(self.model, &q, 1, positions.as_mut_ptr(), 6) });
@@ -104,7 +104,7 @@ impl Drop for Handles {
     }
 }
 
-/// A pose that moves by z.
+/// Returns a pose that moves by z along the third axis.
 pub fn lifted(z: f64) -> sscc_pose {
     sscc_pose { rotation: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], translation: [0.0, 0.0, z] }
 }

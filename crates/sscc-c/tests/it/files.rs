@@ -14,7 +14,7 @@ fn c(path: &Path) -> CString {
     CString::new(path.to_str().unwrap()).unwrap()
 }
 
-// SAFETY: of all calls here: texts end with 0, handles live.
+// SAFETY: in all calls here texts end with 0, and handles are live.
 
 #[test]
 fn models_and_certificates_are_saved_and_loaded() {
@@ -73,7 +73,7 @@ fn certificates_with_a_clearance_are_refused() {
 }
 
 #[test]
-fn files_that_are_refused() {
+fn invalid_files_are_refused() {
     let all = Handles::new();
     let folder = tempfile::tempdir().unwrap();
     let [missing, damaged] =

@@ -1,4 +1,4 @@
-//! Handles that are freed, twice, or of another type. The library of the tests has debug assertions, which notice that.
+//! Tests of handles that are freed, freed twice, or of another type. The library of the tests has debug assertions, which detect that.
 
 use std::ptr::null_mut;
 
@@ -6,7 +6,7 @@ use sscc_c::*;
 
 use crate::common::{Handles, done, made, refused};
 
-// SAFETY: of all calls here: with debug assertions the library looks at no handle that is freed.
+// SAFETY: with debug assertions the library does not access a freed handle.
 
 #[test]
 fn a_handle_that_was_freed_is_refused() {
@@ -35,7 +35,7 @@ fn a_handle_that_was_freed_is_refused() {
 }
 
 #[test]
-fn handles_outlive_what_they_were_made_from() {
+fn handles_outlive_the_objects_from_which_they_were_made() {
     let all = Handles::new();
     unsafe {
         let model = made(|out| {

@@ -1,4 +1,4 @@
-//! The header is that of the code. `SSCC_WRITE=1 cargo test -p sscc-c --test it header` writes it.
+//! Tests that the header is that of the code. `SSCC_WRITE=1 cargo test -p sscc-c --test it header` writes it.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ fn the_header_is_that_of_the_code() {
     );
 }
 
-/// The number of the ABI is that of the code in the header, in the names of the shared library, and in its documentation.
+/// The ABI version of the code is that of the header, of the names of the shared library, and of its documentation.
 #[test]
 fn all_places_have_the_same_abi() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -49,7 +49,7 @@ fn all_places_have_the_same_abi() {
     }
 }
 
-/// The header without the sections on safety, all of which refer to its head.
+/// Returns the header without the sections on safety, which all refer to its head.
 fn without_safety(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let is_title = |i: usize| lines.get(i) == Some(&"// # Safety");

@@ -1,4 +1,4 @@
-//! Repeated answers allocate nothing.
+//! Tests that repeated answers allocate nothing.
 
 use std::ffi::{c_int, c_void};
 use std::ptr::{null, null_mut};
@@ -12,7 +12,7 @@ extern "C" fn look(_user: *mut c_void, _pair: sscc_pair) -> c_int {
     0
 }
 
-// SAFETY: of all calls here: arrays have the stated lengths, handles live.
+// SAFETY: in all calls here arrays have the stated lengths, and handles are live.
 
 #[test]
 fn repeated_answers_allocate_nothing() {
@@ -60,7 +60,7 @@ fn repeated_answers_allocate_nothing() {
                 done(sscc_detector_against(detector, x, other, rest, &mut n));
             }
         };
-        // Twice: a kinetic query has other regions when it comes from somewhere else.
+        // Answers twice, because a kinetic query has other regions after another q.
         answer();
         answer();
         let counted = allocation_counter::measure(&mut answer);

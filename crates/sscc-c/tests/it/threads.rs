@@ -1,4 +1,4 @@
-//! 32 threads that share a model and certificates, each with handles of its own.
+//! Tests of 32 threads that share a model and certificates; each has its own handles.
 
 use std::ptr::{null, null_mut};
 use std::thread;
@@ -7,7 +7,7 @@ use sscc_c::*;
 
 use crate::common::{done, made, matrix, message, refused};
 
-/// A zigzag strip of 400 triangles, bent by modes that grow along it.
+/// A zigzag strip of 400 triangles, bent by modes whose displacements grow along it.
 pub struct Strip {
     pub model: *mut sscc_model,
     pub certificates: *mut sscc_certificates,
@@ -15,7 +15,7 @@ pub struct Strip {
     vertices: usize,
 }
 
-// SAFETY: models and certificates may be used by any number of threads; of all calls: arrays have the stated lengths.
+// SAFETY: models and certificates may be used by any number of threads; in all calls arrays have the stated lengths.
 unsafe impl Sync for Strip {}
 
 impl Strip {
@@ -32,7 +32,7 @@ impl Strip {
                 [0, 1, 2].map(|k| if row % 3 == k { along.powi(k as i32 + 1) } else { 0.0 })
             })
             .collect();
-        // In the last mode, x: the strip is folded back onto itself.
+        // In the last mode, along x, the strip is folded back onto itself.
         let modes: Vec<f64> = (0..3 * vertices)
             .flat_map(|row| {
                 let along = (row / 3 / 2) as f64 / n as f64;
@@ -53,7 +53,7 @@ impl Strip {
         crate::common::faces(&self.indices)
     }
 
-    /// The positions where the last mode has this weight.
+    /// Returns the positions at which the last mode has this weight.
     pub fn positions(&self, weight: f64) -> Vec<f64> {
         let mut positions = vec![0.0; 3 * self.vertices];
         let q = [0.0, 0.0, weight];
@@ -105,7 +105,7 @@ fn threads_get_the_same_answers() {
         for thread in 0..32 {
             let (strip, wanted, answers) = (&strip, &wanted, &answers);
             scope.spawn(move || {
-                // Each thread has the message of its own failures.
+                // Each thread has only the message of its own failures.
                 assert_eq!(message(), "");
                 let q = vec![0.0; thread + 4];
                 let mut count = 0;

@@ -40,7 +40,7 @@ static int add(void *user, sscc_pair pair) {
   return 0;
 }
 
-// Each thread has a query of its own.
+// Each thread has its own query.
 static void *work(void *user) {
   sscc_query *query = NULL;
   DONE(sscc_query_new(model, certificates, &query));

@@ -33,7 +33,7 @@ sscc::status refused(F&& call) {
   return SSCC_STATUS_OK;
 }
 
-// What a callable of the test throws.
+// The exception of a callable of the test.
 struct stopped : std::runtime_error {
   stopped() : std::runtime_error("stopped") {}
 };
@@ -73,7 +73,7 @@ int main() {
   CHECK(model.rank() == 1 && model.vertex_count() == 6 && model.triangle_count() == 2);
   CHECK(model.faces() == std::vector<std::uint32_t>(faces.begin(), faces.end()));
 
-  // Progress: a callable that only looks, one that returns true, one that throws.
+  // Progress: a callable without a value, one that returns true, one that throws.
   std::size_t reports = 0;
   auto certificates = sscc::certificates::compute(model, {}, [&](std::size_t, std::size_t) { ++reports; });
   CHECK(reports > 0 && certificates.root_radius() > 0.5);
@@ -111,7 +111,7 @@ int main() {
   CHECK(is_stopped([&] { query.visit_pairs([](sscc::pair) { throw stopped(); }); }));
   CHECK(refused([&] { query.visit_pairs([](sscc::pair) { return true; }); }) == SSCC_STATUS_CANCELLED);
   CHECK(refused([&] { query.visit_pairs([&](sscc::pair) { query.discrete(q1); }); }) == SSCC_STATUS_BUSY);
-  // The query goes on after what was thrown.
+  // The query can be used after the exception.
   CHECK(query.discrete(q1).size() == 1);
 
   // Errors.
@@ -156,7 +156,7 @@ int main() {
   CHECK(wanted > 20);
   certified.cancel_when([] { return true; });
   CHECK(refused([&] { certified.discrete(q); }) == SSCC_STATUS_CANCELLED && certified.pairs().empty());
-  // What a callable throws leaves no older answer.
+  // After an exception of a callable there is no older answer.
   certified.never_cancel();
   CHECK(certified.discrete(q).size() == wanted);
   certified.cancel_when([]() -> bool { throw stopped(); });

@@ -1,4 +1,4 @@
-// Which containers sscc::view takes: those whose elements are one after another. The compiler tests it; nothing runs.
+// Tests by the compiler alone that sscc::view accepts exactly the containers whose elements are contiguous.
 #include <array>
 #include <cstddef>
 #include <cstdint>

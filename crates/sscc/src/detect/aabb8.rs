@@ -26,7 +26,7 @@ impl AabbF32 {
     /// The AABB that contains all points.
     pub(crate) const ALL: Self = Self { lower: Vec4::MIN, upper: Vec4::MAX };
 
-    /// The AABB of a triangle by its corners at `E` configurations.
+    /// Returns the AABB of a triangle by its corners at `E` configurations.
     #[inline]
     pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
@@ -50,7 +50,7 @@ impl AabbF32 {
         apart.bitmask() & 0b111 == 0
     }
 
-    /// The smallest AABB that contains both.
+    /// Returns the smallest AABB that contains both.
     #[inline]
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
@@ -92,7 +92,7 @@ impl Aabb8 {
         }
     }
 
-    /// The lanes whose AABB overlaps a given one.
+    /// Returns the lanes whose AABB overlaps a given one.
     #[inline]
     pub(crate) fn overlapping(&self, other: &AabbF32) -> Lanes {
         let (lower, upper) = (other.lower, other.upper);
@@ -114,7 +114,7 @@ impl Aabb8 {
         Lanes(!apart & 0xf)
     }
 
-    /// The lanes among the first four whose AABB overlaps that of one lane of another packet.
+    /// Returns the lanes among the first four whose AABB overlaps that of one lane of another packet.
     #[inline]
     pub(crate) fn overlapping_lane_of_four(&self, other: &Self, lane: usize) -> Lanes {
         let apart = self.beyond_half(
@@ -223,7 +223,7 @@ impl Kernel for NestedPacketPair<'_> {
 }
 
 impl Aabb8 {
-    /// The lanes whose AABB overlaps that of one lane of another packet.
+    /// Returns the lanes whose AABB overlaps that of one lane of another packet.
     #[inline(always)]
     fn compare_all<V: Vectors>(&self, v: V, other: &Self, lane: usize) -> u32 {
         let x = self.beyond(v, other, lane, 0);
@@ -315,7 +315,7 @@ mod tests {
         assert_eq!(Aabb8::EMPTY.overlapping(&AabbF32::ALL), Lanes(0));
     }
 
-    /// Both instruction sets find the overlapping pairs of two packets.
+    /// Checks that both instruction sets find the overlapping pairs of two packets.
     fn compare_pairs(packet: &Aabb8, boxes: &[AabbF32], other: &AabbF32, masked: u64) {
         let mut second = Aabb8::EMPTY;
         boxes.iter().rev().enumerate().for_each(|(lane, b)| {

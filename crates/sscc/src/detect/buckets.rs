@@ -28,14 +28,15 @@ pub(crate) struct Buckets {
     packets: Vec<u32>,
     /// For each packet its first slot, then the end.
     slots: Vec<u32>,
-    /// The triangle in each slot, and its vertices by their indices in the
-    /// [`VertexStore`](super::vertex_store::VertexStore).
+    /// The triangle in each slot.
     triangles: Vec<u32>,
+    /// For each slot the vertices of its triangle, by their indices in the [`VertexStore`](super::vertex_store::VertexStore).
     corners: Vec<[u32; 3]>,
     /// For each slot the vertex classes of its triangle.
     classes: Vec<[u32; 3]>,
     /// For each bucket its first vertex, then the end.
     vertex_starts: Vec<u32>,
+    /// The vertices of all buckets, bucket after bucket.
     vertices: Vec<u32>,
     /// The triangle pairs that never count, once they have been computed.
     adjacency: OnceLock<AdjacencyMasks>,
@@ -138,62 +139,62 @@ impl Buckets {
         self.of_node[node as usize]
     }
 
-    /// The number of nodes of the hierarchy.
+    /// Returns the number of nodes of the hierarchy.
     pub(crate) fn node_count(&self) -> usize {
         self.of_node.len()
     }
 
-    /// The end of the indices of nodes that traversals visit: buckets and larger nodes.
+    /// Returns the end of the indices of nodes that traversals visit: buckets and larger nodes.
     pub(crate) fn visited_node_count(&self) -> usize {
         let is_visited = |n: u32| self.of_node(n).is_none_or(|bucket| self.node(bucket) == n);
         (0..self.of_node.len() as u32).rev().find(|n| is_visited(*n)).map_or(0, |last| last as usize + 1)
     }
 
-    /// The node of a bucket.
+    /// Returns the node of a bucket.
     pub(crate) fn node(&self, bucket: u32) -> u32 {
         self.nodes[bucket as usize]
     }
 
-    /// The node of each bucket.
+    /// Returns the node of each bucket.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
         self.nodes.iter().copied()
     }
 
-    /// The number of buckets.
+    /// Returns the number of buckets.
     pub(crate) fn count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The packets of a bucket.
+    /// Returns the packets of a bucket.
     #[inline]
     pub(crate) fn packets(&self, bucket: u32) -> Range<usize> {
         self.packets[bucket as usize] as usize..self.packets[bucket as usize + 1] as usize
     }
 
-    /// The number of packets.
+    /// Returns the number of packets.
     pub(crate) fn packet_count(&self) -> usize {
         self.slots.len().saturating_sub(1)
     }
 
-    /// The slots of a packet.
+    /// Returns the slots of a packet.
     #[inline]
     pub(crate) fn slots(&self, packet: usize) -> Range<usize> {
         self.slots[packet] as usize..self.slots[packet + 1] as usize
     }
 
-    /// The triangle in a slot.
+    /// Returns the triangle in a slot.
     #[inline]
     pub(crate) fn triangle(&self, slot: usize) -> u32 {
         self.triangles[slot]
     }
 
-    /// For each slot the vertices of its triangle.
+    /// Returns for each slot the vertices of its triangle.
     #[inline]
     pub(crate) fn corners(&self) -> &[[u32; 3]] {
         &self.corners
     }
 
-    /// The vertices of all buckets, bucket after bucket.
+    /// Returns the vertices of all buckets, bucket after bucket.
     pub(crate) fn all_vertices(&self) -> &[u32] {
         &self.vertices
     }
@@ -203,7 +204,7 @@ impl Buckets {
         self.vertices.iter_mut().chain(self.corners.as_flattened_mut()).for_each(|v| *v = new(*v));
     }
 
-    /// The vertices of a bucket, each once.
+    /// Returns the vertices of a bucket, each once.
     pub(crate) fn vertices(&self, bucket: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|i| self.vertex_starts[bucket as usize + i] as usize);
         &self.vertices[start..end]

@@ -54,7 +54,7 @@ impl<const E: usize> CoarsePositions<E> {
         self.is_used
     }
 
-    /// The error bound of coarse positions in the frame of the search.
+    /// Returns the error bound of coarse positions in the frame of the search.
     #[inline]
     pub(crate) fn error(&self) -> f32 {
         self.motion.search_error()
@@ -66,8 +66,8 @@ impl<const E: usize> CoarsePositions<E> {
         if self.is_used { layout.bd_tree.coarse(n, &self.motion) } else { None }
     }
 
-    /// Returns a bound of the distance of the vertices of a node from their coarse positions, apart from the error, in the frame, rounded
-    /// up.
+    /// Returns a bound of the distance of the vertices of a node from their coarse positions, without the error of these, in the frame,
+    /// rounded up.
     #[inline]
     pub(crate) fn slack<M: VertexMotion<E>>(n: u32, motion: &M, frame: &F32Frame) -> Vec4 {
         motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {
@@ -84,13 +84,13 @@ impl<const E: usize> CoarsePositions<E> {
         layout.coarse.move_bucket(bucket, &self.motion, &mut self.positions);
     }
 
-    /// The corners of the triangle in a slot of a moved bucket, in the frame.
+    /// Returns the corners of the triangle in a slot of a moved bucket, in the frame.
     #[inline(always)]
     pub(crate) fn corners(&self, layout: &Layout, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         layout.coarse.corners(bucket, slot, &self.positions)
     }
 
-    /// The vertices of a moved bucket, in the frame.
+    /// Returns the vertices of a moved bucket, in the frame.
     pub(crate) fn of_bucket(&self, layout: &Layout, bucket: u32) -> &[[Vec4; E]] {
         layout.coarse.of_bucket(bucket, &self.positions)
     }

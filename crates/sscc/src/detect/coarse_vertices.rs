@@ -62,7 +62,7 @@ impl CoarseVertices {
         vec![[Vec4::ZERO; E]; LANES * self.starts.last().map_or(0, |end| *end as usize)]
     }
 
-    /// The groups of a bucket.
+    /// Returns the groups of a bucket.
     fn groups(&self, bucket: u32) -> Range<usize> {
         self.starts[bucket as usize] as usize..self.starts[bucket as usize + 1] as usize
     }
@@ -92,7 +92,7 @@ impl CoarseVertices {
         &positions[groups.start * LANES..groups.end * LANES]
     }
 
-    /// The corners of the triangle in a slot of a bucket whose vertices have been moved, in the frame; their fourth
+    /// Returns the corners of the triangle in a slot of a bucket whose vertices have been moved, in the frame; their fourth
     /// components are unused.
     #[inline]
     pub(crate) fn corners<const E: usize>(
@@ -230,7 +230,7 @@ mod tests {
         assert!(used > 300 && unused > 2 && worst > 0.05, "{used} {unused} {worst}");
     }
 
-    /// Both instruction sets give the same bits.
+    /// Checks that both instruction sets give the same bits.
     fn compare_kernels(layout: &Layout, ends: [&[f64]; 2], frame: &F32Frame, rounding: f64) {
         let mut coarse = CoarseVertices::new(&layout.quantization, &layout.buckets, &layout.vertices);
         let mut motion = CoarseMotion::default();

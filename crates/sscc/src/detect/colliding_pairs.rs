@@ -15,7 +15,7 @@ use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 /// A mesh with more colliding pairs than this at rest (128 MiB of them) is refused.
 const MAX_PAIRS: usize = 1 << 24;
 
-/// All colliding pairs at q, sorted.
+/// Returns all colliding pairs at q, sorted.
 ///
 /// # Errors
 /// When q is not a configuration of the model, there are more than 2^24 pairs, or `progress` cancels.

@@ -43,7 +43,7 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     count > 2
 }
 
-/// The error bound of two products of differences, each difference with an error of at most `2 moved`.
+/// Returns the error bound of two products of differences, each difference with an error of at most `2 moved`.
 ///
 /// Let m be the largest magnitude of a coordinate and u = 2^-53, so that `moved = 2 u m`. Coordinates have errors of `u m`,
 /// so a difference of two has an error of `moved`, and is itself rounded by at most `moved`, since it is at most `2 m`. So

@@ -69,13 +69,13 @@ impl<const E: usize> ExactPositions<E> {
         self.searches[vertex as usize] == self.search
     }
 
-    /// The position of a moved vertex, at the start of the motion.
+    /// Returns the position of a moved vertex, at the start of the motion.
     #[inline]
     pub(crate) fn position(&self, vertex: u32) -> DVec3 {
         self.exact[vertex as usize][0]
     }
 
-    /// The positions of three moved vertices, at each configuration.
+    /// Returns the positions of three moved vertices, at each configuration.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         let corners = vertices.map(|v| &self.exact[v as usize]);
@@ -95,7 +95,7 @@ impl<const E: usize> ExactPositions<E> {
         ends.fold(AabbF32::EMPTY, |all, x| AabbF32 { lower: all.lower.min(x), upper: all.upper.max(x) })
     }
 
-    /// The frame of this search.
+    /// Returns the frame of this search.
     #[inline]
     pub(crate) fn frame(&self) -> &F32Frame {
         &self.frame

@@ -25,7 +25,7 @@ impl F32Frame {
         Self { center: lower * 0.5 + upper * 0.5, scale: (1.0 / half).min(f64::MAX) }
     }
 
-    /// The positive number that coordinates are multiplied by.
+    /// Returns the positive number by which coordinates are multiplied.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
@@ -39,12 +39,12 @@ impl F32Frame {
         right_or!(error, FrameErrorQuartered, error / 4.0) as f32
     }
 
-    /// The point that is mapped to the origin.
+    /// Returns the point that is mapped to the origin.
     pub(crate) fn center(&self) -> DVec3 {
         self.center
     }
 
-    /// The mapped point before it is rounded to single precision.
+    /// Returns the mapped point before it is rounded to single precision.
     pub(crate) fn linear(&self, x: DVec3) -> DVec3 {
         (x - self.center) * self.scale
     }
@@ -55,7 +55,7 @@ impl F32Frame {
         (mapped.abs().cmple(Vec4::splat(2.001)).bitmask() & 0b111) == 0b111
     }
 
-    /// The mapped point; its fourth component is unused. All components are finite.
+    /// Returns the mapped point; its fourth component is unused. All components are finite.
     #[inline]
     pub(crate) fn map(&self, x: DVec3) -> Vec4 {
         let y = self.linear(x).as_vec3();

@@ -57,7 +57,7 @@ impl FrameMap {
         self.error
     }
 
-    /// The images of eight positions, by their coordinates along each axis.
+    /// Returns the images of eight positions, by their coordinates along each axis.
     #[inline(always)]
     pub(super) fn apply<V: Vectors>(&self, v: V, x: [V::F32s; 3]) -> [V::F32s; 3] {
         let mut images = x;

@@ -69,7 +69,7 @@ impl MovingModes {
         self.are_listed().then(|| &self.modes[self.range(item)])
     }
 
-    /// The modes of an item, ascending.
+    /// Returns the modes of an item, ascending.
     pub(crate) fn of_item(&self, item: u32) -> impl Iterator<Item = u32> + '_ {
         let list = self.list(item);
         let count = list.map_or(self.rank, <[u32]>::len);

@@ -50,7 +50,7 @@ impl NodeBoundaries {
     }
 }
 
-/// Returns the vertices around the boundary of faces that are an oriented manifold with a single boundary, closed pieces apart.
+/// Returns the vertices around the boundary of faces that are an oriented manifold with a single boundary. Closed pieces are ignored.
 fn single_boundary(faces: impl Iterator<Item = [u32; 3]>) -> Option<Vec<u32>> {
     // (i, j, k): the edge of a face from i to j, and its third corner.
     let mut edges = Vec::new();

@@ -172,7 +172,7 @@ impl<const E: usize> NodeVolumes<E> {
         if root > 0.0 { (0..self.nodes.len()).map(cost).sum::<f64>() / root } else { 0.0 }
     }
 
-    /// The frame of this search.
+    /// Returns the frame of this search.
     pub(crate) fn frame(&self) -> &F32Frame {
         self.positions.frame()
     }
@@ -183,31 +183,31 @@ impl<const E: usize> NodeVolumes<E> {
         self.packets_searches[bucket as usize] == self.search
     }
 
-    /// The number of buckets whose AABBs within are not current.
+    /// Returns the number of buckets whose AABBs within are not current.
     #[inline]
     pub(crate) fn closed_buckets(&self) -> usize {
         self.closed_buckets
     }
 
-    /// The AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
+    /// Returns the AABB of a node. Call [`Self::update_node`] first, or open its parent or bucket.
     #[inline]
     pub(crate) fn node(&self, n: u32) -> &AabbF32 {
         &self.nodes[n as usize]
     }
 
-    /// The AABBs of the children of an open node.
+    /// Returns the AABBs of the children of an open node.
     #[inline]
     pub(crate) fn children(&self, n: u32) -> &Aabb8 {
         &self.children[n as usize]
     }
 
-    /// The AABBs of the packets of an open bucket.
+    /// Returns the AABBs of the packets of an open bucket.
     #[inline]
     pub(crate) fn packets(&self, bucket: u32) -> &Aabb8 {
         &self.packets[bucket as usize]
     }
 
-    /// The AABBs of the triangles of a packet of an open bucket.
+    /// Returns the AABBs of the triangles of a packet of an open bucket.
     #[inline]
     pub(crate) fn triangles(&self, packet: usize) -> &Aabb8 {
         &self.triangles[packet]
@@ -301,7 +301,7 @@ impl<const E: usize> NodeVolumes<E> {
         union
     }
 
-    /// The corners of the triangle in a slot of a bucket, in the frame.
+    /// Returns the corners of the triangle in a slot of a bucket, in the frame.
     #[inline(always)]
     fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
         if self.coarse.are_used() {
@@ -311,8 +311,8 @@ impl<const E: usize> NodeVolumes<E> {
         }
     }
 
-    /// The vertices of an open bucket, with their positions in the frame at the start of the motion: within [`Self::corner_error`]
-    /// of the exact ones.
+    /// Returns the vertices of an open bucket, with their positions in the frame at the start of the motion, which are within
+    /// [`Self::corner_error`] of the exact ones.
     pub(crate) fn mapped_vertices(&self, bucket: u32) -> impl Iterator<Item = (u32, Vec4)> {
         let is_coarse = self.coarse.are_used();
         let moved = if is_coarse { self.coarse.of_bucket(&self.layout, bucket) } else { &[] };
@@ -342,13 +342,13 @@ impl<const E: usize> NodeVolumes<E> {
         vertices.iter().for_each(|&v| self.positions.move_vertex(&self.layout, v, motion));
     }
 
-    /// The exact position of a moved vertex, at the start of the motion.
+    /// Returns the exact position of a moved vertex, at the start of the motion.
     #[inline]
     pub(crate) fn position(&self, vertex: u32) -> DVec3 {
         self.positions.position(vertex)
     }
 
-    /// The exact positions of three moved vertices, at each configuration.
+    /// Returns the exact positions of three moved vertices, at each configuration.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         self.positions.corners(vertices)

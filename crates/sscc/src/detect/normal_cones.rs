@@ -56,8 +56,9 @@ pub(crate) struct NormalCones {
     has_contour_test: bool,
     /// For each node the directions on whose positive side all of its normals are, one bit each.
     positive: Vec<u16>,
-    /// Scratch: a projected boundary, and an order of its edges.
+    /// Scratch: a projected boundary.
     projected: Vec<[f64; 2]>,
+    /// Scratch: an order of the edges of a boundary.
     order: Vec<u32>,
 }
 

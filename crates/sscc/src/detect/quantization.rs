@@ -15,8 +15,9 @@ use crate::vectors::LANES;
 /// an additional first mode, whose coordinate is 1.
 #[derive(Default)]
 pub(crate) struct Quantization {
-    /// The centre of the rest pose's box, and the largest distance from it along an axis.
+    /// The centre of the box of the rest pose.
     center: DVec3,
+    /// The largest distance of a rest position from the centre along an axis.
     half: f64,
     /// The largest displacement by each mode.
     sizes: Vec<f64>,
@@ -57,7 +58,7 @@ impl<const E: usize> Default for CoarseMotion<E> {
 }
 
 impl<const E: usize> CoarseMotion<E> {
-    /// The error bound of coarse positions in the frame of the search.
+    /// Returns the error bound of coarse positions in the frame of the search.
     pub(crate) fn search_error(&self) -> f32 {
         let maps = self.maps.as_ref();
         maps.map_or(self.error, |maps| maps.iter().fold(0.0, |most, map| map.error().max(most)))

@@ -18,7 +18,7 @@ use crate::hierarchy::NodePair;
 /// Triangle tests between two checks whether the search was cancelled: one test may take a millisecond.
 const TESTS_PER_CHECK: u64 = 64;
 
-/// Nodes visited between two checks. A visit takes at most about 10 microseconds, triangle tests apart.
+/// Nodes visited between two checks. A visit takes at most about 10 microseconds, without its triangle tests.
 const VISITS_PER_CHECK: u32 = 1024;
 
 /// Boxes of single triangles compared between two checks.
@@ -83,7 +83,7 @@ impl<const E: usize, M: VertexMotion<E>> Side<'_, E, M> {
         self.volumes.move_corners(vertices, self.motion);
     }
 
-    /// A triangle of the mesh with the indices of its vertices in the layout.
+    /// Returns a triangle of the mesh with the indices of its vertices in the layout.
     pub(crate) fn triangle(&self, triangle: u32) -> TriangleVertices {
         let face = self.context.filter.faces()[triangle as usize];
         TriangleVertices { triangle, vertices: face.map(|v| self.volumes.layout.vertices.index_of(v)) }

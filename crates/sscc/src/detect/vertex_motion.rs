@@ -62,7 +62,7 @@ pub(crate) trait VertexMotion<const E: usize> {
 
 /// The pose of a shape in the world.
 pub(crate) struct InWorld<const E: usize> {
-    /// At each configuration the matrix and the translation of `x -> matrix x + translation`.
+    /// The matrix and the translation of `x -> matrix x + translation` at each configuration.
     pub(crate) maps: [(DMat3, DVec3); E],
     /// The bound of [`VertexMotion::rounding`] for positions in axes of the model.
     pub(crate) own_rounding: f64,

@@ -72,38 +72,38 @@ impl VertexStore {
         Self { indices, mesh_vertices, ..Self::default() }
     }
 
-    /// The number of vertices.
+    /// Returns the number of vertices.
     pub(crate) fn count(&self) -> usize {
         self.mesh_vertices.len()
     }
 
-    /// For each index the vertex of the mesh.
+    /// Returns for each index the vertex of the mesh.
     pub(crate) fn mesh_vertices(&self) -> &[u32] {
         &self.mesh_vertices
     }
 
-    /// The index of a vertex of the mesh.
+    /// Returns the index of a vertex of the mesh.
     #[inline]
     pub(crate) fn index_of(&self, mesh_vertex: u32) -> u32 {
         self.indices[mesh_vertex as usize]
     }
 
-    /// The vertex of the mesh that has this index.
+    /// Returns the vertex of the mesh that has this index.
     pub(crate) fn mesh_vertex(&self, index: u32) -> u32 {
         self.mesh_vertices[index as usize]
     }
 
-    /// The rest position of a vertex.
+    /// Returns the rest position of a vertex.
     pub(crate) fn rest(&self, index: u32) -> DVec3 {
         self.rest[index as usize]
     }
 
-    /// The modes that move each vertex, by its index.
+    /// Returns the modes that move each vertex, by its index.
     pub(crate) fn moving_modes(&self) -> &MovingModes {
         &self.moving
     }
 
-    /// The displacements of a vertex by the modes that move it.
+    /// Returns the displacements of a vertex by the modes that move it.
     pub(crate) fn modes(&self, index: u32) -> &[DVec3] {
         &self.modes[self.moving.range(index)]
     }

@@ -10,7 +10,7 @@ use crate::{Metric, ReducedModel};
 const LEAF_TRIANGLES: usize = 8;
 
 impl Hierarchy {
-    /// Clusters the triangles of a model, modes scaled by `metric`. The same input gives the same tree on
+    /// Clusters the triangles of a model, with modes scaled by `metric`. The same input results in the same tree on
     /// every machine.
     pub fn build(model: &ReducedModel, metric: &Metric) -> Self {
         let features = cluster_features(model, metric);

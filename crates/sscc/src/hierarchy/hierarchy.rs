@@ -14,7 +14,7 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// The nodes, level by level, the root first.
+    /// Returns the nodes, level by level, the root first.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
@@ -24,12 +24,12 @@ impl Hierarchy {
         &self.order
     }
 
-    /// The triangles of a node.
+    /// Returns the triangles of a node.
     pub fn triangles(&self, node: &Node) -> &[u32] {
         &self.order[node.first_triangle as usize..][..node.triangle_count as usize]
     }
 
-    /// The vertices of a node's triangles, ascending, each once.
+    /// Returns the vertices of a node's triangles, ascending, each once.
     pub(crate) fn vertices(&self, node: &Node, faces: &[[u32; 3]]) -> Vec<u32> {
         let mut vertices: Vec<u32> = self.triangles(node).iter().flat_map(|&a| faces[a as usize]).collect();
         vertices.sort_unstable();

@@ -2,7 +2,7 @@
 //!
 //! Each node is split in half along the longest axis of its triangles' centroids, twice, so that it has up to four
 //! children. Sizes are multiples of a bucket's, so that all buckets except the last one are full. Buckets are split in the same
-//! way, and the triangles of each bucket are in the order of its packets. The construction by k-means gives stronger
+//! way, and the triangles of each bucket are in the order of its packets. The construction by k-means results in stronger
 //! certificates and takes more than ten times as long (docs/notes/queries.md#one-shot-detector).
 
 use glam::{DVec3, Vec3};

@@ -25,7 +25,7 @@ pub(crate) enum Split {
 }
 
 impl Split {
-    /// The children of the node that is split.
+    /// Returns the children of the node that is split.
     #[inline]
     pub(crate) fn children(&self) -> Range<u32> {
         match self {

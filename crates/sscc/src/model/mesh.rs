@@ -84,7 +84,7 @@ impl TriMesh {
         &self.faces
     }
 
-    /// The vertices that at least one face uses, in ascending order.
+    /// Returns the vertices that at least one face uses, in ascending order.
     pub fn used_vertices(&self) -> Vec<u32> {
         let mut used = vec![false; self.rest_positions.len()];
         for &i in self.faces.iter().flatten() {

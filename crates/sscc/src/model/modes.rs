@@ -58,7 +58,7 @@ impl Modes {
         self.displacements.len() / self.rank
     }
 
-    /// The r displacements of one vertex, mode 0 first.
+    /// Returns the r displacements of one vertex, mode 0 first.
     pub fn of_vertex(&self, vertex: u32) -> &[DVec3] {
         &self.displacements[vertex as usize * self.rank..][..self.rank]
     }

@@ -48,17 +48,17 @@ impl ReducedModel {
         Ok(Self(Arc::new(Contents { mesh, modes, metric, rest_reach, mode_reach })))
     }
 
-    /// The mesh at rest.
+    /// Returns the mesh at rest.
     pub fn mesh(&self) -> &TriMesh {
         &self.0.mesh
     }
 
-    /// The deformation modes.
+    /// Returns the deformation modes.
     pub fn modes(&self) -> &Modes {
         &self.0.modes
     }
 
-    /// The default metric.
+    /// Returns the default metric.
     pub fn metric(&self) -> &Metric {
         &self.0.metric
     }
@@ -68,7 +68,7 @@ impl ReducedModel {
         self.0.modes.rank()
     }
 
-    /// The position of a vertex at `q` (model unit): see [`deformed_position`].
+    /// Returns the position of a vertex at `q` (model unit): see [`deformed_position`].
     pub fn position(&self, vertex: u32, q: &[f64]) -> DVec3 {
         deformed_position(self.0.mesh.rest_positions()[vertex as usize], self.0.modes.of_vertex(vertex), q)
     }

@@ -38,7 +38,7 @@ impl RequiredGap {
         }
     }
 
-    /// The part that does not depend on z, for a direction of length 1.
+    /// Returns the part that does not depend on z, for a direction of length 1.
     pub(crate) fn at_rest(&self) -> f64 {
         self.at_rest
     }

@@ -1,6 +1,6 @@
 //! Directed rounding: upper bounds of norms, lower bounds of quotients and radii.
 //!
-//! IEEE 754 arithmetic rounds to nearest; a factor a few units in the last place from 1 turns the result into a bound.
+//! IEEE 754 arithmetic rounds to nearest; multiplied by a factor a few units in the last place from 1, the result is a bound.
 
 /// Rounds up a sum or product of a handful of non-negative numbers.
 pub(crate) const ROUND_UP: f64 = 1.0 + 16.0 * f64::EPSILON;

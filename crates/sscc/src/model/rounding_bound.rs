@@ -11,7 +11,7 @@
 //! - The bounds of section 5 evaluate `dir.d`, `B'dir`, scaled modes, midpoints and box corners with a few more
 //!   roundings of the same magnitudes.
 //!
-//! One gamma large enough for both serves all points of the model; Cauchy-Schwarz over k turns the sum over modes into
+//! One gamma large enough for both serves all points of the model; by Cauchy-Schwarz over k, the sum over modes is at most
 //! `|z|` times the 2-norm of a row of A.
 
 use glam::DVec3;
@@ -27,7 +27,7 @@ pub(crate) struct RoundingBound {
     per_norm: DVec3,
 }
 
-/// A gap along one direction, `at_rest + per_norm |z|`: a larger gap in exact arithmetic proves two points apart.
+/// A gap along one direction, `at_rest + per_norm |z|`: a larger gap in exact arithmetic proves two points separate.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LeastGap {
     pub(crate) at_rest: f64,
@@ -69,7 +69,7 @@ impl RoundingBound {
         Self { at_rest: (self.at_rest + moved) * times, per_norm: self.per_norm }
     }
 
-    /// The part of the bound that does not depend on z, along a direction, rounded up.
+    /// Returns the part of the bound that does not depend on z, along a direction, rounded up.
     pub(crate) fn at_rest(&self, dir: DVec3) -> f64 {
         dir.abs().dot(self.at_rest) * ROUND_UP + f64::MIN_POSITIVE
     }

@@ -3,18 +3,18 @@
 //
 // `CaughtBy("TARGET TEST")`: this test must fail with the mutation and pass without it. TARGET is `lib` for tests within
 // the crate, `it` for those in `tests/it/`.
-// `Covered("REASON")`: no test can fail, because another term is large enough; the code has the proof.
+// `Covered("REASON")`: no test can fail, because another term is large enough; a comment in the code proves it.
 
 mutants! {
-    /// Groups of triangles are forgotten: all pairs count.
+    /// Groups of triangles are ignored: all pairs count.
     GroupsForgotten: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
-    /// Between two meshes, pairs of groups are forgotten: all count.
+    /// Between two meshes groups are ignored: all pairs count.
     GroupsBetweenForgotten: CaughtBy("it groups::groups_of_several_meshes_hold_between_them");
-    /// Groups of two scenes hold between a mesh of the one and a mesh of the other.
+    /// Groups of two scenes apply between a mesh of one scene and a mesh of the other.
     GroupsOfOtherScenes: CaughtBy("it groups::groups_of_several_meshes_hold_between_them");
     /// A node has the group of its first part.
     NodeGroupOfFirstPart: CaughtBy("it groups::all_methods_list_the_pairs_that_count");
-    /// Vertices that are welded at rest are taken to be at one position always.
+    /// Vertices that are welded at rest always count as being at one position.
     WeldedVerticesStayTogether: CaughtBy("it detector::welded_vertices_can_move_apart");
     /// Two vertices of one weld class, both common by their numbers, are one common vertex.
     VertexNumbersForgotten: CaughtBy("it folded::adjacency_does_not_change_with_positions");
@@ -22,9 +22,9 @@ mutants! {
     HingesAreFlat: CaughtBy("it folded::folded_pairs_are_those_of_exact_fractions");
     /// Triangles with three common vertices have no other common point.
     DoubledFacesAreFree: CaughtBy("it folded::a_triangle_folded_onto_its_neighbour_is_found");
-    /// One common vertex whose corners are at two positions makes the points between them common.
+    /// If the corners of a common vertex are at two positions, the points between them count as common.
     EdgeOfOneVertexForgiven: CaughtBy("it detector::one_vertex_at_two_positions_is_no_edge");
-    /// A search for all that can meet in a kinetic region compares radii with |z| at its start.
+    /// The search of a kinetic region compares radii with |z| at its start.
     KineticRegionAtCenter: CaughtBy("lib query::kinetic::tests::radii_are_crossed_inside_a_region");
     /// The rounding bound of positions about a centre omits the displacement of the centre.
     RestErrorWithoutCenter: CaughtBy("it rounding::positions_about_a_centre_are_rounded_on_the_way_there");
@@ -34,7 +34,7 @@ mutants! {
     RadiusToNearest: CaughtBy("it rounding::radii_in_single_precision_are_no_larger");
     /// The rounding bound of positions under a dense metric uses |A| in place of |A||S||S^-1|.
     DenseRateOfModesAlone: CaughtBy("it rounding::dense_metrics_bound_cancellation");
-    /// Of a dense metric, products that cancel are not rounded up.
+    /// In a dense metric products that cancel are not rounded up.
     DenseProductsExact: CaughtBy("lib model::metric::norm::tests::norm_is_at_least_the_exact_one");
     /// The rounding bound of a dense metric omits the error of the inverse of its factor.
     DenseInverseExact: CaughtBy("lib model::metric::triangular::tests::growth_is_at_least_the_exact_one");
@@ -68,9 +68,9 @@ mutants! {
     SweepExact: CaughtBy("it sweep::rounding_between_two_weights_is_not_forgotten");
     /// Steps of sweeps along features omit the slack.
     FeaturesWithoutSlack: CaughtBy("lib geometry::ccd::free_until::tests::directions_along_features_leave_room_for_the_slack");
-    /// Between samples that are free nothing is swept.
+    /// There is no sweep between free samples.
     IntervalsBySamples: CaughtBy("it sweep_intervals::a_contact_at_one_weight_is_an_interval");
-    /// The end of an interval is not looked for.
+    /// The end of an interval is not searched.
     IntervalsEndWhereTheyBegin: CaughtBy("it sweep_intervals::each_plate_is_an_interval_whatever_the_samples");
     /// Only the second triangle of a pair that collides at rest has surroundings.
     SurroundingsOfOne: CaughtBy("it sweep_intervals::surroundings_are_those_of_all_triangles");
@@ -86,11 +86,11 @@ mutants! {
     TreeNodeRadiusReached: CaughtBy("it rounding::a_radius_of_nothing_proves_nothing_at_the_centre");
     /// A |z| that equals the radius of a stored pair is certified.
     TreeRadiusReached: CaughtBy("it pair_tree_traversal::norms_equal_to_a_radius_are_not_certified");
-    /// At a |z| that equals the limit of the pair tree, what is not stored is certified.
+    /// At a |z| that equals the limit of the pair tree, pairs that are not stored are certified.
     TreeLimitReached: CaughtBy("it pair_tree::absence_means_nothing_at_the_limit");
     /// Pairs that collide at the centre are not tested.
     ExceptionsForgotten: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
-    /// Of two triangles with a common vertex only one of the edges opposite to it is bounded.
+    /// For two triangles with a common vertex only one of the edges opposite to it is bounded.
     OneSimplexPairOfTwo: CaughtBy("it neighbours::shared_vertex_pairs_are_found_on_request");
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
@@ -118,7 +118,7 @@ mutants! {
     SweptCoarseNodesAtStart: CaughtBy("lib detect::bd_tree::tests::boxes_contain_the_positions_at_both_ends");
     /// The norm of a continuous query is that of its end.
     SweptNormAtStart: CaughtBy("it continuous::times_of_simple_motions");
-    /// Vertices go half as far within the radius of a capsule.
+    /// Vertices move half as far within the radius of a capsule.
     CapsuleVerticesHalfAsFar: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The radius of a moving hull omits the distance of vertices from the core points' hull.
     HullCoreExact: CaughtBy("lib query::hulls::tests::vertices_are_within_the_radius_of_their_hull");
@@ -152,17 +152,17 @@ mutants! {
     HullNormalOfAnyLength: CaughtBy("lib query::hulls::tests::gaps_are_rounded_down");
     /// Displacements are squared before they are scaled to the frame, so that squares underflow.
     HullSlackUnscaled: CaughtBy("lib query::hulls::hull_motion::tests::displacements_are_never_short_in_the_frame");
-    /// A plane separates hulls at the start of a motion alone.
+    /// A plane separates hulls only at the start of a motion.
     HullsAtStart: CaughtBy("lib query::hulls::tests::only_gaps_wider_than_the_radii_separate");
-    /// Nodes go half as far within the radius of a capsule.
+    /// Nodes move half as far within the radius of a capsule.
     CapsuleNodesHalfAsFar: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
     /// The volumes of a capsule are those of a ball around its start.
     CapsuleWithoutEnd: CaughtBy("lib query::capsule_motion::tests::vertices_stay_in_the_capsule");
-    /// A capsule contains what is near the line through its segment.
+    /// A capsule contains all z near the line through its segment.
     SegmentWithoutEnds: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
-    /// z stays in the region that a search was made for, wherever it moves.
+    /// Every z counts as being in the region of the last search.
     RegionNeverLeft: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
-    /// A motion that begins in a region ends there.
+    /// A motion that begins in a region counts as ending there.
     MotionLeavesRegion: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
     /// Motions within a region do not touch pairs that touch at rest.
     KineticExceptionsForgotten: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
@@ -182,11 +182,11 @@ mutants! {
     RefusedOuterRoundComplete: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
     /// Pairs of the outer round are free below the limit without a bound.
     OuterPairUnbounded: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
-    /// Pairs of the outer round that are searched are free below the limit.
+    /// Pairs of the outer round that were searched are free below the limit.
     OuterSearchForgotten: CaughtBy("lib certificates::tests::outer_pairs_are_bounded");
     /// A pair of buckets whose search ended at its cap is free up to the reach.
     CappedPairFreeToTheEnd: CaughtBy("it reach::radii_beyond_the_global_radius_are_sound");
-    /// The outer round never passes the global radius.
+    /// The outer round never exceeds the global radius.
     OuterRoundEndsAtGlobalRadius: CaughtBy("lib certificates::build::limit_schedule::tests::the_outer_round_passes_the_global_radius_only_from_there_and_with_room");
     /// Radii of nodes are capped at the global radius, although the pair tree reaches farther.
     RadiiCappedBelowTheTree: CaughtBy("it reach::radii_end_where_the_reach_says");
@@ -206,13 +206,13 @@ mutants! {
     LargeClassForgotten: CaughtBy("lib detect::adjacency_masks::tests::buckets_that_share_a_vertex_are_neighbours");
     /// The triangles of a packet are not tested with each other.
     PacketNotTestedAgainstItself: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
-    /// Of a second packet, the triangles that are clear of the first one are tested.
+    /// The triangles of a second packet that are disjoint from the first one are tested.
     PacketColumnsSwapped: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// Kernels for AVX2 round a product and a sum once. Only a processor with AVX2 reaches it.
     MultiplyAddFused: CaughtBy("lib vectors::tests::bits_do_not_depend_on_the_instruction_set");
     /// A motion from one q to the next stays in the region and in safe distances if its start does.
     StepOfMotionForgotten: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
-    /// A safe distance that is exactly used up still holds.
+    /// A safe distance that is used up exactly still holds.
     SafeDistanceReached: Covered("the end of a safe distance has been rounded down");
     /// Gaps of moving triangles along a direction omit their rounding bound.
     SeparationExact: CaughtBy("it impact_tolerance::what_touches_at_the_end_is_listed");
@@ -222,15 +222,15 @@ mutants! {
     FeaturesNotFollowed: CaughtBy("it impact_tolerance::thin_sheets_that_turn_together_are_free");
     /// Pairs of tiny triangles are not made larger.
     SmallPairsNotEnlarged: CaughtBy("it impact_tolerance::the_tolerance_holds_at_every_size");
-    /// Tolerances of continuous tests may be below what rounding leaves of gaps.
+    /// Tolerances of continuous tests may be smaller than the rounding of gaps.
     ToleranceBelowRounding: CaughtBy("it impact_tolerance::tolerances_below_rounding_do_not_end_the_search_early");
-    /// Where an edge crosses a face is computed with 106 bits even if the distances have lost all of them.
+    /// The point at which an edge crosses a face is computed with 106 bits even if the distances have lost all of them.
     CrossingByDoubleDoubles: CaughtBy("it intersection::determinants_that_cancel");
-    /// The depth of triangles that touch without crossing is what rounding leaves of it.
+    /// The depth of triangles that touch without crossing is a rounding error.
     TouchingDepthRounded: CaughtBy("it penetration::on_a_grid");
-    /// A kinetic motion is taken to begin at the last q, wherever it does.
+    /// Every kinetic motion counts as beginning at the last q.
     MotionStartUnchecked: CaughtBy("lib query::kinetic::tests::motions_may_begin_anywhere");
-    /// Two hulls are apart where their gap is wider than the larger radius, not than the sum of both.
+    /// Two hulls count as separate if their gap is wider than the larger radius, not than the sum of both.
     LargerHullRadius: CaughtBy("lib query::hulls::tests::hulls_are_apart_only_where_their_triangles_are");
     /// The norm of an affine map is the root of the largest entry of F'F, not of the largest row sum.
     HullStretchLargestEntry: CaughtBy("lib query::hulls::moved_hulls::tests::no_vector_is_stretched_by_more_than_the_bound");
@@ -242,9 +242,9 @@ mutants! {
     HullResidualErrorForgotten: Covered("rounding up to single precision and the error of single precision are larger");
     /// The radius of a moving hull omits the rounding of positions at the configuration of the hulls.
     HullConfigurationExact: Covered("the rounding bound at q is eight times the rounding of a position at either");
-    /// Safe distances are as long as a gap and its rate say.
+    /// Safe distances have no cap.
     SafeDistanceUncapped: Covered("the rate contains the rounding of positions that are farther away");
-    /// Of a gap that is measured at one z and used at another, one of four rounding bounds is left.
+    /// A gap that is measured at one z and used at another has one of its four rounding bounds.
     GapRoundedOnce: Covered("the roundings that the bound grants to evaluation are more than the other position's");
     /// A capsule is widened by one of five rounding bounds.
     CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
@@ -252,7 +252,7 @@ mutants! {
     SafeScaleToNearest: Covered("norms are rounded up by more");
     /// AABBs of posed shapes omit the rounding error of positions in the world.
     PosedAabbExact: CaughtBy("lib posed::posed_shape::tests::aabbs_contain_positions_that_the_world_rounds");
-    /// Coarse positions in the world are taken to be exact in axes of the model.
+    /// Coarse positions in the world count as exact in axes of the model.
     FrameMapOfExactPositions: CaughtBy("lib posed::posed_motion::tests::coarse_positions_are_within_their_error_bound");
     /// Vertices far above a plane by coarse positions alone are not below it.
     HalfSpaceExact: CaughtBy("lib posed::half_space::tests::vertices_just_below_a_plane_are_found");
@@ -278,7 +278,7 @@ mutants! {
     MaximumIgnoresNan: CaughtBy("lib model::rounding::tests::the_larger_one_of_nan_and_a_number_is_nan");
     /// Ratios of local certificates hold for each of three rows alone, not for the largest singular value.
     LocalRowsAlone: CaughtBy("lib certificates::local::strain_search::tests::singular_values_are_at_least_exact");
-    /// Images of residuals are taken as exact in single precision.
+    /// Images of residuals count as exact in single precision.
     LocalImagesUnrounded: CaughtBy("lib certificates::local::strain_search::tests::ratios_are_at_least_those_of_all_pairs");
     /// The distance of images from their mean is not rounded up.
     LocalSpreadToNearest: CaughtBy("lib certificates::local::strain_search::tests::images_are_within_the_spread_of_their_part");
@@ -288,7 +288,7 @@ mutants! {
     LocalGapOfCentroids: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
     /// Gaps of corners are not rounded down.
     LocalGapsExact: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
-    /// Pairs that collide at the centre leave a node without a proof.
+    /// A node with pairs that collide at the centre has no proof.
     LocalExceptionsKept: CaughtBy("it local_certificates::exceptions_do_not_spoil_the_root");
     /// The modes of a patch are those that move its first vertex.
     LocalModesOfOneVertex: CaughtBy("lib query::local_claims::tests::claims_hold_up_to_where_they_end");
@@ -302,7 +302,7 @@ mutants! {
     LocalHeightsExact: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
     /// The heights of a flat patch are those within its node.
     LocalHeightsOfNodeAlone: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
-    /// Ratios omit what is left of residuals where images times W differ from them.
+    /// Ratios omit the difference between residuals and images times W.
     LocalDefectForgotten: Covered("W is no worse than its floor makes it, so ratios are rounded up by more");
     /// Nodes that one search proved are proven in the next one.
     LocalProofsKept: CaughtBy("lib query::local_proofs::tests::what_one_search_allowed_is_forgotten_in_the_next");
@@ -320,7 +320,7 @@ mutants! {
     LocalRegionUnknown: CaughtBy("lib query::local_inequality::tests::regions_of_dense_metrics_have_no_proofs");
     /// Maps near their mean stretch as it does.
     LocalMotionForgotten: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
-    /// The heights of a flat patch turn with its plane, whatever the map does to them.
+    /// The heights of a flat patch rotate with its plane for any map.
     LocalPlaneTurnsAlong: CaughtBy("lib query::local_inequality::tests::flat_patches_allow_at_most_what_is_exact");
     /// The map of a flat patch has an error in the plane, but not across it.
     LocalPlaneMapExact: CaughtBy("lib query::local_inequality::tests::flat_patches_in_regions_allow_at_most_what_is_exact");
@@ -328,7 +328,7 @@ mutants! {
     LocalPositionsExact: CaughtBy("lib query::local_claims::tests::rounding_of_positions_far_away_closes_gaps");
     /// Boxes are widened by a quarter of a clearance.
     ClearanceHalved: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
-    /// Triangles nearer than a clearance are separated as if they had to touch.
+    /// Triangles nearer than a clearance are separated as if there were no clearance.
     ClearanceOfBoxesAlone: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
     /// The bound along a separating direction omits the clearance.
     DirectionWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_translations_are_the_distance_less_the_clearance");
@@ -336,7 +336,7 @@ mutants! {
     AffineWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_a_contraction_are_those_of_its_distances");
     /// The bound of two nodes omits the clearance.
     NodePairWithoutClearance: CaughtBy("lib bounds::tests::clearance::bounds_of_translations_are_the_distance_less_the_clearance");
-    /// Directions are taken for unit vectors: along a diagonal the gap of a clearance is too small.
+    /// Directions count as unit vectors: along a diagonal the gap of a clearance is too small.
     RequiredGapOfUnitDirections: CaughtBy("lib bounds::tests::clearance::clearances_are_measured_along_unit_directions");
     /// The gap of a clearance omits the error of distances at the centre.
     DistanceErrorAtRestForgotten: CaughtBy("lib model::required_gap::tests::gaps_hold_the_clearance_and_the_error_of_distances");
@@ -348,9 +348,9 @@ mutants! {
     ClearanceNotHashed: CaughtBy("it certified_clearance::another_clearance_is_refused");
     /// Certificates with a smaller clearance are used.
     SmallerClearanceUsed: CaughtBy("it certified_clearance::another_clearance_is_refused");
-    /// Certificates beyond more rings are used.
+    /// Certificates with more rings are used.
     MoreRingsUsed: CaughtBy("it certified_clearance::another_clearance_is_refused");
-    /// Certificates with a clearance prove that nothing collides.
+    /// Certificates with a clearance prove that no pair collides.
     ClearanceProvesFree: CaughtBy("it certified_clearance::certificates_with_a_clearance_prove_nothing_about_collisions");
     /// Exceptions that do not touch are not near.
     ExceptionsOfContactsAlone: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
@@ -368,9 +368,9 @@ mutants! {
     VolumeWithoutSteepError: Covered("the error of clips is at least a quarter of it, and the factor of both has room for more");
     /// A slope beyond the range of numbers is used.
     SlopeBeyondRangeKept: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
-    /// A ball around a place outside of a body is taken as inside.
+    /// A ball around a point outside of a body counts as inside.
     BallOutsideKept: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
-    /// The largest ball in a box of centres is bounded by half the way to the corners.
+    /// The largest ball in a box of centres is bounded by half the distance to the corners.
     BallBoxOfHalfSize: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
     /// The largest ball is bounded by half the distance from a triangle.
     BallCornersShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
@@ -378,15 +378,15 @@ mutants! {
     BallMeanShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
     /// Parts of a body may face inward and outward.
     PartsFaceAnyWay: CaughtBy("it body_penetration::parts_face_one_way");
-    /// With certificates triangles nearer than a clearance are separated as if they had to touch.
+    /// With certificates triangles nearer than a clearance are separated as if there were no clearance.
     SeparatedWithoutClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// Widened boxes are not rounded.
     MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
-    /// The points where two lines are nearest are found each by itself.
+    /// The nearest points of two lines are computed independently.
     LinesUnprojected: CaughtBy("lib geometry::triangle_distance::tests::distances_of_nearly_parallel_edges_are_within_their_error");
-    /// What the formula for an inside point of a needle leaves is not looked at again.
+    /// The result of the formula for an inside point of a needle is not checked.
     NeedlesOnce: CaughtBy("lib geometry::triangle_distance::tests::distances_to_the_inside_of_needles_are_within_their_error");
-    /// Whether two triangles have a point in common is left to the formulas of distances.
+    /// The formulas of distances decide whether two triangles have a point in common.
     TouchingApart: CaughtBy("lib geometry::triangle_distance::tests::distances_are_within_their_error");
     /// A ray through a corner crosses the edges on both sides.
     CrossingsAtEnds: CaughtBy("lib geometry::crossing::tests::points_below_edges_and_corners_are_counted_once");
@@ -394,17 +394,17 @@ mutants! {
     OpenIsClosed: CaughtBy("it clearance::enclosed_components_are_counted");
     /// Welded vertices are at one position.
     WeldsStayTogether: CaughtBy("it clearance::a_component_whose_welded_vertices_part_is_open");
-    /// One ring more does not count.
+    /// One further ring does not count.
     RingsOneMore: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
     /// The first pair of triangles is the nearest one.
     NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// The rounding of a position along each axis is that along any direction.
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
-    /// The rounding of factors without their affine part is left out.
+    /// The rounding of factors without their affine part is omitted.
     LocalAffineRounding: CaughtBy("lib query::affine_modes::tests::the_rest_of_factors_is_within_its_error");
-    /// What an affine map leaves of a combination of modes is left out.
+    /// The residuals of a combination of modes are omitted.
     LocalAffineResidual: CaughtBy("lib query::affine_modes::tests::residuals_of_combinations_are_within_their_bounds");
-    /// That of one of two points is left out.
+    /// The residual of one of two points is omitted.
     LocalAffineResidualOnce: CaughtBy("lib query::affine_modes::tests::residuals_of_combinations_are_within_their_bounds");
     /// The residuals of combinations are exact.
     LocalAffineFitExact: CaughtBy("lib query::affine_modes::tests::residuals_include_their_rounding");
@@ -414,17 +414,17 @@ mutants! {
     LocalAffineMapExact: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
     /// The map of the affine part is the identity.
     LocalAffineMapForgotten: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
-    /// What affine maps leave closes no gaps.
+    /// The residuals of affine maps close no gaps.
     LocalAffineLengthForgotten: CaughtBy("lib query::local_inequality::tests::ratios_without_an_affine_part_are_at_most_exact");
     /// `W f` in single precision is exact.
     LocalStrainExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
     /// F in single precision is exact.
     LocalMapExact: CaughtBy("lib query::local_inequality::tests::allowed_ratios_are_at_most_exact");
-    /// The map at each end of a motion is turned back by its own rotation.
+    /// The map at each end of a motion is multiplied by its own inverse rotation.
     LocalTurnAtEachEnd: CaughtBy("lib query::local_claims::tests::half_a_turn_is_no_proof");
-    /// Safe scales take local certificates that hold at the end of the way for the whole way.
+    /// For safe scales, local certificates that hold at the end of a line count for the whole line.
     LocalScaleOfEnd: CaughtBy("it local_certificates::safe_scales_end_where_the_way_collides");
-    /// Of two ends of a motion the one that is no number is ignored.
+    /// If one of two ends of a motion is NaN, it is ignored.
     LocalSweptNanIgnored: CaughtBy("lib query::local_inequality::tests::nan_at_either_end_is_no_proof");
     /// The closed form of an eigenvalue is a lower bound.
     LocalEigenvalueUnproven: CaughtBy("lib query::smallest_stretch::tests::eigenvalues_of_tiny_matrices_are_lower_bounds");

@@ -45,7 +45,7 @@ mod switch {
             }
 
             impl Mutant {
-                /// The mutation of that name.
+                /// Returns the mutation of that name.
                 fn from_name(name: &str) -> Option<Self> {
                     match name {
                         $(stringify!($name) => Some(Self::$name),)+
@@ -58,7 +58,7 @@ mod switch {
 
     include!("list.rs");
 
-    /// The mutation of this process, read once.
+    /// Returns the mutation of this process, which is read once.
     pub(crate) fn active() -> Option<Mutant> {
         static ACTIVE: OnceLock<Option<Mutant>> = OnceLock::new();
         *ACTIVE.get_or_init(|| {
@@ -69,7 +69,7 @@ mod switch {
         })
     }
 
-    /// Writes once to standard error that wrong code ran. (The test harness captures `eprintln!`, but not this.)
+    /// Writes once to standard error that wrong code ran. (The test harness captures `eprintln!`, but not this output.)
     pub(crate) fn reached() {
         static REACHED: Once = Once::new();
         REACHED.call_once(|| {

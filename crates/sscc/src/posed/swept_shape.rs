@@ -107,7 +107,7 @@ impl SweptShape {
         found[first..].sort_unstable();
     }
 
-    /// The corners of a triangle in the world at both ends.
+    /// Returns the corners of a triangle in the world at both ends.
     pub fn corners(&self, triangle: u32) -> [[DVec3; 3]; 2] {
         let face = self.model.mesh().faces()[triangle as usize];
         let PosedMotion { q, pose, .. } = &self.motion;

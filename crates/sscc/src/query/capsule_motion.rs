@@ -67,8 +67,8 @@ pub(crate) struct CapsuleMotion<'q> {
 }
 
 impl<'q> CapsuleMotion<'q> {
-    /// `ends`: the q at the ends of the segment. `reach`: an upper bound of the magnitude of every term of every position
-    /// in the capsule.
+    /// Creates the motion. `ends`: the q at the ends of the segment. `reach`: an upper bound of the magnitude of every term of
+    /// every position in the capsule.
     pub(crate) fn new(
         rates: &'q CapsuleRates,
         [start, end]: [&'q [f64]; 2],
@@ -207,7 +207,7 @@ mod tests {
         assert!(checked > 10_000 && farthest > 0.999 && longest > 1000, "{checked} {farthest} {longest}");
     }
 
-    /// A rolled sheet of many buckets, with smooth modes.
+    /// Returns a rolled sheet of many buckets, with smooth modes.
     fn rolled_sheet(side: u32, random: &mut Random) -> ReducedModel {
         let ways: Vec<[DVec3; 2]> = (0..5).map(|_| [random.vector(), random.vector() * 2.0]).collect();
         let positions: Vec<DVec3> = (0..side * side)

@@ -12,7 +12,7 @@ use crate::detect::broad_phase::BroadPhase;
 use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::vertex_motion::VertexMotion;
 
-/// The broad phase of a search, and what the traversal of the pair tree needs: its stack and moving hulls.
+/// The broad phase of a search, with the stack and the moving hulls of the traversal of the pair tree.
 #[derive(Clone)]
 pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) broad: BroadPhase<E>,
@@ -21,7 +21,7 @@ pub(super) struct CertifiedSearch<const E: usize> {
     pub(super) locals: Option<LocalProofs<E>>,
 }
 
-/// Which pairs a search finds.
+/// The pairs that a search finds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sought {
     /// All pairs that count.

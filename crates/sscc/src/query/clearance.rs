@@ -30,7 +30,7 @@ impl Query {
         Ok(near.pairs())
     }
 
-    /// Returns the nearest two triangles at q that count and are farther apart on the surface than `rings` rings, as
+    /// Returns the nearest two triangles at q that count and are not within `rings` rings of each other on the surface, as
     /// [`Detector::nearest`] finds them at the positions; `None` if no pair counts.
     ///
     /// # Errors

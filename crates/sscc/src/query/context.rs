@@ -180,7 +180,7 @@ mod tests {
     use crate::certificates::PairTree;
 
     #[test]
-    fn the_share_of_radii_is_reached_at_norm_at() {
+    fn norm_at_reaches_the_share_of_radii() {
         let ten: Vec<f64> = (0..10).rev().map(f64::from).collect();
         for (radii, norm) in [
             (ten, 0.0),

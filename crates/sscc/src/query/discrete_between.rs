@@ -66,7 +66,8 @@ impl Query {
     }
 }
 
-/// Whether one triangle of a pair is in one node and the other one in the other; nodes larger than a bucket have been searched alone.
+/// Whether one triangle of a pair is in one node and the other triangle in the other node. A node larger than a bucket contains all
+/// found triangles of its side.
 fn is_between(hierarchy: &Hierarchy, (n, m): NodePair, (a, b): Pair) -> bool {
     let [x, y] = [n, m].map(|n| &hierarchy.nodes()[n as usize]);
     let contains = |node: &Node, t| {

@@ -33,7 +33,7 @@ pub(super) struct LocalInequality<const E: usize> {
 #[derive(Clone, Default)]
 struct Factors {
     exact: AffineFree,
-    /// In single precision, padded with zeros.
+    /// The factors in single precision, padded with zeros.
     single: Vec<f32>,
     /// `T`, rounded up.
     sum: f64,

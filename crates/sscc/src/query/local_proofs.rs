@@ -53,9 +53,11 @@ pub(super) struct LocalProofs<const E: usize> {
     work_before: u64,
     /// Whether this search finds no more proven nodes.
     is_complete: bool,
-    /// The numbers of certificates that the search evaluated from the root down, of buckets that they proved, and of open buckets.
+    /// The number of certificates that the search evaluated from the root down.
     evaluated: usize,
+    /// The number of buckets that these certificates proved.
     proven_buckets: usize,
+    /// The number of open buckets.
     open_buckets: usize,
 }
 

@@ -9,7 +9,7 @@ use crate::certificates::{EllipsoidBlocks, FactorScales, LocalCertificates, Patc
 use crate::hierarchy::Hierarchy;
 use crate::vectors::LANES;
 
-/// No certificate.
+/// The index for a node without a certificate.
 const NONE: u32 = u32::MAX;
 
 /// Local certificates, and the positions of the numbers of each node's certificate.
@@ -103,7 +103,7 @@ impl LocalTables {
     }
 }
 
-/// Returns one of 64 bits for each node. Multiplication by an odd number gives consecutive numbers different upper bits (Knuth).
+/// Returns one of 64 bits for each node. After multiplication by an odd number, consecutive numbers have different upper bits (Knuth).
 #[inline]
 fn list_bit(node: u32) -> u64 {
     1 << (node.wrapping_mul(0x9e37_79b9) >> 26)

@@ -2,7 +2,7 @@
 
 use crate::detect::layout::Needs;
 
-/// How a query finds the colliding pairs. All methods give the same pairs.
+/// The method by which a query finds the colliding pairs. All methods find the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Certificates of nodes and node pairs cull the traversal of a BD-tree (paper, Algorithm 1): BD-tree AABBs for nodes

@@ -86,7 +86,7 @@ mod tests {
         TriMesh,
     };
 
-    /// Returns a coil of a flat band, whose turns swing against each other, and bend and widen.
+    /// Returns a coil of a flat band, whose windings swing against each other, bend and widen.
     fn coil(turns: u32, rank: usize) -> ReducedModel {
         let around = 24 * turns;
         let at = |i: u32, j: u32| {

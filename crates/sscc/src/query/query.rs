@@ -195,7 +195,7 @@ impl Query {
         Ok(self.discrete(q)?.len())
     }
 
-    /// Forgets the last answer and its cost.
+    /// Clears the last answer and its cost.
     #[inline]
     pub(super) fn forget(&mut self) {
         self.statistics = Statistics::default();

@@ -20,7 +20,7 @@ pub(super) struct RegionRates {
     pub(super) certificates: Vec<CertificateRates>,
 }
 
-/// The rates of one certificate. Infinite ones prove nothing.
+/// The rates of one certificate. A certificate with infinite rates proves nothing.
 #[derive(Clone, Copy)]
 pub(super) struct CertificateRates {
     /// The rate of F, in the Frobenius norm.

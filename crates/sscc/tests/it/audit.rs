@@ -1,4 +1,4 @@
-//! Audits find what is wrong, and nothing else, whatever certificates speak of.
+//! Audits find violations of wrong certificates of all scopes, and none of right ones.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use sscc_testing::{cases, threshold};
 use crate::common::pair_trees::{START, edited};
 use crate::common::{after, random_model, random_options};
 
-/// Honest certificates of every scope pass; the same with radii 1.5 times as large are found out wherever the honest
-/// ones are close to the truth.
+/// Right certificates of every scope have no violations. With radii 1.5 times as large violations are found wherever the
+/// right radii are tight.
 #[test]
-fn lies_of_every_scope_are_found() {
+fn wrong_radii_of_every_scope_are_found() {
     let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
     for seed in 0..cases(220) {
         let model = random_model(50_000 + seed);
@@ -34,11 +34,11 @@ fn lies_of_every_scope_are_found() {
         }
     }
     assert!(honest > threshold(150) && lies > threshold(30), "{honest} {lies}");
-    // Some collide at single points of a hyperplane only, where exact tests see nothing.
+    // Some models collide only at single points of a hyperplane, which samples do not meet.
     assert!(missed.len() * 20 <= lies, "{missed:?} of {lies}");
 }
 
-/// Exceptions that are dropped, added to what is ignored, or out of range.
+/// Exceptions are removed, added to the ignored pairs, or out of range.
 #[test]
 fn forged_exceptions_are_refused_or_found() {
     let options = CertifyOptions::default().budget(16).epsilon(0.9).threads(1);
@@ -72,10 +72,10 @@ fn forged_exceptions_are_refused_or_found() {
     assert!(found > 1, "{found}");
 }
 
-/// Radii of pairs of nodes three times as large, and trees that lack the pair of leaves that collides first; nodes and
-/// the pairs of the root's children stay honest.
+/// Radii of pairs of nodes are three times as large, or trees lack the pair of leaves that collides first; the radii of nodes and
+/// of the pairs of the root's children are right.
 #[test]
-fn lies_of_the_pair_tree_are_found() {
+fn wrong_pair_trees_are_found() {
     let (mut lies, mut missed) = ([0; 2], [Vec::new(), Vec::new()]);
     for seed in 0..cases(150) {
         let model = random_model(60_000 + seed);
@@ -85,7 +85,7 @@ fn lies_of_the_pair_tree_are_found() {
         let tree = &certificates.parts().pair_tree;
         let of_leaves = tree.entries().enumerate().filter(|(_, (_, link))| link & START == 0);
         let Some((first, (least, _))) = of_leaves.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { continue };
-        // Where the radius may be far from the truth a lie may be none.
+        // If the radius is not tight, three times the radius may be right.
         let report = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(report.violations, Vec::<String>::new(), "model {seed}");
         if least <= 0.0 || report.root_tightness.is_none_or(|tightness| tightness < 0.75) {
@@ -109,7 +109,7 @@ fn lies_of_the_pair_tree_are_found() {
     }
 }
 
-/// A tree that claims everything, in a model whose nodes claim nothing beyond the truth.
+/// The tree certifies all pairs up to its limit, in a model whose nodes have right radii.
 #[test]
 fn an_empty_tree_that_claims_too_much_is_found() {
     let (mut lies, mut found) = (0, 0);
@@ -125,7 +125,7 @@ fn an_empty_tree_that_claims_too_much_is_found() {
         let pair_tree = PairTree::from_parts(2.0 * parts.global_radius, starts, []);
         let forged = Certificates::try_from(CertificateParts { pair_tree, ..parts.clone() }).unwrap();
         let asked = AuditOptions::default().samples(200).threads(1);
-        // Where radii may be far from the truth a lie may be none.
+        // If radii are not tight, the wrong tree may be right.
         let honest = audit(&model, &certificates, &asked, &()).unwrap();
         assert_eq!(honest.violations, Vec::<String>::new(), "model {seed}");
         if honest.root_tightness.is_none_or(|tightness| tightness < 0.5) {

@@ -1,4 +1,4 @@
-//! Batches against single queries: the same answers and the same statistics, however many q are searched together.
+//! Batches have the same answers and the same statistics as single queries, for any number of q.
 
 use glam::DVec3;
 use sscc::{Answer, Certificates, Error, Method, Modes, Query, ReducedModel, TriMesh};
@@ -9,7 +9,7 @@ use crate::common::{Random, at, random_model, random_options, winding_strip};
 const METHODS: [Method; 5] =
     [Method::Certified, Method::BdTree, Method::Traditional, Method::NormalCones, Method::BruteForce];
 
-/// A sheet of many buckets, rolled up, whose vertices all move by random amounts. `unit`: its size.
+/// Returns a rolled-up sheet of many buckets, whose vertices all move by random amounts. `unit`: its size.
 fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
     let side = 20 + random.below(6) as u32;
     let positions: Vec<DVec3> = (0..side * side)
@@ -37,7 +37,7 @@ fn sheet(random: &mut Random, rank: usize, unit: f64) -> ReducedModel {
     ReducedModel::new(mesh, Modes::new(rank, rows).unwrap()).unwrap()
 }
 
-/// The answers of single queries; `None` for a q that is refused.
+/// Returns the answers of single queries; `None` for a q that is refused.
 fn one_by_one(query: &mut Query, batch: &[Vec<f64>], limit: usize) -> Vec<Option<Answer>> {
     let answer = |q: &Vec<f64>| {
         let pairs = query.discrete_at_most(q, limit).ok()?.to_vec();
@@ -46,7 +46,8 @@ fn one_by_one(query: &mut Query, batch: &[Vec<f64>], limit: usize) -> Vec<Option
     batch.iter().map(answer).collect()
 }
 
-/// Compares batches with single queries. Returns how many answers list pairs, are free, and are certified by the root.
+/// Compares batches with single queries. Returns the numbers of answers with pairs, of free ones, and of those that the root
+/// certifies.
 fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random: &mut Random) -> [usize; 3] {
     let scope = &certificates.parts().scope;
     let root = certificates.root_radius();
@@ -65,7 +66,7 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
         .filter(|q| model.check_coordinates(q).is_ok())
         .collect();
     let mut counts = [0; 3];
-    // Of large models the two methods that compute boxes where they visit nodes.
+    // Large models are tested with the two methods that compute boxes when they visit nodes.
     let methods = if model.mesh().faces().len() < 300 { &METHODS[..] } else { &METHODS[..2] };
     for &method in methods {
         let mut query = Query::with_method(model, certificates, method).unwrap();
@@ -81,7 +82,7 @@ fn compare(name: &str, certificates: &Certificates, model: &ReducedModel, random
                 let found = query.batch_at_most(&batch, limit, threads, &()).unwrap();
                 assert_eq!(found, expected, "{name}, {method:?}, limit {limit}, threads {threads:?}");
             }
-            // In two parts the groups are other ones.
+            // In two parts the batch is divided into other groups.
             let (first, second) = batch.split_at(random.below(batch.len() + 1));
             let parts = [first, second].map(|part| query.batch_at_most(part, limit, Some(1), &()).unwrap());
             assert_eq!(parts.concat(), expected, "{name}, {method:?}, {} and the rest", first.len());
@@ -97,7 +98,7 @@ fn answers_are_those_of_single_queries() {
     for seed in 0..seeds {
         let random = &mut Random::new(seed + 9_000_000);
         let model = match seed % 3 {
-            // Positions in units in which coarse ones are not available, too.
+            // Some models have units in which coarse positions are not available.
             0 => {
                 let unit = [1.0, 1e-12, 1e-200, 1e50][seed as usize / 3 % 4];
                 sheet(random, [1, 3, 30][seed as usize / 3 % 3], unit)

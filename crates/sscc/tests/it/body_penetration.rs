@@ -1,4 +1,4 @@
-//! The volume that two bodies share and the largest ball in both, against known values.
+//! Compares the volume that two bodies share and the largest ball in both with known values.
 
 use glam::{DMat3, DQuat, DVec3};
 use sscc::parts::{BodyPenetration, body_penetration};
@@ -6,7 +6,7 @@ use sscc::{CancelToken, Detector, Error, TriMesh};
 
 use crate::common::Random;
 
-/// A box of 12 triangles.
+/// Returns a box of 12 triangles.
 fn cuboid(lower: DVec3, upper: DVec3) -> TriMesh {
     let corner = |k: usize| {
         DVec3::from_array([0, 1, 2].map(|axis| if k >> axis & 1 == 1 { upper[axis] } else { lower[axis] }))
@@ -16,7 +16,7 @@ fn cuboid(lower: DVec3, upper: DVec3) -> TriMesh {
     TriMesh::new((0..8).map(corner).collect(), faces).unwrap()
 }
 
-/// A ball: an octahedron, subdivided.
+/// Returns a ball: a subdivided octahedron.
 fn ball(center: DVec3, radius: f64, subdivisions: u32) -> TriMesh {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     let mut faces = Vec::new();
@@ -30,7 +30,7 @@ fn ball(center: DVec3, radius: f64, subdivisions: u32) -> TriMesh {
         };
         faces = faces.into_iter().flat_map(split).collect();
     }
-    // Corners of equal bits are one.
+    // Merges corners with equal bits.
     let mut positions: Vec<DVec3> = Vec::new();
     let mut number = |p: DVec3| match positions.iter().position(|known| *known == p) {
         Some(known) => known as u32,
@@ -57,7 +57,7 @@ fn penetration(a: &TriMesh, b: &TriMesh) -> BodyPenetration {
     found
 }
 
-/// Checks volume and depth within the stated errors, and that these are small.
+/// Checks that volume and depth are within the stated errors, and that these errors are small.
 fn check(a: &TriMesh, b: &TriMesh, volume: f64, depth: f64) {
     let found = penetration(a, b);
     assert!((found.volume - volume).abs() <= found.volume_error, "{volume}: {found:?}");
@@ -70,31 +70,31 @@ fn check(a: &TriMesh, b: &TriMesh, volume: f64, depth: f64) {
 }
 
 #[test]
-fn boxes_share_boxes() {
+fn penetrations_of_boxes_are_exact() {
     let unit = cuboid(DVec3::ZERO, DVec3::ONE);
     let at = |x: f64, y: f64, z: f64| cuboid(DVec3::new(x, y, z), DVec3::new(x + 1.0, y + 1.0, z + 1.0));
     check(&unit, &at(0.75, 0.0, 0.0), 0.25, 0.25);
     check(&unit, &at(0.5, 0.25, -0.125), 0.5 * 0.75 * 0.875, 0.5);
     check(&unit, &at(0.0, 0.0, 0.9), 0.1, 0.1);
     check(&unit, &unit, 1.0, 1.0);
-    // Touching, and apart.
+    // Boxes that touch, and separate ones.
     for other in
         [at(1.0, 0.0, 0.0), at(0.0, 0.0, 1.0), at(1.0, 1.0, 1.0), at(2.0, 0.0, 0.0), at(0.0, 0.0, -3.0)]
     {
         check(&unit, &other, 0.0, 0.0);
     }
-    // One inside the other; a cross, whose edges alone cross.
+    // One box inside the other, and two crossed boxes, no vertex of which is in the other.
     check(&unit, &cuboid(DVec3::splat(0.25), DVec3::splat(0.5)), 0.25_f64.powi(3), 0.25);
     let bars = [DVec3::new(4.0, 0.5, 0.5), DVec3::new(0.5, 4.0, 0.5)].map(|half| cuboid(-half, half));
     check(&bars[0], &bars[1], 1.0, 1.0);
-    // A hole: the outer box with an inner one that faces inward.
+    // A hollow body: the outer box with an inner one that faces inward.
     let (outer, inner) = (cuboid(DVec3::ZERO, DVec3::splat(4.0)), cuboid(DVec3::ONE, DVec3::splat(3.0)));
     let positions = [outer.rest_positions(), inner.rest_positions()].concat();
     let turned = inner.faces().iter().map(|[a, b, c]| [a + 8, c + 8, b + 8]);
     let hollow = TriMesh::new(positions, outer.faces().iter().copied().chain(turned).collect()).unwrap();
     check(&hollow, &cuboid(DVec3::splat(1.5), DVec3::splat(2.5)), 0.0, 0.0);
     check(&hollow, &cuboid(DVec3::new(1.5, 1.5, 2.5), DVec3::new(2.5, 2.5, 3.5)), 0.5, 0.5);
-    // Faced inward as a whole.
+    // A mesh that faces inward as a whole.
     let inward = TriMesh::new(
         unit.rest_positions().to_vec(),
         unit.faces().iter().map(|[a, b, c]| [*a, *c, *b]).collect(),
@@ -102,9 +102,9 @@ fn boxes_share_boxes() {
     check(&inward.unwrap(), &at(0.75, 0.0, 0.0), 0.25, 0.25);
 }
 
-/// Turned and moved, volumes and depths stay.
+/// Rotations and translations do not change volumes and depths.
 #[test]
-fn turned_bodies_share_as_much() {
+fn rotated_bodies_have_the_same_penetration() {
     let mut random = Random::new(7);
     let (a, b) =
         (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::new(0.5, 0.25, 0.75), DVec3::new(1.5, 1.25, 1.75)));
@@ -120,7 +120,7 @@ fn turned_bodies_share_as_much() {
             .unwrap()
         };
         let found = penetration(&moved(&a), &moved(&b));
-        // Corners are moved by rounding of 100.
+        // Coordinates of about 100 are rounded.
         assert!((found.volume - 0.5 * 0.75 * 0.25).abs() < found.volume_error + 1e-12, "{found:?}");
         assert!(found.volume_error < 1e-10, "{found:?}");
         assert!((found.depth - 0.25).abs() < 3e-4, "{found:?}");
@@ -129,7 +129,7 @@ fn turned_bodies_share_as_much() {
 
 #[test]
 fn tetrahedra_and_balls() {
-    // A tetrahedron and itself mirrored in a point: an octahedron of half its volume.
+    // A tetrahedron and its mirror image in a point share an octahedron of half its volume.
     let corners =
         [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]].map(DVec3::from_array);
     let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
@@ -138,7 +138,7 @@ fn tetrahedra_and_balls() {
         TriMesh::new(corners.map(|p| -p).to_vec(), faces.iter().map(|[a, b, c]| [*a, *c, *b]).collect())
             .unwrap();
     check(&tet, &mirrored, 4.0 / 3.0, 2.0 / 3.0_f64.sqrt());
-    // Balls of many triangles: the lens of two, within the error of the polyhedra.
+    // Two balls of many triangles share a lens, within the error of the polyhedra.
     let (a, b) = (ball(DVec3::ZERO, 1.0, 4), ball(DVec3::X * 1.5, 1.0, 4));
     let found = penetration(&a, &b);
     // Two caps of height 1/4.
@@ -161,8 +161,8 @@ fn tetrahedra_and_balls() {
     assert!((whole.volume - volume(&a)).abs() <= whole.volume_error + 1e-12, "{whole:?}");
 }
 
-/// Would fail if one direction were that of the whole mesh: the inverted part would take volume away.
-/// The radius of the largest ball within half-spaces `n . x <= offset` (unit normals), by trial of each four planes that it may touch.
+/// Returns the radius of the largest ball within half-spaces `n . x <= offset` (unit normals), by trial of each four planes that it may
+/// touch.
 fn largest_ball(planes: &[(DVec3, f64)]) -> f64 {
     let count = planes.len();
     let mut largest = 0.0_f64;
@@ -171,7 +171,7 @@ fn largest_ball(planes: &[(DVec3, f64)]) -> f64 {
             for c in 0..b {
                 for d in 0..c {
                     let [(n_a, h_a), rest @ ..] = [a, b, c, d].map(|k| planes[k]);
-                    // n . x + r = h for all four; their differences have no r.
+                    // n . x + r = h for all four planes; r cancels in their differences.
                     let rows = rest.map(|(n, h)| (n - n_a, h - h_a));
                     let matrix = DMat3::from_cols(rows[0].0, rows[1].0, rows[2].0).transpose();
                     if matrix.determinant().abs() < 1e-9 {
@@ -218,6 +218,7 @@ fn the_largest_ball_is_that_of_all_planes() {
     assert!(shared > 15, "{shared}");
 }
 
+/// An inverted part would reduce the volume, so all parts must have the same orientation.
 #[test]
 fn parts_face_one_way() {
     let inverted =

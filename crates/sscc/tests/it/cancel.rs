@@ -1,4 +1,4 @@
-//! Single queries stop soon when they are cancelled, wherever they are, and are whole afterwards.
+//! Single queries stop soon when they are cancelled, at any point, and can be used afterwards.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,7 +11,7 @@ use sscc::{
 
 use crate::common::Random;
 
-/// Counts how often its token is asked, which is cancelled when it has been asked so many times.
+/// Counts the checks of its token, which cancels after a number of checks.
 #[derive(Clone)]
 struct After(Arc<Looks>);
 
@@ -32,7 +32,7 @@ impl After {
         })
     }
 
-    /// From now on so many looks are answered by "go on".
+    /// Resets the count, and lets the next `most` checks pass.
     fn allow(&self, most: usize) {
         self.0.looks.store(0, Ordering::Relaxed);
         self.0.most.store(most, Ordering::Relaxed);
@@ -43,7 +43,7 @@ impl After {
     }
 }
 
-/// A strip with two modes: at (1, 0) all of it is in one point, at (0, 1) it is crumpled.
+/// Returns a strip with two modes: at (1, 0) all of it is in one point, at (0, 1) it is crumpled.
 fn strip(triangles: u32) -> ReducedModel {
     let random = &mut Random::new(3);
     let p: Vec<DVec3> =
@@ -53,9 +53,9 @@ fn strip(triangles: u32) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-/// Between two looks, no query tests more than 64 pairs of triangles, or one row of all.
+/// Between two checks, no query tests more than 64 pairs of triangles; brute force tests one row of all pairs.
 #[test]
-fn queries_look_between_few_triangles() {
+fn queries_check_the_token_after_few_triangle_tests() {
     let model = strip(120);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
@@ -84,7 +84,7 @@ fn queries_look_between_few_triangles() {
     }
 }
 
-/// A batch also cancels the query at hand.
+/// The token of a batch also cancels the current query.
 #[test]
 fn batches_are_cancelled_within_a_query() {
     let model = strip(120);
@@ -94,9 +94,9 @@ fn batches_are_cancelled_within_a_query() {
     assert_eq!(query.batch(&[[1.0, 0.0]], Some(1), &after.token()), Err(Error::Cancelled));
 }
 
-/// Wherever a kinetic query is cancelled, in a search or in a step, its next answers are right.
+/// After a kinetic query is cancelled at any point, in a search or in a step, its next answers are right.
 #[test]
-fn cancelled_kinetic_queries_are_whole() {
+fn kinetic_queries_are_right_after_a_cancelled_answer() {
     let model = strip(400);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let after = After::new();

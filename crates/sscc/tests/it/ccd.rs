@@ -1,4 +1,4 @@
-//! Continuous tests against published queries with exact answers, and how many of the answers are "yes" too often.
+//! Compares continuous tests with published queries with exact answers, and counts false positives.
 #![allow(clippy::print_stdout)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,13 +10,13 @@ use sscc::parts::{impact_edge_edge, impact_vertex_face};
 use sscc::{Detector, Impact, MovingTriangle, Pair, TriMesh, impact_triangle_triangle};
 use sscc_testing::{distance, first_contact, models};
 
-/// Shares of the size of the two.
+/// Tolerances, as shares of the size of the two triangles.
 const TOLERANCES: [f64; 5] = [1e-3, 1e-6, 1e-9, 1e-12, 0.0];
 
 /// Eight points, four at time 0, then the same four at time 1: a vertex and a face's corners, or two edges.
 type Corners = [DVec3; 8];
 
-/// What the four points are.
+/// The kind of the four points.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     VertexFace,
@@ -43,7 +43,7 @@ impl Kind {
     }
 }
 
-/// A fraction as a double: exactly, or not at all. Denominators are powers of two of up to 112 bits.
+/// Converts a fraction to the equal double; panics if there is none. Denominators are powers of two of up to 112 bits.
 fn exact(numerator: &str, denominator: &str) -> f64 {
     let (n, d): (i128, u128) = (numerator.parse().unwrap(), denominator.parse().unwrap());
     assert!(d.is_power_of_two(), "{denominator}: not a power of two");
@@ -130,13 +130,13 @@ fn no_published_query_is_missed() {
     }
     assert_eq!(sum.queries, 1824);
     println!("all: {:?}", sum.false_positives);
-    // All of them of a cube on a cliff, of size 1, and at the time reported less than 5e-14 apart.
+    // All these false positives are of a cube on a cliff, of size 1; at the reported time the distance is less than 5e-14.
     assert!(sum.false_positives[3] <= 185, "at {}: {:?}", TOLERANCES[3], sum.false_positives);
 }
 
 /// Two frames of a cloth, and pairs of their edges, vertices and faces.
 struct Frames {
-    /// For both ends.
+    /// The positions at both ends.
     vertices: [Vec<DVec3>; 2],
     edges: Vec<[usize; 2]>,
     faces: Vec<[usize; 3]>,
@@ -146,7 +146,7 @@ impl Frames {
     fn read(folder: &Path) -> Self {
         let [(start, faces), (end, same)] = ["227.ply", "228.ply"].map(|name| read_ply(&folder.join(name)));
         assert_eq!(faces, same);
-        // Unique vertex pairs (lesser, greater), by the greater, then the lesser.
+        // Unique vertex pairs (smaller, greater), ordered by the greater vertex, then the smaller one.
         let mut edges: Vec<[usize; 2]> = faces
             .iter()
             .flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]])
@@ -158,7 +158,7 @@ impl Frames {
         Self { vertices: [start, end], edges, faces }
     }
 
-    /// The corners of a pair by the numbers of its elements: vertices first, then edges, then faces.
+    /// Returns the corners of a pair of elements, whose numbers count vertices first, then edges, then faces.
     fn corners(&self, kind: Kind, [a, b]: [usize; 2]) -> Corners {
         let edges = self.vertices[0].len();
         let faces = edges + self.edges.len();
@@ -169,13 +169,13 @@ impl Frames {
         std::array::from_fn(|i| self.vertices[i / 4][four[i % 4]])
     }
 
-    /// The triangle of that number.
+    /// Returns the triangle of that number.
     fn triangle(&self, number: u32) -> MovingTriangle {
         let corners = |end: usize| self.faces[number as usize].map(|v| self.vertices[end][v]);
         MovingTriangle { t0: corners(0), t1: corners(1) }
     }
 
-    /// All pairs of triangles without a common vertex of which one has the first element and the other the second.
+    /// Returns all pairs of triangles without a common vertex of which one contains the first element and the other the second.
     fn triangles_around(&self, [a, b]: [usize; 2]) -> Vec<Pair> {
         let edges = self.vertices[0].len();
         let faces = edges + self.edges.len();
@@ -195,7 +195,7 @@ impl Frames {
     }
 }
 
-/// Binary little-endian, double positions, triangles, nothing else: the format of these two files.
+/// Reads the format of these two files: binary little-endian, with positions as doubles and triangles only.
 fn read_ply(path: &Path) -> (Vec<DVec3>, Vec<[usize; 3]>) {
     let bytes = std::fs::read(path).unwrap();
     let end = b"end_header\n";
@@ -214,7 +214,7 @@ fn read_ply(path: &Path) -> (Vec<DVec3>, Vec<[usize; 3]>) {
     (vertices.chunks(24).map(vertex).collect(), faces.chunks(13).map(face).collect())
 }
 
-/// The pairs of a `*_boxes.json`, with the answers of the matching `*_mma_bool.json`.
+/// Returns the pairs of a `*_boxes.json`, with the answers of the matching `*_mma_bool.json`.
 fn read_pairs(folder: &Path, kind: &str) -> Vec<([usize; 2], bool)> {
     let words = |name: String| -> Vec<String> {
         let text = std::fs::read_to_string(folder.join(name)).unwrap();
@@ -244,8 +244,8 @@ fn no_pair_of_the_cloth_is_missed() {
     }
 }
 
-/// Every colliding query has its triangles in the detector's list, and all times of the list are right: never late, and
-/// within the tolerance.
+/// The detector lists the triangles of every colliding query, and all its times are right: never late, and within the
+/// tolerance.
 #[test]
 fn the_detector_lists_every_contact_of_the_cloth() {
     let Some(folder) = models("the_detector_lists_every_contact_of_the_cloth") else { return };
@@ -262,7 +262,7 @@ fn the_detector_lists_every_contact_of_the_cloth() {
         for (elements, _) in read_pairs(&folder, name).into_iter().filter(|(_, collides)| *collides) {
             queries += 1;
             for pair in frames.triangles_around(elements) {
-                // That its time is not late is compared with exact times below.
+                // Exact times are compared below.
                 assert!(times.contains_key(&pair), "{name} {elements:?}: {pair:?} is missing");
                 known.insert(pair);
             }
@@ -278,7 +278,7 @@ fn the_detector_lists_every_contact_of_the_cloth() {
         assert!(apart <= size(&x, &y) * (Impact::TOLERANCE + 1e-15), "{i} {j}: {apart} at {time}");
         if time > 0.0 {
             moving += 1;
-            // Slow in exact arithmetic: every eighth pair, and those of the queries.
+            // Exact arithmetic is slow, so it is used for every eighth pair, and for those of the queries.
             if moving % 8 == 0 || known.contains(&(i, j)) {
                 let contact = first_contact(&x, &y).map(|contact| contact.upper().to_f64().unwrap());
                 assert!(
@@ -292,7 +292,7 @@ fn the_detector_lists_every_contact_of_the_cloth() {
     assert!(times.len() > 261 && moving > 50, "{} {moving}", times.len());
 }
 
-/// The unit of tolerances: the largest difference of a corner from the first one of x, in any coordinate.
+/// Returns the unit of tolerances: the largest difference of a corner from the first one of x, in any coordinate.
 fn size(x: &MovingTriangle, y: &MovingTriangle) -> f64 {
     let ends = [[x.t0, y.t0], [x.t1, y.t1]];
     let differences = ends.iter().flat_map(|end| end.as_flattened().iter().map(|p| *p - end[0][0]));

@@ -14,9 +14,9 @@ use crate::common::{
     Random, RandomOptions, after, are_adjacent, at, critical_z, random_choices, random_model, random_options,
 };
 
-/// `U / S` vanishes (1e-360), but U moves: nothing may be promised for ever.
+/// `U / S` vanishes (1e-360), but U is not 0: no radius may be infinite.
 #[test]
-fn scaled_modes_that_vanish_promise_nothing() {
+fn scaled_modes_that_underflow_are_refused() {
     let size = 1e-50;
     let flat = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * size);
     let above = [DVec3::new(0.2, 0.2, 1e-4), DVec3::new(0.4, 0.2, 1e-4), DVec3::new(0.2, 0.4, 1e-4)]
@@ -33,7 +33,7 @@ fn scaled_modes_that_vanish_promise_nothing() {
     assert!(matches!(Certificates::compute(&model, &options, &()), Err(Error::MetricRange { .. })));
 }
 
-/// Certificates with the default epsilon, or with a loose one where that takes too long.
+/// Computes certificates with the default epsilon, or with a loose one if that takes too long.
 fn certify(model: &ReducedModel, options: &CertifyOptions) -> Option<Certificates> {
     let options = |epsilon| options.clone().epsilon(epsilon).threads(1);
     Certificates::compute(model, &options(0.1), &after(401))
@@ -42,7 +42,8 @@ fn certify(model: &ReducedModel, options: &CertifyOptions) -> Option<Certificate
         .ok()
 }
 
-/// Every second model has a pair tree: growing it takes its time where pairs need many subdivisions.
+/// Returns the budget of the pair tree: only every second model has one, because its computation is slow if pairs need many
+/// subdivisions.
 fn budget(seed: u64) -> usize {
     if seed.is_multiple_of(2) { 0 } else { 16 }
 }
@@ -62,7 +63,7 @@ static MIDDLING: LazyLock<(ReducedModel, Certificates)> = LazyLock::new(|| {
         .unwrap()
 });
 
-/// At how many of 50 random q up to far beyond the root's radius the model collides.
+/// Returns the number of colliding ones among 50 random q up to far beyond the root's radius.
 fn collisions(model: &ReducedModel, certificates: &Certificates) -> usize {
     let mut query = Query::with_method(model, certificates, Method::Traditional).unwrap();
     random_q(certificates).iter().filter(|q| query.first(q).is_ok_and(|pair| pair.is_some())).count()
@@ -82,8 +83,8 @@ fn random_q(certificates: &Certificates) -> Vec<Vec<f64>> {
 const PROVEN: u64 = 1110;
 const COMPARED: u64 = 1250;
 
-/// The q in the direction of z whose norm lies as close below the radius as products allow; none where there is no
-/// room.
+/// Returns the q in the direction of z whose norm is as close below the radius as rounding allows; `None` if there is no
+/// such q.
 fn just_inside(scope: &Scope, z: &[f64], radius: f64) -> Option<Vec<f64>> {
     let norm = length(z);
     if norm.is_nan() || norm <= 0.0 || norm.is_infinite() {
@@ -123,7 +124,7 @@ fn certified_implies_free() {
         let mut oracle = Query::without_certificates(&model, scope.clone(), Method::BruteForce).unwrap();
         let hierarchy = &certificates.parts().hierarchy;
         let nodes = hierarchy.nodes();
-        // Sets of pairs (a node with itself, or two nodes) and their radii.
+        // Pairs of nodes (a node with itself, or two nodes) and their radii.
         let mut claims: Vec<(usize, usize, f64)> =
             parts.node_radii.iter().enumerate().map(|(n, r)| (n, n, *r)).collect();
         let mut next = parts.root_pair_radii.iter();
@@ -184,7 +185,7 @@ fn count_scope(scope: &Scope, model: &ReducedModel, counts: &mut [u32; 6]) {
     counts.iter_mut().zip(kinds).for_each(|(count, is)| *count += u32::from(is));
 }
 
-/// Every method under every kind of rule, one-vertex neighbours and welds included, against brute force.
+/// Compares every method with every kind of contact filter, including one-vertex neighbours and welds, with brute force.
 #[test]
 fn all_methods_find_the_same_pairs() {
     let (mut skipped, mut included, mut neighbours, mut partial) = (0, 0, 0, 0);
@@ -269,7 +270,7 @@ fn all_methods_find_the_same_pairs() {
     );
 }
 
-/// Certificates whose hierarchy is over fewer triangles than the model has must be refused somewhere.
+/// Certificates whose hierarchy has fewer triangles than the model must be refused.
 #[test]
 fn hierarchy_of_another_size_is_refused() {
     let (model, certificates) = &*MIDDLING;
@@ -306,7 +307,7 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
-/// A flat triangle at height `z`, moved up and down by the modes, over or under a resting sheet.
+/// Returns a flat triangle at height `z`, moved up and down by the modes, over or under a resting sheet.
 fn sheet_and_triangle(sheet: f64, z: f64, modes: &[f64]) -> ReducedModel {
     let at = |[x, y]: [f64; 2], z: f64| DVec3::new(x, y, z);
     let p = [[0.0, 0.0], [0.25, 0.0], [0.0, 0.25]].map(|xy| at(xy, z));
@@ -317,7 +318,7 @@ fn sheet_and_triangle(sheet: f64, z: f64, modes: &[f64]) -> ReducedModel {
     ReducedModel::new(mesh, modes).unwrap()
 }
 
-/// The answer is that of `x = p; x += U_k q_k` in the order of k, and of no other sum.
+/// The answer is that of the sum `x = p; x += U_k q_k` in the order of k, and of no other order.
 #[test]
 fn answers_follow_the_order_of_the_sum() {
     let ulp = f64::EPSILON;
@@ -338,12 +339,12 @@ fn answers_follow_the_order_of_the_sum() {
     assert_eq!(1.0 + (half + half), 1.0 + ulp);
     check(&sheet_and_triangle(1.0 + ulp, 1.0, &[1.0, 1.0]), &[half, half], false);
     check(&sheet_and_triangle(1.0 + ulp, 1.0, &[1.0]), &[ulp], true);
-    // Down to the sheet first, then up by too little; the other way round it ends above the sheet.
+    // The first mode moves down to the sheet, the second one up by too little; in the opposite order the triangle ends above it.
     assert_eq!(((1.0 + ulp) - ulp) + half, 1.0);
     assert_eq!(((1.0 + ulp) + half) - ulp, 1.0 + ulp);
     check(&sheet_and_triangle(1.0, 1.0 + ulp, &[1.0, 1.0]), &[-ulp, half], true);
     check(&sheet_and_triangle(1.0, 1.0 + ulp, &[1.0, 1.0]), &[half, -ulp], false);
-    // A fused multiply-add would see that the product is a little more than half.
+    // With a fused multiply-add the product would be a little more than half.
     let (u, q) = (1.0 + ulp, (1.0 - half) * half);
     assert_eq!(1.0 + u * q, 1.0);
     assert_eq!(u.mul_add(q, 1.0), 1.0 + ulp);
@@ -351,7 +352,7 @@ fn answers_follow_the_order_of_the_sum() {
 }
 
 #[test]
-fn one_bit_makes_another_model() {
+fn certificates_of_a_model_that_differs_in_one_bit_are_refused() {
     let (model, certificates) = &*MIDDLING;
     assert!(Query::new(model, certificates).is_ok());
     let (mesh, modes) = (model.mesh(), model.modes());
@@ -447,7 +448,7 @@ fn damaged_parts_are_refused() {
     }
 }
 
-/// A tree of one leaf, as a file could hold it: accepted while small, and answered like any other; refused beyond.
+/// A tree of one leaf, as a file may contain it: accepted up to 64 triangles, with the same answers; refused beyond.
 #[test]
 fn one_leaf_is_a_tree() {
     let (model, certificates) = &*MIDDLING;

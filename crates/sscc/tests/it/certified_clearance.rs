@@ -1,4 +1,4 @@
-//! Certificates with a clearance: radii against exact distances, answers against all pairs of triangles.
+//! Certificates with a clearance: radii are compared with exact distances, answers with all pairs of triangles.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use sscc_testing::{cases, squared_distance};
 
 use crate::common::{Random, after, at, critical_z, random_choices, random_model, winding_strip};
 
-/// The largest extent of the shape at the centre.
+/// Returns the largest extent of the shape at the centre.
 fn size(model: &ReducedModel, center: &[f64]) -> f64 {
     let positions = model.positions(center).unwrap();
     let used = model.mesh().faces().as_flattened().iter().map(|v| positions[*v as usize]);
@@ -22,18 +22,18 @@ fn size(model: &ReducedModel, center: &[f64]) -> f64 {
     (upper - lower).max_element()
 }
 
-/// The model number `seed`: of few triangles of every kind, or of several buckets.
+/// Returns the model number `seed`: of few triangles of any kind, or of several buckets.
 fn numbered_model(seed: u64) -> ReducedModel {
     if seed.is_multiple_of(3) { winding_strip(&mut Random::new(seed), seed) } else { random_model(seed) }
 }
 
-/// A clearance, tiny or large, and rings.
+/// Returns a tiny or large clearance, with rings.
 fn random_clearance(random: &mut Random, size: f64) -> Option<Clearance> {
     let clearance = Clearance::new(size * random.power(-6.0, -0.3)).ok()?;
     Some(clearance.beyond_rings([1, 1, 2, 3, 5][random.below(5)]))
 }
 
-/// Certificates with a clearance, or none where they take too long.
+/// Computes certificates with a clearance; `None` if that takes too long.
 fn certify(model: &ReducedModel, options: &CertifyOptions, clearance: Clearance) -> Option<Certificates> {
     let options = |epsilon| options.clone().epsilon(epsilon).clearance(clearance).threads(1);
     [0.1, 0.9, 0.999]
@@ -41,7 +41,7 @@ fn certify(model: &ReducedModel, options: &CertifyOptions, clearance: Clearance)
         .find_map(|epsilon| Certificates::compute(model, &options(epsilon), &after(401)).ok())
 }
 
-/// For each two triangles whether they are within so many rings of each other, by steps over common vertices.
+/// Returns for each two triangles whether they are within `rings` rings of each other, by steps over common vertices.
 fn within_rings(model: &ReducedModel, scope: &Scope, rings: u32) -> Vec<Vec<bool>> {
     let (faces, rest) = (model.mesh().faces(), model.mesh().rest_positions());
     let is_same = |v: u32, w: u32| {
@@ -67,7 +67,7 @@ fn within_rings(model: &ReducedModel, scope: &Scope, rings: u32) -> Vec<Vec<bool
         .collect()
 }
 
-/// All pairs that count for a clearance, whatever their distance.
+/// Returns all pairs that count for a clearance, at any distance.
 fn counted_pairs(model: &ReducedModel, scope: &Scope, rings: u32) -> Vec<Pair> {
     let within = within_rings(model, scope, rings);
     let count = within.len() as u32;
@@ -85,7 +85,7 @@ fn corners(model: &ReducedModel, positions: &[DVec3], t: u32) -> [DVec3; 3] {
     model.mesh().faces()[t as usize].map(|v| positions[v as usize])
 }
 
-/// All near pairs at q, one by one.
+/// Returns all near pairs at q, by a test of each pair.
 fn near_by_brute_force(
     model: &ReducedModel,
     scope: &Scope,
@@ -103,14 +103,14 @@ fn near_by_brute_force(
         .collect()
 }
 
-/// Whether two triangles are nearer than a distance, in exact fractions.
+/// Whether two triangles are nearer than a distance, in exact arithmetic.
 fn is_nearer(a: &[DVec3; 3], b: &[DVec3; 3], distance: f64) -> bool {
     let still = |t0: [DVec3; 3]| sscc::MovingTriangle { t0, t1: t0 };
     let distance = BigRational::from_float(distance).unwrap();
     squared_distance(&still(*a), &still(*b), 0.5) < &distance * &distance
 }
 
-/// The q in the direction of z just inside a radius.
+/// Returns the q in the direction of z just inside a radius.
 fn just_inside(scope: &Scope, z: &[f64], radius: f64) -> Option<Vec<f64>> {
     let norm = z.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !(norm > 0.0 && norm.is_finite()) {
@@ -124,7 +124,7 @@ fn just_inside(scope: &Scope, z: &[f64], radius: f64) -> Option<Vec<f64>> {
     })
 }
 
-/// The sets of pairs with radii: nodes with themselves, and pairs of the root's children.
+/// Returns the pairs of nodes with radii: nodes with themselves, and pairs of the root's children.
 fn claims(parts: &CertificateParts) -> Vec<(u32, u32, f64)> {
     let nodes = parts.hierarchy.nodes();
     let mut claims: Vec<(u32, u32, f64)> =
@@ -166,7 +166,7 @@ fn below_radii_no_pair_is_nearer_than_the_clearance() {
             let is_within = |(a, b): &&Pair| x.contains(a) && y.contains(b) || x.contains(b) && y.contains(a);
             let own: Vec<Pair> = counted.iter().filter(is_within).copied().collect();
             for turn in 0..if own.is_empty() { 0 } else { 3 } {
-                // In a random direction, or in that of the pair that meets first among some.
+                // The direction is random, or that of the first contact among some pairs.
                 let z = match turn {
                     0 => (0..model.rank()).map(|_| random.signed()).collect(),
                     _ => {
@@ -202,7 +202,7 @@ fn below_radii_no_pair_is_nearer_than_the_clearance() {
     assert!(tested > cases(600) / 2 && attacked > tested && exact > 20, "{tested} {attacked} {exact}");
 }
 
-/// Stored pairs, absent ones and answers, by the audit's own attacks.
+/// The audit attacks stored pairs, absent ones and answers.
 #[test]
 fn audits_find_no_violation() {
     let (mut samples, mut tested) = (0, 0);
@@ -290,14 +290,14 @@ fn near_pairs_are_the_same_with_and_without_certificates() {
     );
 }
 
-/// A pair is near for the smallest number above its computed distance, and not for that distance: an attack on how wide AABBs are. Those of
-/// level sheets are exactly that far apart.
+/// A pair is near for the smallest number above its computed distance, and not for that distance. This attacks the width of AABBs:
+/// those of level sheets have exactly that distance.
 #[test]
 fn near_pairs_are_found_up_to_their_own_distance() {
     let (mut asked, mut exact) = (0, 0);
     for seed in 0..cases(160_u64) {
         let random = &mut Random::new(seed + 9_400_000);
-        // Two sheets, level but for a turn in every second model; the mode lowers the upper one.
+        // Two sheets, level or (in every second model) rotated; the mode lowers the upper one.
         let (gap, at) = (random.power(-3.0, 0.0), random.power(-2.0, 3.0) * random.signed());
         let tilt = if seed % 2 == 0 { 0.0 } else { 0.1 * random.signed() };
         let sheet = |z: f64| {
@@ -337,13 +337,13 @@ fn near_pairs_are_found_up_to_their_own_distance() {
     assert!(asked > cases(160) && exact == asked, "{asked} {exact}");
 }
 
-/// Where large displacements cancel, positions and boxes are computed in double precision: the boxes are as wide.
+/// If large displacements cancel, positions and boxes are computed in double precision, and boxes are widened by as much.
 #[test]
 fn near_pairs_are_found_where_positions_must_be_exact() {
     let strip = |z: f64| (0..300).map(move |i| DVec3::new(f64::from(i / 2) * 0.1, f64::from(i % 2) * 0.1, z));
     let positions: Vec<DVec3> = strip(0.0).chain(strip(1.0)).collect();
     let faces = [0_u32, 300].into_iter().flat_map(|first| (first..first + 298).map(|i| [i, i + 1, i + 2]));
-    // The first mode lowers the upper strip, the others move everything to and fro.
+    // The first mode lowers the upper strip; the others move both strips in opposite directions.
     let modes = (0..600).flat_map(|v| [if v < 300 { DVec3::ZERO } else { -DVec3::Z }, DVec3::X, -DVec3::X]);
     let mesh = TriMesh::new(positions, faces.collect()).unwrap();
     let model = ReducedModel::new(mesh, Modes::new(3, modes.collect()).unwrap()).unwrap();
@@ -361,7 +361,7 @@ fn near_pairs_are_found_where_positions_must_be_exact() {
     }
 }
 
-/// Two triangles one unit apart along a diagonal; one mode moves the second one towards the first, another one both.
+/// Returns two triangles one unit apart along a diagonal; one mode moves the second one towards the first, another one both.
 fn two_plates() -> ReducedModel {
     let along = DVec3::ONE.normalize();
     let (x, y) = (along.any_orthonormal_vector(), along.cross(along.any_orthonormal_vector()));
@@ -394,7 +394,7 @@ fn a_known_radius_is_reached_and_falls_with_the_clearance() {
     }
 }
 
-/// Radii do not grow with the clearance, up to the tolerance of both.
+/// Radii do not increase with the clearance, up to the tolerance of both.
 #[test]
 fn radii_fall_with_the_clearance() {
     let mut compared = 0;
@@ -418,12 +418,12 @@ fn radii_fall_with_the_clearance() {
     assert!(compared > cases(40) / 4, "{compared}");
 }
 
-/// Pairs nearer than the clearance at the centre, and those exactly that far apart, are exceptions: no radius covers them, and every
-/// answer has them where they are near.
+/// Pairs nearer than the clearance at the centre, and those at exactly that distance, are exceptions: no radius covers them, and
+/// answers contain them where they are near.
 #[test]
 fn near_pairs_of_the_centre_are_exceptions() {
     let at = |x: f64, z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::X * x + DVec3::Z * z);
-    // Three groups of two plates: nearer than 0.5, exactly that far apart, and farther apart.
+    // Three groups of two plates, with distances less than, exactly, and more than 0.5.
     let heights = [0.0, 0.3, 0.0, 0.5, 0.0, 0.8];
     let positions =
         heights.iter().enumerate().map(|(i, z)| at(10.0 * (i / 2) as f64, *z)).collect::<Vec<_>>().concat();
@@ -435,7 +435,7 @@ fn near_pairs_of_the_centre_are_exceptions() {
     let options = CertifyOptions::default().clearance(clearance).epsilon(1e-3);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     assert_eq!(certificates.exceptions(), [(0, 1), (2, 3)]);
-    // The last two come as near after 0.3, in units of the metric.
+    // The distance of the last two plates is 0.5 after 0.3, in units of the metric.
     let scale = certificates.norm(&[1.0]).unwrap();
     let radius = certificates.root_radius() / scale;
     assert!(radius <= 0.3 && radius > 0.299, "{radius}");
@@ -449,13 +449,14 @@ fn near_pairs_of_the_centre_are_exceptions() {
         let near: Vec<Pair> = query.within(&[q], &clearance).unwrap().iter().map(|near| near.pair).collect();
         assert_eq!(near, expected, "{q}");
     }
-    // With none allowed their radius is 0.
+    // If no exceptions are allowed, their radius is 0.
     let none = Certificates::compute(&model, &options.max_exceptions(0), &()).unwrap();
     assert!(none.exceptions().is_empty() && none.root_radius() == 0.0);
     assert_eq!(Query::new(&model, &none).unwrap().within(&[0.0], &clearance).unwrap().len(), 1);
 }
 
-/// A strip whose end turns through its beginning: all pairs that can collide are within the rings. Something else is far away.
+/// Returns a strip whose end rotates through its beginning, so that all pairs that can collide are within the rings, and another part
+/// far away.
 fn folding_strip() -> ReducedModel {
     let mut positions: Vec<DVec3> =
         (0..10).map(|i| DVec3::new(f64::from(i / 2), f64::from(i % 2), 0.0)).collect();
@@ -471,7 +472,7 @@ fn folding_strip() -> ReducedModel {
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(1, modes).unwrap()).unwrap()
 }
 
-/// Triangles within the rings may collide below the radii: plain questions are answered without the certificates.
+/// Triangles within the rings may collide below the radii, so queries of collisions are answered without the certificates.
 #[test]
 fn certificates_with_a_clearance_prove_nothing_about_collisions() {
     let model = folding_strip();
@@ -479,7 +480,7 @@ fn certificates_with_a_clearance_prove_nothing_about_collisions() {
     for method in [Method::Certified, Method::Traditional] {
         let certificates =
             Certificates::compute(&model, &CertifyOptions::default().clearance(clearance), &()).unwrap();
-        // What counts is far apart.
+        // The pairs that count are far apart.
         assert!(certificates.root_radius() > certificates.norm(&[1.2]).unwrap());
         let mut query = Query::with_method(&model, &certificates, method).unwrap();
         let mut oracle = Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
@@ -502,7 +503,7 @@ fn certificates_with_a_clearance_prove_nothing_about_collisions() {
     }
 }
 
-/// Clearance and rings are parts of the scope: with others the same radii would be a wrong proof.
+/// Clearance and rings are parts of the scope: for other values the radii may be wrong.
 #[test]
 fn another_clearance_is_refused() {
     let model = two_plates();
@@ -515,7 +516,7 @@ fn another_clearance_is_refused() {
         let changed = Certificates::try_from(parts).unwrap();
         assert!(matches!(changed.check_model(&model), Err(Error::OtherModel { .. })), "{other:?}");
     }
-    // A query uses them up to their clearance, beyond no fewer rings.
+    // A query uses certificates up to their clearance, and for at least as many rings.
     let beyond =
         Certificates::compute(&model, &options.clone().clearance(clearance.beyond_rings(3)), &()).unwrap();
     for (asked, rings, proof) in [
@@ -534,14 +535,14 @@ fn another_clearance_is_refused() {
     let mut query = Query::new(&model, &plain).unwrap();
     assert!(query.within(&[0.1, 0.1], &clearance).unwrap().is_empty());
     assert_eq!(query.statistics().proof, Proof::Search);
-    // Triangles with a common vertex need not keep it, whatever counts as a collision.
+    // Triangles with a common vertex need not keep the clearance, for any contact filter.
     let filter = ContactFilter::new(Neighbours::IncludeOneVertex);
     let included = Certificates::compute(&model, &options.filter(filter), &()).unwrap();
     assert_eq!(included.root_radius(), certificates.root_radius());
     assert!(certificates.parts().local.nodes.is_empty());
 }
 
-/// Certificates of several processes are the same.
+/// Certificates that several processes compute are the same.
 #[test]
 fn clearances_are_certified_in_shards() {
     for model in [two_plates(), winding_strip(&mut Random::new(4), 4)] {

@@ -1,4 +1,4 @@
-//! Clearance: near pairs and the nearest one, against all pairs of triangles.
+//! Clearance: near pairs and the nearest pair are compared with all pairs of triangles.
 
 use glam::DVec3;
 use sscc::{
@@ -11,7 +11,7 @@ fn vector(random: &mut Numbers) -> DVec3 {
     DVec3::new(random.signed(), random.signed(), random.signed())
 }
 
-/// A wavy sheet of `2 n n` triangles.
+/// Returns a wavy sheet of `2 n n` triangles.
 fn sheet(n: usize, random: &mut Numbers, height: f64) -> TriMesh {
     let row = n + 1;
     let positions: Vec<DVec3> = (0..row * row)
@@ -28,7 +28,7 @@ fn sheet(n: usize, random: &mut Numbers, height: f64) -> TriMesh {
     TriMesh::new(positions, faces.collect()).unwrap()
 }
 
-/// Loose triangles.
+/// Returns loose triangles.
 fn soup(count: u32, random: &mut Numbers, size: f64) -> TriMesh {
     let positions = (0..count)
         .flat_map(|_| {
@@ -43,7 +43,7 @@ fn corners(mesh: &TriMesh, positions: &[DVec3], t: usize) -> [DVec3; 3] {
     mesh.faces()[t].map(|v| positions[v as usize])
 }
 
-/// The distance of two triangles on the surface in rings, by a search from every triangle.
+/// Returns the distance of each two triangles on the surface in rings, by a search from every triangle.
 fn rings_between(mesh: &TriMesh) -> Vec<Vec<usize>> {
     let faces = mesh.faces();
     let touches = |a: usize, b: usize| faces[a].iter().any(|v| faces[b].contains(v));
@@ -66,7 +66,7 @@ fn rings_between(mesh: &TriMesh) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// All pairs more than some rings apart, with their distances.
+/// Returns all pairs more than `rings` rings apart, with their distances.
 fn all_pairs(mesh: &TriMesh, positions: &[DVec3], rings: usize) -> Vec<NearPair> {
     let apart = rings_between(mesh);
     let count = mesh.faces().len();
@@ -109,16 +109,16 @@ fn near_pairs_are_those_of_all_triangles() {
     assert!(found[0] > 10_000 && found[1] > 10_000, "{found:?}");
 }
 
-/// Two layers at a distance just below a clearance that is small for single precision.
+/// Two layers have a distance just below a clearance that is small for single precision.
 #[test]
 fn small_clearances_survive_single_precision() {
     let random = &mut Numbers(8);
     for gap in [1e-5, 1e-7, 1e-9, 1e-12] {
         let layer = soup(150, random, 0.2);
-        // Each triangle is level, at its own height, so that heights use all digits of single precision.
+        // Each triangle is level at its own height, so that heights use all digits of single precision.
         let x = layer.rest_positions();
         let flat: Vec<DVec3> = (0..x.len()).map(|v| DVec3::new(x[v].x, x[v].y, x[v / 3 * 3].z)).collect();
-        // Each triangle of the second layer is above its own of the first one, by less than the gap.
+        // Each triangle of the second layer is above one of the first layer, by less than the gap.
         let upper: Vec<DVec3> = flat.iter().map(|x| *x + DVec3::Z * (gap * 0.9)).collect();
         let mut detectors = [(); 2].map(|()| Detector::new(&layer));
         let [one, two] = &mut detectors;
@@ -188,7 +188,7 @@ fn the_nearest_pair_is_that_of_all_triangles() {
         }
     }
     assert!((1..40).contains(&touching), "{touching}");
-    // Of a tetrahedron no pair counts.
+    // In a tetrahedron no pair counts.
     let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     let mesh = TriMesh::new(positions.clone(), vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]).unwrap();
     assert_eq!(Detector::new(&mesh).nearest(&positions, 1).unwrap(), None);
@@ -204,7 +204,7 @@ fn ignored_pairs_groups_and_neighbours_do_not_count() {
     let near = detector.within(&positions, &Clearance::new(0.25).unwrap()).unwrap();
     assert_eq!(near.iter().map(|near| near.pair).collect::<Vec<_>>(), [(1, 2)]);
     assert_eq!(detector.nearest(&positions, 1).unwrap().unwrap().pair, (1, 2));
-    // Triangles with a common vertex never count, whatever the filter says of collisions.
+    // Triangles with a common vertex never count, for any contact filter.
     let folded = TriMesh::new(at(0.0).to_vec(), vec![[0, 1, 2], [0, 1, 2]]).unwrap();
     let filter = ContactFilter::new(Neighbours::IncludeFolded);
     let mut detector = Detector::with_filter(&folded, &filter).unwrap();
@@ -228,7 +228,7 @@ fn invalid_clearances_and_cancelled_searches_are_errors() {
     assert_eq!(detector.nearest(&positions, 1), Err(Error::Cancelled));
 }
 
-/// The corners of a cube about a point, and its triangles, which turn left as seen from outside.
+/// Returns the corners of a cube about a point, and its triangles, anticlockwise as seen from outside.
 fn cube(center: DVec3, edge: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let corner =
         |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - DVec3::splat(0.5);
@@ -237,7 +237,7 @@ fn cube(center: DVec3, edge: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     ((0..8).map(|i| center + corner(i) * edge).collect(), faces.collect())
 }
 
-/// One mesh of several cubes; those of negative edge are turned inside out.
+/// Returns one mesh of several cubes; those of negative edge length face inward.
 fn cubes(all: &[(DVec3, f64)]) -> TriMesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for (center, edge) in all {
@@ -264,10 +264,10 @@ fn enclosed_components_are_counted() {
     assert_eq!(inside(&small, &large), [(1, 1), (0, 1)]);
     let beside = cubes(&[(DVec3::splat(9.0), 1.0), (DVec3::ZERO, 2.0), (DVec3::splat(-9.0), 1.0)]);
     assert_eq!(inside(&large, &beside), [(0, 1), (1, 3)]);
-    // In the cavity of a hollow body: outside of it.
+    // A body in the cavity of a hollow body is outside of it.
     let hollow = cubes(&[(DVec3::ZERO, 4.0), (DVec3::ZERO, -3.5)]);
     assert_eq!(inside(&hollow, &small), [(0, 2), (0, 1)]);
-    // A surface with a hole has no inside, whatever else is in the mesh.
+    // A surface with a hole has no inside, also if other parts of the mesh are closed.
     let open = TriMesh::new(large.rest_positions().to_vec(), large.faces()[1..].to_vec()).unwrap();
     assert_eq!(inside(&open, &small), [(0, 1), (0, 1)]);
     // A soup is closed where its corners are welded.

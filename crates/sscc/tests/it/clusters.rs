@@ -1,4 +1,4 @@
-//! Models of several clusters: what is skipped must never count, whatever the rule, the size and the odd cases.
+//! Models of several buckets: skipped pairs never count, for any contact filter, size and kind of mesh.
 
 use glam::DVec3;
 use sscc::parts::Scope;
@@ -7,7 +7,7 @@ use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, Soup, random_mesh};
 
-/// Several small meshes of every odd kind in one, about as large as each other, through each other.
+/// Returns one mesh of several small meshes of all kinds, of about the same size, that cross each other.
 fn heap(random: &mut Random) -> Soup {
     let (mut p, mut faces): Soup = (Vec::new(), Vec::new());
     while faces.len() < 150 + 50 * random.below(8) {
@@ -20,7 +20,7 @@ fn heap(random: &mut Random) -> Soup {
     (p, faces)
 }
 
-/// One vertex with more triangles around it than neighbours are listed for, folded over.
+/// Returns a folded fan of more triangles around one vertex than have adjacency masks.
 fn fan(random: &mut Random) -> Soup {
     let count = 100 + random.below(100) as u32;
     let mut p = vec![DVec3::ZERO];
@@ -28,7 +28,7 @@ fn fan(random: &mut Random) -> Soup {
     (p, (0..count).map(|t| [0, t + 1, t + 2]).collect())
 }
 
-/// Some corners on vertices of their own, at the same place.
+/// Gives some corners new vertices at the same position.
 fn split(random: &mut Random, (p, faces): &mut Soup) {
     for corner in faces.iter_mut().flatten() {
         if random.below(5) == 0 {
@@ -38,7 +38,7 @@ fn split(random: &mut Random, (p, faces): &mut Soup) {
     }
 }
 
-/// Modes are functions of position, so that equal vertices can be welded.
+/// Returns a model with modes that are functions of the position, so that equal vertices can be welded.
 fn bent(random: &mut Random, (p, faces): Soup, scale: f64, offset: DVec3) -> ReducedModel {
     let rank = 1 + random.below(5);
     let ways: Vec<[DVec3; 2]> = (0..rank).map(|_| [random.vector(), random.vector()]).collect();
@@ -98,9 +98,9 @@ fn large_models_agree_with_brute_force() {
     );
 }
 
-/// A query that stopped early leaves nothing behind.
+/// A query that stopped at a limit does not change later answers.
 #[test]
-fn limits_stop_anywhere() {
+fn limits_end_queries_at_any_number_of_pairs() {
     let mut seen = 0;
     for seed in 0..cases(120) {
         let random = &mut Random::new(seed);

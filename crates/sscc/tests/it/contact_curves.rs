@@ -1,4 +1,4 @@
-//! Curves in which meshes intersect themselves or each other.
+//! Tests of the curves in which meshes intersect themselves or each other.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ fn corners((positions, faces): &Soup, triangle: usize) -> [DVec3; 3] {
     faces[triangle].map(|i| positions[i as usize])
 }
 
-/// All pairs that intersect, of one mesh or of two. Of one mesh, those without a common vertex, unless `all`.
+/// Returns all pairs that intersect, of one mesh or of two. For one mesh, only those without a common vertex, unless `all`.
 fn pairs(x: &Soup, y: Option<&Soup>, all: bool) -> Vec<Pair> {
     let other = y.unwrap_or(x);
     let boxes: Vec<Aabb> = (0..other.1.len()).map(|t| Aabb::of_points(corners(other, t))).collect();
@@ -44,7 +44,7 @@ fn curves_between(x: &Soup, y: &Soup) -> ContactCurves {
     let found = contact_curves_between(x_surface, y_surface, &pairs(x, Some(y), false)).unwrap();
     check(&found);
 
-    // As one mesh, the two have the same curves.
+    // Joined to one mesh, the two meshes have the same curves.
     let count = (positions_x.len() as u32, faces_x.len() as u32);
     let positions = [positions_x, positions_y].concat();
     let faces = [faces_x, faces_y.into_iter().map(|face| face.map(|i| i + count.0)).collect()].concat();
@@ -58,7 +58,7 @@ fn curves_between(x: &Soup, y: &Soup) -> ContactCurves {
     found
 }
 
-/// Asserts what must hold for any input: curves consist of the segments of their contacts, bit for bit; every segment
+/// Asserts properties of the curves of any input: they consist of the segments of their contacts, bit for bit; every segment
 /// is on exactly one curve; a curve passes through every point with two segments.
 fn check(found: &ContactCurves) {
     let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
@@ -110,7 +110,7 @@ fn check_transversal(found: &ContactCurves) {
     assert!(contacts.into_iter().eq(0..found.contacts.len() as u32));
 }
 
-/// An octahedron, subdivided and made round.
+/// Returns an octahedron, subdivided and projected to a sphere.
 fn sphere(center: DVec3, radius: f64, levels: usize) -> Soup {
     let mut positions = vec![DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
     let mut faces =
@@ -135,7 +135,7 @@ fn sphere(center: DVec3, radius: f64, levels: usize) -> Soup {
     (positions.into_iter().map(|p| center + turn * p * radius).collect(), faces)
 }
 
-/// A closed tube of a radius about a closed curve, given for 0 to 1. Both are near the plane of x and y.
+/// Returns a closed tube of a radius about a closed curve, given for 0 to 1, near the plane of x and y.
 fn tube(center: impl Fn(f64) -> DVec3, radius: f64, along: u32, around: u32) -> Soup {
     let mut positions = Vec::new();
     for i in 0..along {
@@ -151,7 +151,7 @@ fn tube(center: impl Fn(f64) -> DVec3, radius: f64, along: u32, around: u32) -> 
     (positions, grid_faces(along, around))
 }
 
-/// The faces of a torus of vertices `i * n + j`.
+/// Returns the faces of a torus of vertices `i * n + j`.
 fn grid_faces(m: u32, n: u32) -> Vec<[u32; 3]> {
     let vertex = |i: u32, j: u32| i % m * n + j % n;
     let quad = |i: u32, j: u32| {
@@ -187,7 +187,7 @@ fn torus_through_a_sphere_and_a_torus() {
     let found = curves_between(&torus, &sphere(DVec3::new(1.01, 0.02, 0.03), 0.4, 3));
     check_transversal(&found);
     assert_eq!(found.curves.len(), 2);
-    // In one plane, turned and moved: the tubes cross twice.
+    // Two tubes near one plane, rotated and moved, cross twice.
     let turn = DQuat::from_scaled_axis(DVec3::new(0.02, 0.03, 0.5));
     let (positions, faces) = tube(circle(DVec3::ZERO, 1.0), 0.15, 50, 17);
     let moved = positions.iter().map(|p| turn * *p + DVec3::new(0.9, 0.11, 0.013)).collect();
@@ -196,7 +196,7 @@ fn torus_through_a_sphere_and_a_torus() {
     assert_eq!(found.curves.len(), 4);
 }
 
-/// A tube along a curve that crosses itself at the origin, where its two strands are a little apart.
+/// The tube is along a curve that crosses itself at the origin, where its two strands are a little apart.
 #[test]
 fn tube_that_intersects_itself() {
     for lift in [0.005, 0.05, 0.1] {
@@ -213,7 +213,7 @@ fn tube_that_intersects_itself() {
     }
 }
 
-/// A cube of n x n squares on each side, on the grid of whole numbers divided by n and times 2, open nowhere.
+/// Returns a closed cube of n x n squares on each side, whose coordinates are multiples of 2 / n.
 fn cube(n: u32, offset: DVec3) -> Soup {
     let mut vertices: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut positions = Vec::new();
@@ -238,7 +238,7 @@ fn cube(n: u32, offset: DVec3) -> Soup {
     (positions, faces)
 }
 
-/// Two cubes whose edges and vertices lie on each other's faces, edges and vertices: still one closed curve.
+/// The edges and vertices of two cubes lie on each other's faces, edges and vertices; they meet in one closed curve.
 #[test]
 fn cubes_on_one_grid_meet_in_one_closed_curve() {
     for (n, m) in [(1, 1), (2, 2), (4, 4), (2, 4), (4, 2), (1, 4), (3, 5), (3, 2), (6, 4)] {
@@ -263,7 +263,7 @@ fn sheets_that_cross_meet_in_one_open_curve() {
         let positions =
             positions.map(|(i, j)| p(f64::from(i) / f64::from(n), f64::from(j) / f64::from(n))).collect();
         let faces = grid_faces(n + 1, n + 1);
-        // Without the quads that wrap around.
+        // Removes the quads that wrap around.
         let wraps =
             |i: &usize| i / 2 % (n as usize + 1) == n as usize || i / 2 / (n as usize + 1) == n as usize;
         (positions, (0..faces.len()).filter(|i| !wraps(i)).map(|i| faces[i]).collect())
@@ -277,9 +277,9 @@ fn sheets_that_cross_meet_in_one_open_curve() {
     assert!((ends[0].distance(ends[1]) - 0.8_f64.hypot(0.53)).abs() < 1e-12);
 }
 
-/// Meshes of every kind, degenerate ones too, with and without the pairs that share vertices.
+/// Meshes of every kind, including degenerate ones, with and without the pairs that share vertices.
 #[test]
-fn odd_meshes() {
+fn curves_of_degenerate_meshes_are_consistent() {
     let mut random = Random::new(71);
     let mut count = [0; 3];
     for i in 0..cases(1_200) {

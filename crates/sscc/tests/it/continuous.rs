@@ -1,4 +1,4 @@
-//! Continuous queries against brute force, against discrete queries on the way, and against what is known.
+//! Compares continuous queries with brute force, with discrete queries during the motion, and with known times.
 
 use glam::DVec3;
 use sscc::parts::Scope;
@@ -75,7 +75,7 @@ fn all_methods_agree_and_miss_nothing() {
     );
 }
 
-/// Triangles with corners on a coarse grid, and times that are multiples of 1/8: all positions are exact.
+/// Corners are on a coarse grid, and times are multiples of 1/8, so that all positions are exact.
 #[test]
 fn no_contact_of_grid_triangles_is_missed() {
     let random = &mut Random::new(12);
@@ -115,7 +115,7 @@ fn no_contact_of_grid_triangles_is_missed() {
     assert!(met > cases / 10 && free > cases / 10, "{met} {free}");
 }
 
-/// Two triangles one apart, the upper one lowered by q.
+/// Returns two triangles at a distance of 1; the upper one is lowered by q.
 fn lowered() -> ReducedModel {
     let triangle = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);
     let mesh = TriMesh::new([triangle(0.0), triangle(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -130,7 +130,7 @@ fn times_of_simple_motions() {
     let near = |x: f64, goal: f64| x <= goal && x > goal - 1e-9;
     for method in [Method::Certified, Method::BdTree, Method::Traditional, Method::BruteForce] {
         let mut query = Query::with_method(&model, &certificates, method).unwrap();
-        // They pass through each other; neither end collides.
+        // The triangles pass through each other; neither end collides.
         let impacts = query.continuous(&[0.0], &[4.0]).unwrap();
         assert_eq!(pairs(impacts), [(0, 1)]);
         assert!(near(impacts[0].time, 0.25), "{impacts:?}");
@@ -139,11 +139,11 @@ fn times_of_simple_motions() {
             sscc::parts::Scope::of_query(&query).metric.norm(&[4.0]).unwrap()
         );
         assert!(near(query.time_of_impact(&[3.0], &[-1.0]).unwrap().unwrap(), 0.5));
-        // They touch at an end, or all the time.
+        // The triangles touch at an end, or during the whole motion.
         assert!(near(query.time_of_impact(&[0.0], &[1.0]).unwrap().unwrap(), 1.0));
         assert_eq!(query.time_of_impact(&[1.0], &[0.0]).unwrap(), Some(0.0));
         assert_eq!(query.time_of_impact(&[1.0], &[1.0]).unwrap(), Some(0.0));
-        // They part, or do not come near enough.
+        // The triangles move apart, or do not come near enough.
         assert_eq!(query.time_of_impact(&[0.999], &[-7.0]).unwrap(), None);
         assert_eq!(query.time_of_impact(&[0.0], &[1.0 - 1e-9]).unwrap(), None);
         assert_eq!(query.time_of_impact(&[0.5], &[0.5]).unwrap(), None);
@@ -151,7 +151,7 @@ fn times_of_simple_motions() {
         assert!(matches!(query.continuous(&[f64::NAN], &[0.0]), Err(Error::CoordinatesValue { .. })));
         assert!(matches!(query.continuous(&[0.0], &[1e300]), Err(Error::CoordinatesRange)));
         assert!(query.continuous(&[0.0], &[]).is_err() && query.pairs().is_empty());
-        // A discrete query does not disturb it.
+        // A discrete query does not change later continuous answers.
         assert_eq!(query.discrete(&[1.0]).unwrap(), [(0, 1)]);
         assert!(query.continuous(&[0.0], &[0.1]).unwrap().is_empty());
     }

@@ -1,4 +1,4 @@
-//! The detector for given positions, against brute force and against queries by modes.
+//! Compares the detector for given positions with brute force and with queries by modes.
 
 use glam::{DVec3, Vec3Swizzles};
 use sscc::parts::{Scope, detector_with_weld_classes};
@@ -10,7 +10,7 @@ use sscc_testing::cases;
 
 use crate::common::{Random, after, random_model};
 
-/// A soup of triangles, some degenerate, some with common vertices, of a size and at a place.
+/// Returns loose triangles of a size at a random position, some degenerate, some with common vertices.
 fn soup(random: &mut Random, triangles: u32, size: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let vertices = 2 * triangles + 3;
     let x = (0..vertices).map(|_| random.vector() * size).collect();
@@ -78,9 +78,9 @@ fn pairs_are_those_of_brute_force() {
     assert!(colliding > 1000, "{colliding}");
 }
 
-/// Small triangles that change places: the hierarchy is built again, once for all later frames of the same kind.
+/// Small triangles exchange their positions: the hierarchy is rebuilt once for all later frames of the same kind.
 #[test]
-fn a_hierarchy_that_has_become_bad_is_built_again() {
+fn a_hierarchy_whose_cost_has_grown_is_rebuilt() {
     let random = &mut Random::new(21);
     let count = 2000;
     let shape: Vec<[DVec3; 3]> = (0..count).map(|_| [(); 3].map(|()| random.vector() * 0.05)).collect();
@@ -109,7 +109,7 @@ fn a_hierarchy_that_has_become_bad_is_built_again() {
     assert_eq!(rebuilds, [0, 0, 1, 1, 1]);
 }
 
-/// A detector at the positions of a model gives the answers of its queries, continuous ones bit for bit.
+/// A detector at the positions of a model has the answers of its queries, continuous ones bit for bit.
 #[test]
 fn answers_are_those_of_queries() {
     let random = &mut Random::new(8);
@@ -139,7 +139,7 @@ fn answers_are_those_of_queries() {
 }
 
 #[test]
-fn two_meshes_collide_as_all_their_triangles_do() {
+fn pairs_of_two_meshes_are_those_of_brute_force() {
     let random = &mut Random::new(12);
     let (mut colliding, mut free, mut hits) = (0, 0, 0);
     for case in 0..cases(80) {
@@ -177,13 +177,13 @@ fn two_meshes_collide_as_all_their_triangles_do() {
             assert_eq!(turned, expected);
             colliding += expected.len();
             free += usize::from(expected.is_empty());
-            // What collides at one end does so on the way, at time 0 or before.
+            // Pairs that collide at the start have impacts at time 0.
             let [x0, x1, y0, y1] = [&x[0], &x[1], &y[0], &y[1]].map(|x| &x[..]);
             let impacts = a.continuous_against([x0, x1], &mut b, [y0, y1]).unwrap();
             let at_start: Vec<Pair> = impacts.iter().filter(|i| i.time == 0.0).map(|i| i.pair).collect();
             assert!(expected.iter().all(|pair| at_start.contains(pair)), "case {case}");
             hits += impacts.len();
-            // Moved together they meet when their triangles do. With CI=true all of them.
+            // The times are compared with those of single triangle pairs. With CI=true all pairs are compared.
             for impact in impacts.iter().step_by(8 / cases(8)) {
                 let moving = |mesh: &TriMesh, t: u32, [t0, t1]: [&[DVec3]; 2]| {
                     let face = mesh.faces()[t as usize];
@@ -226,7 +226,7 @@ fn batches_answer_as_single_frames_do() {
 
 #[test]
 fn welded_vertices_are_one_for_adjacency() {
-    // Two triangles with a common edge, each with vertices of its own.
+    // Two triangles with a common edge have separate vertices.
     let [a, b, c, d] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
     let rest = vec![a, b, c, b, d, c];
     let mesh = TriMesh::new(rest.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -240,7 +240,7 @@ fn welded_vertices_are_one_for_adjacency() {
     assert!(matches!(wrong, Err(Error::PositionCount { found: 5, vertices: 6 })));
 }
 
-/// Vertices that are welded at rest move apart: shared-vertex pairs have no common vertex then.
+/// Vertices that are welded at rest move apart: then shared-vertex pairs have no common vertex position.
 #[test]
 fn welded_vertices_can_move_apart() {
     let at = DVec3::new;
@@ -251,30 +251,30 @@ fn welded_vertices_can_move_apart() {
         detector_with_weld_classes(&mesh, &[u32::MAX, 1, 2, u32::MAX, 4, 5], &filter).unwrap()
     };
     let a = [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(0.0, 1.0, 0.0)];
-    // The second triangle goes through the first; the edge opposite to its welded corner does not.
+    // The second triangle crosses the first; the edge opposite to its welded corner does not.
     let b = [at(0.2, 0.25, -1.0), at(0.2, 0.25, 1.0), at(5.0, 5.5, 1.0)];
     let x = [a, b].concat();
     assert_eq!(detector(&x).discrete(&x).unwrap(), [(0, 1)]);
     assert_eq!(detector(&x).continuous(&x, &x).unwrap().len(), 1);
-    // They are free; the first corner of a is in no common point of the two.
+    // These triangles have no common point.
     let a_free = [at(-0.75, -0.375, -1.75), at(-1.875, -0.6875, -3.6875), at(-1.4375, 3.75, 1.75)];
     let b_free = [at(-1.0625, -3.25, 1.75), at(-2.6875, -0.25, -0.625), at(-2.625, 3.0, -0.875)];
     let x = [a_free, b_free].concat();
     assert!(!intersect_triangle_triangle(&a_free, &b_free));
     assert_eq!(detector(&x).discrete(&x).unwrap(), []);
-    // The welded corner alone goes through the first triangle.
+    // Only the welded corner passes through the first triangle.
     let still = [at(0.2, 0.25, 5.0), at(0.3, 0.2, 5.0)];
     let [above, below] = [2.0, -1.0].map(|z| [&a[..], &[at(0.2, 0.25, z)], &still].concat());
     let impacts = detector(&above).continuous(&above, &below).unwrap().to_vec();
     assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), [(0, 1)]);
     assert!((impacts[0].time - 2.0 / 3.0).abs() < 1e-9, "{impacts:?}");
-    // Where the corners stay together, only other common points count.
+    // If the corners stay together, only other common points count.
     let together = [&a[..], &a[..1], &[at(-1.0, 0.0, 0.0), at(0.0, -1.0, 0.0)]].concat();
     assert_eq!(detector(&together).discrete(&together).unwrap(), []);
     assert_eq!(detector(&together).continuous(&together, &together).unwrap(), []);
 }
 
-/// A mesh a few units in the last place wide, far from the origin.
+/// The mesh is only a few units in the last place wide, far from the origin.
 #[test]
 fn tiny_meshes_far_away() {
     let random = &mut Random::new(33);
@@ -310,8 +310,8 @@ fn wrong_positions_are_refused() {
     assert!(detector.discrete(&rest).is_ok());
 }
 
-/// Two corners of each face are one vertex. Where these are at two positions, the faces meet between them, which is no point
-/// of the vertex. Where one face has both of them at the vertex, nothing else is common.
+/// Two corners of each face are one vertex. If these corners have two positions, the faces meet between them, which is not a point
+/// of the vertex. If one face has both corners at the vertex, there is no other common point.
 #[test]
 fn one_vertex_at_two_positions_is_no_edge() {
     let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ZERO, DVec3::X, DVec3::Z];

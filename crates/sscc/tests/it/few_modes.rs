@@ -1,4 +1,4 @@
-//! Models of which few modes move each vertex, as those of a skin: twelve modes for each bone.
+//! Models in which few modes move each vertex, as in skinned meshes with twelve modes for each bone.
 
 use glam::{DMat3, DVec3};
 use sscc::parts::{Aabb, Pose, PosedShape, SweptShape};
@@ -14,7 +14,7 @@ const BONES: usize = 12;
 const LENGTH: usize = 66;
 const AROUND: usize = 12;
 
-/// A tube along x, and for each bone the modes of its affine maps: at most two bones move a vertex, one the ends.
+/// Returns a tube along x with the modes of the affine maps of each bone: at most two bones move a vertex, one bone the ends.
 fn tube() -> ReducedModel {
     let (mut positions, mut modes) = (Vec::new(), Vec::new());
     for i in 0..=LENGTH {
@@ -40,14 +40,14 @@ fn tube() -> ReducedModel {
         let [a, b, c, d] = [vertex(i, j), vertex(i, j + 1), vertex(i + 1, j), vertex(i + 1, j + 1)];
         [[a, b, c], [b, d, c]]
     });
-    // Few enough for queries to list the modes of each vertex: at most a quarter.
+    // At most a quarter of the displacements are nonzero, so that queries list the modes of each vertex.
     let moving = modes.iter().filter(|u| **u != DVec3::ZERO).count();
     assert!(5 * moving < modes.len(), "{moving} of {}", modes.len());
     let mesh = TriMesh::new(positions, faces.collect()).unwrap();
     ReducedModel::new(mesh, Modes::new(12 * BONES, modes).unwrap()).unwrap()
 }
 
-/// The bones of a chain whose joints turn by up to an angle.
+/// Returns the q of a chain of bones whose joints rotate by up to an angle.
 fn pose(random: &mut Numbers, angle: f64) -> Vec<f64> {
     let (mut turned, mut at) = (DMat3::IDENTITY, DVec3::ZERO);
     let mut q = Vec::new();
@@ -100,9 +100,9 @@ fn answers_are_those_of_brute_force_and_of_the_positions() {
     assert!(free > 10 && hits > 100, "{free} {hits}");
 }
 
-/// Safe scales, sweeps and free configurations, against brute force.
+/// Compares safe scales, sweeps and free configurations with brute force.
 #[test]
-fn ways_from_a_configuration_are_free_as_far_as_they_say() {
+fn safe_scales_sweeps_and_free_configurations_have_no_collision() {
     let (model, random) = (tube(), &mut Numbers(6));
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
@@ -129,9 +129,9 @@ fn ways_from_a_configuration_are_free_as_far_as_they_say() {
     assert!(scaled > 1 && swept > 0 && resolved > 0, "{scaled} {swept} {resolved}");
 }
 
-/// Two shapes in the world, at rest and in motion, against all pairs of their triangles.
+/// Compares two shapes in the world, at rest and in motion, with all pairs of their triangles.
 #[test]
-fn posed_shapes_meet_where_their_triangles_do() {
+fn pairs_of_posed_shapes_are_those_of_all_triangles() {
     let (model, random) = (tube(), &mut Numbers(7));
     let [mut x, mut y] = [(); 2].map(|()| PosedShape::without_certificates(&model).unwrap());
     let [mut moving, mut resting] = [&x, &y].map(|shape| SweptShape::new(shape).unwrap());
@@ -153,7 +153,7 @@ fn posed_shapes_meet_where_their_triangles_do() {
             expected.extend((0..).zip(&corners[1]).filter(|(_, b)| meets(b)).map(|(j, _): (u32, _)| (i, j)));
         }
         assert_eq!(pairs, expected, "case {case}");
-        // A motion that ends there meets at least these pairs.
+        // A motion that ends at this pose lists at least these pairs.
         moving.place([&q, &q], [&Pose { translation: DVec3::Z * -9.0, ..here }, &here]).unwrap();
         resting.place([&r, &r], [&there, &there]).unwrap();
         impacts.clear();

@@ -1,5 +1,5 @@
-//! Triangles that share one, two or three vertices, under `include-folded`: against an oracle in exact arithmetic, which knows
-//! neither signs nor cases.
+//! Compares triangles that share one, two or three vertices, with `include-folded`, with an oracle in exact arithmetic that has
+//! no case distinctions.
 
 use glam::DVec3;
 use sscc::parts::{Scope, intersect_shared_edge_pair};
@@ -29,13 +29,13 @@ fn folded() -> ContactFilter {
     ContactFilter::new(Neighbours::IncludeFolded)
 }
 
-/// The answer for a mesh of two triangles.
+/// Returns whether the pair is listed for a mesh of two triangles.
 fn listed(faces: [[u32; 3]; 2], x: &[DVec3], filter: &ContactFilter) -> bool {
     let mesh = TriMesh::new(x.to_vec(), faces.to_vec()).unwrap();
     !Detector::with_filter(&mesh, filter).unwrap().discrete(x).unwrap().is_empty()
 }
 
-/// Five vertices of two triangles: on a coarse grid, in a plane, on a line, folded onto each other up to rounding.
+/// Returns five vertices of two triangles: on a coarse grid, in a plane, on a line, or folded onto each other up to rounding.
 fn vertices(random: &mut Random, kind: usize) -> Vec<DVec3> {
     let size = [1.2, 2.2, 4.2][random.below(3)];
     let grid = |random: &mut Random| (random.vector() * size).round();
@@ -50,7 +50,7 @@ fn vertices(random: &mut Random, kind: usize) -> Vec<DVec3> {
         2 => x[2] = x[0] + (x[1] - x[0]) * 2.0_f64.powi(random.below(4) as i32 - 2),
         3 => x[3] = x[random.below(3)],
         4 => x[1] = x[0],
-        // Folded about the first edge, onto the same side or the other one, exactly or nearly in one plane.
+        // The triangles are folded about the first edge, to the same side or the other one, exactly or nearly in one plane.
         5 | 6 => {
             x[0] = random.vector() * random.power(-3.0, 3.0);
             (1..3).for_each(|i| x[i] = x[0] + random.vector());
@@ -66,7 +66,7 @@ fn vertices(random: &mut Random, kind: usize) -> Vec<DVec3> {
         _ => {}
     }
     if random.below(3) == 0 {
-        // A corner moves by a last place.
+        // A corner moves by a unit in the last place.
         let i = random.below(5);
         x[i].y = if random.below(2) == 0 { x[i].y.next_up() } else { x[i].y.next_down() };
     }
@@ -104,7 +104,7 @@ fn folded_pairs_are_those_of_exact_fractions() {
             expected,
             "case {case}: {faces:?} {corners:?}"
         );
-        // The same with corners on vertices of their own, welded. Vertices at one position are one then.
+        // The same triangles with separate, welded vertices. Then vertices at one position are one vertex.
         let (mut split, mut split_x) = (faces, x.clone());
         for corner in split.iter_mut().flatten() {
             if random.below(2) == 0 {
@@ -125,7 +125,7 @@ fn folded_pairs_are_those_of_exact_fractions() {
         let common = faces[0].iter().filter(|v| faces[1].contains(v)).count();
         counts[common][usize::from(expected)] += 1;
         if common < 2 {
-            // One common vertex: as the older rule has it.
+            // With one common vertex the answer is that of `include-one-vertex`.
             let one = ContactFilter::new(Neighbours::IncludeOneVertex);
             let is_repeated = faces.iter().any(|f| f[0] == f[1] || f[1] == f[2] || f[2] == f[0]);
             assert!(is_repeated || listed(faces, &x, &one) == expected, "case {case}: {faces:?} {corners:?}");
@@ -156,7 +156,7 @@ fn shared_edges_do_not_depend_on_the_order_of_corners() {
     assert!(found > threshold(4000) && free > threshold(4000), "{found} {free}");
 }
 
-/// All pairs of a mesh, by the oracle where they share a vertex.
+/// Returns all colliding pairs of a mesh; the oracle decides those that share a vertex.
 fn brute_force(x: &[DVec3], faces: &[[u32; 3]]) -> Vec<Pair> {
     let corners: Vec<[DVec3; 3]> = faces.iter().map(|face| face.map(|v| x[v as usize])).collect();
     let mut pairs = Vec::new();
@@ -181,7 +181,7 @@ fn detectors_list_all_folded_pairs() {
     let (mut shared, mut apart) = (0, 0);
     for case in 0..cases(24) {
         let (rest, mut faces) = random_mesh(random);
-        // The oracle takes long.
+        // The oracle is slow.
         faces.truncate(24);
         let mesh = TriMesh::new(rest.clone(), faces.clone()).unwrap();
         let mut detector = Detector::with_filter(&mesh, &folded()).unwrap();
@@ -201,7 +201,7 @@ fn detectors_list_all_folded_pairs() {
             let is_shared = |(a, b): &&Pair| crate::common::are_adjacent(&mesh, *a, *b);
             shared += expected.iter().filter(is_shared).count();
             apart += expected.len() - expected.iter().filter(is_shared).count();
-            // What is ignored, or of groups that do not count, is left out as ever.
+            // Ignored pairs and pairs of groups that do not count are not listed.
             let ignored = expected.first().copied();
             let mut ignoring = Detector::with_filter(&mesh, &folded().ignoring(ignored)).unwrap();
             assert_eq!(ignoring.discrete(&x).unwrap(), &expected[ignored.iter().len()..]);
@@ -210,7 +210,7 @@ fn detectors_list_all_folded_pairs() {
     assert!(shared > threshold(16) && apart > threshold(1), "{shared} {apart}");
 }
 
-/// A strip of quads, one of which lies on its neighbour; and a doubled face.
+/// The mesh is a strip of quads, one of which lies on its neighbour, and a doubled face.
 #[test]
 fn a_triangle_folded_onto_its_neighbour_is_found() {
     let at = DVec3::new;
@@ -223,7 +223,7 @@ fn a_triangle_folded_onto_its_neighbour_is_found() {
     assert_eq!(pairs(Neighbours::Exclude), []);
     assert_eq!(pairs(Neighbours::IncludeOneVertex), []);
     assert_eq!(pairs(Neighbours::IncludeFolded), [(0, 1), (0, 3), (1, 3)]);
-    // A hinge that is nearly closed is free, as is an open one.
+    // A nearly closed hinge is free, as is an open one.
     let mut open = x;
     open[3].z = 1e-300;
     let mut detector = Detector::with_filter(&mesh, &folded()).unwrap();
@@ -263,7 +263,7 @@ fn certificates_models_and_continuous_queries_refuse_folded_neighbours() {
     assert!(!detector.continuous_against([rest, rest], &mut other, [rest, rest]).unwrap().is_empty());
 }
 
-/// Which vertices are common is decided at rest, by numbers and welds. Positions that are given later never change it.
+/// Vertex numbers and welds at rest decide which vertices are common. Later positions do not change this.
 #[test]
 fn adjacency_does_not_change_with_positions() {
     let at = DVec3::new;
@@ -281,7 +281,7 @@ fn adjacency_does_not_change_with_positions() {
         [discrete, swept]
     };
     let one = Neighbours::IncludeOneVertex;
-    // A hinge: two common numbers. It opens without another common point, or closes: it never counts.
+    // A hinge has two common numbers. It opens without another common point, or closes; it never counts.
     let hinge = [[0, 1, 2], [1, 0, 3]];
     let mut closed = opened;
     closed[3] = at(0.0, 0.5, 0.0);
@@ -291,7 +291,7 @@ fn adjacency_does_not_change_with_positions() {
     }
     assert_eq!(answers(hinge, Neighbours::IncludeFolded, &opened), [false; 2]);
     assert_eq!(answers(hinge, Neighbours::IncludeFolded, &closed), [true, false]);
-    // One common number, of a vertex whose welded partner moves away: the vertex stays the common one.
+    // One common number, of a vertex whose welded partner moves away: the vertex remains common.
     let corner = [[0, 1, 2], [0, 3, 4]];
     assert_eq!(answers(corner, one, &opened), [false; 2]);
     let mut through = opened;

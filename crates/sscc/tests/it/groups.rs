@@ -1,4 +1,4 @@
-//! Groups of triangles: pairs of groups that do not count, against all pairs by brute force without groups.
+//! Groups of triangles: answers with groups are compared with all pairs by brute force without groups.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::common::{
     Random, RandomOptions, Soup, at, random_choices, random_mesh, random_model, winding_strip,
 };
 
-/// Groups that are runs of triangles, so that some nodes have one group, or any triangles; with a random table.
+/// Returns groups of consecutive triangles, so that some nodes have one group, or of any triangles, with a random table.
 fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
     let count = 2 + random.below(4);
     let run = 1 + random.below(triangles);
@@ -33,7 +33,7 @@ fn random_groups(random: &mut Random, triangles: usize) -> TriangleGroups {
     }
 }
 
-/// A model and options with groups, by number.
+/// Returns a model and options with groups, by number.
 fn sample(seed: u64) -> (ReducedModel, RandomOptions, TriangleGroups) {
     let random = &mut Random::new(seed + 40_000_000);
     let model = if seed.is_multiple_of(4) { winding_strip(random, seed) } else { random_model(seed) };
@@ -58,7 +58,7 @@ fn all_methods_list_the_pairs_that_count() {
         let ignored = scope.filter.ignored().to_vec();
         let is_counted =
             |(a, b): Pair| groups.is_pair_counted(a, b) && ignored.binary_search(&(a, b)).is_err();
-        // The oracle knows neither groups nor ignored pairs.
+        // The oracle uses neither groups nor ignored pairs.
         let plain = Scope { filter, exceptions: Vec::new(), ..Scope::clone(&scope) };
         let mut oracle = Query::without_certificates(&model, plain, Method::BruteForce).unwrap();
         let methods =
@@ -118,10 +118,10 @@ fn all_methods_list_the_pairs_that_count() {
     );
 }
 
-/// Leaving out pairs of groups makes no radius smaller, up to the tolerance, and is the same as ignoring each of their
+/// Excluding pairs of groups makes no radius smaller, up to the tolerance, and is the same as ignoring each of their
 /// triangle pairs.
 #[test]
-fn pairs_that_do_not_count_limit_no_radius() {
+fn pairs_that_do_not_count_do_not_limit_radii() {
     let (mut larger, mut compared) = (0, 0);
     for seed in 0..cases(80) {
         let (model, RandomOptions { options, filter, .. }, groups) = sample(seed);
@@ -143,7 +143,7 @@ fn pairs_that_do_not_count_limit_no_radius() {
     assert!(larger > threshold(10), "{larger} of {compared}");
 }
 
-/// Two sheets that cross each other everywhere, and a third one that one mode lowers onto them.
+/// Returns two sheets that cross each other everywhere, and a third one that one mode lowers onto them.
 fn crossing_sheets() -> (ReducedModel, Vec<u32>) {
     let side = 12;
     let sheet = |up: f64, tilt: f64| {
@@ -172,7 +172,7 @@ fn crossing_sheets() -> (ReducedModel, Vec<u32>) {
 }
 
 #[test]
-fn parts_that_cross_each_other_can_be_left_out() {
+fn groups_that_cross_each_other_can_be_excluded() {
     let (model, of_triangle) = crossing_sheets();
     let groups = TriangleGroups::new(&of_triangle).unwrap();
     let certify = |groups: TriangleGroups| {
@@ -224,7 +224,7 @@ fn other_groups_are_refused() {
     assert_eq!(plain.parts().digest, certify(ContactFilter::default()).unwrap().parts().digest);
     assert!(plain.filter().groups().is_none());
     assert!(message(&plain, &used).contains("without groups"));
-    // A forged table changes the digest, as does another group.
+    // A changed table or group changes the digest.
     let mut moved = of_triangle.clone();
     moved[7] = 1;
     let moved = filter(TriangleGroups::new(&moved).unwrap().between_only());
@@ -261,7 +261,7 @@ fn other_groups_are_refused() {
     assert_eq!(ContactFilter::default().with_groups(shared), used);
 }
 
-/// Groups of several meshes hold between them in every question about two detectors; any others do not.
+/// Groups of several meshes apply between them in every query of two detectors; other groups do not.
 #[test]
 fn groups_of_several_meshes_hold_between_them() {
     let (mut counted, mut left_out) = (0, 0);
@@ -275,7 +275,7 @@ fn groups_of_several_meshes_hold_between_them() {
         let counts = [0, 1].map(|m| meshes[m].faces().len());
         let scene = random_groups(random, counts[0] + counts[1]);
         let of_meshes = scene.of_meshes(&counts).unwrap();
-        // Files do not store that groups hold between meshes: the value is the same.
+        // Files do not store that groups apply between meshes: the value is the same.
         assert_eq!(scene.of_meshes(&[counts[0] + counts[1]]).unwrap()[0], scene, "seed {seed}");
         let is_counted = |(a, b): Pair| scene.is_pair_counted(a, counts[0] as u32 + b);
         let ends = [0, 1].map(|m| -> Vec<DVec3> {
@@ -317,7 +317,7 @@ fn groups_of_several_meshes_hold_between_them() {
         counted += kept.len();
         left_out += all.len() - kept.len();
 
-        // The same groups, each by itself.
+        // The same groups, for each mesh alone.
         let single = [0, 1].map(|m| {
             let numbers: Vec<u32> = (0..counts[m]).map(|t| (t % 2) as u32).collect();
             TriangleGroups::new(&numbers).unwrap().between_only()
@@ -332,7 +332,7 @@ fn groups_of_several_meshes_hold_between_them() {
         if GroupTable::from(&scene).count > 1 {
             assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");
         }
-        // The same groups, made again: other meshes.
+        // The same groups, created again, count as those of other meshes.
         let [mut one, _] = detectors(scene.of_meshes(&counts).unwrap().try_into().unwrap());
         let [_, mut two] = detectors(scene.of_meshes(&counts).unwrap().try_into().unwrap());
         assert_eq!(one.against(x[0], &mut two, x[1]).unwrap(), all, "seed {seed}");

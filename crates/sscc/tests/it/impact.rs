@@ -1,4 +1,4 @@
-//! Two moving triangles against exact arithmetic.
+//! Compares impacts of two moving triangles with exact arithmetic.
 
 use glam::DVec3;
 use num_traits::ToPrimitive;
@@ -8,14 +8,14 @@ use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
 use sscc_testing::cases;
 use sscc_testing::first_contact;
 
-/// Corners on a grid of integers: contacts that are exact, of every kind, at times that are not.
+/// Corners on a grid of integers: exact contacts of every kind, at times that need not be representable.
 fn corners(size: i32) -> impl Strategy<Value = [DVec3; 3]> {
     prop::array::uniform3(
         prop::array::uniform3(-size..=size).prop_map(|p| DVec3::from_array(p.map(f64::from))),
     )
 }
 
-/// Any motion, standing still, moving as one, becoming a segment or a point, staying in a plane.
+/// Returns any motion: rest, a translation, a motion to a segment or a point, a motion in a plane, or another one.
 fn moving(size: i32) -> impl Strategy<Value = MovingTriangle> {
     (corners(size), corners(size), 0..8).prop_map(|(t0, t1, kind)| match kind {
         0 => MovingTriangle { t0, t1: t0 },
@@ -35,12 +35,12 @@ fn agrees(x: &MovingTriangle, y: &MovingTriangle) -> Result<(), TestCaseError> {
     let exact = first_contact(x, y);
     for (x, y) in [(x, y), (y, x)] {
         let found = impact_triangle_triangle(x, y, Impact::TOLERANCE);
-        // On so coarse a grid what does not touch stays well apart.
+        // On this coarse grid triangles that do not touch have a clear distance.
         prop_assert_eq!(found.is_some(), exact.is_some(), "{:?} {:?}", found, exact);
         if let (Some(found), Some(exact)) = (found, &exact) {
             let (lower, upper) = (exact.lower().to_f64().unwrap(), exact.upper().to_f64().unwrap());
             prop_assert!(found <= upper, "{} after {}", found, upper);
-            // Corners that approach along a curve of third order are as near as the tolerance long before.
+            // Corners that approach along a curve of third order come within the tolerance long before the contact.
             prop_assert!(found > lower - 0.01, "{} long before {}", found, lower);
         }
     }
@@ -55,7 +55,7 @@ proptest! {
         agrees(&x, &y)?;
     }
 
-    /// Far more contacts, nearly all of them degenerate.
+    /// On this grid there are far more contacts, nearly all of them degenerate.
     #[test]
     fn impacts_on_the_coarsest_grid(x in moving(1), y in moving(1)) {
         agrees(&x, &y)?;

@@ -1,5 +1,5 @@
-//! Moving triangles that nearly touch, against exact arithmetic: no contact is missed, and whatever is listed is within
-//! the tolerance at the time given.
+//! Compares moving triangles that nearly touch with exact arithmetic: no contact is missed, and listed pairs are within
+//! the tolerance at their time.
 
 use glam::{DMat3, DVec3};
 use num_traits::ToPrimitive;
@@ -9,12 +9,12 @@ use sscc_testing::{distance, first_contact};
 
 use crate::common::Random;
 
-/// How two triangles nearly touch.
+/// The ways in which two triangles nearly touch.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     /// A triangle above another one.
     Sheets,
-    /// The same triangle again, above itself: all edges are parallel.
+    /// A triangle above a copy of itself, so that all edges are parallel.
     Twins,
     /// An edge across an edge.
     Edges,
@@ -26,7 +26,7 @@ enum Kind {
 
 const KINDS: [Kind; 5] = [Kind::Sheets, Kind::Twins, Kind::Edges, Kind::Vertex, Kind::Neighbours];
 
-/// Any triangle of about size 1; one in three is a sliver.
+/// Returns a triangle of about size 1; one in three is a sliver.
 fn triangle(random: &mut Random) -> [DVec3; 3] {
     let mut p = [(); 3].map(|()| random.vector());
     if random.below(3) == 0 {
@@ -36,7 +36,7 @@ fn triangle(random: &mut Random) -> [DVec3; 3] {
     p
 }
 
-/// Two triangles a narrow gap apart. Their motion is common, a linear map and a translation, but for a random part of
+/// Returns two triangles with a narrow gap. Their motion is a common linear map and translation, plus a random part of
 /// between a thousandth of the gap and a hundred gaps.
 fn narrow_pair(kind: Kind, random: &mut Random) -> [MovingTriangle; 2] {
     let x = triangle(random);
@@ -72,14 +72,14 @@ fn narrow_pair(kind: Kind, random: &mut Random) -> [MovingTriangle; 2] {
     [moving(x), moving(y)]
 }
 
-/// The unit of tolerances: the largest difference of a corner from the first one of x, in any coordinate.
+/// Returns the unit of tolerances: the largest difference of a corner from the first one of x, in any coordinate.
 fn size(x: &MovingTriangle, y: &MovingTriangle) -> f64 {
     let ends = [[x.t0, y.t0], [x.t1, y.t1]];
     let differences = ends.iter().flat_map(|end| end.as_flattened().iter().map(|p| *p - end[0][0]));
     differences.map(|d| d.abs().max_element()).fold(0.0, f64::max)
 }
 
-/// Whether the time listed, if any, is one at which the two are within the tolerance.
+/// Whether the two triangles are within the tolerance at the listed time, if any.
 fn is_within_tolerance(x: &MovingTriangle, y: &MovingTriangle, tolerance: f64) -> bool {
     impact_triangle_triangle(x, y, tolerance)
         .is_none_or(|t| distance(x, y, t) <= size(x, y) * (tolerance.max(6e-14) + 1e-15))
@@ -121,7 +121,7 @@ fn no_narrow_contact_is_missed_or_late() {
     assert!(met >= 3 && free >= 3, "{met} {free}");
 }
 
-/// A power of two changes no digit but those of the smallest coordinates: down to sizes where products underflow.
+/// Multiplication by a power of two changes digits only of the smallest coordinates, down to sizes at which products underflow.
 #[test]
 fn the_tolerance_holds_at_every_size() {
     for case in 0..10 {
@@ -141,7 +141,7 @@ fn the_tolerance_holds_at_every_size() {
     }
 }
 
-/// Two triangles of size 1, 1e-9 apart, that turn together: they stay nearly as far apart as they are.
+/// Two triangles of size 1 with a distance of 1e-9 rotate together: their distance nearly stays the same.
 #[test]
 fn thin_sheets_that_turn_together_are_free() {
     let sheet = |z: f64| [DVec3::new(0.0, 0.0, z), DVec3::new(1.0, 0.1, z), DVec3::new(0.2, 0.9, z)];
@@ -154,7 +154,7 @@ fn thin_sheets_that_turn_together_are_free() {
     }
 }
 
-/// A vertex that ends exactly on a face: coordinates have so few digits that its position, with weights of quarters, is
+/// A vertex ends exactly on a face: coordinates have so few digits that its position, with weights of quarters, is
 /// exact, while normals and projections are rounded.
 #[test]
 fn what_touches_at_the_end_is_listed() {
@@ -171,8 +171,8 @@ fn what_touches_at_the_end_is_listed() {
     }
 }
 
-/// The closest features of this pair of segments are undecided in rounded numbers, while other features have a gap of a
-/// few units in the last place.
+/// Rounded numbers do not decide the closest features of this pair of segments, while other features have a gap of a few
+/// units in the last place.
 #[test]
 fn tolerances_below_rounding_do_not_end_the_search_early() {
     let v = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);

@@ -1,4 +1,4 @@
-//! The triangle test against a naive oracle: exact linear programming, slow and of another kind.
+//! Compares the triangle test with a naive oracle of another kind: slow, exact linear programming.
 
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -18,7 +18,7 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2,
 ///
 /// Phase one of the simplex method in exact numbers: from one artificial variable for each equation, it
 /// minimises their sum, which becomes 0 exactly if the equations have a solution. Bland's rule (the lowest
-/// index enters, the lowest leaves) keeps it from cycling. All entries are whole numbers over one common
+/// index enters, the lowest leaves) prevents cycles. All entries are whole numbers over one common
 /// denominator, the last pivot, by which every step divides without remainder (fraction-free elimination).
 fn oracle<T: Num + PartialOrd + Clone>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> bool {
     const VARIABLES: usize = 6;
@@ -71,14 +71,14 @@ fn oracle<T: Num + PartialOrd + Clone>(a: &[[T; 3]; 3], b: &[[T; 3]; 3]) -> bool
     }
 }
 
-/// The oracle on the exact values of the coordinates, all times 2^1075.
+/// Calls the oracle with the exact values of the coordinates, all times 2^1075.
 fn intersect_exactly(a: &Triangle, b: &Triangle) -> bool {
     let whole = |x: f64| {
         let (mantissa, exponent, sign) = x.integer_decode();
         BigInt::from(i64::from(sign) * mantissa as i64) << (i32::from(exponent) + 1075)
     };
     let mut triangles = [a, b].map(|t| t.map(|p| p.to_array().map(whole)));
-    // Common factors 2 change nothing and take time.
+    // Removes common factors of 2, which only take time.
     let coordinates = || triangles.iter().flatten().flatten();
     let shift = coordinates().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
     for x in triangles.iter_mut().flatten().flatten() {
@@ -87,13 +87,13 @@ fn intersect_exactly(a: &Triangle, b: &Triangle) -> bool {
     oracle(&triangles[0], &triangles[1])
 }
 
-/// The oracle on whole coordinates up to a hundred, fast.
+/// Calls the oracle with whole coordinates up to a hundred, which is fast.
 fn intersect_whole(a: &Triangle, b: &Triangle) -> bool {
     let whole = |t: &Triangle| t.map(|p| p.to_array().map(|x| x as i128));
     oracle(&whole(a), &whole(b))
 }
 
-/// The tested function, asserted to say the same for both orders of the triangles and all of the corners.
+/// Calls the tested function, and asserts that the answer is the same for both orders of the triangles and all orders of corners.
 fn intersect(a: &Triangle, b: &Triangle) -> bool {
     let found = intersect_triangle_triangle(a, b);
     for order_a in ORDERS {
@@ -116,7 +116,7 @@ fn check(a: &Triangle, b: &Triangle) -> bool {
     found
 }
 
-/// A small generator of pseudo-random numbers (a Weyl sequence, mixed), the same in every run.
+/// A small generator of pseudo-random numbers (a mixed Weyl sequence), the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -129,37 +129,37 @@ impl Random {
         x ^ (x >> 32)
     }
 
-    /// A whole number in `0..count`.
+    /// Returns a whole number in `0..count`.
     fn below(&mut self, count: u64) -> u64 {
         ((u128::from(self.bits()) * u128::from(count)) >> 64) as u64
     }
 
-    /// A whole number in `-size..=size`.
+    /// Returns a whole number in `-size..=size`.
     fn whole(&mut self, size: u64) -> f64 {
         self.below(2 * size + 1) as f64 - size as f64
     }
 
-    /// A number in `-1..1`, a multiple of 2^-52.
+    /// Returns a number in `-1..1`, a multiple of 2^-52.
     fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// A triangle with corners from a generator of coordinates.
+    /// Returns a triangle with corners from a generator of coordinates.
     fn triangle(&mut self, mut coordinate: impl FnMut(&mut Self) -> f64) -> Triangle {
         std::array::from_fn(|_| DVec3::from_array(std::array::from_fn(|_| coordinate(self))))
     }
 
-    /// A triangle with whole coordinates in `-size..=size`.
+    /// Returns a triangle with whole coordinates in `-size..=size`.
     fn whole_triangle(&mut self, size: u64) -> Triangle {
         self.triangle(|random| random.whole(size))
     }
 
-    /// A point.
+    /// Returns a point with whole coordinates in `-size..=size`.
     fn whole_point(&mut self, size: u64) -> DVec3 {
         DVec3::new(self.whole(size), self.whole(size), self.whole(size))
     }
 
-    /// Weights of three corners: whole numbers of sum 8, so that they divide exactly.
+    /// Returns weights of three corners: whole numbers of sum 8, so that they divide exactly.
     fn weights(&mut self) -> [f64; 3] {
         let first = self.below(9);
         let second = self.below(9 - first);
@@ -167,12 +167,12 @@ impl Random {
     }
 }
 
-/// The point with the given weights; exact if the corners are short and the weights are eighths.
+/// Returns the point with the given weights; exact if the corners have few digits and the weights are eighths.
 fn point(triangle: &Triangle, weights: [f64; 3]) -> DVec3 {
     triangle[0] * weights[0] + triangle[1] * weights[1] + triangle[2] * weights[2]
 }
 
-/// The point itself, and the ones next to it along an axis.
+/// Returns the point itself, and its neighbours along an axis.
 fn neighbours(p: DVec3, axis: usize) -> [DVec3; 3] {
     let at = |x: f64| {
         let mut moved = p;
@@ -182,7 +182,7 @@ fn neighbours(p: DVec3, axis: usize) -> [DVec3; 3] {
     [p, at(p[axis].next_up()), at(p[axis].next_down())]
 }
 
-/// `2^exponent`, denormal ones too.
+/// Returns `2^exponent`, also if it is subnormal.
 fn power_of_two(exponent: i32) -> f64 {
     if exponent >= -1022 {
         f64::from_bits(((1023 + exponent) as u64) << 52)
@@ -191,19 +191,19 @@ fn power_of_two(exponent: i32) -> f64 {
     }
 }
 
-/// Both triangles multiplied by the factor, with rounding unless it is a power of two.
+/// Returns the triangle multiplied by a factor, rounded unless the factor is a power of two.
 fn scaled(triangle: &Triangle, factor: f64) -> Triangle {
     triangle.map(|p| p * factor)
 }
 
-/// Factors that leave whole coordinates below 2^6 exact, from denormal numbers to the largest allowed.
+/// Exponents of factors for which whole coordinates below 2^6 stay exact, from subnormal numbers to the largest allowed ones.
 const POWERS: [i32; 12] = [-1074, -1060, -1022, -700, -350, -300, -287, -245, -240, -238, 100, 193];
 
-/// Factors that round: where `robust` alone goes wrong, and near the largest allowed.
+/// Factors that need rounding: those for which the crate `robust` alone is wrong, and near the largest allowed factor.
 const FACTORS: [f64; 6] = [1e-320, 1e-300, 1e-110, 1e-73, 3e-72, 1e58];
 
 #[test]
-fn oracle_knows_plain_cases() {
+fn oracle_is_right_in_plain_cases() {
     let a = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let at = |x, y, z| DVec3::new(x, y, z);
     let through = [at(0.25, 0.25, -1.0), at(0.25, 0.25, 1.0), at(5.0, 5.0, 0.0)];
@@ -224,7 +224,7 @@ fn tiny_whole_coordinates() {
     let mut random = Random(1);
     let mut count = [0; 2];
     for i in 0..cases(40_000) {
-        // From 0..=1 (nearly everything touches or is degenerate) to 0..=3; some in one plane.
+        // Coordinates from 0..=1 (nearly all triangles touch or are degenerate) to 0..=3; some triangles are in one plane.
         let largest = 2 + i % 3;
         let flat = i % 7 == 0;
         let mut coordinate = |random: &mut Random| random.below(largest) as f64;
@@ -234,7 +234,7 @@ fn tiny_whole_coordinates() {
                 p.z = p.x + p.y;
             }
         }
-        // Chance brings every order of corners; asking for all of them each time is slow.
+        // Random triangles have every order of corners; testing all orders each time is slow.
         let found = if i % 8 == 0 { intersect(&a, &b) } else { intersect_triangle_triangle(&a, &b) };
         assert_eq!(found, intersect_whole(&a, &b), "{a:?} {b:?}");
         if i % 8 == 0 {
@@ -272,7 +272,7 @@ fn mixed_magnitudes() {
     }
 }
 
-/// A corner on the other triangle, and one ulp off it: only the ulp's side decides.
+/// A corner is on the other triangle, or off it by one ulp: only the side of the ulp decides.
 #[test]
 fn corner_on_face() {
     let mut random = Random(4);
@@ -281,7 +281,7 @@ fn corner_on_face() {
         let a = random.whole_triangle(1 << 20);
         let p = point(&a, random.weights());
         let normal = (a[1] - a[0]).cross(a[2] - a[0]);
-        // The other corners on one side, so that p is the only point that can touch.
+        // The other corners are on one side, so that p is the only point that can touch.
         let away = |random: &mut Random| {
             let q = random.whole_point(1 << 20);
             p + if q.dot(normal) < 0.0 { -q } else { q }
@@ -294,7 +294,7 @@ fn corner_on_face() {
     assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
-/// Two edges that touch at one point, and one ulp off.
+/// Two edges touch at one point, or are off by one ulp.
 #[test]
 fn edges_that_touch() {
     let mut random = Random(5);
@@ -304,7 +304,7 @@ fn edges_that_touch() {
         let weight = random.below(9) as f64 / 8.0;
         let p = a[0] * weight + a[1] * (1.0 - weight);
         let w = random.whole_point(1 << 10);
-        // Behind the edge, seen from the third corner of a.
+        // The triangle b is behind the edge, seen from the third corner of a.
         let b = [p - w, p + w * 4.0, p + (p - a[2]) * 2.0];
         for q in neighbours(b[0], i % 3) {
             count[usize::from(check(&a, &[q, b[1], b[2]]))] += 1;
@@ -313,14 +313,14 @@ fn edges_that_touch() {
     assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
-/// Everything in one plane, or nearly: corners and edges on edges, overlaps, and one ulp off.
+/// Triangles are in one plane, or nearly: with corners and edges on edges, overlaps, and one ulp off.
 #[test]
 fn coplanar() {
     let mut random = Random(6);
     let mut count = [0; 2];
     for i in 0..cases(1_200) {
         let base = random.whole_triangle(1 << 15);
-        // Combinations of two directions: all exactly in one plane, on a coarse lattice.
+        // Combinations of two directions are exactly in one plane, on a coarse lattice.
         let mut lattice = |size: u64| {
             let (s, t) = (random.whole(size), random.whole(size));
             base[0] + (base[1] - base[0]) * s + (base[2] - base[0]) * t
@@ -335,7 +335,7 @@ fn coplanar() {
     assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
-/// Segments and points: collinear overlaps and gaps, crossings, points on edges and on faces.
+/// Triangles are segments or points, with collinear overlaps and gaps, crossings, and points on edges and on faces.
 #[test]
 fn degenerate() {
     let mut random = Random(7);
@@ -374,7 +374,7 @@ fn identical_and_shared_corners() {
     }
 }
 
-/// A power of two changes no answer, so the fast oracle on whole numbers knows them all.
+/// A power of two changes no answer, so the fast oracle on whole numbers has all answers.
 #[test]
 fn powers_of_two() {
     let mut random = Random(9);
@@ -390,7 +390,7 @@ fn powers_of_two() {
     }
 }
 
-/// Touching triangles on scales that round: afterwards they touch no more, and rounding decides.
+/// Touching triangles are scaled with rounding: afterwards rounding decides whether they touch.
 #[test]
 fn other_scales() {
     let mut random = Random(10);

@@ -1,4 +1,4 @@
-//! The common points of two triangles against exact arithmetic. The cases are those of `intersect.rs`, which calls
+//! Compares the common points of two triangles with exact arithmetic. The cases are those of `intersect.rs`, which calls
 //! [`check`] for each.
 
 use glam::DVec3;
@@ -26,7 +26,7 @@ pub fn check(a: &Triangle, b: &Triangle) {
     assert_eq!(corners, common_corners(&a.map(exact), &b.map(exact)), "{a:?} {b:?}");
 }
 
-/// Asserts that other orders of the triangles and of their corners give the same points, bit for bit.
+/// Asserts that the points are the same, bit for bit, for other orders of the triangles and of their corners.
 fn assert_symmetric(a: &Triangle, b: &Triangle, found: Option<&Intersection>) {
     let sorted = |found: Option<&Intersection>| {
         let mut points: Vec<_> =
@@ -40,7 +40,7 @@ fn assert_symmetric(a: &Triangle, b: &Triangle, found: Option<&Intersection>) {
     }
 }
 
-/// Asserts that a point is the only common point of its features, and rounded within the stated bound. Returns it exactly.
+/// Asserts that a point is the only common point of its features, and rounded within the stated bound. Returns the exact point.
 fn check_point(a: &Triangle, b: &Triangle, point: &IntersectionPoint) -> Point {
     let triangles = [a, b];
     let hulls = [0, 1].map(|side| feature_corners(triangles[side], point.features[side]));
@@ -69,7 +69,7 @@ fn check_point(a: &Triangle, b: &Triangle, point: &IntersectionPoint) -> Point {
     x
 }
 
-/// The errors of rounded coordinates, times the weight of the exact point.
+/// Returns the errors of rounded coordinates, times the weight of the exact point.
 fn weighted_errors(position: DVec3, x: &Point) -> [Dyadic; 3] {
     std::array::from_fn(|k| (Dyadic::new(position[k]) * &x.weight - &x.vector[k]).abs())
 }
@@ -82,7 +82,7 @@ fn feature_corners(triangle: &Triangle, feature: Feature) -> Vec<DVec3> {
     }
 }
 
-/// The common point of the affine hulls of two features.
+/// Returns the common point of the affine hulls of two features.
 fn common_point(a: &[DVec3], b: &[DVec3]) -> Point {
     let [a, b] = [a, b].map(|hull| hull.iter().map(|p| exact(*p)).collect::<Vec<_>>());
     match (a.as_slice(), b.as_slice()) {
@@ -120,7 +120,7 @@ fn assert_is_inside(hull: &[DVec3], x: &Point) {
     }
 }
 
-/// Asserts that the corners, in this order, turn the same way.
+/// Asserts that the corners, in this order, form a convex polygon.
 fn assert_convex(corners: &[Point]) {
     let turn = |i: usize| {
         let [p, q, r] = [0, 1, 2].map(|k| &corners[(i + k) % corners.len()]);
@@ -132,7 +132,7 @@ fn assert_convex(corners: &[Point]) {
     }
 }
 
-/// Edges nearly parallel to the face that they cross: t is computed from distances that naive arithmetic loses.
+/// Edges are nearly parallel to the face that they cross: t is computed from distances that cancel in naive arithmetic.
 #[test]
 fn nearly_parallel() {
     let mut random = Random::new(51);
@@ -140,7 +140,7 @@ fn nearly_parallel() {
     for i in 0..sscc_testing::cases(1_000) {
         let tilt = 2.0_f64.powi(-(i % 60));
         let offset = random.vector() * 10.0;
-        // Corners in a plane with rounding errors, the others as close to it on both sides.
+        // Some corners are in a plane up to rounding errors, the others are as close to it on both sides.
         let (e, f) = (random.vector(), random.vector());
         let point = |s: f64, t: f64, lift: DVec3| offset + e * s + f * t + lift * tilt;
         let a =
@@ -161,7 +161,7 @@ fn nearly_parallel() {
     assert!(crossings > sscc_testing::threshold(800), "{crossings}");
 }
 
-/// Determinants of 1 and 2 whose products have about 140 bits: 106 bits lose all digits.
+/// Determinants are 1 and 2, and their products have about 140 bits: with 106 bits all digits would be lost.
 #[test]
 fn determinants_that_cancel() {
     let mut random = Random::new(52);

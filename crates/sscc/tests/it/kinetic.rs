@@ -1,4 +1,5 @@
-//! Kinetic queries against brute force, which shares no box and no test in single precision with them, at every step of every kind of motion.
+//! Compares kinetic queries with brute force, which uses none of their AABBs and tests in single precision, at every step of motions of
+//! all kinds.
 
 use glam::DVec3;
 use sscc::{
@@ -9,8 +10,8 @@ use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model, random_options};
 
-/// What was compared: steps, steps with collisions, steps where fewer triangles were tested than a query by
-/// certificates tests, and pairs found at them.
+/// The numbers of compared steps, of steps with collisions, of steps at which fewer triangles were tested than by a query
+/// with certificates, and of pairs.
 #[derive(Debug, Default)]
 struct Counts {
     steps: usize,
@@ -19,7 +20,7 @@ struct Counts {
     pairs: usize,
 }
 
-/// Motions in z, in units of `size`: walks, vibrations, jumps, returns, rest, the same q again.
+/// Returns a motion in z, in units of `size`: random walks, vibrations, jumps, returns, rest, or repeated q.
 fn motion(random: &mut Random, rank: usize, kind: usize, steps: usize, size: f64) -> Vec<Vec<f64>> {
     let start: Vec<f64> = (0..rank).map(|_| random.signed() * size).collect();
     let waves: Vec<[f64; 3]> =
@@ -32,7 +33,7 @@ fn motion(random: &mut Random, rank: usize, kind: usize, steps: usize, size: f64
     (0..steps)
         .map(|i| {
             match kind {
-                // A walk, with stops.
+                // A random walk, with stops.
                 0 if random.below(8) > 0 => z.iter_mut().for_each(|z| *z += random.signed() * stride),
                 0 => {}
                 // Vibrations.
@@ -46,7 +47,7 @@ fn motion(random: &mut Random, rank: usize, kind: usize, steps: usize, size: f64
                         _ => vibration(i),
                     }
                 }
-                // Straight there and back: returns exactly.
+                // A straight motion and back along the same points.
                 _ => {
                     let t = 1.0 - 0.1 * (i % 80).abs_diff(40) as f64 / 40.0;
                     z = start.iter().map(|x| x * t).collect();
@@ -105,7 +106,7 @@ fn small_models_of_every_kind() {
     );
 }
 
-/// A coil of a band, of several clusters; some of its corners on vertices of their own.
+/// Returns a coil of a band, of several buckets; some of its corners have new vertices.
 fn coil(random: &mut Random, seed: u64) -> ReducedModel {
     let (steps, turns) = (90 + random.below(80), 2.0 + 2.0 * random.uniform());
     let pitch = 0.25 + 0.1 * random.uniform();
@@ -155,7 +156,7 @@ fn coil(random: &mut Random, seed: u64) -> ReducedModel {
 }
 
 #[test]
-fn coils_of_several_clusters() {
+fn answers_of_coils_are_those_of_brute_force() {
     let mut counts = Counts::default();
     for seed in 0..cases(16) {
         let random = &mut Random::new(seed + 600_000);
@@ -171,7 +172,7 @@ fn coils_of_several_clusters() {
                 .weld(seed % 3 == 0 && seed % 2 == 0),
             )
             .budget([1 << 12, 64][usize::from(seed % 7 == 3)])
-            // The limit, which sets the size of the motion, stays near contact.
+            // The limit, which determines the size of the motion, stays near contact.
             .reach(1.0);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let limit = certificates.parts().pair_tree.limit();
@@ -190,7 +191,7 @@ fn coils_of_several_clusters() {
 }
 
 #[test]
-fn errors_leave_no_trace() {
+fn answers_after_an_error_are_right() {
     let model = coil(&mut Random::new(1), 1);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
@@ -209,7 +210,7 @@ fn errors_leave_no_trace() {
     }
 }
 
-/// A mode that moves nothing makes norms, and regions, as large as one likes.
+/// With a mode without displacements, norms and regions can have any size.
 #[test]
 fn regions_of_any_size_are_searched() {
     for triangles in [3_u32, 40, 700] {

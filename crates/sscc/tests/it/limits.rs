@@ -1,5 +1,5 @@
-//! Coordinates at the documented limits: the answers are those of the same shapes at a smaller size. A power of two
-//! changes no digit.
+//! At the documented limits of coordinates the answers are those of the same shapes at a smaller size. The factor is a power of
+//! two, which changes no digit.
 
 use glam::{DMat3, DVec3};
 use num_traits::ToPrimitive;
@@ -17,7 +17,7 @@ use sscc_testing::{cases, distance, first_contact, threshold};
 
 use crate::common::Random;
 
-/// A point of the cube from -1 to 1: on a corner of it, on a grid, or anywhere.
+/// Returns a random point in the cube from -1 to 1: at a corner of it, on a grid, or anywhere.
 fn point(random: &mut Random) -> DVec3 {
     let x = random.vector();
     match random.below(3) {
@@ -42,7 +42,7 @@ fn large(p: DVec3) -> DVec3 {
     p * limits::LARGEST
 }
 
-/// Four corners, from far ends of the cube, whose differences are twice as large as they are.
+/// Returns a moving triangle with corners at far ends of the cube, whose differences are up to twice as large as coordinates.
 fn moving(random: &mut Random) -> MovingTriangle {
     MovingTriangle { t0: triangle(random), t1: triangle(random) }
 }
@@ -69,7 +69,7 @@ fn triangles_meet_as_smaller_ones_do() {
         };
         let expected = corners(intersection_triangle_triangle(&a, &b), limits::LARGEST);
         assert_eq!(corners(intersection_triangle_triangle(&x, &y), 1.0), expected, "case {case}");
-        // Depths below the smallest number have no larger ones.
+        // Depths that underflow at the small size cannot be compared.
         let penetration =
             penetration_triangle_triangle(&a, &b).filter(|p| p.depth > 1e-300 || p.depth == 0.0);
         if let Some(small) = penetration {
@@ -83,8 +83,8 @@ fn triangles_meet_as_smaller_ones_do() {
     assert!(met > threshold(500) && apart > threshold(500), "{met} {apart}");
 }
 
-/// A time is never later than the first contact, and at it the distance is within the tolerance, which is one of the
-/// size.
+/// Checks that a time is not later than the first contact, and that the distance at this time is within the tolerance, relative
+/// to the size.
 fn check_time(a: &MovingTriangle, b: &MovingTriangle, found: Option<f64>, size: f64, label: &str) {
     if let Some(t) = found {
         let allowed = size * (Impact::TOLERANCE + 1e-15);
@@ -99,7 +99,7 @@ fn moving_triangles_meet_as_smaller_ones_do() {
     for case in 0..cases(800) {
         let (a, mut b) = (moving(random), moving(random));
         if case % 2 == 0 {
-            // They end on a face, or pass by it narrowly.
+            // The motions end on a face, or pass it at a small distance.
             let end = a.t1[0].lerp(a.t1[1], 0.25);
             let gap = DVec3::splat([0.0, 1e-9, -1e-13][case / 2 % 3]);
             b.t1[0] = (end + gap).clamp(DVec3::NEG_ONE, DVec3::ONE);
@@ -127,7 +127,7 @@ fn moving_triangles_meet_as_smaller_ones_do() {
     assert!(met > threshold(100) && apart > threshold(50), "{met} {apart}");
 }
 
-/// Opposite corners of the range, also where one triangle passes through the other.
+/// Corners are at opposite ends of the range, also if one triangle passes through the other.
 #[test]
 fn corners_may_be_anywhere_in_the_range() {
     let far = limits::LARGEST;
@@ -144,7 +144,7 @@ fn corners_may_be_anywhere_in_the_range() {
     }
 }
 
-/// Loose triangles on a grid, apart at rest, and two modes: everything stays within the cube for q of at most 1.
+/// Returns loose triangles on a grid, separate at rest, and two modes: all vertices stay within the cube for q of at most 1.
 fn model(scale: f64, random: &mut Random) -> ReducedModel {
     let (mut positions, mut modes) = (Vec::new(), Vec::new());
     for i in 0..64 {
@@ -165,7 +165,7 @@ fn pairs(impacts: &[Impact]) -> Vec<sscc::Pair> {
     impacts.iter().map(|impact| impact.pair).collect()
 }
 
-/// Queries of all kinds on one model at the limit and on the same model at size 1.
+/// Compares queries of all kinds on a model at the limit with those on the same model at size 1.
 #[test]
 fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
     let (mut colliding, mut impacts) = (0, 0);
@@ -203,7 +203,7 @@ fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
                         kinetic.each_mut().map(|query| pairs(query.continuous(&step[0], &step[1]).unwrap()));
                     assert_eq!(found, small);
                     let [small, found] = queries.each_mut().map(|query| query.safe_scale(&step[0]).unwrap());
-                    // A scale ends before the shape leaves the range.
+                    // The scale at the limit is bounded by the range of coordinates.
                     assert!(found <= 1.01 * small && (found > 0.0) == (small > 0.0), "{found} {small}");
                     let [small, found] =
                         queries.each_mut().map(|query| query.sweep(&step[0], 0, 1.0).unwrap());
@@ -213,7 +213,7 @@ fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
             }
             for query in &mut queries {
                 assert_eq!(query.batch(&q, None, &()).unwrap().len(), q.len());
-                // Whether there is a free configuration depends on the centre; nothing panics.
+                // Whether there is a free configuration depends on the centre; the call must not panic.
                 let _ = query.resolve(&q[0], &ResolveOptions::default());
             }
         }
@@ -237,7 +237,7 @@ fn queries_at_the_limit_have_the_answers_of_a_smaller_model() {
     assert!(colliding > 300 && impacts > 300, "{colliding} {impacts}");
 }
 
-/// Shapes in the world, half as large as the range and at its ends.
+/// The shapes in the world are half as large as the range, and at its ends.
 #[test]
 fn posed_shapes_at_the_limit_have_the_answers_of_smaller_ones() {
     let mut met = 0;

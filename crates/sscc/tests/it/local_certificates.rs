@@ -1,4 +1,4 @@
-//! Queries with local certificates against brute force, far from the centre and where certificates only just hold.
+//! Compares queries with local certificates with brute force, far from the centre and where certificates barely hold.
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn options_of(model: &ReducedModel, seed: u64, random: &mut Numbers) -> CertifyO
         .threads(1)
 }
 
-/// The same certificates with no radius above 0, so that local certificates alone prove nodes.
+/// Returns the same certificates with radii of 0, so that only local certificates prove nodes.
 fn without_radii(certificates: &Certificates) -> Certificates {
     let parts = certificates.parts();
     let (nodes, pairs) = (parts.node_radii.len(), parts.root_pair_radii.len());
@@ -67,7 +67,7 @@ fn without_local(certificates: &Certificates) -> Certificates {
     Certificates::try_from(CertificateParts { local: Arc::default(), ..parts }).unwrap()
 }
 
-/// How often local certificates decided.
+/// Counts of the answers that local certificates decided.
 #[derive(Debug, Default)]
 struct Seen {
     roots: usize,
@@ -99,7 +99,7 @@ fn compare(
     let mut last: Option<Vec<f64>> = None;
     for ray in rays {
         let at = |scale: f64| -> Vec<f64> { center.iter().zip(&ray).map(|(c, d)| c + scale * d).collect() };
-        // The last scale at which the root's local certificate holds.
+        // The largest scale at which the root's local certificate holds.
         let mut is_proven =
             |scale: f64| alone.discrete(&at(scale)).is_ok() && alone.statistics().proof == Proof::Local;
         let first = [1.0, 0.3, 0.1, 0.01, 1e-3].into_iter().find(|scale| is_proven(*scale));
@@ -185,7 +185,7 @@ fn answers_are_those_of_brute_force() {
     assert!(seen.swept_hits_beside > threshold(50), "{seen:?}");
 }
 
-/// Meshes and modes of every odd kind, in one bucket or a few.
+/// The models have unusual meshes and modes of every kind, in one bucket or a few.
 #[test]
 fn answers_of_odd_models_are_those_of_brute_force() {
     let mut seen = Seen::default();
@@ -200,9 +200,9 @@ fn answers_of_odd_models_are_those_of_brute_force() {
     assert!(seen.roots > threshold(1000) && seen.swept_roots > threshold(500), "{seen:?}");
 }
 
-/// A turn of any shape is no strain.
+/// A rotation of a shape has no strain.
 #[test]
-fn shapes_that_turn_within_q_are_proven() {
+fn shapes_that_rotate_within_q_are_proven() {
     let mut turned = 0;
     for kind in [Shape::Box, Shape::Sheet, Shape::Helix] {
         let is_flat = kind == Shape::Sheet;
@@ -210,13 +210,13 @@ fn shapes_that_turn_within_q_are_proven() {
         for seed in (0..40).filter(|seed| FlexibleShape::new(*seed, kind, others).is_affine).take(3) {
             let mut shape = FlexibleShape::new(seed, kind, others);
             if is_flat {
-                // Without roughness: the modes of height are nothing but that, and the map across the plane does not turn with it.
+                // The shape is flat: its modes of height only change heights, and the map across the plane does not rotate with the plane.
                 shape.positions.iter_mut().for_each(|p| p.z = 0.0);
                 for of_vertex in shape.displacements.chunks_mut(shape.rank) {
                     [2, 5, 8].iter().for_each(|k| of_vertex[*k] = DVec3::ZERO);
                 }
             }
-            // Without duplicates, which no root's certificate proves.
+            // Duplicate faces are removed, because no root's certificate proves them free.
             let mut faces = shape.faces.clone();
             let corners = |face: &[u32; 3]| {
                 let mut corners = *face;
@@ -235,7 +235,7 @@ fn shapes_that_turn_within_q_are_proven() {
             if !certificates.exceptions().is_empty() {
                 continue;
             }
-            // With radii, too, which decide from which |z| on local certificates are evaluated.
+            // Certificates with radii, which determine from which |z| on local certificates are evaluated, and certificates without radii.
             let alone = without_radii(&certificates);
             let mut queries = [&certificates, &alone].map(|used| Query::new(&model, used).unwrap());
             for axis in [DVec3::X, DVec3::Y, DVec3::new(1.0, -2.0, 0.7)] {
@@ -257,7 +257,7 @@ fn shapes_that_turn_within_q_are_proven() {
     assert!(turned > 60, "{turned}");
 }
 
-/// The safe scale with local certificates is free, no smaller than without, and takes fewer steps.
+/// The safe scale with local certificates is free, not smaller than without them, and takes fewer steps.
 #[test]
 fn local_certificates_shorten_no_safe_scale() {
     let (mut compared, mut opened, mut tests) = (0, [0, 0], [0, 0]);
@@ -268,7 +268,7 @@ fn local_certificates_shorten_no_safe_scale() {
         let model = model_of(&shape);
         let certificates =
             Certificates::compute(&model, &options_of(&model, seed, random).reach(4.0), &()).unwrap();
-        // Without radii of nodes the search rests on local certificates alone, up to the cap that both keep.
+        // Without radii of nodes the search uses only local certificates, up to the same cap.
         let alone = without_radii(&certificates);
         let none = without_local(&alone);
         let mut queries = [&none, &alone].map(|used| Query::new(&model, used).unwrap());
@@ -296,7 +296,7 @@ fn local_certificates_shorten_no_safe_scale() {
     assert!(10 * tests[1] < 9 * tests[0] && opened[1] < opened[0], "{opened:?} {tests:?}");
 }
 
-/// Two sheets that pass through each other as an affine motion are free before and after. The way is not.
+/// Two sheets that pass through each other by an affine motion are free before and after, but not in between.
 #[test]
 fn safe_scales_end_where_the_way_collides() {
     let (p, faces) = two_sheets(12);
@@ -316,9 +316,9 @@ fn safe_scales_end_where_the_way_collides() {
     }
 }
 
-/// They add up to the whole, and what is proven as a whole has nothing left to search.
+/// Shares add up to 1, and a shape that is proven as a whole has no share to search.
 #[test]
-fn shares_are_those_of_what_is_proven() {
+fn proven_shares_add_up_to_one_and_match_proofs() {
     let mut seen = [0; 3];
     for seed in 0..cases(42_u64) {
         let random = &mut Numbers(seed + 4_700_000);
@@ -348,9 +348,9 @@ fn shares_are_those_of_what_is_proven() {
     assert!(seen.iter().all(|seen| *seen > threshold(20)), "{seen:?}");
 }
 
-/// A patch that no mode moves.
+/// Some patches are not moved by any mode.
 #[test]
-fn parts_that_stand_still_are_certified() {
+fn patches_that_no_mode_moves_are_certified() {
     let n = 12_u32;
     let point = |i: u32| DVec3::new(f64::from(i / (n + 1)), f64::from(i % (n + 1)), 0.0);
     let corner = |i: u32| i / n * (n + 1) + i % n;
@@ -366,7 +366,7 @@ fn parts_that_stand_still_are_certified() {
     compare(&model, &certificates, [vec![1.0], vec![-40.0]].into_iter(), "still", &mut Seen::default());
 }
 
-/// Certificates whose ratios are a tenth of what they are.
+/// The ratios of the certificates are a tenth of the right ones.
 #[test]
 fn audits_find_local_certificates_that_claim_too_much() {
     let (mut lies, mut found, mut local_samples) = (0, 0, 0);
@@ -390,11 +390,11 @@ fn audits_find_local_certificates_that_claim_too_much() {
         let report = audit(&model, &forged, &asked, &()).unwrap();
         found += usize::from(report.violations.iter().any(|line| line.contains("local certificate")));
     }
-    // Of all 28, 17 are found: elsewhere a tenth of the ratio still reaches no collision, or the samples miss it.
+    // 17 of all 28 are found: in the others a tenth of the ratio still reaches no collision, or the samples miss it.
     assert!(found * 2 >= lies && local_samples > 100 * lies, "{found} of {lies}, {local_samples}");
 }
 
-/// Two square sheets one above the other, one apart, with so many vertices along each side.
+/// Returns two square sheets one above the other, at a distance of 1, with `side` vertices along each side.
 fn two_sheets(side: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (mut p, mut faces) = (Vec::new(), Vec::new());
     for sheet in 0..2 {
@@ -409,7 +409,7 @@ fn two_sheets(side: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (p, faces)
 }
 
-/// A region contains more than its segment: what a certificate proves on it may collide beside it.
+/// A region contains more than its segment: pairs that a certificate proves free on the segment may collide elsewhere in the region.
 #[test]
 fn kinetic_answers_are_those_of_brute_force() {
     let (p, faces) = two_sheets(10);
@@ -436,7 +436,7 @@ fn kinetic_answers_are_those_of_brute_force() {
     assert!(proven > 200 && hits > 5, "{proven} {hits}");
 }
 
-/// Pairs that collide at the centre are tested in every query, so the rest of the shape is proven without them.
+/// Exceptions are tested in every query, so the root's certificate covers the rest of the shape.
 #[test]
 fn exceptions_do_not_spoil_the_root() {
     let (mut p, mut faces) = two_sheets(10);
@@ -462,9 +462,9 @@ fn exceptions_do_not_spoil_the_root() {
     assert_eq!(query.statistics().proof, Proof::Local);
 }
 
-/// A rough sheet whose heights become lengths: it is pressed flat, and its bumps slide over each other.
+/// A rough sheet is pressed flat, and its heights become lengths, so that its bumps slide over each other.
 #[test]
-fn heights_that_become_lengths_are_no_proof() {
+fn sheets_whose_heights_become_lengths_are_not_proven_free() {
     let n = 8_u32;
     let height = |i: u32| f64::from((i / (n + 1) + i % (n + 1)) % 2) * 0.4;
     let point = |i: u32| DVec3::new(f64::from(i / (n + 1)), f64::from(i % (n + 1)), height(i));
@@ -487,7 +487,7 @@ fn heights_that_become_lengths_are_no_proof() {
     assert!(!oracle.discrete(&[1.0]).unwrap().is_empty());
 }
 
-/// A coil with four handles of twelve modes, whose weights add up to 1: it turns within q.
+/// Returns a coil with four handles of twelve modes, whose weights add up to 1, so that q can rotate the shape.
 fn coil_with_handles() -> ReducedModel {
     let around = 16;
     let positions: Vec<DVec3> = (0..=6 * around)
@@ -511,7 +511,7 @@ fn coil_with_handles() -> ReducedModel {
     ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap()
 }
 
-/// The q of a turn of the whole shape after maps of its handles that differ from the identity by a share.
+/// Returns the q of a rotation of the whole shape after maps of its handles that differ from the identity by a share.
 fn turned_handles(random: &mut Random, degrees: f64, bend: f64) -> Vec<f64> {
     let turn = DMat3::from_axis_angle(random.vector().normalize(), degrees.to_radians());
     (0..4)
@@ -524,13 +524,13 @@ fn turned_handles(random: &mut Random, degrees: f64, bend: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The q of one map of all handles.
+/// Returns the q of one map of all handles.
 fn affine_handles(map: &DMat3) -> Vec<f64> {
     let map = *map - DMat3::IDENTITY;
     [map.x_axis, map.y_axis, map.z_axis, DVec3::ZERO].map(|column| column.to_array()).as_flattened().repeat(4)
 }
 
-/// Would fail if a turn that needs all handles left a strain, or if what bends the shape were taken away with it.
+/// Fails if a rotation by all handles had a strain, or if the bending of the shape were subtracted with it.
 #[test]
 fn shapes_that_turn_by_all_handles_are_proven_and_no_contact_is_missed() {
     for center in [None, Some(turned_handles(&mut Random::new(5), 20.0, 0.1))] {
@@ -551,12 +551,12 @@ fn turn_and_bend(center: Option<Vec<f64>>) {
             if is_at_rest {
                 assert_eq!(query.statistics().proof, Proof::Local, "{degrees} {bend}");
             }
-            // The motion to a little farther turn.
+            // The motion to a slightly larger rotation.
             let next: Vec<f64> = q.iter().map(|x| x * 1.001).collect();
             assert!(query.continuous(&q, &next).unwrap().is_empty());
         }
     }
-    // Flat, and turned inside out through flat: affine maps, too.
+    // Affine maps that make the shape flat, or invert it through a flat shape.
     let flat = affine_handles(&DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
     let inside_out = affine_handles(&DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)));
     assert_eq!(query.discrete(&flat).unwrap(), oracle.discrete(&flat).unwrap());

@@ -1,5 +1,5 @@
-//! The core through its public interface, against brute force and exact arithmetic. One program, so that the core is
-//! linked once; what counts allocations is a program of its own.
+//! Tests of the core through its public interface, against brute force and exact arithmetic. They are one program, so that the
+//! core is linked once; the tests that count allocations are a separate program.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 mod audit;

@@ -1,5 +1,5 @@
-//! Sweeps of two layers that nearly touch everywhere and turn together: few steps suffice, and the work is limited where
-//! positions are rounded by nearly as much as the layers are apart.
+//! Sweeps of two layers that nearly touch everywhere and rotate together: few steps suffice, and the work is limited if the
+//! rounding of positions is nearly as large as the gap.
 
 use std::f64::consts::TAU;
 
@@ -9,13 +9,14 @@ use sscc::{Method, Modes, Query, ReducedModel, Sweep, SweepOutcome, TriMesh};
 
 use crate::sweep::check;
 
-/// Pieces of a layer along each side.
+/// The number of squares of a layer along each side.
 const SIDE: u32 = 4;
 
-/// Triangles of both layers.
+/// The number of triangles of both layers.
 const TRIANGLES: usize = 4 * (SIDE * SIDE) as usize;
 
-/// Two layers, `gap` apart, that one mode waves together. It also brings them closer, by `closing` times the gap.
+/// Returns two layers with a gap, which one mode bends to waves together. The mode also brings them closer, by `closing` times the
+/// gap.
 fn layers(gap: f64, wave: impl Fn(f64, f64) -> DVec3, closing: f64) -> ReducedModel {
     let row = SIDE + 1;
     let (mut positions, mut displacements, mut faces) = (Vec::new(), Vec::new(), Vec::new());
@@ -43,7 +44,7 @@ fn askew(x: f64, y: f64) -> DVec3 {
     DVec3::new(0.3 * (4.0 * y).cos(), 0.2 * (3.0 * x).sin(), (5.0 * x + 2.0 * y).sin())
 }
 
-/// The sweep of the only mode from 0 to 1, checked by brute force, and its tests of triangles and steps.
+/// Returns the sweep of the only mode from 0 to 1, checked by brute force, and its number of triangle tests and steps.
 fn sweep(model: &ReducedModel) -> (Sweep, u64) {
     let mut query = Query::without_certificates(model, Scope::of(model), Method::BdTree).unwrap();
     let sweep = query.sweep(&[0.0], 0, 1.0).unwrap();
@@ -54,7 +55,7 @@ fn sweep(model: &ReducedModel) -> (Sweep, u64) {
     (sweep, statistics.triangle_tests)
 }
 
-/// Each pair of neighbouring triangles turns by about one radian while it is `gap` apart.
+/// Each pair of opposite triangles rotates by about one radian at a distance of the gap.
 #[test]
 fn layers_that_nearly_touch_are_free_after_few_steps() {
     for gap in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -66,7 +67,7 @@ fn layers_that_nearly_touch_are_free_after_few_steps() {
     }
 }
 
-/// They would touch at 2/3, all at once.
+/// The layers would touch everywhere at 2/3.
 #[test]
 fn layers_that_meet_are_bracketed_after_limited_work() {
     for gap in [1e-3, 1e-9, 1e-12] {

@@ -1,4 +1,4 @@
-//! Triangles that share a vertex, and vertices that are split.
+//! Tests of triangles that share a vertex, and of split vertices.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, at, random_model};
 
-/// The second triangle without a small neighbourhood of v, as two triangles, against the first. For corners with
-/// coordinates up to 8 everything here is exact: what is common beyond v reaches an opposite edge, at least 1/16
-/// of the way to the farthest corner, or it is the end of a degenerate triangle.
+/// Tests the second triangle without a small neighbourhood of v, as two triangles, against the first. For corners with
+/// coordinates up to 8 this is exact: common points beyond v reach an opposite edge, at least 1/16 of the way to the
+/// farthest corner, or the end of a degenerate triangle.
 fn oracle(v: DVec3, x: [DVec3; 2], y: [DVec3; 2]) -> bool {
     let near = |p: DVec3| v + (p - v) * 2.0_f64.powi(-20);
     let ends = y.map(near);
     let first = [v, x[0], x[1]];
-    // Both ends of the strip around a segment through v are kept.
+    // Both ends of the strip around a segment through v are tested.
     let strip = [[ends[0], ends[1], y[0]], [ends[1], y[0], y[1]]];
     let through = intersect_triangle_triangle(&[v; 3], &[y[0], y[1], y[1]]);
     if through {
@@ -29,7 +29,7 @@ fn oracle(v: DVec3, x: [DVec3; 2], y: [DVec3; 2]) -> bool {
 }
 
 #[test]
-fn beyond_a_vertex_is_decided_exactly() {
+fn common_points_beyond_a_shared_vertex_are_found_exactly() {
     let random = &mut Random::new(11);
     let (mut met, mut flat) = (0, 0);
     let cases = cases(300_000);
@@ -38,7 +38,7 @@ fn beyond_a_vertex_is_decided_exactly() {
         let mut corner = || (random.vector() * size).round();
         let v = corner();
         let (mut x, mut y) = ([corner(), corner()], [corner(), corner()]);
-        // Degenerate ones, and ones in one plane.
+        // Degenerate triangles, and triangles in one plane.
         match case % 8 {
             0 => x[1] = v * 2.0 - x[0],
             1 => y[1] = y[0],
@@ -60,7 +60,7 @@ fn beyond_a_vertex_is_decided_exactly() {
     assert!(met > cases / 10 && met < cases * 9 / 10 && flat > cases / 20, "{met} {flat}");
 }
 
-/// Two triangles with a common corner: one stands, the other is lowered through it.
+/// Two triangles have a common corner; one is at rest, the other is lowered through it.
 #[test]
 fn shared_vertex_pairs_are_found_on_request() {
     let p = vec![
@@ -100,16 +100,16 @@ fn shared_vertex_pairs_are_found_on_request() {
         "{error}"
     );
     check_filter(&including, &asked).unwrap();
-    // A forged rule changes the digest.
+    // A changed contact filter changes the digest.
     let mut parts = excluding.parts().clone();
     Arc::make_mut(&mut parts.scope).filter = asked;
     let forged = Certificates::try_from(parts).unwrap();
     assert!(matches!(Query::new(&model, &forged), Err(Error::OtherModel { .. })));
 }
 
-/// The same shape with some corners on vertices of their own: welded, it has the same pairs.
+/// A shape with some corners on new vertices has the same pairs when it is welded.
 #[test]
-fn welding_undoes_splitting() {
+fn welded_shapes_have_the_pairs_of_shapes_without_split_vertices() {
     let (mut compared, mut differed, mut hits) = (0, 0, 0);
     for seed in 0..cases(400) {
         let whole = random_model(seed);
@@ -134,7 +134,7 @@ fn welding_undoes_splitting() {
             let scope =
                 |weld| Scope { filter: ContactFilter::new(neighbours).weld(weld), ..Scope::of(&whole) };
             let query = |model, weld| Query::without_certificates(model, scope(weld), Method::Traditional);
-            // The whole one may have equal vertices of its own.
+            // The shape without split vertices may have other equal vertices.
             let (mut a, mut b) = (query(&whole, true).unwrap(), query(&split, true).unwrap());
             let mut unwelded = query(&split, false).unwrap();
             for size in [0.0, 0.3, 3.0] {
@@ -154,7 +154,7 @@ fn welding_undoes_splitting() {
     );
 }
 
-/// What is ignored is never listed and limits no radius.
+/// Ignored pairs are never listed and limit no radius.
 #[test]
 fn rest_collisions_can_be_ignored() {
     let mut seen = 0;

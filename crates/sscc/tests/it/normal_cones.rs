@@ -1,4 +1,4 @@
-//! Normal cones with the contour test against brute force; and what cones without it miss.
+//! Compares normal cones with the contour test with brute force, and tests that cones without it miss pairs.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, Soup, random_choices, random_model};
 
-/// A sheet over `[0, 1]^2`, mapped.
+/// Returns the image of a sheet over `[0, 1]^2`.
 fn sheet((m, n): (u32, u32), map: impl Fn(f64, f64) -> DVec3) -> Soup {
     let at = |i: u32| map(f64::from(i / (n + 1)) / f64::from(m), f64::from(i % (n + 1)) / f64::from(n));
     let p = (0..(m + 1) * (n + 1)).map(at).collect();
@@ -22,49 +22,49 @@ fn sheet((m, n): (u32, u32), map: impl Fn(f64, f64) -> DVec3) -> Soup {
     (p, (0..m * n).flat_map(square).collect())
 }
 
-/// Surfaces of every kind: open, closed, one-sided, cut along seams, with needles.
+/// Returns a surface of any kind: open, closed, one-sided, cut along seams, or with needles.
 fn surface(random: &mut Random, kind: usize) -> Soup {
     let size = (10 + random.below(20) as u32, 4 + random.below(8) as u32);
     let (turns, rise, noise) = (random.power(-0.3, 0.5), random.power(-1.0, 0.5), random.power(-6.0, -1.0));
     let (mut p, mut faces) = match kind {
         // Crumpled.
         0 => sheet(size, |u, v| DVec3::new(u, v, noise * random_height(u, v))),
-        // Rolled up, and rolled like a paper cone.
+        // Rolled up to a cylinder or a cone.
         1 => sheet(size, |u, v| {
             let (sin, cos) = (TAU * turns * u).sin_cos();
             DVec3::new(cos * (0.3 + rise * u), sin * (0.3 + rise * u), v * (1.0 + u))
         }),
-        // A ramp that turns over itself.
+        // A ramp that winds over itself.
         2 => sheet(size, |u, v| {
             let (sin, cos) = (TAU * turns * u).sin_cos();
             DVec3::new(cos * (0.5 + v), sin * (0.5 + v), rise * u)
         }),
-        // A Moebius strip, its ends not joined, or joined by welding (equal positions, another side up).
+        // A Moebius strip whose ends are separate, or joined by welding (equal positions, opposite sides).
         3 => sheet(size, |u, v| {
             let (angle, along) = (if u == 1.0 { 0.0 } else { TAU * u }, if u == 1.0 { 1.0 - v } else { v });
             let out = 1.0 + (along - 0.5) * (angle / 2.0).cos();
             DVec3::new(out * angle.cos(), out * angle.sin(), (along - 0.5) * (angle / 2.0).sin())
         }),
-        // A sphere, its poles many vertices and its seam doubled.
+        // A sphere with many vertices at each pole and a doubled seam.
         4 => sheet(size, |u, v| {
             let (sin, cos) = if u == 1.0 { (0.0, 1.0) } else { (TAU * u).sin_cos() };
             let polar = PI * v;
             let out = if v == 1.0 { 0.0 } else { polar.sin() };
             DVec3::new(out * cos, out * sin, polar.cos())
         }),
-        // Folded along a line askew, so that its outline crosses itself.
+        // Folded along an oblique line, so that its outline crosses itself.
         _ => sheet(size, |u, v| {
             let beyond = (u + 0.4 * v - 0.7).max(0.0);
             DVec3::new(u - 2.0 * beyond, v, 0.2 * beyond + 0.1 * rise * u)
         }),
     };
     if random.below(3) == 0 {
-        // Noise that turns normals over.
+        // Noise that inverts some normals.
         let noise = random.power(-3.0, -1.0);
         p.iter_mut().for_each(|p| *p += random.vector() * noise);
     }
     if random.below(3) == 0 {
-        // Needles, repeated corners, faces turned over, holes.
+        // Needles, repeated corners, inverted faces, holes.
         for _ in 0..1 + random.below(4) {
             let t = random.below(faces.len());
             let [a, b, c] = faces[t];
@@ -81,7 +81,7 @@ fn surface(random: &mut Random, kind: usize) -> Soup {
             p.push(p[*corner as usize]);
             *corner = p.len() as u32 - 1;
         }
-        // Equal to the first vertex, and before it, but of no face.
+        // An unused vertex, equal to the first one and before it.
         p.insert(0, p[0]);
         faces.iter_mut().flatten().for_each(|v| *v += 1);
     }
@@ -92,7 +92,7 @@ fn random_height(u: f64, v: f64) -> f64 {
     (7.0 * u + 3.0 * v).sin() + (11.0 * v - 5.0 * u).sin() * 0.5
 }
 
-/// Modes are functions of position, so that equal vertices can be welded.
+/// Returns a model with modes that are functions of the position, so that equal vertices can be welded.
 fn bent(random: &mut Random, (p, faces): Soup) -> ReducedModel {
     let rank = 1 + random.below(4);
     let ways: Vec<[DVec3; 3]> =
@@ -158,14 +158,14 @@ fn small_models_of_every_kind_agree() {
     assert!(fewer > threshold(100), "{fewer}");
 }
 
-/// All normals of a ramp point up, whatever lies under it: only the contour test finds its collisions.
+/// All normals of a ramp point up, also where it collides with itself: only the contour test prevents a wrong cull.
 #[test]
 fn a_ramp_over_itself_needs_the_contour_test() {
     let (p, faces) = sheet((60, 3), |u, v| {
         let (sin, cos) = (2.0 * TAU * u).sin_cos();
         DVec3::new(cos * (1.0 + v), sin * (1.0 + v), u)
     });
-    // A bump on the first turn.
+    // A bump on the first winding.
     let bump = |at: usize| {
         let u = (at / 4) as f64 / 60.0;
         if u < 0.5 { DVec3::Z * (TAU * u).sin().powi(2) } else { DVec3::ZERO }
@@ -185,7 +185,7 @@ fn a_ramp_over_itself_needs_the_contour_test() {
     assert_eq!(exact.continuous(&[0.0], &[0.7]).unwrap(), expected);
 }
 
-/// A flat sheet needs no boxes at all.
+/// A flat sheet needs no AABBs.
 #[test]
 fn a_flat_sheet_is_culled_at_the_root() {
     let (p, faces) = sheet((30, 30), |u, v| DVec3::new(u, v, 0.1 * u * v));
@@ -196,7 +196,7 @@ fn a_flat_sheet_is_culled_at_the_root() {
     assert_eq!((query.statistics().opened, query.statistics().box_tests), (0, 0));
 }
 
-/// A tube bent to a C, given by how far each vertex is from its axis; and a mode that closes it.
+/// Returns a tube bent to a C, given by the distance of each vertex from its axis, with a mode that closes it.
 fn tube(radius: impl FnMut(u32) -> f64) -> ReducedModel {
     let (m, n) = (120, 24);
     let ring = |i: u32| (f64::from(i / n) / f64::from(m) - 0.5) * 5.2;
@@ -223,10 +223,10 @@ fn tube(radius: impl FnMut(u32) -> f64) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-/// The paper's Figure 4: noise of about an edge leaves the root's radius nearly as it was (0.373 for 0.387), and takes
-/// most cones away (they save 92 of the nodes to be opened instead of 210).
+/// The paper's Figure 4: noise of about an edge length hardly changes the root's radius (0.373 in place of 0.387), and
+/// invalidates most cones (they cull 92 nodes in place of 210).
 #[test]
-fn noise_takes_cones_away_and_leaves_radii() {
+fn noise_invalidates_cones_and_hardly_changes_radii() {
     let mut random = Random::new(4);
     let models = [tube(|_| 0.25), tube(|_| 0.25 + 0.05 * random.signed())];
     let [(radius, culled), (rough_radius, rough_culled)] = models.map(|model| {

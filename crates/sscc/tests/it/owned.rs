@@ -1,4 +1,4 @@
-//! Queries and detectors are owned values: they outlive the data from which they were made, and go to other threads.
+//! Queries and detectors are owned values: they outlive the data from which they were made, and can be sent to other threads.
 
 use std::fmt::Debug;
 use std::thread;
@@ -11,7 +11,7 @@ use sscc::{
 
 use crate::common::{Random, random_model};
 
-/// What an engine keeps of a shape.
+/// The data that an engine keeps for a shape.
 #[derive(Clone)]
 struct Collider {
     query: Query,
@@ -26,7 +26,7 @@ impl Collider {
         Self { query, detector: Detector::new(model.mesh()), model }
     }
 
-    /// The pairs at q, twice.
+    /// Returns the pairs at q, by the query and by the detector.
     fn pairs(&mut self, q: &[f64]) -> [Vec<Pair>; 2] {
         let positions: Vec<DVec3> = self.model.positions(q).unwrap();
         [self.query.discrete(q).unwrap().to_vec(), self.detector.discrete(&positions).unwrap().to_vec()]
@@ -67,7 +67,7 @@ fn one_struct_with_a_query_and_a_detector_serves_four_threads() {
     assert!(found > 0);
 }
 
-/// Compiles only where each type is what its documentation says.
+/// Compiles only if all types are `Clone`, `Debug`, `Send`, `Sync` and without lifetimes.
 #[test]
 fn public_types_are_owned() {
     fn is_owned<T: Clone + Debug + Send + Sync + 'static>() {}

@@ -1,4 +1,4 @@
-//! The certified pair tree: what it may be read as, and what it must not.
+//! Tests of the certified pair tree: which pairs it certifies, and which trees are refused.
 
 use glam::DVec3;
 use sscc::parts::{CertificateParts, PairTree};
@@ -8,8 +8,8 @@ use crate::common::pair_trees::{LAST, START, edited};
 
 use crate::common::after;
 
-/// Two parallel strips, one above the other at height 1, which a mode lowers: they touch at q = 1. A second one moves
-/// the upper one along.
+/// Returns two parallel strips, one above the other at height 1, which a mode lowers, so that they touch at q = 1. A second mode
+/// moves the upper strip along the lower one.
 fn strips() -> ReducedModel {
     let count = 200;
     let position = |i: usize, z: f64| DVec3::new((i / 2) as f64, (i % 2) as f64, z);
@@ -37,19 +37,19 @@ fn with_tree(certificates: &Certificates, pair_tree: PairTree) -> Result<Certifi
 /// A radius and its link.
 type Entry = (f32, u32);
 
-/// Pairs at q by certificates.
+/// Returns the pairs at q, found with certificates.
 fn ask(model: &ReducedModel, certificates: &Certificates, q: &[f64]) -> Vec<(u32, u32)> {
     Query::new(model, certificates).unwrap().discrete(q).unwrap().to_vec()
 }
 
-/// The strips' boxes are apart at rest, so a tree built by boxes would lack them.
+/// The AABBs of the strips are separate at rest, so a tree that depended on AABBs would not contain them.
 #[test]
-fn what_is_apart_at_rest_is_stored() {
+fn pairs_that_are_separate_at_rest_are_stored() {
     let model = strips();
     let good = certificates(&model);
     let tree = &good.parts().pair_tree;
     assert!(tree.limit() > 1.2);
-    // Known from growing the tree, and yet as close as asked for.
+    // The root's radius is within the tolerance.
     assert!((0.9..=1.0).contains(&good.root_radius()), "{}", good.root_radius());
     let mut oracle = Query::with_method(&model, &good, Method::BruteForce).unwrap();
     for q in [[1.0, 0.0], [1.0, 0.5], [-1.0, 0.0], [1.1, 0.0]] {
@@ -58,14 +58,14 @@ fn what_is_apart_at_rest_is_stored() {
         assert_eq!(ask(&model, &good, &q), expected);
         assert!(oracle.statistics().norm < tree.limit());
     }
-    // Without any of its pairs the tree would say that they never meet: it is what is read.
+    // A tree without its pairs certifies that the strips never meet, so the query reads the tree.
     let all: Vec<usize> = (0..tree.len()).collect();
     let empty = with_tree(&good, edited(tree, tree.limit(), &all, |_, radius| radius)).unwrap();
     assert!(empty.parts().pair_tree.is_empty());
     assert!(ask(&model, &empty, &[1.0, 0.0]).is_empty());
 }
 
-/// At the limit, equality included, a missing pair means nothing.
+/// At and beyond the limit a missing pair is not certified.
 #[test]
 fn absence_means_nothing_at_the_limit() {
     let model = strips();
@@ -85,9 +85,9 @@ fn absence_means_nothing_at_the_limit() {
     assert!(ask(&model, &nothing_below(norm.next_up()), &q).is_empty());
 }
 
-/// An entry is passed where its radius has been reached, equality included.
+/// An entry is opened if its radius is reached, equality included.
 #[test]
-fn a_radius_reached_is_no_certificate() {
+fn pairs_whose_radius_is_reached_are_tested() {
     let model = strips();
     let good = certificates(&model);
     let tree = &good.parts().pair_tree;
@@ -100,14 +100,14 @@ fn a_radius_reached_is_no_certificate() {
     assert!(ask(&model, &with_tree(&good, all_at(norm.next_up())).unwrap(), &q).is_empty());
 }
 
-/// Radii are rounded down to single precision, and no child's is below its parent's.
+/// Radii are rounded down to single precision, and no child has a smaller radius than its parent.
 #[test]
 fn a_parent_bounded_better_than_its_children_pushes_its_radius_down() {
     for seed in 0..40 {
         let model = crate::common::random_model(seed);
         let options = CertifyOptions::default().budget(16).epsilon(0.9).threads(1);
         let Ok(certificates) = Certificates::compute(&model, &options, &after(301)) else { continue };
-        // Refused otherwise.
+        // The conversion refuses other trees.
         assert!(Certificates::try_from(certificates.parts().clone()).is_ok(), "model {seed}");
     }
 }

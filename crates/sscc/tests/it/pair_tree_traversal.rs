@@ -1,4 +1,4 @@
-//! Queries by the certified pair tree against brute force: what it leaves out must never count.
+//! Compares queries by the certified pair tree with brute force: pairs that it skips must never count.
 
 use glam::DVec3;
 use sscc::parts::{CertificateParts, PairTree};
@@ -17,7 +17,7 @@ fn scaled(z: &[f64], size: f64) -> Vec<f64> {
 #[test]
 fn traversal_agrees_with_brute_force() {
     let (mut below, mut hits, mut beyond, mut with_exceptions, mut partial) = (0, 0, 0, 0, 0);
-    // All combinations of options outside of CI, too.
+    // Outside of CI the seeds also contain all combinations of options.
     let seeds = cases(96_u64).min(40);
     for seed in 0..seeds {
         let random = &mut Random::new(seed + 500);
@@ -70,7 +70,7 @@ fn traversal_agrees_with_brute_force() {
     assert!(with_exceptions > least(3) && partial > least(50), "{counts:?}");
 }
 
-/// Two sheets of several clusters, one apart, the upper one folded; the mode lowers it.
+/// Returns two sheets of several buckets, at a distance of 1; the upper one is folded, and the mode lowers it.
 fn sheets() -> ReducedModel {
     let (n, mut p, mut faces) = (9_u32, Vec::new(), Vec::new());
     for sheet in 0..2 {
@@ -89,7 +89,7 @@ fn sheets() -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-/// The same certificates with made-up radii: 0 for the root, else the same one for all; or without any stored pair.
+/// Returns the same certificates with invented radii: 0 for the root, and the same radius for all others; or without any stored pair.
 fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool) -> Certificates {
     let parts = certificates.parts();
     let tree = &parts.pair_tree;
@@ -110,7 +110,7 @@ fn with_radii(certificates: &Certificates, radius: f64, limit: f64, stored: bool
     .unwrap()
 }
 
-/// "Less" is a proof, "equal" is none, for radii and for the limit.
+/// A norm below a radius or the limit is certified, an equal norm is not.
 #[test]
 fn norms_equal_to_a_radius_are_not_certified() {
     let model = sheets();
@@ -136,13 +136,13 @@ fn norms_equal_to_a_radius_are_not_certified() {
     assert_eq!(found(&computed), expected);
     assert_eq!(found(&with_radii(&computed, norm, limit, true)), expected);
     assert_eq!(found(&with_radii(&computed, next, limit, true)), 0);
-    // What is not stored is certified below the limit only.
+    // Pairs that are not stored are certified only below the limit.
     assert!(found(&with_radii(&computed, next, norm, false)) > 0);
     assert_eq!(found(&with_radii(&computed, next, norm.next_up(), false)), 0);
 }
 
 #[test]
-fn a_cancelled_walk_stops_or_is_right() {
+fn a_cancelled_query_is_an_error_or_right() {
     let (model, mut random) = (sheets(), Random::new(3));
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(after(0));

@@ -1,4 +1,4 @@
-//! Penetration depths against exact arithmetic, and against the exact test of translated triangles.
+//! Compares penetration depths with exact arithmetic, and with the exact test of translated triangles.
 
 use glam::DVec3;
 use sscc::parts::penetration_triangle_triangle;
@@ -10,11 +10,11 @@ use crate::common::exact::{Vector, cross, dot, exact, is_zero, minus};
 
 type Triangle = [DVec3; 3];
 
-/// The stated error, over the largest difference of coordinates.
+/// The stated error, relative to the largest difference of coordinates.
 const MAX_ERROR: f64 = 1.0 / (1_u64 << 48) as f64;
 
-/// The exact square of the depth, of the distance of 0 to the boundary of all differences `x - y`: as numerator and
-/// denominator.
+/// Returns the exact square of the depth, which is the distance of 0 from the boundary of all differences `x - y`, as
+/// numerator and denominator.
 fn squared_depth(a: &Triangle, b: &Triangle) -> [Dyadic; 2] {
     let (a, b) = (a.map(exact), b.map(exact));
     let edges = |t: &[Vector; 3]| [0, 1, 2].map(|i| minus(&t[(i + 1) % 3], &t[i]));
@@ -32,7 +32,7 @@ fn squared_depth(a: &Triangle, b: &Triangle) -> [Dyadic; 2] {
     smallest.unwrap_or_else(|| [0.0, 1.0].map(Dyadic::new))
 }
 
-/// The square root of a quotient, rounded; the square may be outside the range of f64.
+/// Returns the square root of a quotient, rounded; the square may be outside the range of f64.
 fn root(square: &[Dyadic; 2]) -> f64 {
     if square[0].is_zero() {
         return 0.0;
@@ -45,12 +45,12 @@ fn root(square: &[Dyadic; 2]) -> f64 {
     root * 2.0_f64.powi(half / 2) * 2.0_f64.powi(half - half / 2)
 }
 
-/// The largest difference of coordinates of a corner of each.
+/// Returns the largest difference of coordinates of a corner of one triangle and a corner of the other.
 fn size(a: &Triangle, b: &Triangle) -> f64 {
     a.iter().flat_map(|p| b.iter().map(|q| (*p - *q).abs().max_element())).fold(0.0, f64::max)
 }
 
-/// Asserts that the depth is the exact one. Returns it, and its error over the size.
+/// Asserts that the depth is the exact one. Returns it, and its error relative to the size.
 pub fn check(a: &Triangle, b: &Triangle) -> Option<(f64, f64)> {
     let found = penetration_triangle_triangle(a, b);
     assert_eq!(found.is_some(), intersect_triangle_triangle(a, b));
@@ -67,8 +67,8 @@ pub fn check(a: &Triangle, b: &Triangle) -> Option<(f64, f64)> {
     Some((found.depth, if size > 0.0 { error / size } else { 0.0 }))
 }
 
-/// Asserts that b moved along the direction by a little more than the depth is parted from a, and that b
-/// moved along others by a little less is not.
+/// Asserts that b is separate from a if it is moved along the direction by a little more than the depth, and that it is
+/// not separate if it is moved along other directions by a little less.
 fn check_translations(a: &Triangle, b: &Triangle, random: &mut Random) {
     let Some(found) = penetration_triangle_triangle(a, b) else { return };
     let scale = a.iter().chain(b).map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -78,7 +78,7 @@ fn check_translations(a: &Triangle, b: &Triangle, random: &mut Random) {
     let moved = |v: DVec3| b.map(|p| p + v);
     let beyond = found.direction * (found.depth * (1.0 + 1e-9) + scale * 1e-12 + f64::from_bits(4));
     assert!(!intersect_triangle_triangle(a, &moved(beyond)), "{found:?} {a:?} {b:?}");
-    // Where rounding of the positions matters, denormal ones included.
+    // Skips depths for which the rounding of positions matters, including subnormal ones.
     if found.depth < scale * 1e-8 + 1e-316 {
         return;
     }
@@ -107,7 +107,7 @@ fn random_pairs() {
     assert!(worst < 1e-15, "{worst:e}");
 }
 
-/// On a coarse grid: parallel edges, touching and degenerate triangles, common planes.
+/// Corners on a coarse grid have parallel edges, touching and degenerate triangles, and common planes.
 #[test]
 fn on_a_grid() {
     let mut random = Random::new(62);
@@ -123,7 +123,7 @@ fn on_a_grid() {
     assert!(count.iter().all(|c| *c > threshold(400)), "one-sided: {count:?}");
 }
 
-/// Slivers and nearly parallel planes and edges, at many scales.
+/// The triangles have slivers and nearly parallel planes and edges, at many scales.
 #[test]
 fn nearly_parallel() {
     let mut random = Random::new(63);

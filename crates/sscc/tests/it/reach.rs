@@ -1,5 +1,5 @@
-//! Radii beyond the paper's global radius: they are proofs, they end where the reach says, and a budget that ends before them
-//! does not depend on the reach.
+//! Tests of radii beyond the paper's global radius: they are sound, they end at the reach, and certificates whose budget ends before
+//! the global radius do not depend on the reach.
 
 use sscc::parts::{Scope, is_within_reach};
 use sscc::{Certificates, CertifyOptions, Error, Method, Metric, MetricKind, Modes, Query, ReducedModel};
@@ -11,12 +11,12 @@ fn certify(model: &ReducedModel, options: &CertifyOptions, reach: f64) -> Certif
     Certificates::compute(model, &options.clone().reach(reach), &()).unwrap()
 }
 
-/// The global radius of the paper.
+/// Returns the global radius of the paper.
 fn global_radius(model: &ReducedModel, options: &CertifyOptions) -> f64 {
     certify(model, &options.clone().budget(0).epsilon(0.9), 1.0).global_radius()
 }
 
-/// The same shape with modes that hardly move one side of it: radii of nodes there are beyond the global radius.
+/// Returns the same shape with modes that hardly move one side of it, so that radii of nodes there are beyond the global radius.
 fn stiff_on_one_side(model: &ReducedModel) -> ReducedModel {
     let (mesh, modes) = (model.mesh(), model.modes());
     let share = |x: f64| 0.02 + 0.98 * ((1.0 + x) / 2.0).clamp(0.0, 1.0).powi(3);
@@ -26,7 +26,7 @@ fn stiff_on_one_side(model: &ReducedModel) -> ReducedModel {
     ReducedModel::new(mesh.clone(), Modes::new(modes.rank(), displacements).unwrap()).unwrap()
 }
 
-/// Options of several metrics, some about a centre away from rest.
+/// Returns options of several metrics, some about a centre away from rest.
 fn options(seed: u64, model: &ReducedModel, random: &mut Random) -> CertifyOptions {
     let (mesh, modes, rank) = (model.mesh(), model.modes(), model.rank());
     let metric = match seed % 4 {
@@ -52,7 +52,7 @@ fn options(seed: u64, model: &ReducedModel, random: &mut Random) -> CertifyOptio
     CertifyOptions::default().epsilon(0.5).metric(metric).center(center).budget(budget)
 }
 
-/// The q in a random direction whose norm is just below a radius; none where rounding leaves no room.
+/// Returns the q in a random direction whose norm is just below a radius; `None` if rounding prevents it.
 fn just_inside(scope: &Scope, rank: usize, radius: f64, random: &mut Random) -> Option<(Vec<f64>, f64)> {
     let z: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
     let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
@@ -90,7 +90,7 @@ fn radii_beyond_the_global_radius_are_sound() {
         let query = |method| Query::with_method(&model, &certificates, method).unwrap();
         let (mut oracle, mut certified) = (query(Method::BruteForce), query(Method::Certified));
         for case in 0..24 {
-            // Just inside a radius, and anywhere between the global radius and the limit.
+            // The norm is just inside a radius, or anywhere between the global radius and the limit.
             let goal = match radii.get(random.below(radii.len().max(1))) {
                 Some(radius) if case % 2 == 0 => *radius,
                 _ => global + random.uniform() * (tree.limit() - global),
@@ -133,14 +133,14 @@ fn radii_end_where_the_reach_says() {
             assert!(is_within_reach(&certificates, &model, reach));
             assert_eq!(is_within_reach(&certificates, &model, 1.0), cap == global);
             farther += usize::from(cap > global);
-            // A budget that is never used up: up to the reach, rounded down to single precision.
+            // If the budget is not used up, radii end at the reach, rounded down to single precision.
             at_the_end += usize::from(cap > reach * global * (1.0 - 1e-6));
         }
     }
     assert!(farther > threshold(30) && at_the_end > threshold(40), "{farther} {at_the_end}");
 }
 
-/// Would fail where rounds up to the global radius looked beyond it, or where there were rounds beyond it without room for them.
+/// Fails if outer rounds up to the global radius used radii beyond it, or if there were rounds beyond it without budget for them.
 #[test]
 fn a_budget_that_ends_early_does_not_depend_on_the_reach() {
     let (mut early, mut farther) = (0, 0);

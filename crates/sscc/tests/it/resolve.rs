@@ -1,4 +1,4 @@
-//! Free configurations near colliding ones, confirmed by brute force.
+//! Free configurations near colliding ones are checked by brute force.
 
 use glam::DVec3;
 use sscc::{
@@ -47,7 +47,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
             let distance = scope.metric.norm(&way).unwrap();
             assert!((found.change - distance).abs() <= 1e-9 * distance, "model {seed}");
             assert!(found.change <= found.safe_scale_change, "model {seed}: {found:?}");
-            // Stepping back by the safe scale leaves no less.
+            // Stepping back to the safe scale does not change q by less.
             if scope.exceptions.is_empty() {
                 let scale = query.safe_scale(&q).unwrap().min(1.0);
                 let left = (1.0 - scale) * certificates.norm(&q).unwrap();
@@ -64,7 +64,7 @@ fn answers_are_free_and_no_farther_than_stepping_back() {
     );
 }
 
-/// A spike above a plate, 1 apart: mode 0 lowers it, mode 1 shifts it along the plate. In the identity metric.
+/// Returns a spike at a distance of 1 above a plate: mode 0 lowers it, mode 1 shifts it along the plate. The metric is the identity.
 fn spike() -> ReducedModel {
     let plate = [DVec3::new(-9.0, -9.0, 0.0), DVec3::new(9.0, -9.0, 0.0), DVec3::new(0.0, 9.0, 0.0)];
     let spike = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(-0.1, 0.0, 6.0), DVec3::new(0.1, 0.0, 6.0)];
@@ -79,22 +79,22 @@ fn spike() -> ReducedModel {
 }
 
 #[test]
-fn a_walk_slides_along_an_obstacle() {
+fn answers_slide_along_an_obstacle() {
     let model = spike();
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();
     let resolve = |query: &mut Query, q: [f64; 2], start: Option<Vec<f64>>| {
         query.resolve(&q, &ResolveOptions::default().start(start).all(false)).unwrap()
     };
-    // The ray ends at (1, 0.4); the tip stays above the plate, and reaches the shift.
+    // The straight line is free until (1, 0.4); the tip stays above the plate, and the shift reaches that of q.
     let found = resolve(&mut query, [2.5, 1.0], None);
     let q = found.q.unwrap();
     assert!(q[0] < 1.0 && q[0] > 1.0 - 1e-3 && (q[1] - 1.0).abs() < 1e-3, "{q:?}");
     assert!((found.change - 1.5).abs() < 1e-3 && (found.safe_scale_change - 1.5_f64.hypot(0.6)).abs() < 1e-6);
-    // From below, the other side of the plate.
+    // From a start below, the answer is on the other side of the plate.
     let q = resolve(&mut query, [5.5, 1.0], Some(vec![7.0, 0.0])).q.unwrap();
     assert!(q[0] > 6.0 && q[0] < 6.0 + 1e-3 && (q[1] - 1.0).abs() < 1e-3, "{q:?}");
-    // A free q is its own answer, also beyond the plate.
+    // A free q is returned unchanged, also beyond the plate.
     for q in [[0.5, 3.0], [6.5, 0.0]] {
         let expected = Resolved { q: Some(q.to_vec()), change: 0.0, safe_scale_change: 0.0 };
         assert_eq!(resolve(&mut query, q, None), expected);
@@ -114,18 +114,18 @@ fn invalid_input_is_refused() {
     assert!(matches!(resolve(&[1e300, 0.0], None), Error::CoordinatesRange));
     assert!(matches!(resolve(&[1.5, 0.0], Some(vec![0.0])), Error::CoordinatesLength { .. }));
     assert!(matches!(resolve(&[1.5, 0.0], Some(vec![f64::INFINITY, 0.0])), Error::CoordinatesValue { .. }));
-    // A start that collides, also where q is free.
+    // A start that collides is an error, also if q is free.
     for q in [[1.5, 0.0], [0.0, 0.0]] {
         assert_eq!(resolve(&q, Some(vec![2.0, 0.0])), Error::ResolveStart);
     }
     assert!(matches!(Modes::new(0, Vec::new()), Err(Error::RankZero)));
-    // Rank 1, and modes that move nothing near contact.
+    // A q far beyond the plate is free, so it is returned unchanged.
     let far = query.resolve(&[1e50, 0.0], &ResolveOptions::default()).unwrap();
     assert_eq!(far.change, 0.0);
 }
 
 #[test]
-fn exceptions_are_left_unless_all_count() {
+fn exceptions_may_collide_unless_all_pairs_count() {
     let model = spike();
     let options = CertifyOptions::default().center(vec![2.0, 0.0]);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
@@ -142,7 +142,7 @@ fn exceptions_are_left_unless_all_count() {
     let from_above = ResolveOptions::default().start(vec![0.0, 0.0]).all(true);
     let found = query.resolve(&q, &from_above).unwrap();
     assert!(query.discrete(&found.q.unwrap()).unwrap().is_empty());
-    // Where nothing is left out, a centre that collides is no start, either.
+    // Without exceptions a colliding centre cannot be the start, either.
     let options = options.max_exceptions(0);
     let certificates = Certificates::compute(&model, &options, &()).unwrap();
     let mut query = Query::new(&model, &certificates).unwrap();

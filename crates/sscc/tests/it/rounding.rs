@@ -1,5 +1,5 @@
-//! Answers where rounding decides: computed positions that touch, though those of real numbers are still apart, and
-//! norms that equal a radius.
+//! Answers that rounding decides: computed positions that touch although the exact ones are separate, and norms that equal a
+//! radius.
 
 use glam::DVec3;
 use sscc::parts::Scope;
@@ -10,8 +10,8 @@ use sscc::{
 
 use crate::common::Random;
 
-/// Triangles one above the other at two heights, a few times side by side (16 apart); modes move each up or down as a
-/// whole.
+/// Returns triangles one above the other at two heights, repeated side by side at a distance of 16; modes move each height up or
+/// down as a whole.
 fn stacked(times: u32, heights: [f64; 2], modes: &[[f64; 2]], metric: Option<Metric>) -> ReducedModel {
     let mut p = Vec::new();
     for z in heights {
@@ -31,7 +31,7 @@ fn stacked(times: u32, heights: [f64; 2], modes: &[[f64; 2]], metric: Option<Met
     }
 }
 
-/// The same certificates with and without a pair tree.
+/// Returns certificates with and without a pair tree.
 fn certify(model: &ReducedModel, center: Option<Vec<f64>>) -> [Certificates; 2] {
     [0, 1 << 10].map(|budget| {
         let options = CertifyOptions::default().budget(budget).center(center.clone());
@@ -39,8 +39,8 @@ fn certify(model: &ReducedModel, center: Option<Vec<f64>>) -> [Certificates; 2] 
     })
 }
 
-/// Whether the model collides at q: all certificates say the same as brute force. And whether the root's certificate
-/// alone proved that it does not.
+/// Returns whether the model collides at q, after a comparison of all certificates with brute force, and whether the root's
+/// certificate alone proved it free.
 fn ask(model: &ReducedModel, certificates: &[Certificates], q: &[f64]) -> (bool, bool) {
     let mut answers = (false, false);
     for certificates in certificates {
@@ -53,8 +53,8 @@ fn ask(model: &ReducedModel, certificates: &[Certificates], q: &[f64]) -> (bool,
     answers
 }
 
-/// Two triangles meet where |z| is between two single-precision numbers, nearer to the upper one. The pair tree's radius
-/// is the lower one.
+/// Two triangles meet at a |z| between two single-precision numbers, nearer to the upper one. The pair tree's radius is the
+/// lower one.
 #[test]
 fn radii_in_single_precision_are_no_larger() {
     let random = &mut Random::new(1);
@@ -68,14 +68,14 @@ fn radii_in_single_precision_are_no_larger() {
             ask(&model, &certificates, &[q]);
         }
         assert!(ask(&model, &certificates, &[gap]).0);
-        // The pairs that meet are in the tree, as precisely as it can tell.
+        // The pairs that meet are in the tree, with the largest possible radius.
         let tree = &certificates[1].parts().pair_tree;
         assert!(tree.limit() > above && tree.entries().any(|(radius, _)| radius == number));
     }
 }
 
-/// Modes that move everything cancel at the centre, at 1e4 to 1e14 of its size: positions are rounded on the way, and
-/// two triangles that stay apart in real numbers touch.
+/// Modes that move all vertices by 1e4 to 1e14 times the size cancel at the centre: partial sums are rounded, and two triangles
+/// touch that are separate in exact arithmetic.
 #[test]
 fn positions_about_a_centre_are_rounded_on_the_way_there() {
     let random = &mut Random::new(2);
@@ -97,8 +97,8 @@ fn positions_about_a_centre_are_rounded_on_the_way_there() {
     assert!(certified > 50 && colliding > 20, "{certified} {colliding}");
 }
 
-/// A dense metric in which the motion of everything is next to nothing, since its modes cancel: |A| is small there,
-/// |A||S||S^-1|, which rounds positions, is not.
+/// In this dense metric modes cancel, so that vertices hardly move: |A| is small, while |A||S||S^-1|, which bounds the rounding
+/// of positions, is not.
 #[test]
 fn dense_metrics_bound_cancellation() {
     let random = &mut Random::new(3);
@@ -121,8 +121,8 @@ fn dense_metrics_bound_cancellation() {
     assert!(certified > 100 && colliding > 20, "{certified} {colliding}");
 }
 
-/// Far from rest a kinetic query measures gaps that rounding has made: two triangles apart by one unit of the last
-/// place, of which they have gone six tenths before.
+/// Far from rest a kinetic query measures gaps that result from rounding: the computed distance of two triangles is one unit in
+/// the last place, although they have moved towards each other by six tenths of it.
 #[test]
 fn kinetic_margins_know_that_positions_far_from_rest_are_rounded() {
     let random = &mut Random::new(4);
@@ -131,7 +131,7 @@ fn kinetic_margins_know_that_positions_far_from_rest_are_rounded() {
         let far = random.power(4.0, 12.0);
         let unit = far.next_up() - far;
         let model = stacked(4, [0.0, 0.0], &[[0.0, 1.0], [1.0, 1.0]], Some(Metric::identity(2)));
-        // At rest they touch, and further up they are apart again: certificates about a place nearby.
+        // The triangles touch at rest, and are separate further up, so certificates are about a nearby centre.
         let options = CertifyOptions::default().center(vec![1e3 * unit, 0.0]);
         let certificates = Certificates::compute(&model, &options, &()).unwrap();
         let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
@@ -147,10 +147,10 @@ fn kinetic_margins_know_that_positions_far_from_rest_are_rounded() {
     assert!(colliding > 500, "{colliding}");
 }
 
-/// Where pairs collide at the centre and are no exceptions, radii of 0 are reached by the norm 0.
+/// If pairs that collide at the centre are not exceptions, their radii are 0, which the norm 0 reaches.
 #[test]
 fn a_radius_of_nothing_proves_nothing_at_the_centre() {
-    // Triangles that meet are in the same small node or in different ones, since nodes are parted by modes, too.
+    // Triangles that meet are in the same bucket or in different ones, because modes also separate nodes.
     for modes in [[0.0, 1.0], [1.0, 1.0]] {
         let model = stacked(40, [0.0, 0.0], &[modes], None);
         for budget in [0, 16, 1 << 12] {
@@ -165,8 +165,8 @@ fn a_radius_of_nothing_proves_nothing_at_the_centre() {
     }
 }
 
-/// Two triangles that a mode brings together along x, so slowly that the square of its rate is no number, while it
-/// moves both sideways faster. Their gap is so small that they meet nevertheless.
+/// A mode brings two triangles together along x, so slowly that the square of its rate underflows, while it moves both
+/// sideways faster. Their gap is so small that they meet nevertheless.
 #[test]
 fn motions_whose_squares_underflow_are_no_rest() {
     let power = |exponent: i32| 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2);
@@ -189,7 +189,7 @@ fn motions_whose_squares_underflow_are_no_rest() {
     }
 }
 
-/// Far from the origin the last step of the way is made by rounding.
+/// Far from the origin rounding closes the gap before the exact positions do.
 #[test]
 fn safe_scales_end_before_rounding_closes_a_gap() {
     let random = &mut Random::new(5);
@@ -207,8 +207,8 @@ fn safe_scales_end_before_rounding_closes_a_gap() {
     }
 }
 
-/// At q = 1 each of many triangles touches another one exactly, by a motion of its own: their boxes, made from positions
-/// in single precision, must not pass by each other.
+/// At q = 1 each of many triangles, with its own motion, touches another one exactly: their AABBs, computed from positions in
+/// single precision, must overlap.
 #[test]
 fn exact_contacts_are_found_in_single_precision() {
     let random = &mut Random::new(6);

@@ -1,4 +1,4 @@
-//! How far one can go: safe scales and the root's ellipsoid.
+//! Tests of safe scales and of the root's ellipsoid.
 
 use glam::DVec3;
 use sscc::parts::{CertificateParts, PairTree, Scope};
@@ -8,7 +8,7 @@ use sscc_testing::{cases, threshold};
 use crate::common::{Random, after, at, random_model, random_options, winding_strip};
 
 #[test]
-fn the_way_to_a_safe_scale_is_free() {
+fn shapes_up_to_the_safe_scale_are_free() {
     let (mut tried, mut larger, mut tight, mut stopped) = (0, 0, 0, 0);
     for seed in 0..cases(400) {
         let model = random_model(seed);
@@ -31,7 +31,7 @@ fn the_way_to_a_safe_scale_is_free() {
                 assert!(scale >= root * (1.0 - 1e-12), "model {seed}: {scale} {root}");
                 larger += usize::from(scale > 1.01 * root);
             } else {
-                // They collide at the centre.
+                // These models collide at the centre.
                 assert_eq!(scale, 0.0, "model {seed}");
             }
             let last = if scale.is_finite() { scale } else { random.power(-3.0, 3.0) };
@@ -56,8 +56,8 @@ fn the_way_to_a_safe_scale_is_free() {
     );
 }
 
-/// Radii of pairs of nodes are further proofs; the way itself is followed from another start, which moves its end by
-/// less than a step that is no longer worth taking.
+/// Radii of pairs of nodes are further proofs; conservative advancement then begins at another scale, which changes its end by
+/// less than its smallest step.
 #[test]
 fn the_pair_tree_shortens_no_scale() {
     let (mut compared, mut opened) = (0, [0, 0]);
@@ -101,17 +101,17 @@ fn scales_of_simple_shapes() {
     // The global radius is rounded down to single precision.
     let near = |x: f64, goal: f64| x <= goal && x > goal * (1.0 - 2e-7);
     assert!(near(certificates.global_radius(), 3.0_f64.sqrt() / 2.0));
-    // R_global, half the box diagonal, is nearer than the contact.
+    // The global radius, half the diagonal of the box, is smaller than the contact.
     assert!(near(query.safe_scale(&[1.0]).unwrap(), certificates.global_radius()));
     assert!(near(query.safe_scale(&[-2.0]).unwrap(), certificates.global_radius() / 2.0));
     assert_eq!(query.safe_scale(&[0.0]).unwrap(), f64::INFINITY);
-    // Radii that reach farther: up to the contact, and away from it up to where they end.
+    // With a larger reach, scales end at the contact, or, away from the contact, at the largest radius.
     let farther = within(4.0);
     let mut query = Query::new(&model, &farther).unwrap();
     assert_eq!(farther.global_radius(), 4.0 * certificates.global_radius());
     assert!(near(query.safe_scale(&[1.0]).unwrap(), 1.0));
     assert!(near(query.safe_scale(&[-2.0]).unwrap(), 2.0 * certificates.global_radius()));
-    // Without certificates there is no R_global: up to the contact, and away from it as far as numbers go.
+    // Without certificates there is no global radius: scales end at the contact, or at the range of numbers.
     let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
     assert!(near(query.safe_scale(&[1.0]).unwrap(), 1.0));
     assert!(near(query.safe_scale(&[4.0]).unwrap(), 0.25));
@@ -158,7 +158,7 @@ fn clamping_ends_inside_the_root_ellipsoid() {
     assert!(clamped > threshold(100) && none > threshold(20), "{clamped} {none}");
 }
 
-/// Where quotients underflow nothing is known, rather than too much.
+/// If quotients underflow, the scale is too small rather than too large.
 #[test]
 fn tiny_gaps_and_large_motions() {
     for (gap, size, q) in

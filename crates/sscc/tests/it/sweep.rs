@@ -1,4 +1,4 @@
-//! Sweeps of single weights, against brute force at many weights.
+//! Compares sweeps of single weights with brute force at many weights.
 
 use glam::DVec3;
 use sscc::parts::Scope;
@@ -10,7 +10,7 @@ use sscc_testing::{cases, distance, threshold};
 
 use crate::common::{Random, after, random_model, random_options};
 
-/// Triangles in the planes z = 0 and z = height.
+/// Returns two triangles in the planes z = 0 and z = height.
 fn two_triangles(height: f64, place: DVec3, mode: impl Fn(usize) -> DVec3) -> ReducedModel {
     let triangle = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + place + DVec3::Z * z);
     let mesh = TriMesh::new([triangle(0.0), triangle(height)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -21,7 +21,7 @@ fn certify(model: &ReducedModel) -> Certificates {
     Certificates::compute(model, &CertifyOptions::default(), &()).unwrap()
 }
 
-/// The bracket is what its outcome says, and nothing that brute force finds is below `first_free`.
+/// Checks that the bracket matches its outcome, and that brute force finds no collision below `first_free`.
 pub(crate) fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut Query, weights: usize) {
     let at = |w: f64| {
         let mut q = q.to_vec();
@@ -36,7 +36,7 @@ pub(crate) fn check(sweep: &Sweep, model: &ReducedModel, q: &[f64], oracle: &mut
         return;
     };
     for i in 0..weights {
-        // Half of them near the end, where positions nearly touch.
+        // Half of the weights are near the end, where positions nearly touch.
         let share = i as f64 / (weights - 1).max(1) as f64;
         let share = if i % 2 == 0 { share } else { 1.0 - share.powi(30) * (1.0 - share) };
         let w = (sweep.from + share * (free - sweep.from)).clamp(free.min(sweep.from), free.max(sweep.from));
@@ -105,7 +105,7 @@ fn brute_force_finds_nothing_below_first_free() {
                 _ => 4,
             }] += 1;
         }
-        // Certificates cull, and change nothing else.
+        // Certificates do not change the result.
         let mut plain = Query::without_certificates(&model, scope.clone(), Method::BdTree).unwrap();
         for sweep in &sweeps {
             let mut at = q.clone();
@@ -137,7 +137,7 @@ fn contacts_of_simple_shapes() {
     for (from, to) in [(0.0, 3.0), (0.0, 1.0), (-7.0, 2.0), (3.0, 0.0), (2.0, 1.0), (0.999_999, 1e6)] {
         let sweep = query.sweep(&[from], 0, to).unwrap();
         check(&sweep, &model, &[from], &mut oracle, 1000);
-        // They touch at 1 only.
+        // The triangles touch only at 1.
         assert_eq!((sweep.outcome, sweep.first_hit), (SweepOutcome::Hit, Some(1.0)), "{sweep:?}");
         assert_eq!(sweep.pairs, [(0, 1)]);
     }
@@ -151,7 +151,7 @@ fn contacts_of_simple_shapes() {
         (SweepOutcome::CollidingAtStart, None, Some(1.0))
     );
 
-    // Sliding over the other triangle: the corner touches its edge at one weight only, at -1.
+    // A triangle slides over the other one: its corner touches an edge only at the weight -1.
     let slides = |v: usize| if v < 3 { DVec3::ZERO } else { DVec3::X };
     let model = two_triangles(0.0, DVec3::ZERO, slides);
     let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
@@ -160,7 +160,7 @@ fn contacts_of_simple_shapes() {
     check(&sweep, &model, &[3.0], &mut oracle, 1000);
     assert!(sweep.first_hit.is_some_and(|hit| (hit - 1.0).abs() < 1e-8), "{sweep:?}");
 
-    // A corner that only grazes an edge: it moves past it, and touches at 1/2.
+    // A corner moves past an edge, and touches it at 1/2.
     let p = [
         DVec3::new(-1.0, 0.0, 1.0),
         DVec3::new(-1.5, 1.0, 2.0),
@@ -184,8 +184,8 @@ fn contacts_of_simple_shapes() {
     }
 }
 
-/// Two triangles side by side far from the origin, one unit in the last place apart, move together: in real numbers they
-/// stay apart, but at half a unit one is rounded up and the other one down.
+/// Two triangles side by side far from the origin, at a distance of one unit in the last place, move together: in exact
+/// arithmetic they stay separate, but at half a unit one is rounded up and the other one down.
 #[test]
 fn rounding_between_two_weights_is_not_forgotten() {
     let ulp = 2.0_f64.powi(-22);
@@ -203,7 +203,7 @@ fn rounding_between_two_weights_is_not_forgotten() {
     assert_eq!((sweep.outcome, sweep.first_hit), (SweepOutcome::Hit, Some(0.5 * ulp)), "{sweep:?}");
     assert_eq!(sweep.pairs, [(0, 1)]);
 
-    // Side by side along a diagonal, where no AABB separates them: the answer is that nothing is proven.
+    // The triangles are side by side along a diagonal, where AABBs do not separate them: nothing is proven.
     let at = |x: f64| [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::Z].map(|p| p + DVec3::X * x);
     let mesh = TriMesh::new([at(place), at(place + 2.0 * ulp)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
     let model = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::Z; 6]).unwrap()).unwrap();

@@ -1,4 +1,5 @@
-//! Intervals of weights over which shapes collide, against brute force at many weights; pairs around those that collide at rest.
+//! Compares intervals of weights over which shapes collide with brute force at many weights. Also tests surroundings of pairs that
+//! collide at rest.
 
 use glam::DVec3;
 use sscc::parts::{Scope, penetration_triangle_triangle, surroundings_between_meshes};
@@ -10,7 +11,7 @@ use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, random_model, random_options};
 
-/// Every weight outside of the intervals is free, their ends collide where they say so, and samples are those of brute force.
+/// Checks that every weight outside of the intervals is free, that exact ends collide, and that samples are those of brute force.
 fn check(
     found: &WeightIntervals,
     model: &ReducedModel,
@@ -68,7 +69,7 @@ fn check(
     hits
 }
 
-/// A small triangle that rises, and large ones at these heights.
+/// Returns a small triangle that a mode raises, and large ones at these heights.
 fn plates(heights: &[f64]) -> ReducedModel {
     let small = [DVec3::ZERO, DVec3::X * 0.1, DVec3::new(0.0, 0.05, 0.25)];
     let plate = |z: f64| [[-4.0, -4.0], [4.0, -4.0], [0.0, 6.0]].map(|[x, y]| DVec3::new(x, y, z));
@@ -98,7 +99,7 @@ fn each_plate_is_an_interval_whatever_the_samples() {
         assert!(samples <= 5 || [1.0, 1.75, 2.0, 2.75].into_iter().all(near), "{samples}: {ends:?}");
         assert!(found.intervals.iter().all(|i| i.is_exact && i.pairs >= 1 && i.pairs <= 3), "{found:?}");
     }
-    // The range begins and ends inside of plates.
+    // The ends of the range are inside of plates.
     let found = find(0.9, 2.9, 21);
     check(&found, &model, &[0.0], &mut oracle, 2000);
     let [first, .., last] = &found.intervals[..] else { panic!("{found:?}") };
@@ -106,7 +107,7 @@ fn each_plate_is_an_interval_whatever_the_samples() {
     assert_eq!((last.free_from, last.to), (None, 2.9));
     // The deepest sample: half of the small triangle is above.
     assert!((0.1..0.2).contains(&found.intervals[1].deepest.depth), "{found:?}");
-    // Nothing collides, everything does, and one weight alone.
+    // Ranges in which no weight or every weight collides, and a range of one weight.
     assert!(find(-3.0, 0.7, 9).intervals.is_empty());
     let all = find(1.5, 1.9, 2);
     assert!(matches!(all.intervals[..], [i] if i.free_from.is_none() && i.free_until.is_some()), "{all:?}");
@@ -114,7 +115,7 @@ fn each_plate_is_an_interval_whatever_the_samples() {
     assert!(matches!(inside[..], [i] if i.free_from.is_none() && i.free_until.is_none()), "{inside:?}");
 }
 
-/// Two triangles in one plane at one weight alone: no sample meets it.
+/// Two triangles are in one plane at a single weight, which no sample meets.
 #[test]
 fn a_contact_at_one_weight_is_an_interval() {
     let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
@@ -127,7 +128,7 @@ fn a_contact_at_one_weight_is_an_interval() {
     let found = query.sweep_intervals(&[0.0], &[range], 5, Some(1), &()).unwrap();
     let [interval] = found[0].intervals[..] else { panic!("{found:?}") };
     assert_eq!((interval.from, interval.to, interval.pairs, interval.deepest.depth), (1.0, 1.0, 1, 0.0));
-    // Errors.
+    // Invalid options are errors.
     let find = |range: ModeRange, samples: usize| {
         query.sweep_intervals(&[0.0], &[range], samples, Some(1), &()).unwrap_err().to_string()
     };
@@ -167,7 +168,7 @@ fn brute_force_finds_nothing_outside_of_intervals() {
     );
 }
 
-/// Two squares of n x n cells of two triangles each, one above the other.
+/// Returns two squares of n x n cells of two triangles each, one above the other.
 fn two_squares(n: u32) -> TriMesh {
     let vertex = |i: u32, j: u32, k: u32| (k * (n + 1) + j) * (n + 1) + i;
     let place = |v: u32| [v % (n + 1), v / (n + 1) % (n + 1), v / (n + 1) / (n + 1)].map(f64::from);
@@ -180,7 +181,7 @@ fn two_squares(n: u32) -> TriMesh {
     TriMesh::new(positions, faces.collect()).unwrap()
 }
 
-/// Around each pair: all pairs that a search of rings without any tables finds.
+/// The surroundings of each pair are those that a plain search of rings finds.
 #[test]
 fn surroundings_are_those_of_all_triangles() {
     let mesh = two_squares(7);
@@ -214,7 +215,8 @@ fn surroundings_are_those_of_all_triangles() {
     assert_eq!(unknown, Err(Error::PairIndex { pair: 1, triangle: 2 * half, triangles: 2 * half as usize }));
 }
 
-/// Between two meshes every pair counts: around each pair all triangles of the first mesh with all of the second.
+/// Between two meshes every pair counts: the surroundings of a pair are all pairs of a triangle around its first one and a triangle
+/// around its second one.
 #[test]
 fn surroundings_between_meshes_are_those_of_all_triangles() {
     let (mesh, other) = (two_squares(5), two_squares(3));
@@ -273,7 +275,7 @@ fn intervals_of_one_mode_report_progress() {
     }
 }
 
-/// Where two parts touch at rest, their neighbours touch at small weights.
+/// The neighbours of triangles that touch at rest touch at small weights.
 #[test]
 fn surroundings_of_rest_collisions_are_ignored() {
     // One corner of the upper square is on the lower one.
@@ -290,7 +292,7 @@ fn surroundings_of_rest_collisions_are_ignored() {
             }
         })
         .collect();
-    // A mode moves the upper square along and down.
+    // A mode moves the upper square sideways and down.
     let vertices = positions.len();
     let modes =
         (0..vertices).map(|v| if 2 * v < vertices { DVec3::ZERO } else { DVec3::new(1.6, 1.3, -0.2) });

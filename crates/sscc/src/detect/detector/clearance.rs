@@ -38,7 +38,7 @@ impl Clearance {
         Self { rings, ..self }
     }
 
-    /// The distance (model unit).
+    /// Returns the distance (model unit).
     pub fn distance(&self) -> f64 {
         self.distance
     }
@@ -52,7 +52,7 @@ impl Clearance {
 /// A model with more near pairs than this at one configuration (384 MiB of them) is refused.
 const MAX_PAIRS_OF_MODEL: usize = 1 << 24;
 
-/// All pairs of a model that count and are nearer than a clearance at q, sorted.
+/// Returns all pairs of a model that count and are nearer than a clearance at q, sorted.
 ///
 /// # Errors
 /// When q is not a configuration of the model, there are more than 2^24 such pairs (including those within the rings), or

@@ -66,7 +66,7 @@ impl Components {
         self.all.iter().map(|component| component.triangle)
     }
 
-    /// The number of the component of a triangle.
+    /// Returns the number of the component of a triangle.
     pub fn of_triangle(&self, triangle: u32) -> usize {
         self.of_triangles[triangle as usize] as usize
     }

@@ -166,7 +166,7 @@ impl Detector {
         Ok(self.discrete_at_most(positions, 1)?.first().copied())
     }
 
-    /// The number of colliding pairs.
+    /// Returns the number of colliding pairs.
     ///
     /// # Errors
     /// As [`Detector::discrete`].
@@ -192,7 +192,7 @@ impl Detector {
         Ok(&self.swept.narrow.0.list)
     }
 
-    /// The cost of the last answer.
+    /// Returns the cost of the last answer.
     pub fn statistics(&self) -> Statistics {
         self.statistics
     }

@@ -27,8 +27,9 @@ pub(super) struct DetectorSearch<const E: usize, N> {
     /// The state of searches in two meshes.
     between: SearchState,
     pub(super) narrow: N,
-    /// The cost of the hierarchy in the first search and in the last one.
+    /// The cost of the hierarchy in the first search.
     first_cost: f64,
+    /// The cost of the hierarchy in the last search.
     pub(super) cost: f64,
     pub(super) counters: Counters,
 }

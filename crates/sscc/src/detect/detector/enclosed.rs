@@ -88,7 +88,7 @@ impl Side<'_> {
         Ok(Enclosed { components: other.components.count(), inside })
     }
 
-    /// The winding number of the closed components about a point.
+    /// Returns the winding number of the closed components about a point.
     pub(super) fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
         self.winding_number_of(point, |triangle| self.components.is_closed(triangle))
     }

@@ -28,7 +28,7 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
         Self { positions, whole, margin: 0.0 }
     }
 
-    /// The AABB of all positions.
+    /// Returns the AABB of all positions.
     pub(super) fn aabb(&self) -> Aabb {
         self.whole
     }

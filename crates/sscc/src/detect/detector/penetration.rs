@@ -18,7 +18,7 @@ pub struct BodyPenetration {
     pub volume: f64,
     /// Bound of the rounding error of the volume.
     pub volume_error: f64,
-    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 if there is none. For two
+    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 if there is no ball. For two
     /// overlapping plates or balls, it is the distance by which one must move to separate them.
     pub depth: f64,
     /// No such ball has a larger diameter than `depth + depth_error`, up to 1e-9 of the size of the meshes. The error is at most a

@@ -8,7 +8,7 @@ use crate::filter::{PairFilter, Relation};
 
 /// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
 /// queries, and `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All
-/// methods of queries share these tests, so that all give the same answers.
+/// methods of queries share these tests, so that all have the same answers.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;
@@ -23,6 +23,6 @@ pub(crate) trait NarrowPhase<const E: usize> {
         b: &[[DVec3; 3]; E],
     ) -> Option<Self::Hit>;
 
-    /// The hits so far.
+    /// Returns the hits so far.
     fn hits(&mut self) -> &mut Hits<Self::Hit>;
 }

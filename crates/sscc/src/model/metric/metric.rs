@@ -92,7 +92,7 @@ impl Metric {
         }
     }
 
-    /// The diagonal of the factor `S`, one positive number for each mode.
+    /// Returns the diagonal of the factor `S`, one positive number for each mode.
     pub fn scales(&self) -> Vec<f64> {
         match &self.factor {
             Factor::Diagonal(scales) => scales.clone(),

@@ -103,7 +103,7 @@ impl Triangular {
         &self.entries[i * self.rank..][..self.rank]
     }
 
-    /// The length of column k, rounded to nearest.
+    /// Returns the length of column k, rounded to nearest.
     pub(super) fn column_length(&self, k: usize) -> f64 {
         let column = || (0..=k).map(|i| self.entries[i * self.rank + k]);
         let largest = column().fold(0.0_f64, |l, s| l.max(s.abs()));

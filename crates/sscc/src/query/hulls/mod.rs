@@ -1,9 +1,9 @@
 //! Moving hulls: convex bounding volumes of nodes that follow q without touching vertices.
 //!
-//! An AABB around a bent, turned part is mostly empty. A moving hull is the convex hull of a few points of the node,
-//! moved by the affine map that fits the node's modes best, widened by a radius that covers everything else. It costs
-//! O(r) for each node, as a BD-tree AABB does. Two nodes are apart where one plane separates their hulls by more than
-//! both radii.
+//! An AABB around a bent, rotated part is mostly empty. A moving hull is the convex hull of a few points of the node,
+//! moved by the affine map that fits the node's modes best, and widened by a radius that covers all deviations. It costs
+//! O(r) for each node, as a BD-tree AABB does. Two nodes are separate if one plane separates their hulls by more than the
+//! sum of both radii.
 //!
 //! About the centre q0 let `p'_v = p_v + U_v q0` and `y = q - q0`. A node has a centre c, offsets `d_v = p'_v - c`, and
 //! modes `U_v = A + G d_v + E_v`, with an affine map for each mode. Its core points D_i are some of the offsets, and

@@ -18,9 +18,9 @@ pub(super) struct Vertices<'t> {
 /// bounds of the residual.
 pub(super) type FrameRate = [Vec4; 4];
 
-/// The hull of a node. Its numbers are exact: what they do not describe is in the bounds.
+/// The hull of a node. Its numbers are exact; the bounds cover all deviations from them.
 pub(super) struct NodeHull {
-    /// At rest, then for each mode.
+    /// The part of the frame at rest, then the part for each mode.
     pub(super) frame: Vec<FrameRate>,
     pub(super) shape: HullShape,
 }

@@ -19,10 +19,11 @@ pub(crate) struct NodeHulls {
     shapes: Vec<HullShape>,
     /// The configuration about which offsets are measured.
     pub(super) configuration: Vec<f64>,
-    /// An upper bound of the magnitude of every term of every position there.
+    /// An upper bound of the magnitude of every term of every position at this configuration.
     pub(super) reach: f64,
-    /// The centre of the shape there, and its half size.
+    /// The centre of the shape at this configuration.
     pub(super) center: DVec3,
+    /// Half the size of the shape at this configuration.
     pub(super) half: f64,
     /// The largest displacement by each mode.
     pub(super) sizes: Vec<f64>,

@@ -24,8 +24,8 @@ const STEPS: usize = 3;
 
 /// Rounding of remainders in double precision, for each mode. Entries of H_v are at most 1, so the norm of a row of H_v or L_v
 /// is at most about `sqrt(r)`. h_vj is used as computed, so only its product with w_j and the difference round, by at most
-/// `eps sqrt(r)` for each vector; the entries themselves add as much. The rounding of [`spectral_bound`] is less than what
-/// [`up`] adds, for ranks below 1e7.
+/// `eps sqrt(r)` for each vector; the entries themselves add as much. The rounding of [`spectral_bound`] is less than the increase
+/// by [`up`], for ranks below 1e7.
 const ROUNDING: f64 = 1e-11;
 
 /// The bound of a node's residuals.
@@ -39,8 +39,8 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// `residuals`: for each vertex the residual of each mode. `error`: for each mode an upper bound of the error of
-    /// its residuals.
+    /// Computes the bound. `residuals`: for each vertex the residual of each mode. `error`: for each mode an upper bound of
+    /// the error of its residuals.
     pub(super) fn new(residuals: &mut [DVec3], error: &[f64]) -> Self {
         let rank = error.len();
         let mut rates = vec![[0.0_f32; 1 + VECTORS]; rank];
@@ -51,8 +51,8 @@ impl Residuals {
                 .for_each(|(rate, e)| rate[0] = larger_or_nan(rate[0], e.length() as f32));
         }
         // The errors are covered elsewhere, too. With the terms T_k of the map, the error of a residual is less than
-        // 16 eps (e_k + 2 T_k). 16 eps e_k is less than what `up` adds, here and to the remainder, whose constant is
-        // larger than 16 eps; 32 eps T_k is less than 2^-24 T_k, of which the error of single precision has 14 to
+        // 16 eps (e_k + 2 T_k). 16 eps e_k is less than the increase by `up`, here and of the remainder, whose constant is
+        // larger than 16 eps; 32 eps T_k is less than 2^-24 T_k, of which the error of single precision has 14 in
         // reserve (`HullMotion::begin`).
         for (rate, error) in rates.iter_mut().zip(error) {
             rate[0] = up(f64::from(rate[0]) + right_or!(*error, HullResidualErrorForgotten, 0.0));

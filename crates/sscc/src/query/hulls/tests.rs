@@ -205,7 +205,7 @@ fn vertices_are_within_the_radius_of_their_hull() {
                 let far = factors.map(|(x, s)| x * most * size / s.max(f64::MIN_POSITIVE));
                 at = far.collect();
             } else if i % 3 == 0 {
-                // One mode alone.
+                // Only one mode moves the shape.
                 let only = i % rank;
                 at.iter_mut().enumerate().filter(|(k, _)| *k != only).for_each(|(_, x)| *x = 0.0);
             }
@@ -380,7 +380,7 @@ fn only_gaps_wider_than_the_radii_separate() {
         assert!(!test(&points, [low], [high], 1.0, Vec3::Z * length), "{length}");
     }
     assert!([5e-4, 2e9].iter().all(|length| !test(&points, [low], [high], 0.9, Vec3::Z * *length)));
-    // At both configurations, in either order.
+    // The plane must separate the points at both configurations.
     assert!(test(&points, [low, low], [high, higher], 0.9, Vec3::Z));
     assert!(!test(&points, [low, high], [high, high], 0.9, Vec3::Z));
     assert!(!test(&points, [low, low], [higher, low], 0.9, Vec3::Z));
@@ -398,7 +398,7 @@ fn hulls_are_apart_only_where_their_triangles_are() {
         for i in 0..side * side {
             let (x, y) = (i % side, i / side);
             positions.push(DVec3::new(f64::from(x), f64::from(y), height));
-            // Vertices of both sheets that are one above the other move towards each other, or apart.
+            // Vertices of both sheets that are one above the other move towards or away from each other.
             let is_up = (x + y) % 2 == 0;
             modes.push(if is_up == (height == 0.0) { DVec3::Z } else { DVec3::NEG_Z });
         }
@@ -439,7 +439,7 @@ fn hulls_are_apart_only_where_their_triangles_are() {
     assert!(apart > 20 && met > 100, "{apart} of {}, {met}", pairs.len());
 }
 
-/// Points whose distance is known apart from rounding, along normals of any length.
+/// The distance of the points is exact up to rounding; normals have any length.
 #[test]
 fn gaps_are_rounded_down() {
     let coordinates = [[0.0; CORE_POINTS]; 3];

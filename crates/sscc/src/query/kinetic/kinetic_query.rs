@@ -115,7 +115,7 @@ impl KineticQuery {
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         let mut query = Query::new(model, certificates)?;
         let scope = &certificates.parts().scope;
-        // Ordinary queries use the metric for radii alone; safe distances are computed anew.
+        // Ordinary queries use the metric only for radii, whose certificates have checked it. Safe distances are computed here.
         check_scaled_modes(model.mesh(), model.modes(), &scope.metric)?;
         let scaled = ScaledModel::new(model, &scope.metric, &scope.center);
         if let Some(locals) = &mut query.context.locals {
@@ -195,7 +195,7 @@ impl KineticQuery {
         Ok(if is_free { &[] } else { &swept.narrow.0.list })
     }
 
-    /// Whether safe distances and tests of the active pairs prove all pairs apart while every vertex moves on a straight line
+    /// Whether safe distances and tests of the active pairs prove all pairs free while every vertex moves on a straight line
     /// from its position at the last q to that at another one.
     ///
     /// # Errors
@@ -235,7 +235,7 @@ impl KineticQuery {
         self.query.pairs()
     }
 
-    /// The cost of the last query.
+    /// Returns the cost of the last query.
     pub fn statistics(&self) -> Statistics {
         self.query.statistics()
     }

@@ -6,7 +6,7 @@
 //! safe distance: they are active. While z stays in the region, a query tests only the active pairs. That is a Verlet list
 //! (Verlet 1967) with a safe distance for each pair.
 //!
-//! Where the motion of z is nearly straight, the region is a capsule along the predicted motion, else a ball. A capsule costs
+//! If the motion of z is nearly straight, the region is a capsule along the predicted motion, otherwise a ball. A capsule costs
 //! little more than a swept query and lasts for tens of steps (docs/notes/queries.md#capsules).
 
 mod kinetic_query;

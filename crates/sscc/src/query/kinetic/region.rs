@@ -20,8 +20,9 @@ pub(super) struct Region {
     pub(super) norm: f64,
     /// An upper bound of the magnitude of every term of every position in the region.
     pub(super) reach: f64,
-    /// Scratch: a point of the segment, and a difference of q.
+    /// Scratch: a point of the segment.
     point: Vec<f64>,
+    /// Scratch: a difference of q.
     offset: Vec<f64>,
 }
 

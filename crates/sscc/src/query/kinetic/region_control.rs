@@ -51,9 +51,11 @@ pub(super) enum RegionKind {
 /// The sizes of the regions of one kind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SizeControl {
-    /// The size of the next region, in units of `|z|`, and the factor to the one after it.
+    /// The size of the next region, in units of `|z|`.
     pub(super) share: f64,
+    /// The factor from this size to the one after it.
     factor: f64,
+    /// The largest size.
     largest: f64,
     /// The cost of the last search for each unit of its share.
     rate: f64,
@@ -84,11 +86,13 @@ impl SizeControl {
 pub(super) struct RegionControl {
     pub(super) balls: SizeControl,
     pub(super) capsules: SizeControl,
-    /// The kind of the last region, and whether it was smaller than its chosen size.
+    /// The kind of the last region.
     kind: RegionKind,
+    /// Whether the last region was smaller than its chosen size.
     is_cut: bool,
-    /// The cost of the last plain query, and of the last region with all its steps.
+    /// The cost of the last plain query.
     pub(super) plain_cost: u64,
+    /// The cost of the last region with all its steps.
     pub(super) cost: u64,
     /// The last step within a motion.
     step: f64,

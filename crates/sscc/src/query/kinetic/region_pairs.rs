@@ -29,8 +29,9 @@ pub(super) struct RegionPairs {
     pub(super) safe: BinaryHeap<SafePair>,
     /// Pairs that are tested in every step.
     pub(super) active: Vec<Pair>,
-    /// Safe pairs that earlier searches found, sorted by pair, and scratch for them: a search finds most pairs again.
+    /// Safe pairs that earlier searches found, sorted by pair: a search finds most pairs again.
     pub(super) remembered: Vec<SafePair>,
+    /// Scratch: the safe pairs for the next search.
     next_remembered: Vec<SafePair>,
 }
 

@@ -1,4 +1,4 @@
-//! Safe distances: how far z may move before two triangles that are apart can collide. This is the separating-direction
+//! Safe distances: how far z may move before two separate triangles can collide. This is the separating-direction
 //! bound of certificates ([`bound_along`]) about the current z instead of the centre.
 
 use std::sync::Arc;

@@ -19,8 +19,9 @@ const MAX_STEPS: f64 = 1000.0;
 pub(super) struct StepHistory {
     /// The last q; empty if there was none.
     pub(super) last_q: Vec<f64>,
-    /// The step to it, and the difference between the last two steps.
+    /// The step to the last q.
     step: Vec<f64>,
+    /// The difference between the last two steps.
     change: Vec<f64>,
     /// Number of steps since the last jump, at most 2.
     count: u32,
@@ -58,7 +59,7 @@ impl StepHistory {
         self.last_q.extend_from_slice(q);
     }
 
-    /// Whether the last two steps are known.
+    /// Whether the last two steps are recorded.
     pub(super) fn is_known(&self) -> bool {
         self.count == 2
     }

@@ -55,7 +55,7 @@ fn sheets(random: &mut Random, case: usize) -> ReducedModel {
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
 
-/// How often each case of a kinetic query occurred.
+/// Counts of the cases of kinetic queries.
 #[derive(Debug, Default)]
 struct Seen {
     steps: usize,

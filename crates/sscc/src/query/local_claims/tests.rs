@@ -88,7 +88,7 @@ impl<'a> Attack<'a> {
         (index, (n, if is_within { n } else { list[random.below(list.len())] }))
     }
 
-    /// Returns the claims at q; none if q is out of range.
+    /// Returns the claims at q; an empty list if q is out of range.
     fn claims(&mut self, index: usize, q: &[f64]) -> Vec<NodePair> {
         self.certified.local_claims(index, [q]).unwrap_or_default()
     }

@@ -33,7 +33,7 @@ impl Query {
     /// The search is local: a nearer one may exist. `docs/guarantees.md` states the full guarantee.
     ///
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
-    /// number of steps. The last answer of the query is forgotten.
+    /// number of steps. The last answer of the query is lost.
     ///
     /// ```
     /// # use glam::DVec3;

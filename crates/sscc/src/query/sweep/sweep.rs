@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::Pair;
 
-/// How far the weight of one mode can go until the shape touches itself.
+/// The result of a sweep: how far the weight of one mode can change until the shape touches itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The mode, from 0.

@@ -5,10 +5,10 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use sscc_testing::Dyadic;
 
-/// A vector, or a point that is one of doubles.
+/// A vector, or a point with the coordinates of a `DVec3`.
 pub type Vector = [Dyadic; 3];
 
-/// A point as a vector over a positive weight. It is never reduced: comparisons need products alone.
+/// A point as a vector over a positive weight. It is never reduced, because comparisons need only products.
 #[derive(Clone, Debug)]
 pub struct Point {
     pub vector: Vector,
@@ -22,7 +22,7 @@ impl From<&Vector> for Point {
 }
 
 impl Point {
-    /// The mean of two points with these weights, whose sum is not 0.
+    /// Returns the mean of two points with these weights, whose sum is not 0.
     pub fn mean(p: &Vector, q: &Vector, weights: [Dyadic; 2]) -> Self {
         let sum = &weights[0] + &weights[1];
         assert!(!sum.is_zero());
@@ -30,12 +30,12 @@ impl Point {
         Self { vector: std::array::from_fn(|k| &at_p * &p[k] + &at_q * &q[k]), weight: sum.abs() }
     }
 
-    /// The difference to another point, times both weights.
+    /// Returns the difference to another point, times both weights.
     pub fn to(&self, other: &Self) -> Vector {
         std::array::from_fn(|k| &other.vector[k] * &self.weight - &self.vector[k] * &other.weight)
     }
 
-    /// The difference from a point of doubles, times the weight.
+    /// Returns the difference from a point of doubles, times the weight.
     fn offset_from(&self, p: &Vector) -> Vector {
         std::array::from_fn(|k| &self.vector[k] - &p[k] * &self.weight)
     }
@@ -91,7 +91,7 @@ pub fn are_opposite(u: &Vector, v: &Vector) -> bool {
     dot(u, v).is_negative() && [(0, 1), (1, 2), (2, 0)].iter().all(|&(i, j)| &u[i] * &v[j] == &u[j] * &v[i])
 }
 
-/// Whether x is in the convex hull of these points, of which there may be one, two or three.
+/// Whether x is in the convex hull of one, two or three points.
 pub fn is_in_hull(x: &Point, hull: &[Vector]) -> bool {
     if let [p, q, r] = hull {
         let normal = cross(&minus(q, p), &minus(r, p));
@@ -103,13 +103,13 @@ pub fn is_in_hull(x: &Point, hull: &[Vector]) -> bool {
                 && [(p, q), (q, r), (r, p)].into_iter().all(is_inside);
         }
     }
-    // Without area the hull is that of its points, two by two.
+    // A hull without area is the union of the hulls of each two points.
     let offsets: Vec<Vector> = hull.iter().map(|p| x.offset_from(p)).collect();
     offsets.iter().any(is_zero) || offsets.iter().any(|u| offsets.iter().any(|v| are_opposite(u, v)))
 }
 
-/// All points at which an edge of one triangle can leave or enter the other one: corners, and single common points of two
-/// edges, or of an edge and a plane. Among them are all corners of the common points of the two triangles.
+/// Returns all points at which an edge of one triangle can leave or enter the other one: corners, and single common points of
+/// two edges, or of an edge and a plane. They include all corners of the common points of the two triangles.
 pub fn candidates(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Point> {
     let mut found: Vec<Point> = a.iter().chain(b).map(Point::from).collect();
     let edges = |t: &[Vector; 3]| [0, 1, 2].map(|i| [t[i].clone(), t[(i + 1) % 3].clone()]);
@@ -136,8 +136,8 @@ pub fn candidates(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Point> {
     found
 }
 
-/// The corners of all common points of two triangles, which may be degenerate, in order: those common points that are not
-/// between two others.
+/// Returns the corners of the set of common points of two triangles, which may be degenerate, in order: those common points
+/// that are not between two others.
 pub fn common_corners(a: &[Vector; 3], b: &[Vector; 3]) -> Vec<Point> {
     let mut common = candidates(a, b);
     common.retain(|x| is_in_hull(x, a) && is_in_hull(x, b));

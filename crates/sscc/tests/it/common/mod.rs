@@ -1,4 +1,4 @@
-//! Small random models, with every kind of odd mesh and odd modes.
+//! Small random models, with unusual meshes and modes of every kind.
 
 pub mod exact;
 pub mod pair_trees;
@@ -11,7 +11,7 @@ use sscc::{
     CancelToken, CertifyOptions, ContactFilter, Metric, MetricKind, Modes, Neighbours, ReducedModel, TriMesh,
 };
 
-/// Small pseudo-random numbers.
+/// A generator of pseudo-random numbers.
 pub struct Random(u64);
 
 impl Random {
@@ -25,17 +25,17 @@ impl Random {
         sscc::parts::next_bits(&mut self.0)
     }
 
-    /// In [0, 1).
+    /// Returns a number in [0, 1).
     pub fn uniform(&mut self) -> f64 {
         sscc::parts::next_uniform(&mut self.0)
     }
 
-    /// In [-1, 1).
+    /// Returns a number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
         2.0 * self.uniform() - 1.0
     }
 
-    /// In 0 .. n.
+    /// Returns an integer in 0 .. n.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
@@ -44,12 +44,12 @@ impl Random {
         DVec3::new(self.signed(), self.signed(), self.signed())
     }
 
-    /// `10^x` for x between the two exponents.
+    /// Returns `10^x` for a random x between the two exponents.
     pub fn power(&mut self, from: f64, to: f64) -> f64 {
         10.0_f64.powf(from + (to - from) * self.uniform())
     }
 
-    /// Barycentric weights; one in four is a corner or lies on an edge.
+    /// Returns barycentric weights; one point in four is a corner or lies on an edge.
     pub fn weights(&mut self) -> DVec3 {
         let mut w = DVec3::new(self.uniform(), self.uniform(), self.uniform());
         if self.below(4) == 0 {
@@ -66,7 +66,7 @@ impl Random {
 /// Vertices and faces.
 pub type Soup = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// A mesh of 4 to 64 triangles, and a few more.
+/// Returns a mesh of 4 to 64 triangles, and a few more.
 pub fn random_mesh(random: &mut Random) -> Soup {
     let (mut p, mut faces) = match random.below(7) {
         0 => soup(random),
@@ -107,7 +107,7 @@ pub fn random_mesh(random: &mut Random) -> Soup {
     (p, faces)
 }
 
-/// Triangles without common vertices.
+/// Returns triangles without common vertices.
 fn soup(random: &mut Random) -> Soup {
     let count = 4 + random.below(14);
     let size = random.power(-3.0, -0.3);
@@ -119,7 +119,7 @@ fn soup(random: &mut Random) -> Soup {
     (p, (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
 
-/// On a coarse grid: many exact contacts, coplanar and parallel parts.
+/// Returns triangles on a coarse grid, with many exact contacts, coplanar and parallel parts.
 fn integer_soup(random: &mut Random) -> Soup {
     let count = 4 + random.below(12);
     let mut p = Vec::new();
@@ -130,7 +130,7 @@ fn integer_soup(random: &mut Random) -> Soup {
     (p, (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
 }
 
-/// A tetrahedron or an octahedron, subdivided and made round.
+/// Returns a tetrahedron or an octahedron, subdivided and projected to a sphere.
 fn sphere(random: &mut Random) -> Soup {
     let octahedron = random.below(2) == 0;
     let (mut p, mut faces) = if octahedron {
@@ -165,7 +165,7 @@ fn sphere(random: &mut Random) -> Soup {
     (p, faces)
 }
 
-/// An open strip, a little uneven.
+/// Returns an open, slightly uneven strip.
 fn strip(random: &mut Random) -> Soup {
     let steps = 3 + random.below(10);
     let noise = random.power(-9.0, -1.0);
@@ -181,7 +181,7 @@ fn strip_faces(steps: usize) -> Vec<[u32; 3]> {
     (0..steps as u32).flat_map(quad).collect()
 }
 
-/// A strip bent almost into a ring: its ends are close.
+/// Returns a strip that is bent nearly to a ring, so that its ends are close.
 fn curled_strip(random: &mut Random) -> Soup {
     let steps = 6 + random.below(14);
     let gap = random.power(-6.0, -0.5);
@@ -194,7 +194,7 @@ fn curled_strip(random: &mut Random) -> Soup {
     (p, strip_faces(steps))
 }
 
-/// Many triangles around one edge, and some beside it.
+/// Returns many triangles around one edge, and some beside it.
 fn fan(random: &mut Random) -> Soup {
     let blades = 3 + random.below(8);
     let mut p = vec![DVec3::ZERO, DVec3::Z];
@@ -209,7 +209,7 @@ fn fan(random: &mut Random) -> Soup {
     (p, faces)
 }
 
-/// Two sheets with a narrow gap.
+/// Returns two sheets with a narrow gap.
 fn sheets(random: &mut Random) -> Soup {
     let n = 2 + u32::from(random.below(4) == 0);
     let gap = random.power(-9.0, -0.5);
@@ -232,7 +232,7 @@ fn sheets(random: &mut Random) -> Soup {
     (p, faces)
 }
 
-/// Modes of one of many kinds, in vertex-major order.
+/// Returns modes of one of many kinds, in vertex-major order.
 pub fn random_modes(random: &mut Random, p: &[DVec3], rank: usize) -> Vec<DVec3> {
     let kind = random.below(9);
     let mut columns: Vec<Vec<DVec3>> = (0..rank)
@@ -244,7 +244,7 @@ pub fn random_modes(random: &mut Random, p: &[DVec3], rank: usize) -> Vec<DVec3>
                 .map(|&x| match kind {
                     0 | 1 => random.vector(),
                     2 | 3 => smooth(x),
-                    // Only in a plane.
+                    // Displacements in a plane.
                     4 => random.vector() * DVec3::new(1.0, 0.0, 1.0),
                     // Rigid motions.
                     5 => {
@@ -254,12 +254,12 @@ pub fn random_modes(random: &mut Random, p: &[DVec3], rank: usize) -> Vec<DVec3>
                             shift
                         }
                     }
-                    // A large common part.
+                    // Displacements with a large common part.
                     6 => shift * 1e8 + random.vector(),
                     // Few vertices move.
                     7 if random.below(3) > 0 => DVec3::ZERO,
                     7 => random.vector() * random.power(-6.0, 0.0),
-                    // Almost rigid.
+                    // Nearly rigid motions.
                     _ => w.cross(x) + random.vector() * 1e-6,
                 })
                 .collect()
@@ -279,7 +279,7 @@ pub fn random_modes(random: &mut Random, p: &[DVec3], rank: usize) -> Vec<DVec3>
     (0..p.len()).flat_map(|v| columns.iter().map(move |c| c[v])).collect()
 }
 
-/// The model number `seed`.
+/// Returns the model number `seed`.
 pub fn random_model(seed: u64) -> ReducedModel {
     let random = &mut Random::new(seed);
     let (mut p, mut faces) = random_mesh(random);
@@ -307,7 +307,7 @@ pub fn random_model(seed: u64) -> ReducedModel {
     ReducedModel::with_metric(mesh, modes, metric).unwrap()
 }
 
-/// Some corners get vertices of their own, as along the seams of a file for drawing.
+/// Gives some corners new vertices, as along the seams of a graphics format.
 fn split_vertices(random: &mut Random, p: &mut Vec<DVec3>, faces: &mut [[u32; 3]], modes: &mut Vec<DVec3>) {
     let rank = modes.len() / p.len();
     for corner in faces.iter_mut().flatten() {
@@ -320,7 +320,7 @@ fn split_vertices(random: &mut Random, p: &mut Vec<DVec3>, faces: &mut [[u32; 3]
     }
 }
 
-/// A matrix whose unit ball is turned and stretched.
+/// Returns a metric whose unit ball is rotated and stretched.
 fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
     let rank = modes.rank();
     let scales = Metric::displacement(mesh, modes).unwrap().scales();
@@ -333,8 +333,8 @@ fn dense_metric(random: &mut Random, mesh: &TriMesh, modes: &Modes) -> Metric {
     Metric::from_matrix(MetricKind::Given, rank, &matrix).unwrap()
 }
 
-/// A strip of several clusters along a curve that comes near itself, or crosses itself; some of its corners on vertices
-/// of their own. Modes are functions of position.
+/// Returns a strip of several buckets along a curve that comes near itself, or crosses itself; some of its corners have new
+/// vertices. Modes are functions of position.
 pub fn winding_strip(random: &mut Random, seed: u64) -> ReducedModel {
     let steps = 60 + random.below(60);
     let (turns, flat, noise) = (random.power(0.0, 0.7), random.power(-1.5, 0.0), random.power(-3.0, -1.0));
@@ -360,19 +360,19 @@ pub fn winding_strip(random: &mut Random, seed: u64) -> ReducedModel {
     ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap()
 }
 
-/// Options, and those of their values that tests need.
+/// Options, and the values that tests need.
 pub struct RandomOptions {
     pub options: CertifyOptions,
     pub filter: ContactFilter,
     pub ignore_rest: bool,
 }
 
-/// Options of every kind, by the number of the model.
+/// Returns options of any kind, by the number of the model.
 pub fn random_options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     random_choices(seed, model).options
 }
 
-/// The same with their values.
+/// Returns options of any kind with their values.
 pub fn random_choices(seed: u64, model: &ReducedModel) -> RandomOptions {
     let random = &mut Random::new(seed + 3_000_000);
     let center = (random.below(4) == 0).then(|| {
@@ -387,7 +387,7 @@ pub fn random_choices(seed: u64, model: &ReducedModel) -> RandomOptions {
         .filter(filter.clone())
         .ignore_rest(ignore_rest.then_some(0))
         .max_exceptions([None, Some(0), Some(1000)][random.below(3)])
-        // More than by default: these models are small.
+        // The budget is larger than the default, because these models are small.
         .budget(16)
         .threads(1);
     RandomOptions { options, filter, ignore_rest }
@@ -399,13 +399,13 @@ pub fn are_adjacent(mesh: &TriMesh, a: u32, b: u32) -> bool {
     a.iter().any(|i| b.contains(i))
 }
 
-/// `center + S^-1 z`
+/// Returns `center + S^-1 z`.
 pub fn at(scope: &Scope, z: &[f64]) -> Vec<f64> {
     scope.metric.unscaled(z).unwrap().iter().zip(&scope.center).map(|(d, c)| c + d).collect()
 }
 
-/// The smallest z found that brings two points of the triangles together (relative modes of full rank), the points
-/// not at a common vertex.
+/// Returns the smallest z found that brings two points of the triangles together, which are not at a common vertex (for
+/// relative modes of full rank).
 pub fn critical_z(
     model: &ReducedModel,
     scope: &Scope,
@@ -413,7 +413,7 @@ pub fn critical_z(
     random: &mut Random,
 ) -> Option<Vec<f64>> {
     let [x, y] = [faces.0, faces.1].map(|f| model.mesh().faces()[f as usize]);
-    // One of the points is on the edge opposite to a common vertex.
+    // One point is on the edge opposite to a common vertex.
     let own = |v: u32| {
         if y.iter().any(|w| model.position(v, &scope.center) == model.position(*w, &scope.center)) {
             0.0
@@ -435,7 +435,7 @@ pub fn critical_z(
                 }
             }
         }
-        // Each component of `B S^-1` is a solution with the transpose of S.
+        // Each component of `B S^-1` solves a system with the transpose of S.
         let b = scaled_rows(scope, &b);
         let gram = b.iter().fold(DMat3::ZERO, |g, b| g + DMat3::from_cols(*b * b.x, *b * b.y, *b * b.z));
         let trace = gram.x_axis.x + gram.y_axis.y + gram.z_axis.z;
@@ -464,7 +464,7 @@ pub fn critical_z(
     best.map(|b| b.1)
 }
 
-/// `B S^-1`, column by column from the first mode on.
+/// Computes `B S^-1`, column by column from the first mode on.
 fn scaled_rows(scope: &Scope, b: &[DVec3]) -> Vec<DVec3> {
     let Some(s) = scope.metric.dense_factor() else {
         return b.iter().zip(scope.metric.scales()).map(|(b, s)| *b / s).collect();
@@ -478,7 +478,7 @@ fn scaled_rows(scope: &Scope, b: &[DVec3]) -> Vec<DVec3> {
     a
 }
 
-/// A token that is cancelled when it is asked for the first time after so many looks: for what takes too long.
+/// Returns a token that cancels after `looks` checks, to end computations that take too long.
 pub fn after(looks: usize) -> CancelToken {
     let asked = AtomicUsize::new(0);
     CancelToken::when(move || asked.fetch_add(1, Ordering::Relaxed) >= looks)

@@ -1,13 +1,14 @@
-//! Pair trees with something changed.
+//! Changes of pair trees, for tests.
 
 use sscc::parts::PairTree;
 
-/// A link's bits.
+/// The bit of a link that marks the last sibling.
 pub const LAST: u32 = 1 << 31;
+/// The bits of a link that are the start of its children.
 pub const START: u32 = (1 << 28) - 1;
 
-/// The same tree without the entries at the given places and all below them, and without what has nothing left below
-/// it; `change` gives each other entry another radius.
+/// Returns the tree without the given entries and all entries below them, and without inner entries that lost all
+/// children; `change` returns the new radius of each other entry.
 pub fn edited(
     tree: &PairTree,
     limit: f64,
@@ -17,7 +18,7 @@ pub fn edited(
     let entries: Vec<(f32, u32)> = tree.entries().collect();
     let is_inner = |at: usize| entries[at].1 & START != 0;
     let mut kept: Vec<bool> = (0..entries.len()).map(|at| !removed.contains(&at)).collect();
-    // Children come after their parents: what is above is gone, then what has nothing left.
+    // Children come after their parents. Removes entries below removed ones first, then inner entries without children.
     for at in 0..entries.len() {
         for child in children(&entries, at) {
             kept[child] &= kept[at];
@@ -43,7 +44,7 @@ pub fn edited(
         let start = start_of(children(&entries, at).collect()).unwrap_or(0);
         changed.push((change(at, radius), link & !START & !LAST | start));
     }
-    // The last one left of each list.
+    // Marks the last remaining entry of each list.
     let mut first = 0;
     while first < entries.len() {
         let list = list(&entries, first);
@@ -55,7 +56,7 @@ pub fn edited(
     PairTree::from_parts(limit, starts, changed)
 }
 
-/// The places of the siblings that start there.
+/// Returns the indices of the siblings that begin at `start`.
 fn list(entries: &[(f32, u32)], start: usize) -> Vec<usize> {
     let count = entries[start..].iter().position(|(_, link)| link & LAST != 0).unwrap() + 1;
     (start..start + count).collect()
