@@ -96,7 +96,8 @@ fn nearest(
             parts.clear();
             let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
             // Of one mesh each two nodes once.
-            let pairs = pairs.filter(|(i, j)| !(is_self && n == m && i > j));
+            let pairs = pairs
+                .filter(|(i, j)| !(is_self && n == m && right_or!(i > j, NearestBetweenNodesAlone, i >= j)));
             parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= most));
             parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
             open.append(&mut parts);

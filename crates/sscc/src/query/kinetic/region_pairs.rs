@@ -61,7 +61,7 @@ impl RegionPairs {
         if until <= self.travelled {
             return false;
         }
-        if until < self.end {
+        if right_or!(until < self.end, SafeDistancesEndless, false) {
             self.safe.push(SafePair::new(until, pair));
         } else if self.steps == 0 {
             self.next_remembered.push(SafePair::new(until, pair));
@@ -99,7 +99,8 @@ impl RegionPairs {
 
     /// Whether z has not travelled as far as the region lasts.
     pub(super) fn has_travel_left(&self) -> bool {
-        self.travelled < self.end
+        // Equality would be a proof here, too: the end was rounded down, the travelled distance up.
+        right_or!(self.travelled < self.end, TravelReached, self.travelled <= self.end)
     }
 
     /// Whether the region lasts for a straight step from here, and all safe pairs stay within their safe distances.
@@ -130,7 +131,9 @@ impl RegionPairs {
                 self.next_remembered.push(earlier);
             }
             match remembered.next_if(|safe| safe.order == *pair) {
-                Some(safe) if safe.key >= self.end => self.next_remembered.push(safe),
+                Some(safe) if right_or!(safe.key >= self.end, RememberedWithinRegion, true) => {
+                    self.next_remembered.push(safe)
+                }
                 _ => pending.push(*pair),
             }
         }
