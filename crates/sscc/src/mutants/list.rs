@@ -576,14 +576,10 @@ mutants! {
     LocalComponentsToNearest: Covered("quotients by gaps are rounded up by more");
     /// Gaps in tables are rounded to nearest.
     LocalTableToNearest: Covered("gaps are shortened by a larger share before");
-    /// The ratio of a node of a list is that of its touching parts.
-    LocalListOfTouchingParts: CaughtBy("lib query::local_claims::tests::claims_hold_up_to_where_they_end");
     /// After the last number of a search the marks of the first ones hold again.
     LocalSearchesWrap: CaughtBy("lib query::local_proofs::tests::what_one_search_allowed_is_forgotten_in_the_next");
     /// A ratio that equals the allowed one is proven.
     LocalRatioReached: Covered("allowed ratios have been rounded down");
-    /// Matrices with two columns along one line are rotations.
-    TurnsOfAnyAngle: CaughtBy("lib query::smallest_stretch::tests::rotations_are_orthogonal");
     /// Rates whose squares underflow are as small as computed.
     RegionRatesUnderflow: CaughtBy("lib query::region_rates::tests::singular_values_are_bounded");
     /// A direction that turns separates moving triangles if it separates them at both ends.

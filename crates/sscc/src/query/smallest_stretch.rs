@@ -131,7 +131,7 @@ pub(super) fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let y = (y - x * x.dot(y)).try_normalize()?;
     // Of a map that is nearly singular the iteration may leave two columns along one line.
     let cosine = x.dot(y).abs();
-    if cosine.is_nan() || right_or!(cosine > ORTHOGONAL, TurnsOfAnyAngle, false) {
+    if cosine.is_nan() || cosine > ORTHOGONAL {
         return None;
     }
     let z = x.cross(y);

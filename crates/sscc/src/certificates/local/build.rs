@@ -231,7 +231,7 @@ impl Builder<'_> {
         let mut ratio = floor;
         for is_first in [true, false] {
             for child in children.clone() {
-                if is_touching(search.node(child).0) != right_or!(is_first, LocalListOfTouchingParts, true) {
+                if is_touching(search.node(child).0) != is_first {
                     continue;
                 }
                 let floor = if is_first { floor } else { ratio };
