@@ -23,7 +23,9 @@ impl Certificates {
             return Err(Error::CoordinatesValue { index, value: q[index] });
         }
         let root = self.root_radius();
-        if root <= 0.0 || !self.exceptions().is_empty() || self.clearance().is_some() {
+        let has_exceptions = right_or!(!self.exceptions().is_empty(), ClampedWithExceptions, false);
+        let has_clearance = right_or!(self.clearance().is_some(), ClampedWithClearance, false);
+        if root <= 0.0 || has_exceptions || has_clearance {
             return Ok(None);
         }
         let mut offset = vec![0.0; q.len()];
@@ -32,7 +34,8 @@ impl Certificates {
         let norm = norm_at(&clamped);
         let mut scale = if norm.is_finite() { root / norm } else { 0.5 };
         for _ in 0..MAX_STEPS {
-            if norm_at(&clamped) < root {
+            let norm_here = norm_at(&clamped);
+            if right_or!(norm_here < root, ClampedToTheRadius, norm_here <= root) {
                 return Ok(Some(clamped));
             }
             for ((x, q), c) in clamped.iter_mut().zip(q).zip(center) {

@@ -362,7 +362,7 @@ pub(crate) fn are_slots_separated<const E: usize>(
     (x, a): (&NodeVolumes<E>, BucketSlot),
     (y, b): (&NodeVolumes<E>, BucketSlot),
 ) -> bool {
-    let error = x.corner_error.max(y.corner_error);
+    let error = right_or!(x.corner_error.max(y.corner_error), ErrorOfFirstShape, x.corner_error);
     are_separated(&x.mapped_corners(a.bucket, a.slot), &y.mapped_corners(b.bucket, b.slot), error)
 }
 

@@ -63,6 +63,7 @@ impl PairFilter {
     /// Applies the filter to a mesh whose vertices are welded by these classes (`None`: not at all), whether or not the filter
     /// welds vertices.
     pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
+        let classes = right_or!(classes, WeldClassesForgotten, None);
         let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
         Self {
             faces: faces.to_vec(),
@@ -156,7 +157,11 @@ impl PairFilter {
     /// Whether a pair is excluded, whatever its relation.
     #[inline]
     pub(crate) fn is_excluded(&self, a: u32, b: u32) -> bool {
-        !self.excluded.is_empty() && self.excluded.binary_search(&(a.min(b), a.max(b))).is_ok()
+        !self.excluded.is_empty()
+            && self
+                .excluded
+                .binary_search(&right_or!((a.min(b), a.max(b)), ExcludedInOneOrder, (a, b)))
+                .is_ok()
     }
 
     /// Whether two triangles with these corners collide, exactly, and by their relation count. Callers check
@@ -236,4 +241,18 @@ fn first_common(a: [u32; 3], b: [u32; 3]) -> [Option<u32>; 2] {
     let mut common = a.into_iter().filter(|x| b.contains(x));
     let first = common.next();
     [first, common.find(|x| Some(*x) != first)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ignored_pairs_have_no_order() {
+        let faces = [[0, 1, 2], [3, 4, 5], [6, 7, 8]];
+        let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default().ignoring([(2, 0)]));
+        for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+            assert_eq!([filter.is_excluded(a, b), filter.is_excluded(b, a)], [(a, b) == (0, 2); 2]);
+        }
+    }
 }

@@ -57,7 +57,7 @@ impl PairFilter {
         [b_t0, b_t1]: [&[DVec3; 3]; 2],
     ) -> impl Iterator<Item = SimplexPair<usize>> {
         let pairs = if self.is_vertex_shared(class, pair, a_t0, b_t0)
-            && self.is_vertex_shared(class, pair, a_t1, b_t1)
+            && right_or!(self.is_vertex_shared(class, pair, a_t1, b_t1), MovingVertexSharedAtStart, true)
         {
             self.opposite_to_class(class, pair)
         } else {

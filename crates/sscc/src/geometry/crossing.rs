@@ -15,7 +15,7 @@ pub(crate) fn crossing(point: DVec3, corners: &[DVec3; 3]) -> i32 {
     for (u, v) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i].xy(), corners[j].xy())) {
         if u.y <= p.y && right_or!(p.y < v.y, CrossingsAtEnds, p.y <= v.y) {
             turns += i32::from(orient2d(u, v, p) > 0);
-        } else if v.y <= p.y && p.y < u.y {
+        } else if right_or!(v.y <= p.y && p.y < u.y, CrossingsUpwardAlone, false) {
             turns -= i32::from(orient2d(u, v, p) < 0);
         }
     }

@@ -436,4 +436,158 @@ mutants! {
     DownwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
     /// A thread that flushes small numbers to zero is accepted.
     FlushingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    /// The root's radius proves that no pair collides, also where pairs collide at the centre.
+    ExceptionsProvenFree: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
+    /// The root's radius proves that no pair is near, also where pairs are near at the centre.
+    NearExceptionsProvenFree: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
+    /// The pairs near at the centre that a search tests are those that collide there.
+    NearExceptionsOfContacts: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
+    /// Terms of positions are at most as large as within the ball about the centre, wherever q is.
+    ReachOfBallAnywhere: CaughtBy("lib query::valid_ball::tests::invalid_q_are_refused");
+    /// Terms of positions in a ball about the centre are at most as large as at the centre.
+    ReachOfBallAtCenter: CaughtBy("lib query::valid_ball::tests::no_q_in_the_ball_reaches_farther");
+    /// The rounding of positions in a motion is that at its start.
+    MotionReachAtStart: CaughtBy("lib query::configuration_search::tests::the_rounding_of_a_motion_is_that_of_both_ends");
+    /// With certificates near pairs are those beyond the rings of the first question.
+    RingsOfFirstQuestion: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
+    /// A region contains q whose positions are rounded by more than its own.
+    RegionReachUnchecked: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
+    /// A region contains z with a larger |z| than that of its search.
+    RegionNormUnchecked: CaughtBy("lib query::kinetic::region::tests::points_of_larger_norms_are_not_contained");
+    /// The largest |z| in a capsule is not rounded up.
+    RegionNormToNearest: Covered("regions contain no z with a larger |z|, whatever the rounding");
+    /// A region still holds when its travel is exactly used up.
+    TravelReached: Covered("the end of a travel has been rounded down");
+    /// Safe distances that end within a region hold in all of it.
+    SafeDistancesEndless: CaughtBy("lib query::kinetic::region_pairs::tests::pairs_expire_in_order_and_never_late");
+    /// Safe distances of an earlier region hold in all of the next one.
+    RememberedWithinRegion: CaughtBy("lib query::kinetic::region_pairs::tests::pairs_expire_in_order_and_never_late");
+    /// The end of a motion is free, also of a motion with impacts.
+    FreeEndOfAnyMotion: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
+    /// In a region pairs that collide at the centre are not tested.
+    KineticExceptionsUntested: CaughtBy("it kinetic::small_models_of_every_kind");
+    /// Pairs whose safe distance vanishes in rounding are not tested.
+    VanishingDistancesStored: CaughtBy("lib query::kinetic::tests::pairs_that_collide_at_rest_are_tested_in_every_step");
+    /// The norm of a motion in a kinetic query is that of its start.
+    KineticSweptNormAtStart: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
+    /// Motions in a region do not test its active pairs.
+    ActivePairsNotSwept: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
+    /// Safe scales omit pairs that collide at the centre.
+    SafeScaleWithoutExceptions: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    /// Pairs of nodes below pairs of buckets are free up to the limit of the pair tree.
+    SafeScaleBelowBuckets: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    /// Triangles of two leaves that are free up to a goal are free beyond it.
+    LeavesAdvancedOnce: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    /// Clamping ends at a |z| that equals the root's radius.
+    ClampedToTheRadius: CaughtBy("it safe_scale::clamping_ends_inside_the_root_ellipsoid");
+    /// Clamping promises a free q, also where pairs collide at the centre.
+    ClampedWithExceptions: CaughtBy("it safe_scale::clamping_ends_inside_the_root_ellipsoid");
+    /// Clamping takes radii with a clearance, which prove nothing about neighbours.
+    ClampedWithClearance: CaughtBy("it certified_clearance::certificates_with_a_clearance_prove_nothing_about_collisions");
+    /// Ignored pairs count if the second triangle has the smaller number.
+    ExcludedInOneOrder: CaughtBy("lib filter::pair_filter::tests::ignored_pairs_have_no_order");
+    /// Welded vertices are not common to their triangles.
+    WeldClassesForgotten: CaughtBy("it neighbours::welding_undoes_splitting");
+    /// A vertex that two triangles share at the start of a motion stays shared.
+    MovingVertexSharedAtStart: CaughtBy("it detector::welded_vertices_can_move_apart");
+    /// The time of impact of two triangles with a common vertex is that of the later one of their edges.
+    LaterOfTwoTimes: CaughtBy("lib detect::narrow_phase::swept::tests::the_earlier_edge_is_the_time_of_impact");
+    /// Triangles whose distance equals a clearance are near.
+    ClearanceReached: CaughtBy("it certified_clearance::near_pairs_are_found_up_to_their_own_distance");
+    /// AABBs that touch are disjoint.
+    TouchingBoxesDisjoint: CaughtBy("it continuous::times_of_simple_motions");
+    /// AABBs of pairs near at the centre are farther apart than a clearance by half of it.
+    FartherByHalf: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
+    /// A direction separates moving triangles that are separated at the end.
+    SeparatedAtEnd: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
+    /// Triangles whose error is not finite are tested for separating directions.
+    InfiniteErrorTested: Covered("no gap is larger than a slack that is infinite or NaN");
+    /// Of two shapes the second one has the error of the first.
+    ErrorOfFirstShape: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
+    /// Sides of normals have no rounding error.
+    ConeSidesExact: CaughtBy("lib detect::normal_cones::tests::certain_sides_are_right");
+    /// The normals of a node are those of its last child.
+    ConeOfLastChild: CaughtBy("it normal_cones::a_fold_inside_of_a_flat_sheet_is_found");
+    /// Each of two meshes is searched in a frame of its own.
+    FramesOfTheirOwn: CaughtBy("it detector::two_meshes_collide_as_all_their_triangles_do");
+    /// The nearest two triangles are not within one node.
+    NearestBetweenNodesAlone: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
+    /// A ray upward from within a box crosses nothing in it.
+    RaysMissTheirBoxes: CaughtBy("it clearance::enclosed_components_are_counted");
+    /// An open mesh is not inside a closed one.
+    OneOpenMeshHasNone: CaughtBy("it clearance::enclosed_components_are_counted");
+    /// A ray crosses edges that run upward alone.
+    CrossingsUpwardAlone: CaughtBy("lib geometry::crossing::tests::points_below_edges_and_corners_are_counted_once");
+    /// A ball inside of the second body is inside of both.
+    BallInsideSecond: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
+    /// The AABB of a posed motion is that of its start.
+    SweptWholeAtStart: CaughtBy("lib posed::swept_shape::tests::impacts_are_those_of_all_triangles");
+    /// AABBs of nodes in the world are those at the start of a motion.
+    PosedNodesAtStart: CaughtBy("lib posed::swept_shape::tests::impacts_are_those_of_all_triangles");
+    /// Nodes and triangles in the world are not widened by the margin of near pairs.
+    PosedMarginForgotten: CaughtBy("lib posed::swept_shape::tests::impacts_are_those_of_all_triangles");
+    /// AABBs from coarse positions in the world are not widened by a margin.
+    PosedCoarseWithMargin: Covered("the error of coarse positions contains the margin");
+    /// A shape whose q stays the same stays at its place.
+    PlacedByCoordinatesAlone: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
+    /// AABBs of an earlier place are used while the frame stays the same.
+    PosedVolumesKept: CaughtBy("lib posed::posed_shape::tests::shapes_move_within_one_frame");
+    /// AABBs with an earlier margin are used while the frame stays the same.
+    NearMarginKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
+    /// AABBs of an earlier motion are used while the frame stays the same.
+    SweptVolumesKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
+    /// Each of two shapes is widened by a quarter of the margin of near pairs.
+    NearMarginHalved: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
+    /// The height of a plane in the frame of a search has no rounding error.
+    HalfSpaceFrameExact: Covered("the error of positions in the world is larger");
+    /// Weights before a time of impact are rounded to nearest.
+    WeightBeforeToNearest: CaughtBy("lib query::sweep::weight_line::tests::weights_are_rounded_towards_the_start");
+    /// The share of an interval of weights before a time of impact is rounded to nearest.
+    WeightShareToNearest: CaughtBy("lib query::sweep::weight_line::tests::weights_are_rounded_towards_the_start");
+    /// The norm of an interval of weights is that at its start.
+    SweepNormAtStart: CaughtBy("it sweep::contacts_of_simple_shapes");
+    /// Of an interval with too many candidates those that were found are all.
+    SweepCutOffIsFree: CaughtBy("lib query::sweep::work::tests::where_the_work_is_used_up_the_bracket_is_what_was_proven");
+    /// A configuration whose first colliding pair does not count is free.
+    ResolvedByFirstPair: CaughtBy("it resolve::answers_are_free_and_no_farther_than_stepping_back");
+    /// The bound of a pair of nodes is that of its first part.
+    ParentOfFirstChild: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
+    /// Pairs of buckets that were bounded do not limit the radius of a node.
+    FrontierBoundedForgotten: CaughtBy("it certificates::certified_implies_free");
+    /// The radius of a node is that of the pairs of its children, not of the children.
+    RadiusOfPairsAlone: CaughtBy("it certificates::certified_implies_free");
+    /// A refused round raises the limit.
+    RefusedInnerRoundComplete: CaughtBy("lib certificates::build::limit_schedule::tests::a_refused_limit_is_not_reached");
+    /// The bound of two triangles with a common vertex is that of one of the edges opposite to it.
+    LeafPairOfFirstSimplices: CaughtBy("it neighbours::shared_vertex_pairs_are_found_on_request");
+    /// Pair trees with radii at their limit are accepted.
+    TreeRadiusAtLimitAccepted: CaughtBy("it pair_tree::damaged_trees_are_refused");
+    /// Pair trees with a radius above that of a part are accepted.
+    TreeRadiusAboveChildAccepted: CaughtBy("it pair_tree::damaged_trees_are_refused");
+    /// Certificates with a radius of a node above that of a part are accepted.
+    NodeRadiusAboveChildAccepted: CaughtBy("it certificates::damaged_parts_are_refused");
+    /// Certificates with a radius that is NaN are accepted.
+    NanRadiusAccepted: CaughtBy("it certificates::damaged_parts_are_refused");
+    /// The gap of two parts is that of the sphere of one to the centre of the other.
+    LocalSphereOfOne: CaughtBy("lib certificates::local::strain_search::tests::ratios_are_at_least_those_of_all_pairs");
+    /// Triangles without a gap at the centre have a ratio.
+    LocalTouchingFree: CaughtBy("lib certificates::local::strain_search::tests::triangles_without_a_gap_have_no_ratio");
+    /// Gaps along the line between two parts are rounded to nearest.
+    LocalComponentsToNearest: Covered("quotients by gaps are rounded up by more");
+    /// Gaps in tables are rounded to nearest.
+    LocalTableToNearest: Covered("gaps are shortened by a larger share before");
+    /// After the last number of a search the marks of the first ones hold again.
+    LocalSearchesWrap: CaughtBy("lib query::local_proofs::tests::what_one_search_allowed_is_forgotten_in_the_next");
+    /// A ratio that equals the allowed one is proven.
+    LocalRatioReached: Covered("allowed ratios have been rounded down");
+    /// Rates whose squares underflow are as small as computed.
+    RegionRatesUnderflow: CaughtBy("lib query::region_rates::tests::singular_values_are_bounded");
+    /// A direction that turns separates moving triangles if it separates them at both ends.
+    TurningByEnds: CaughtBy("lib geometry::ccd::candidate_direction::tests::directions_that_turn_may_meet_between");
+    /// A plane separates moving triangles that it separates at the end.
+    PlanesAtEnd: CaughtBy("it continuous::times_of_simple_motions");
+    /// A direction that separates two vertices separates them until the end.
+    SeparatedForever: CaughtBy("it continuous::times_of_simple_motions");
+    /// A direction along features separates moving triangles that it separates at the end of a step.
+    FeaturesByEnds: CaughtBy("lib geometry::ccd::feature_direction::tests::directions_that_turn_may_meet_between");
 }

@@ -19,9 +19,12 @@ impl PosedShape {
         let reach = normal.abs().element_sum();
         let error = reach * f64::from(self.volumes.corner_error()) * (1.0 + 1e-6);
         let limit = (height - normal.dot(frame.center())) * frame.scale();
+        // The error would do: it has more than 270 units of 2^-52 of the largest coordinate in the world, and 16 of 2^-24 of the frame.
+        // A limit so large that its own rounding is more has all vertices on one side.
         let rounding =
             64.0 * f64::EPSILON * (reach * frame.center().abs().max_element() * frame.scale() + limit.abs());
-        let limit = limit + right_or!(error, HalfSpaceExact, 0.0) + rounding;
+        let limit =
+            limit + right_or!(error, HalfSpaceExact, 0.0) + right_or!(rounding, HalfSpaceFrameExact, 0.0);
         let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
         let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
         self.below.clear();

@@ -85,7 +85,8 @@ impl PosedShape {
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
-        if (&self.motion.q[0][..], &self.motion.pose[0]) == (q, pose) {
+        let is_same_pose = right_or!(self.motion.pose[0] == *pose, PlacedByCoordinatesAlone, true);
+        if self.motion.q[0] == q && is_same_pose {
             return Ok(self.whole);
         }
         self.is_current = false;
@@ -132,7 +133,7 @@ impl PosedShape {
 
     /// Starts a search in the frame of this box, unless the last one was the same.
     pub(super) fn enter(&mut self, around: Aabb) {
-        if !self.is_current || self.motion.around != around {
+        if right_or!(!self.is_current, PosedVolumesKept, false) || self.motion.around != around {
             self.motion.around = around;
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);
@@ -336,5 +337,66 @@ mod tests {
             assert_eq!(shape.place(&[0.0; 2], &turned), Err(Error::CoordinatesRange));
         }
         assert!(matches!(shape.place(&[0.0], &Pose::default()), Err(Error::CoordinatesLength { .. })));
+    }
+
+    /// Loose triangles of a size, which modes move by as much.
+    fn sized(size: f64, triangles: u32, state: &mut u64) -> ReducedModel {
+        let positions: Vec<DVec3> = (0..3 * triangles).map(|_| vector(state) * size).collect();
+        let faces = (0..triangles).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = (0..6 * triangles).map(|_| vector(state) * size).collect();
+        ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
+    }
+
+    /// A corner of a small shape at one of a large shape, whose coarse positions have a far larger error.
+    #[test]
+    fn each_shape_has_its_own_error() {
+        let state = &mut 33;
+        let models = [sized(1e-4, 20, state), sized(1.0, 20, state)];
+        let [mut x, mut y] = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
+        let mut found = 0;
+        for case in 0..2000 {
+            let q = [(); 2].map(|()| [random(state), random(state)]);
+            y.place(&q[1], &Pose::default()).unwrap();
+            x.place(&q[0], &Pose::default()).unwrap();
+            let translation = y.corners(case % 20)[0] - x.corners(case % 7)[1];
+            x.place(&q[0], &Pose { translation, ..Pose::default() }).unwrap();
+            let all = (0..20).flat_map(|i| (0..20).map(move |j| (i, j)));
+            let expected: Vec<Pair> =
+                all.filter(|(i, j)| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j))).collect();
+            let mut pairs = Vec::new();
+            match case % 2 {
+                0 => x.colliding(&mut y, Aabb::default(), &mut pairs),
+                _ => {
+                    y.colliding(&mut x, Aabb::default(), &mut pairs);
+                    pairs.iter_mut().for_each(|(i, j)| (*i, *j) = (*j, *i));
+                    pairs.sort_unstable();
+                }
+            }
+            assert_eq!(pairs, expected, "case {case}");
+            found += pairs.len();
+        }
+        assert!(found > 1000, "{found}");
+    }
+
+    #[test]
+    fn shapes_move_within_one_frame() {
+        let state = &mut 5;
+        let models = [model(60, state), model(60, state)];
+        let [mut x, mut y] = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
+        let around = Aabb { lower: DVec3::splat(-100.0), upper: DVec3::splat(100.0) };
+        let (mut colliding, mut free) = (0, 0);
+        for case in 0..20 {
+            let q = [random(state), random(state)];
+            let translation = vector(state) * [0.3, 30.0][case % 2];
+            x.place(&q, &Pose { translation, ..Pose::default() }).unwrap();
+            let all = (0..60).flat_map(|i| (0..60).map(move |j| (i, j)));
+            let expected: Vec<Pair> =
+                all.filter(|(i, j)| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j))).collect();
+            let mut pairs = Vec::new();
+            x.colliding(&mut y, around, &mut pairs);
+            assert_eq!(pairs, expected, "case {case}");
+            *(if pairs.is_empty() { &mut free } else { &mut colliding }) += 1;
+        }
+        assert!(colliding > 5 && free > 5, "{colliding} {free}");
     }
 }

@@ -95,8 +95,9 @@ impl SweptShape {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
         let around = around.union(&widened(self.whole)).union(&widened(other.whole));
-        self.enter(around, margin / 2.0);
-        other.enter(around, margin / 2.0);
+        let each = right_or!(margin / 2.0, NearMarginHalved, margin / 4.0);
+        self.enter(around, each);
+        other.enter(around, each);
         let sides = [
             Side { context: &self.context, volumes: &mut self.volumes, motion: &self.motion },
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
@@ -116,7 +117,11 @@ impl SweptShape {
 
     /// Starts a search in the frame of this box with this margin, unless the last one was the same.
     fn enter(&mut self, around: Aabb, margin: f64) {
-        if !self.is_current || self.motion.around != around || self.motion.margin != margin {
+        let is_margin_new = right_or!(self.motion.margin != margin, NearMarginKept, false);
+        if right_or!(!self.is_current, SweptVolumesKept, false)
+            || self.motion.around != around
+            || is_margin_new
+        {
             (self.motion.around, self.motion.margin) = (around, margin);
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);
@@ -225,5 +230,47 @@ mod tests {
             between += expected.iter().filter(|impact| impact.time > 0.0).count();
         }
         assert!(found > 200 && between > 100 && close > 100, "{found} {between} {close}");
+    }
+
+    /// One triangle above another one, at known heights.
+    #[test]
+    fn motions_and_margins_change_within_one_frame() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mesh = TriMesh::new(corners.clone(), vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, corners).unwrap()).unwrap();
+        let shape = PosedShape::without_certificates(&model).unwrap();
+        let [mut x, mut y] = [(); 2].map(|()| SweptShape::new(&shape).unwrap());
+        let around = Aabb { lower: DVec3::splat(-20.0), upper: DVec3::splat(20.0) };
+        let at = |height: f64| Pose { translation: DVec3::Z * height, ..Pose::default() };
+        x.place([&[0.0]; 2], [&at(0.0); 2]).unwrap();
+        for (heights, margin, meets, is_near) in [
+            ([1.0, 1.0], 0.5, false, false),
+            ([1.0, 1.0], 1.05, false, true),
+            ([1.0, 1.0], 0.9, false, false),
+            ([9.0, 9.0], 0.9, false, false),
+            ([9.0, 1.0], 1.05, false, true),
+            ([9.0, -1.0], 0.1, true, true),
+            ([9.0, 8.0], 0.1, false, false),
+        ] {
+            let [t0, t1] = heights.map(at);
+            y.place([&[0.0]; 2], [&t0, &t1]).unwrap();
+            let (mut impacts, mut near) = (Vec::new(), Vec::new());
+            x.impacts(&mut y, around, &mut impacts);
+            x.near(&mut y, around, margin, 9, &mut near);
+            assert_eq!(
+                (impacts.len(), near.len()),
+                (usize::from(meets), usize::from(is_near)),
+                "{heights:?}"
+            );
+            let mut again = Vec::new();
+            x.near(&mut y, around, 30.0, 9, &mut again);
+            assert_eq!(again, [(0, 0)]);
+        }
+        for (height, is_near) in [(9.0, false), (1.0, true), (9.0, false)] {
+            y.place([&[0.0]; 2], [&at(height); 2]).unwrap();
+            let mut near = Vec::new();
+            x.near(&mut y, around, 2.0, 9, &mut near);
+            assert_eq!(!near.is_empty(), is_near, "{height}");
+        }
     }
 }

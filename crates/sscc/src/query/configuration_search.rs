@@ -95,5 +95,21 @@ impl DiscreteSearch {
 /// Returns the motion of vertices to a configuration, or from one to another.
 #[inline]
 pub(super) fn motion<const E: usize>(ends: [Configuration<'_>; E]) -> DeformedMotion<'_, E> {
-    DeformedMotion::new(ends.map(|end| end.q), ends.iter().map(|end| end.reach).fold(0.0, f64::max))
+    let largest = ends.iter().map(|end| end.reach).fold(0.0, f64::max);
+    let reach = right_or!(largest, MotionReachAtStart, ends[0].reach);
+    DeformedMotion::new(ends.map(|end| end.q), reach)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detect::vertex_motion::VertexMotion;
+
+    #[test]
+    fn the_rounding_of_a_motion_is_that_of_both_ends() {
+        let at = |reach| Configuration { q: &[0.0], norm: 0.0, reach };
+        let [near, far] = [1.0, 1e6].map(|reach| motion([at(reach)]).rounding());
+        assert!(near < far);
+        assert_eq!([[1.0, 1e6], [1e6, 1.0]].map(|ends| motion(ends.map(at)).rounding()), [far; 2]);
+    }
 }

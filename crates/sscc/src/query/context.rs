@@ -59,7 +59,7 @@ impl QueryContext {
             }
             Some(Arc::new(tables))
         });
-        let proven = used.filter(|_| exceptions.is_empty());
+        let proven = used.filter(|_| right_or!(exceptions.is_empty(), ExceptionsProvenFree, true));
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
         let [mut local_norm, mut all_reached_norm] = [f64::INFINITY; 2];
         if let Some(CertificateParts { node_radii, pair_tree, .. }) = used.map(Certificates::parts) {
@@ -89,15 +89,21 @@ impl QueryContext {
     pub(super) fn of_clearance(&self, certificates: &Certificates) -> Self {
         let exceptions = certificates.exceptions();
         let buckets = self.detect.layout.buckets.count();
+        let tested =
+            right_or!(exceptions.into(), NearExceptionsOfContacts, Arc::clone(&self.detect.exceptions));
         Self {
-            detect: Context { exceptions: exceptions.into(), ..self.detect.clone() },
+            detect: Context { exceptions: tested, ..self.detect.clone() },
             certificates: Some(certificates.clone()),
             method: Method::Certified,
             hulls: None,
             locals: None,
             local_norm: f64::INFINITY,
             all_reached_norm: all_reached_norm(&certificates.parts().pair_tree, buckets),
-            proven_radius: if exceptions.is_empty() { certificates.root_radius() } else { 0.0 },
+            proven_radius: if right_or!(exceptions.is_empty(), NearExceptionsProvenFree, true) {
+                certificates.root_radius()
+            } else {
+                0.0
+            },
             ..self.clone()
         }
     }

@@ -82,7 +82,10 @@ impl<const E: usize> LocalProofs<E> {
     /// Whether the certificate of the root proves it.
     pub(super) fn prove_root(&mut self, tables: &LocalTables) -> bool {
         let Some(index) = tables.certificate_of(0) else { return false };
-        tables.certificates.bounds[index].ratio < f64::from(self.allowed(tables, index))
+        let (ratio, allowed) =
+            (tables.certificates.bounds[index].ratio, f64::from(self.allowed(tables, index)));
+        // Allowed ratios are rounded down ([`LocalInequality::allowed`]), so that equality would be a proof, too; no infinite one is.
+        right_or!(ratio < allowed, LocalRatioReached, ratio <= allowed)
     }
 
     /// Returns the work, as [`work`] counts it, after which this search finds proven nodes; `u64::MAX` if it has found them, or cannot.
@@ -165,7 +168,7 @@ impl<const E: usize> LocalProofs<E> {
     /// Begins a new search, without the proofs of the last one. False if certificates prove nothing about the motion.
     pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
         self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
-        if self.search == 0 {
+        if right_or!(self.search == 0, LocalSearchesWrap, false) {
             self.proven.fill((0, 0));
             self.allowed.fill((0, 0.0));
             self.search = 1;

@@ -42,7 +42,8 @@ impl Query {
             if self.context.detect.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            best = best.min(self.advance(&line, (x, y), 0.0, best));
+            let found = self.advance(&line, (x, y), 0.0, best);
+            best = right_or!(best.min(found), SafeScaleWithoutExceptions, best);
         }
         let tree = self
             .context
@@ -79,7 +80,8 @@ impl Query {
                 let ends =
                     index == UNKNOWN || (index != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
-                    [(UNKNOWN, 0.0); MAX_SIBLINGS]
+                    let limit = self.scale(tree.map_or(0.0, PairTree::limit));
+                    [(UNKNOWN, right_or!(0.0, SafeScaleBelowBuckets, limit)); MAX_SIBLINGS]
                 } else {
                     let stored = tree.filter(|_| index != NONE).map(|tree| tree.below(index));
                     self.certified_pairs(tree, stored.into_iter().flatten())
@@ -105,7 +107,9 @@ impl Query {
                         }
                     }
                 }
-                consider((n, m), index, goal, best);
+                if right_or!(true, LeavesAdvancedOnce, false) {
+                    consider((n, m), index, goal, best);
+                }
             } else {
                 for child in node_n.children() {
                     consider((child, child), NONE, self.certified_scale(child), best);

@@ -417,6 +417,9 @@ fn damaged_parts_are_refused() {
     assert!(refused(&|p| p.node_radii[0] = -1.0));
     assert!(refused(&|p| p.node_radii[0] = f64::MAX));
     assert!(refused(&|p| p.root_pair_radii[0] = f64::NAN));
+    let mut inner = good.hierarchy.nodes().iter().zip(&good.node_radii);
+    let (parent, _) = inner.find(|(node, radius)| node.child_count > 0 && **radius > 0.0).unwrap();
+    assert!(refused(&|p| p.node_radii[parent.first_child as usize] = 0.0));
     assert!(refused(&|p| p.global_radius = 0.0));
     assert!(refused(&|p| p.global_radius = f64::NAN));
 

@@ -270,6 +270,10 @@ fn enclosed_components_are_counted() {
     // A surface with a hole has no inside, also if other parts of the mesh are closed.
     let open = TriMesh::new(large.rest_positions().to_vec(), large.faces()[1..].to_vec()).unwrap();
     assert_eq!(inside(&open, &small), [(0, 1), (0, 1)]);
+    // But it may be inside itself.
+    let open = TriMesh::new(small.rest_positions().to_vec(), small.faces()[1..].to_vec()).unwrap();
+    assert_eq!(inside(&large, &open), [(0, 1), (1, 1)]);
+    assert_eq!(inside(&open, &large), [(1, 1), (0, 1)]);
     // A soup is closed where its corners are welded.
     let corners = large.faces().iter().flatten().map(|v| large.rest_positions()[*v as usize]);
     let soup =

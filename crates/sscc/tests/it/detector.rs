@@ -268,6 +268,13 @@ fn welded_vertices_can_move_apart() {
     let impacts = detector(&above).continuous(&above, &below).unwrap().to_vec();
     assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), [(0, 1)]);
     assert!((impacts[0].time - 2.0 / 3.0).abs() < 1e-9, "{impacts:?}");
+    // The corners are together at the start, and part.
+    let [start, end] = [a[0], at(0.6, 0.6, -3.0)].map(|corner| [&a[..], &[corner], &still].concat());
+    assert_eq!(detector(&start).discrete(&start).unwrap(), []);
+    assert_eq!(detector(&start).discrete(&end).unwrap(), [(0, 1)]);
+    for [t0, t1] in [[&start, &end], [&end, &start]] {
+        assert_eq!(detector(&start).continuous(t0, t1).unwrap().len(), 1);
+    }
     // If the corners stay together, only other common points count.
     let together = [&a[..], &a[..1], &[at(-1.0, 0.0, 0.0), at(0.0, -1.0, 0.0)]].concat();
     assert_eq!(detector(&together).discrete(&together).unwrap(), []);

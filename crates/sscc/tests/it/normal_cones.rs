@@ -185,6 +185,22 @@ fn a_ramp_over_itself_needs_the_contour_test() {
     assert_eq!(exact.continuous(&[0.0], &[0.7]).unwrap(), expected);
 }
 
+/// A fold inside of a flat sheet, which crosses itself. The contour is that of the flat sheet, and so are the normals of most parts.
+#[test]
+fn a_fold_inside_of_a_flat_sheet_is_found() {
+    let (p, faces) = sheet((40, 40), |u, v| {
+        let angle = (u - 0.5) / 0.3 * PI;
+        let height = (1.0 - ((v - 0.5) / 0.3).powi(2)).max(0.0) * f64::from(angle.abs() < PI);
+        DVec3::new(u - height * 0.2 * angle.sin(), v, height * 0.1 * (angle.cos() + 1.0))
+    });
+    let modes = Modes::new(1, p.clone()).unwrap();
+    let model = ReducedModel::new(TriMesh::new(p, faces).unwrap(), modes).unwrap();
+    let query = |method| of(&model, ContactFilter::default(), method);
+    let expected = query(Method::BruteForce).discrete(&[0.0]).unwrap().to_vec();
+    assert!(expected.len() > 10);
+    assert_eq!(query(Method::NormalCones).discrete(&[0.0]).unwrap(), expected);
+}
+
 /// A flat sheet needs no AABBs.
 #[test]
 fn a_flat_sheet_is_culled_at_the_root() {

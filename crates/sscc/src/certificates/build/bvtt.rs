@@ -119,8 +119,9 @@ impl Bvtt {
             let pair = self.pairs[index];
             if let PairState::Split(_) = pair.state() {
                 let children = &self.pairs[self.children(hierarchy, &pair)];
+                let count = right_or!(children.len(), ParentOfFirstChild, 1);
                 self.pairs[index].lower =
-                    children.iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
+                    children[..count].iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
             }
         }
     }

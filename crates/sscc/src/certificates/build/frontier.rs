@@ -32,7 +32,11 @@ impl Frontier {
                 PairState::Split(_) => stack.extend(bvtt.children(hierarchy, pair)),
                 PairState::Open => frontier.open.push(known),
                 PairState::Bounded => {
-                    frontier.radius = frontier.radius.min(known.lower);
+                    frontier.radius = right_or!(
+                        frontier.radius.min(known.lower),
+                        FrontierBoundedForgotten,
+                        frontier.radius
+                    );
                     frontier.bounded.push(known);
                 }
             }

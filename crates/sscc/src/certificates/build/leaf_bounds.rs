@@ -118,7 +118,10 @@ impl<'a> LeafBounds<'a> {
     pub(super) fn triangle_pairs(&self) -> impl Iterator<Item = BoundedTriangles> {
         self.pairs.chunk_by(|a, b| a.triangles == b.triangles).map(|pairs| BoundedTriangles {
             triangles: pairs[0].triangles,
-            lower: pairs.iter().map(|pair| pair.lower).fold(f64::INFINITY, f64::min),
+            lower: pairs[..right_or!(pairs.len(), LeafPairOfFirstSimplices, 1)]
+                .iter()
+                .map(|pair| pair.lower)
+                .fold(f64::INFINITY, f64::min),
         })
     }
 }

@@ -69,7 +69,11 @@ impl LimitSchedule {
     /// Advances to the next limit. Returns false if there is none. `has_room` is whether there was room for this one;
     /// `count_below` returns the number of pairs with a lower bound below a radius.
     pub(super) fn advance(&mut self, has_room: bool, count_below: impl Fn(f64) -> usize) -> bool {
-        *(if has_room { &mut self.complete_below } else { &mut self.too_large }) = self.limit;
+        *(if right_or!(has_room, RefusedInnerRoundComplete, true) {
+            &mut self.complete_below
+        } else {
+            &mut self.too_large
+        }) = self.limit;
         let (next, smallest) = if self.complete_below == 0.0 {
             (self.limit / RETRY_DIVISOR, self.global_radius * LAST_SHARE)
         } else {
@@ -163,5 +167,17 @@ mod tests {
         assert_eq!((outer(0.5, true), outer(0.75, true), outer(0.5, false)), (0.75, 1.0, 0.75));
         assert_eq!((outer(1.0, true), outer(2.0, true), outer(12.0, true)), (1.5, 3.0, 16.0));
         assert!(outer(1.0, false) <= 1.0 && outer(2.0, false) <= 2.0);
+    }
+
+    #[test]
+    fn a_refused_limit_is_not_reached() {
+        let mut schedule = LimitSchedule::new(1.0, 16.0, usize::MAX).unwrap();
+        let count_below = |radius: f64| (1e3 * radius) as usize;
+        assert!(schedule.advance(false, count_below) && schedule.complete_below() == 0.0);
+        assert!(schedule.advance(true, count_below));
+        let reached = schedule.complete_below();
+        assert!(reached > 0.0 && schedule.limit() > reached);
+        schedule.advance(false, count_below);
+        assert_eq!(schedule.complete_below(), reached);
     }
 }

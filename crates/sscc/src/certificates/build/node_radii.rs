@@ -150,7 +150,7 @@ impl Passes<'_> {
     /// Returns the smallest radius of a node's children, at most the cap.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
-        radii.fold(self.radii.cap, f64::min)
+        right_or!(radii.fold(self.radii.cap, f64::min), RadiusOfPairsAlone, self.radii.cap)
     }
 
     /// Returns the task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings` are their

@@ -232,7 +232,9 @@ impl<'g> CornerGaps<'g> {
                         let i = x.binary_search(&a[ij / 3]).ok()?;
                         let j = y.binary_search(&b[ij % 3]).ok()?;
                         let entry = &mut gaps[i * y.len() + j];
-                        *entry = entry.min(((gap * (1.0 - 1e-6)) as f32).next_down());
+                        // The share alone is more than the rounding to single precision.
+                        let shortened = (gap * (1.0 - 1e-6)) as f32;
+                        *entry = entry.min(right_or!(shortened.next_down(), LocalTableToNearest, shortened));
                     }
                 }
             }

@@ -235,7 +235,9 @@ impl Kernel for Search<'_, '_> {
                     continue;
                 }
             } else {
-                let distance = (b.center - a.center).length() * (1.0 - 1e-14) - a.radius - b.radius;
+                let distance = (b.center - a.center).length() * (1.0 - 1e-14)
+                    - a.radius
+                    - right_or!(b.radius, LocalSphereOfOne, 0.0);
                 if distance > 1e-9 {
                     let difference = squared_distance(search.mean(x), search.mean(y)).sqrt();
                     let bound = (difference + a.spread + b.spread) * ROUND_UP + search.image_error;
@@ -278,7 +280,9 @@ impl Kernel for Search<'_, '_> {
                     }
                     for (u, s) in of_x.zip(&components[0]) {
                         for (v, t) in of_y.clone().zip(&components[1]) {
-                            let gap = (CornerGaps::gap_between(*s, *t) as f32).next_down();
+                            // The quotient by the gap is rounded up by 1e-4, and the gap by less than 1e-7.
+                            let gap = CornerGaps::gap_between(*s, *t) as f32;
+                            let gap = right_or!(gap.next_down(), LocalComponentsToNearest, gap);
                             search.compare(
                                 search.image(search.vertices[u]),
                                 search.vertices[v],
@@ -289,7 +293,7 @@ impl Kernel for Search<'_, '_> {
                     }
                 }
                 Some(None) => {
-                    largest = f32::INFINITY;
+                    largest = right_or!(f32::INFINITY, LocalTouchingFree, largest);
                     break;
                 }
                 Some(Some(table)) => {

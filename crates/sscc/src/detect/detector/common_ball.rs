@@ -103,7 +103,8 @@ fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) ->
     let mut inside = f64::INFINITY;
     for (side, (distance, _)) in sides.iter().zip(near) {
         let is_inside = right_or!(side.winding_number(center)? != 0, BallOutsideKept, true);
-        inside = inside.min(if is_inside { distance } else { -distance });
+        let own = if is_inside { distance } else { -distance };
+        inside = right_or!(inside.min(own), BallInsideSecond, own);
     }
     *best = best.max(inside);
     let triangles = [0, 1].map(|k| sides[k].boxes.corners(near[k].1));

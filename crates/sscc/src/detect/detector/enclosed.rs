@@ -40,7 +40,11 @@ impl Detector {
         other.check([other_positions])?;
         let components = [self.components_at(positions), other.components_at(other_positions)];
         let [one, two] = components.each_ref().map(|components| &**components);
-        if !one.has_closed() && !two.has_closed() {
+        if right_or!(
+            !one.has_closed() && !two.has_closed(),
+            OneOpenMeshHasNone,
+            !one.has_closed() || !two.has_closed()
+        ) {
             return Ok([one, two].map(|all| Enclosed { components: all.count(), inside: 0 }));
         }
         let one = Side { boxes: Boxes::new(&self.context, positions), components: one };
@@ -103,7 +107,10 @@ impl Side<'_> {
         while let Some(n) = open.pop() {
             let aabb = &self.boxes.of_nodes[n as usize];
             let is_between = |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
-            if !(is_between(0) && is_between(1) && point.z <= aabb.upper.z) {
+            if !(is_between(0)
+                && is_between(1)
+                && point.z <= right_or!(aabb.upper.z, RaysMissTheirBoxes, aabb.lower.z))
+            {
                 continue;
             }
             if !self.boxes.is_leaf(n) {

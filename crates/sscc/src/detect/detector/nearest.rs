@@ -97,7 +97,8 @@ fn nearest(
             parts.clear();
             let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
             // With one mesh each pair of nodes is visited once.
-            let pairs = pairs.filter(|(i, j)| !(is_self && n == m && i > j));
+            let pairs = pairs
+                .filter(|(i, j)| !(is_self && n == m && right_or!(i > j, NearestBetweenNodesAlone, i >= j)));
             parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= most));
             parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
             open.append(&mut parts);

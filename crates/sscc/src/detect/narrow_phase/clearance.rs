@@ -39,7 +39,8 @@ impl NarrowPhase<1> for ClearanceHits {
             return None;
         }
         let distance = distance_triangle_triangle(a, b);
-        (distance < self.distance).then_some(NearPair { pair, distance })
+        let is_near = right_or!(distance < self.distance, ClearanceReached, distance <= self.distance);
+        is_near.then_some(NearPair { pair, distance })
     }
 
     #[inline]

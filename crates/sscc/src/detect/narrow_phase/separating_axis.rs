@@ -6,7 +6,8 @@ use glam::{Vec3A, Vec4};
 /// separates them at both ends. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
 #[inline]
 pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
-    if !error.is_finite() {
+    // Only the time depends on this: an error that is infinite or NaN makes the slack so, too, and no gap is larger.
+    if right_or!(!error.is_finite(), InfiniteErrorTested, false) {
         return false;
     }
     let origin: [Vec4; E] = std::array::from_fn(|end| x[0][end]);
@@ -64,7 +65,7 @@ impl Directions {
         let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut separated = [u32::MAX; 2];
-        for end in 0..E {
+        for end in right_or!(0, SeparatedAtEnd, E - 1)..E {
             let a = [along(a[0][end]), along(a[1][end]), along(a[2][end])];
             let b = [along(b[0][end]), along(b[1][end]), along(b[2][end])];
             let lower = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);

@@ -117,7 +117,8 @@ impl CandidateDirection {
     /// Whether a stays below b along this direction from t = 0 to 1.
     #[inline]
     pub(super) fn separates(&self) -> bool {
-        (0..2).all(|time| smallest(self.b[time]) - largest(self.a[time]) > self.rounding)
+        (right_or!(0, PlanesAtEnd, 1)..2)
+            .all(|time| smallest(self.b[time]) - largest(self.a[time]) > self.rounding)
     }
 
     /// Returns the time until which a stays below b along this direction, from `t` on. Infinite if it does until t = 1; `t` if a
@@ -133,7 +134,7 @@ impl CandidateDirection {
                 if !is_separated_at_t {
                     return t;
                 }
-                let is_separated_at_t1 = g1 > 0.0;
+                let is_separated_at_t1 = right_or!(g1 > 0.0, SeparatedForever, true);
                 if !is_separated_at_t1 {
                     until = until.min(g0 / (g0 - g1));
                 }
@@ -153,7 +154,7 @@ impl CandidateDirection {
         self.gap(t) > 0.0 && to.gap(s) > 0.0 && {
             let a = sum(interpolate(&self.a, s), interpolate(&to.a, t));
             let b = sum(interpolate(&self.b, s), interpolate(&to.b, t));
-            gap(a, b) > self.rounding + to.rounding
+            right_or!(gap(a, b) > self.rounding + to.rounding, TurningByEnds, true)
         }
     }
 }
@@ -172,4 +173,25 @@ fn smallest([p, q, r]: [f64; 3]) -> f64 {
 #[inline]
 fn largest([p, q, r]: [f64; 3]) -> f64 {
     p.max(q).max(r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point that goes through another one, or past it: a direction that turns with it separates both ends.
+    #[test]
+    fn directions_that_turn_may_meet_between() {
+        let rests = MovingTriangle::vertex(DVec3::ZERO, DVec3::ZERO);
+        for (from, to, separates) in [
+            (DVec3::X, DVec3::NEG_X, false),
+            (DVec3::X, DVec3::new(-1.0, 0.1, 0.0), false),
+            (DVec3::new(1.0, 0.5, 0.0), DVec3::new(0.5, 1.0, 0.0), true),
+        ] {
+            let pair = MovingPair::new(&rests, &MovingTriangle::vertex(from, to));
+            let [start, end] = [from, to].map(|dir| pair.along(dir).unwrap());
+            assert!(start.gap(0.0) > 0.0 && end.gap(1.0) > 0.0);
+            assert_eq!(start.separates_turning(0.0, &end, 1.0), separates, "{from} {to}");
+        }
+    }
 }

@@ -202,7 +202,8 @@ impl<T: Number> Corners<T> {
                 Some(change) => gap.minus(change),
                 None => gap,
             };
-            for coefficient in gap.coefficients() {
+            let skipped = right_or!(0, FeaturesByEnds, gap.coefficients().len() - 1);
+            for coefficient in gap.coefficients().iter().skip(skipped) {
                 match coefficient.is_positive() {
                     Some(true) => {}
                     Some(false) => return Some(false),
@@ -216,4 +217,20 @@ impl<T: Number> Corners<T> {
 
 fn interpolate<T: Number>(from: &T, to: &T, t: f64) -> T {
     from.plus(&to.minus(from).times(&T::from_f64(t)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The direction from one point to another one separates them at both ends of a way through it, and not between.
+    #[test]
+    fn directions_that_turn_may_meet_between() {
+        let rests = MovingTriangle { t0: [DVec3::ZERO; 3], t1: [DVec3::ZERO; 3] };
+        let moves = MovingTriangle { t0: [DVec3::X; 3], t1: [DVec3::NEG_X; 3] };
+        let direction = find_gap_above(0.5, &rests, &moves, 0.0).unwrap();
+        for (until, separates) in [(0.25, true), (0.45, true), (0.75, false), (1.0, false)] {
+            assert_eq!(direction.separates([&rests, &moves], 0.0, [0.0, until]), separates, "{until}");
+        }
+    }
 }

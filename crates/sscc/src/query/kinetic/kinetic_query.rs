@@ -173,7 +173,8 @@ impl KineticQuery {
         self.query.forget();
         self.free_q.clear();
         let ends = [self.query.measure(q_t0)?, self.query.measure(q_t1)?];
-        self.query.norm = ends[0].norm.max(ends[1].norm);
+        let largest = ends[0].norm.max(ends[1].norm);
+        self.query.norm = right_or!(largest, KineticSweptNormAtStart, ends[0].norm);
         if self.query.context.is_proven_free(self.query.norm) {
             self.query.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);
@@ -184,7 +185,7 @@ impl KineticQuery {
         }
         self.query.continuous(q_t0, q_t1)?;
         let is_free = self.query.pairs().is_empty();
-        if is_free {
+        if right_or!(is_free, FreeEndOfAnyMotion, true) {
             self.free_q.extend_from_slice(q_t1);
         }
         let Some(swept) = &self.query.swept else { return Ok(&[]) };
@@ -216,7 +217,7 @@ impl KineticQuery {
             return Ok(false);
         }
         let active = &self.region_pairs.active;
-        if active.is_empty() {
+        if right_or!(active.is_empty(), ActivePairsNotSwept, true) {
             return Ok(true);
         }
         let swept = self.query.swept.get_or_insert_with(|| Box::new(SweptSearch::new(context)));
@@ -362,7 +363,7 @@ impl KineticQuery {
         let mut cost = 0;
         let mut search = broad.search(context, &motion, narrow, usize::MAX);
         search.state.counters = std::mem::take(&mut self.region_counters);
-        search.test_exceptions();
+        right_or!(search.test_exceptions(), KineticExceptionsUntested, ());
         if region_pairs.steps.is_multiple_of(RETRY_STEPS) {
             self.pending.append(&mut region_pairs.active);
         }
@@ -374,7 +375,10 @@ impl KineticQuery {
                 side.volumes.corners(vertices)[0]
             });
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
-            if distance < STEPS_WORTH_STORING * step || !region_pairs.store(pair, distance) {
+            let is_short = distance < STEPS_WORTH_STORING * step;
+            if is_short
+                || !region_pairs.store(pair, distance) && right_or!(true, VanishingDistancesStored, false)
+            {
                 region_pairs.active.push(pair);
             }
             cost += DISTANCE_COST;

@@ -52,7 +52,9 @@ impl Region {
         self.length = metric.norm_from(&self.end, start.q, &mut self.offset);
         self.radius = radius;
         let reach = right_or!(start.reach.max(reach), RegionReachAtStart, start.reach);
-        (self.norm, self.reach) = (up(start.norm.max(norm) + radius), 2.0 * reach);
+        // [`Self::contains`] compares norms, so that a norm that is rounded down makes the region smaller by the rounding, and no more.
+        let largest = start.norm.max(norm) + radius;
+        (self.norm, self.reach) = (right_or!(up(largest), RegionNormToNearest, largest), 2.0 * reach);
     }
 
     /// Returns the radius of a ball, or the length of a capsule.
@@ -71,7 +73,8 @@ impl Region {
     /// moves vertices by less than the rounding bound of positions, which
     /// [`CapsuleMotion`](crate::query::capsule_motion::CapsuleMotion) adds.
     pub(super) fn contains(&mut self, metric: &Metric, at: Configuration<'_>) -> bool {
-        if !(at.norm <= self.norm && at.reach <= self.reach) {
+        let is_within_norm = right_or!(at.norm <= self.norm, RegionNormUnchecked, true);
+        if !(is_within_norm && right_or!(at.reach <= self.reach, RegionReachUnchecked, true)) {
             return false;
         }
         let Self { start, end, length, point, offset, .. } = self;
@@ -154,5 +157,17 @@ mod tests {
                 assert_eq!(region.contains(&metric, at), is_in);
             }
         }
+    }
+
+    /// A search knows radii up to the norm of its region alone.
+    #[test]
+    fn points_of_larger_norms_are_not_contained() {
+        let metric = Metric::identity(1);
+        let mut region = Region::new(1);
+        region.set_ball(Configuration { q: &[1.0], norm: 1.0, reach: 1.0 }, 0.5);
+        let at = |norm| Configuration { q: &[1.4], norm, reach: 1.0 };
+        assert!(region.contains(&metric, at(region.norm)));
+        assert!(!region.contains(&metric, at(region.norm.next_up())));
+        assert!(!region.contains(&metric, at(f64::NAN)));
     }
 }

@@ -62,7 +62,7 @@ impl RegionPairs {
         if until <= self.travelled {
             return false;
         }
-        if until < self.end {
+        if right_or!(until < self.end, SafeDistancesEndless, false) {
             self.safe.push(SafePair::new(until, pair));
         } else if self.steps == 0 {
             self.next_remembered.push(SafePair::new(until, pair));
@@ -100,7 +100,8 @@ impl RegionPairs {
 
     /// Whether the travelled distance is less than that at which the region ends.
     pub(super) fn has_travel_left(&self) -> bool {
-        self.travelled < self.end
+        // Equality would be a proof here, too: the end was rounded down, the travelled distance up.
+        right_or!(self.travelled < self.end, TravelReached, self.travelled <= self.end)
     }
 
     /// Whether the region lasts for a straight step from here, and all safe pairs stay within their safe distances.
@@ -131,7 +132,9 @@ impl RegionPairs {
                 self.next_remembered.push(earlier);
             }
             match remembered.next_if(|safe| safe.order == *pair) {
-                Some(safe) if safe.key >= self.end => self.next_remembered.push(safe),
+                Some(safe) if right_or!(safe.key >= self.end, RememberedWithinRegion, true) => {
+                    self.next_remembered.push(safe)
+                }
                 _ => pending.push(*pair),
             }
         }

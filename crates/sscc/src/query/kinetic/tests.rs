@@ -454,3 +454,22 @@ fn after_a_jump_a_region_begins_only_if_the_last_one_paid() {
         assert!(!kinetic.region_pairs.has_region());
     }
 }
+
+/// The same q again and again is a step of length 0, of which every distance is long enough.
+#[test]
+fn pairs_that_collide_at_rest_are_tested_in_every_step() {
+    let model = three_sheets(5, [-1.2, 0.0, 2.5], false);
+    let certificates = tight_certificates(&model, 1 << 10);
+    let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let q = [0.0, 2.5, 0.0];
+    let expected = oracle.discrete(&q).unwrap();
+    assert!(!expected.is_empty());
+    let mut within = 0;
+    for _ in 0..8 {
+        kinetic.control.plain_cost = 1_000_000;
+        assert_eq!(kinetic.discrete(&q).unwrap(), expected);
+        within += usize::from(kinetic.region_pairs.has_region());
+    }
+    assert!(within > 2, "{within}");
+}

@@ -84,8 +84,10 @@ pub(super) fn forward(from: f64, step: f64, to: f64) -> f64 {
 /// Returns a weight between two others, at or before the share t of the way. It allows for three roundings of the product, and
 /// for one unit in the last place of the sum.
 pub(super) fn weight_before([w0, w1]: [f64; 2], t: f64) -> f64 {
-    let w = w0 + (t * (1.0 - 4.0 * f64::EPSILON)) * (w1 - w0);
-    if w1 > w0 { w.next_down().clamp(w0, w1) } else { w.next_up().clamp(w1, w0) }
+    let share = right_or!(t * (1.0 - 4.0 * f64::EPSILON), WeightShareToNearest, t);
+    let w = w0 + share * (w1 - w0);
+    let [down, up] = right_or!([w.next_down(), w.next_up()], WeightBeforeToNearest, [w, w]);
+    if w1 > w0 { down.clamp(w0, w1) } else { up.clamp(w1, w0) }
 }
 
 /// Returns the number with the fewest binary digits beyond w0, up to w1, which differs from w0.

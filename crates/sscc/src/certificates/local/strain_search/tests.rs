@@ -243,3 +243,16 @@ fn floors_are_never_above_the_result_and_nan_stays() {
     }
     assert!(finite > 10, "{finite}");
 }
+
+/// Of triangles that touch at the centre no strain is small enough.
+#[test]
+fn triangles_without_a_gap_have_no_ratio() {
+    for (gap, has_ratio) in [(0.0, false), (1e-12, false), (0.5, true)] {
+        let first = [DVec3::ZERO, DVec3::new(-1.0, 1.0, 0.0), DVec3::new(-1.0, -1.0, 0.0)];
+        let second = [DVec3::X * gap, DVec3::new(1.0, 0.0, 1.0), DVec3::new(1.0, 0.0, -1.0)];
+        let case = Case::new([first, second].concat(), vec![[0, 1, 2], [3, 4, 5]], Neighbours::Exclude);
+        with_search(&case, &mut Numbers(3), |search, gaps, _, _| {
+            assert_eq!(search.within(gaps, 0, 0.0).is_finite(), has_ratio, "{gap}");
+        });
+    }
+}
