@@ -118,7 +118,7 @@ fn check_uses() -> Result<(), String> {
     let mut words = BTreeSet::new();
     for file in files {
         let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-        for (at, _) in text.match_indices("right_or!(") {
+        for (at, _) in text.match_indices("with_mutant!(") {
             words
                 .extend(text[at..].split(';').next().unwrap_or("").split(|c| !is_part(c)).map(str::to_owned));
         }

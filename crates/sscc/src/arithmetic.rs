@@ -27,12 +27,12 @@ pub(crate) fn check_arithmetic() -> Result<(), Error> {
 /// number. A thread that flushes replaces this half by 0, as the result of the difference or as an operand of the comparison.
 #[inline(always)]
 fn check_results(tie: f64, above_tie: f64, subnormal: f64) -> Result<(), Error> {
-    let is_nearest = right_or!(tie == 1.0, UpwardRoundingAccepted, true)
-        && right_or!(above_tie == 1.0 + f64::EPSILON, DownwardRoundingAccepted, true);
+    let is_nearest = with_mutant!(tie == 1.0, UpwardRoundingAccepted, true)
+        && with_mutant!(above_tie == 1.0 + f64::EPSILON, DownwardRoundingAccepted, true);
     if !is_nearest {
         return Err(Error::Arithmetic { what: "it does not round to nearest" });
     }
-    if right_or!(subnormal > 0.0, FlushingAccepted, true) {
+    if with_mutant!(subnormal > 0.0, FlushingAccepted, true) {
         Ok(())
     } else {
         Err(Error::Arithmetic { what: "it flushes small numbers to zero" })

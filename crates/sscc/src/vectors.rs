@@ -238,7 +238,7 @@ mod avx2 {
         #[inline(always)]
         fn multiply_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
             let sum = self.avx._mm256_add_ps(self.avx._mm256_mul_ps(a, b), c);
-            right_or!(sum, MultiplyAddFused, self.fma._mm256_fmadd_ps(a, b, c))
+            with_mutant!(sum, MultiplyAddFused, self.fma._mm256_fmadd_ps(a, b, c))
         }
 
         #[inline(always)]

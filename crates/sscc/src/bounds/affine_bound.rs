@@ -130,9 +130,9 @@ impl AffineBound {
         let rounding = &model.rounding;
         let residual = self.fit.residual_up(pair.squared_residual, rounding);
         let axes = DVec3::ONE; // |u_c| <= 1 for each component of a unit direction
-        let required = right_or!(model.required.along_unit(), AffineWithoutClearance, Default::default());
+        let required = with_mutant!(model.required.along_unit(), AffineWithoutClearance, Default::default());
         let per_norm =
-            right_or!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0) + required.per_norm;
+            with_mutant!(2.0 * rounding.per_norm(axes), AffineWithoutRateError, 0.0) + required.per_norm;
         AffineTerms {
             delta: pair.rest_distance,
             at_rest: rounding.at_rest(axes) + required.at_rest,

@@ -112,7 +112,7 @@ impl AffineFit {
     pub(super) fn residual_up(&self, squared_residual: f64, rounding: &RoundingBound) -> f64 {
         let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
         norm_up(squared_residual, 3 * self.row_len)
-            + right_or!(moved * self.frobenius, AffineResidualExact, 0.0)
+            + with_mutant!(moved * self.frobenius, AffineResidualExact, 0.0)
     }
 }
 

@@ -40,7 +40,7 @@ pub(super) fn bound_rate_in_cone(
     if !trace.is_finite() {
         return f64::INFINITY;
     }
-    let rounding = right_or!((row_len as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
+    let rounding = with_mutant!((row_len as f64 + 1024.0) * f64::EPSILON * trace, ConeExact, 0.0);
     let forms = Forms { gram, rounding };
     let [u0, u1, u2, u3] = corners;
     let mut cones: Vec<Cone> = Vec::with_capacity(2 * MAX_CONES);

@@ -56,8 +56,8 @@ impl ConfigurationLine {
     /// Returns 0 if the gap is not positive at `t`.
     #[inline]
     pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
-        let gap = right_or!(gap - self.at_rest - t * self.per_step, LineExact, gap);
-        let opening = right_or!(opening - self.per_step, LineExact, opening);
+        let gap = with_mutant!(gap - self.at_rest - t * self.per_step, LineExact, gap);
+        let opening = with_mutant!(opening - self.per_step, LineExact, opening);
         if gap.is_nan() || gap <= 0.0 {
             0.0
         } else if opening >= 0.0 {

@@ -70,7 +70,7 @@ impl NodeModes {
         // The rounding bound covers rounding of residuals and corners relative to the modes. This term covers rounding relative
         // to `|G| |h|`.
         let frobenius = norm_up(dot(&gradient, &gradient), 9 * row_len);
-        let lost = right_or!(64.0 * f64::EPSILON * frobenius * half.length(), NodeFitExact, 0.0);
+        let lost = with_mutant!(64.0 * f64::EPSILON * frobenius * half.length(), NodeFitExact, 0.0);
         residual += DVec3::splat(lost);
         Self { center, half, residual, modes, gradient }
     }

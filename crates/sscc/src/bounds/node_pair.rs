@@ -247,13 +247,14 @@ fn bound_corners_along(
     let size: f64 = (0..7).map(|i| products[i][i].sqrt()).sum();
     // The terms of a square add up to at most (the sum of all |row|)^2; the products err by row eps of that, and
     // at most 16 sums follow one another: 2,000 is more than needed.
-    let lost = right_or!((row_len as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
-    let required = right_or!(model.required.along(dir), NodePairWithoutClearance, Default::default());
+    let lost =
+        with_mutant!((row_len as f64 + 2_000.0) * f64::EPSILON * size * size, NodePairProductsExact, 0.0);
+    let required = with_mutant!(model.required.along(dir), NodePairWithoutClearance, Default::default());
     let per_norm =
-        right_or!(2.0 * model.rounding.per_norm(dir), NodePairWithoutRateError, 0.0) + required.per_norm;
+        with_mutant!(2.0 * model.rounding.per_norm(dir), NodePairWithoutRateError, 0.0) + required.per_norm;
     let slack = dir.abs().dot(n.residual + m.residual) + per_norm;
     let at_rest =
-        right_or!(2.0 * model.rounding.at_rest(dir), NodePairWithoutRestError, 0.0) + required.at_rest;
+        with_mutant!(2.0 * model.rounding.at_rest(dir), NodePairWithoutRestError, 0.0) + required.at_rest;
     let gap = dir.dot(m.center - n.center);
     // For corners M of m and N of n, `|c + M + N|^2 = |c|^2 + (|c + M|^2 - |c|^2) + (|c + N|^2 - |c|^2) + 2 M.N`.
     let [(steps_m, squares_m), (steps_n, squares_n)] = [0, 3].map(|first| {

@@ -82,9 +82,9 @@ impl Kernel for CornerBound<'_, '_> {
 /// Returns the bound of two points along a direction, from their gap and their modes projected on the direction.
 #[inline(always)]
 pub(super) fn bound_points_along(gap: f64, projected_i: &[f64], projected_j: &[f64], least: LeastGap) -> f64 {
-    let gap = gap - right_or!(least.at_rest, DirectionWithoutRestError, 0.0);
+    let gap = gap - with_mutant!(least.at_rest, DirectionWithoutRestError, 0.0);
     let rate = norm_up(squared_distance(projected_i, projected_j), projected_i.len());
-    radius_down(gap, rate + right_or!(least.per_norm, DirectionWithoutRateError, 0.0))
+    radius_down(gap, rate + with_mutant!(least.per_norm, DirectionWithoutRateError, 0.0))
 }
 
 /// Returns a lower bound of the rest distance of two triangles: the smallest gap along a direction over its length.

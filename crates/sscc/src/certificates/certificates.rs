@@ -90,8 +90,8 @@ impl Certificates {
     pub(crate) fn is_within_clearance(&self, clearance: &Clearance) -> bool {
         self.clearance().is_some_and(|certified| {
             let is_as_far = certified.distance() >= clearance.distance();
-            right_or!(is_as_far, SmallerClearanceUsed, true)
-                && right_or!(certified.rings() <= clearance.rings(), MoreRingsUsed, true)
+            with_mutant!(is_as_far, SmallerClearanceUsed, true)
+                && with_mutant!(certified.rings() <= clearance.rings(), MoreRingsUsed, true)
         })
     }
 

@@ -23,8 +23,8 @@ impl Certificates {
             return Err(Error::CoordinatesValue { index, value: q[index] });
         }
         let root = self.root_radius();
-        let has_exceptions = right_or!(!self.exceptions().is_empty(), ClampedWithExceptions, false);
-        let has_clearance = right_or!(self.clearance().is_some(), ClampedWithClearance, false);
+        let has_exceptions = with_mutant!(!self.exceptions().is_empty(), ClampedWithExceptions, false);
+        let has_clearance = with_mutant!(self.clearance().is_some(), ClampedWithClearance, false);
         if root <= 0.0 || has_exceptions || has_clearance {
             return Ok(None);
         }
@@ -35,7 +35,7 @@ impl Certificates {
         let mut scale = if norm.is_finite() { root / norm } else { 0.5 };
         for _ in 0..MAX_STEPS {
             let norm_here = norm_at(&clamped);
-            if right_or!(norm_here < root, ClampedToTheRadius, norm_here <= root) {
+            if with_mutant!(norm_here < root, ClampedToTheRadius, norm_here <= root) {
                 return Ok(Some(clamped));
             }
             for ((x, q), c) in clamped.iter_mut().zip(q).zip(center) {

@@ -54,7 +54,7 @@ impl Digest {
             let listed = groups.listed().flat_map(|(g, h)| [u32::from(g), u32::from(h)]);
             sections.numbers(name, groups.listed().count(), listed);
         }
-        if let Some(clearance) = right_or!(scope.clearance, ClearanceNotHashed, None) {
+        if let Some(clearance) = with_mutant!(scope.clearance, ClearanceNotHashed, None) {
             sections.reals("clearance", 1, std::iter::once(clearance.distance()));
             sections.numbers("rings", 1, std::iter::once(clearance.rings()));
         }

@@ -75,10 +75,10 @@ impl PairTree {
             if entry.radius.is_nan() || entry.radius < 0.0 {
                 return Err("a radius is negative or not a number");
             }
-            if right_or!(f64::from(entry.radius) >= self.limit(), TreeRadiusAtLimitAccepted, false) {
+            if with_mutant!(f64::from(entry.radius) >= self.limit(), TreeRadiusAtLimitAccepted, false) {
                 return Err("a radius is not below the limit");
             }
-            if right_or!(entry.radius < siblings.parent_radius, TreeRadiusAboveChildAccepted, false) {
+            if with_mutant!(entry.radius < siblings.parent_radius, TreeRadiusAboveChildAccepted, false) {
                 return Err("a pair's radius exceeds that of a child");
             }
             let which = entry.which() as usize;

@@ -68,7 +68,7 @@ fn check_radii(parts: &CertificateParts) -> Result<(), &'static str> {
     }
     // NaN must fail these tests, too.
     let mut radii = parts.node_radii.iter().chain(&parts.root_pair_radii);
-    if radii.any(|radius| right_or!(radius.is_nan(), NanRadiusAccepted, false) || *radius < 0.0) {
+    if radii.any(|radius| with_mutant!(radius.is_nan(), NanRadiusAccepted, false) || *radius < 0.0) {
         return Err("a radius is negative or not a number");
     }
     if parts.global_radius.is_nan() || parts.global_radius <= 0.0 {
@@ -82,7 +82,7 @@ fn check_radii(parts: &CertificateParts) -> Result<(), &'static str> {
     }
     for (node, radius) in nodes.iter().zip(&parts.node_radii) {
         let is_below = |child: u32| parts.node_radii[child as usize] < *radius;
-        if right_or!(node.children().any(is_below), NodeRadiusAboveChildAccepted, false) {
+        if with_mutant!(node.children().any(is_below), NodeRadiusAboveChildAccepted, false) {
             return Err("a node's radius exceeds that of a child");
         }
     }

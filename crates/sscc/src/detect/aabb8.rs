@@ -31,7 +31,7 @@ impl AabbF32 {
     pub(crate) fn of_triangle<const E: usize>(corners: [[Vec4; E]; 3]) -> Self {
         let [a, b, c] = corners.map(|ends| {
             let first = Self { lower: ends[0], upper: ends[0] };
-            let others = right_or!(&ends[1..], SweptTrianglesAtStart, &ends[..0]);
+            let others = with_mutant!(&ends[1..], SweptTrianglesAtStart, &ends[..0]);
             others.iter().fold(first, |all, x| Self { lower: all.lower.min(*x), upper: all.upper.max(*x) })
         });
         a.union(&b).union(&c)
@@ -216,7 +216,7 @@ impl Kernel for NestedPacketPair<'_> {
             return Overlaps::default();
         }
         let columns = pair.second.compare_all(v, first.0, first.1);
-        let clear = right_or!(!columns & 0xff, PacketColumnsSwapped, columns & 0xff);
+        let clear = with_mutant!(!columns & 0xff, PacketColumnsSwapped, columns & 0xff);
         pair.masked |= u64::from(clear) * 0x0101_0101_0101_0101;
         pair.run(v)
     }

@@ -123,7 +123,7 @@ impl AdjacencyMasks {
         let [start, end] = [0, 1].map(|i| self.neighbour_starts[first as usize + i] as usize);
         let have_large_class = self.has_large_class[first as usize] && self.has_large_class[second as usize];
         self.neighbours[start..end].contains(&second)
-            || right_or!(have_large_class, LargeClassForgotten, false)
+            || with_mutant!(have_large_class, LargeClassForgotten, false)
     }
 
     /// Returns the masked pairs of two packets without those of adjacent triangles: for one packet with itself the pairs with

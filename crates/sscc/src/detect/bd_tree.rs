@@ -96,7 +96,7 @@ impl BdTree {
         // Half extents are at least as large as at either end, since rounding is monotone, and hardly larger if the step is short.
         let half = sums.first().map_or(Vec4::ZERO, |[.., x, y, z, _, _]| Vec4::new(*x, *y, *z, 0.0));
         // Adds the error of the centre, and that of the half extents.
-        let half = half + Vec4::splat(right_or!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
+        let half = half + Vec4::splat(with_mutant!(2.0 * motion.error, CoarseNodesNotWidened, 0.0));
         let mut ends = sums.map(|[x, y, z, ..]| {
             let center = Vec4::new(x, y, z, 0.0);
             AabbF32 { lower: center - half, upper: center + half }
@@ -104,7 +104,7 @@ impl BdTree {
         if let Some(maps) = &motion.maps {
             ends.iter_mut().zip(maps).for_each(|(aabb, map)| *aabb = map.apply_to_aabb(*aabb));
         }
-        let join = |a: AabbF32, b: AabbF32| right_or!(a.union(&b), SweptCoarseNodesAtStart, a);
+        let join = |a: AabbF32, b: AabbF32| with_mutant!(a.union(&b), SweptCoarseNodesAtStart, a);
         ends.into_iter().reduce(join)
     }
 
@@ -132,7 +132,7 @@ impl BdTree {
                 mean += *mean_rate * q;
                 growth += *growth_rate * q.abs();
             }
-            let growth = right_or!(growth, DisplacementsOfMeans, DVec3::ZERO);
+            let growth = with_mutant!(growth, DisplacementsOfMeans, DVec3::ZERO);
             most = larger_or_nan(most, (mean.abs() + growth).length());
         }
         most
@@ -156,7 +156,7 @@ impl BdTree {
         }
         let ends = boxes
             .map(|(center, half)| Aabb { lower: center - (half + margin), upper: center + (half + margin) });
-        let join = |a: Aabb, b: Aabb| right_or!(a.union(&b), SweptNodesAtStart, a);
+        let join = |a: Aabb, b: Aabb| with_mutant!(a.union(&b), SweptNodesAtStart, a);
         ends.into_iter().reduce(join).unwrap_or_default()
     }
 }

@@ -26,7 +26,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         self.state.counters.box_tests += (LANES * count) as u64;
         let packets = volumes.packets(bucket);
         let masked =
-            right_or!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
+            with_mutant!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked };
         for (i, j) in PairsOfLanes(pair.overlaps(volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });

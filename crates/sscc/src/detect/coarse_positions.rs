@@ -74,7 +74,7 @@ impl<const E: usize> CoarsePositions<E> {
             let slack = slack * (frame.scale() * (1.0 + 1e-5));
             // The slack must be finite, as are all corners of AABBs that are not empty.
             let slack = slack.as_vec3().extend(0.0).min(Vec4::MAX);
-            right_or!(slack, CoarseSlackForgotten, Vec4::ZERO)
+            with_mutant!(slack, CoarseSlackForgotten, Vec4::ZERO)
         })
     }
 

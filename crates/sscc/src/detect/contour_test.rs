@@ -12,7 +12,7 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
     let end = |i: usize| polygon[next(i)];
     // A bound of the rounding of any coordinate.
     let reach = polygon.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let moved = right_or!(f64::EPSILON * reach, ContourCoordinatesExact, 0.0);
+    let moved = with_mutant!(f64::EPSILON * reach, ContourCoordinatesExact, 0.0);
     let low = |i: usize, axis: usize| polygon[i][axis].min(end(i)[axis]);
     let high = |i: usize, axis: usize| polygon[i][axis].max(end(i)[axis]) + 2.0 * moved;
     order.clear();
@@ -52,8 +52,8 @@ pub(crate) fn is_simple(polygon: &[[f64; 2]], order: &mut Vec<u32>) -> bool {
 /// larger than this total: the test would be valid without the first term.
 fn error([ux, uy]: [f64; 2], [vx, vy]: [f64; 2], products: f64, moved: f64) -> f64 {
     let reach = ux.abs() + uy.abs() + vx.abs() + vy.abs();
-    let products = right_or!(ROUNDING * products, ContourProductsExact, 0.0);
-    right_or!(products + 4.0 * moved * (reach + 4.0 * moved) + f64::MIN_POSITIVE, ContourExact, 0.0)
+    let products = with_mutant!(ROUNDING * products, ContourProductsExact, 0.0);
+    with_mutant!(products + 4.0 * moved * (reach + 4.0 * moved) + f64::MIN_POSITIVE, ContourExact, 0.0)
 }
 
 fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

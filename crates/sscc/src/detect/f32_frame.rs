@@ -36,7 +36,7 @@ impl F32Frame {
     pub(crate) fn error_bound(&self, rounding: f64) -> f32 {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let error = 16.0 * unit + 4.1 * rounding * self.scale;
-        right_or!(error, FrameErrorQuartered, error / 4.0) as f32
+        with_mutant!(error, FrameErrorQuartered, error / 4.0) as f32
     }
 
     /// Returns the point that is mapped to the origin.

@@ -42,7 +42,7 @@ impl FrameMap {
         let shift = world.linear(rotation * own.center() + translation);
         let unit = f64::from(f32::EPSILON) / 2.0;
         let rounded = 64.0 * unit * (1.0 + row);
-        let turned = right_or!(row * f64::from(error), FrameMapOfExactPositions, 0.0);
+        let turned = with_mutant!(row * f64::from(error), FrameMapOfExactPositions, 0.0);
         let all = 1.01 * (turned + rounded) + f64::from(world.error_bound(rounding));
         // NaN fails this comparison.
         (all <= MAX_ERROR * row).then(|| Self {

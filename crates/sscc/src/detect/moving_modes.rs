@@ -38,7 +38,7 @@ impl MovingModes {
         }
         let union = |items: &Vec<u32>| -> Vec<u32> {
             let mut is_moving = vec![false; self.rank];
-            for item in right_or!(&items[..], MovingModesOfOneVertex, &items[..1]) {
+            for item in with_mutant!(&items[..], MovingModesOfOneVertex, &items[..1]) {
                 self.modes[self.range(*item)].iter().for_each(|k| is_moving[*k as usize] = true);
             }
             (0..self.rank as u32).filter(|k| is_moving[*k as usize]).collect()

@@ -118,7 +118,7 @@ impl<const E: usize> NodeVolumes<E> {
         };
         // Triangles must be separate by this clearance, too, so that the bound includes it.
         let margin = motion.margin_beside_rounding() * frame.scale() * (1.0 + 1e-5);
-        self.corner_error += right_or!(margin, SeparatedWithoutClearance, 0.0) as f32;
+        self.corner_error += with_mutant!(margin, SeparatedWithoutClearance, 0.0) as f32;
     }
 
     /// Computes all AABBs from all vertices, bottom-up, except those within open buckets, which are current.
@@ -152,7 +152,7 @@ impl<const E: usize> NodeVolumes<E> {
         }
         let margin = motion.margin() * self.positions.frame().scale() * (1.0 + 1e-5);
         // Coordinates in the frame are rounded when they are mapped and when AABBs are widened: by less than four units of 2^-24 within [-4, 4].
-        let rounding = right_or!(4.0 * f64::from(f32::EPSILON), MarginExact, 0.0);
+        let rounding = with_mutant!(4.0 * f64::from(f32::EPSILON), MarginExact, 0.0);
         Vec4::splat((margin + rounding) as f32)
     }
 
@@ -260,7 +260,7 @@ impl<const E: usize> NodeVolumes<E> {
         let by = if self.coarse.are_used() {
             self.coarse.move_bucket(&self.layout, bucket);
             let slack = CoarsePositions::slack(n, motion, self.positions.frame());
-            slack + right_or!(self.coarse.error(), CoarseTrianglesNotWidened, 0.0)
+            slack + with_mutant!(self.coarse.error(), CoarseTrianglesNotWidened, 0.0)
         } else {
             self.margin(motion)
         };
@@ -362,7 +362,7 @@ pub(crate) fn are_slots_separated<const E: usize>(
     (x, a): (&NodeVolumes<E>, BucketSlot),
     (y, b): (&NodeVolumes<E>, BucketSlot),
 ) -> bool {
-    let error = right_or!(x.corner_error.max(y.corner_error), ErrorOfFirstShape, x.corner_error);
+    let error = with_mutant!(x.corner_error.max(y.corner_error), ErrorOfFirstShape, x.corner_error);
     are_separated(&x.mapped_corners(a.bucket, a.slot), &y.mapped_corners(b.bucket, b.slot), error)
 }
 

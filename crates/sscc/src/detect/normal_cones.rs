@@ -91,7 +91,7 @@ impl NormalCones {
                 Some(_) => 0,
                 None => node.children().fold(!0, |all, child| {
                     let of_child = self.positive[child as usize];
-                    right_or!(all & of_child, ConeOfLastChild, of_child)
+                    with_mutant!(all & of_child, ConeOfLastChild, of_child)
                 }),
             };
         }
@@ -124,7 +124,7 @@ fn positive_sides(a: DVec3, b: DVec3, c: DVec3) -> u16 {
     let bits = DIRECTIONS.iter().enumerate().map(|(k, direction)| {
         // Up to six products may underflow.
         let error = ROUNDING * size.dot(direction.v.abs()) + f64::MIN_POSITIVE;
-        u16::from(normal.dot(direction.v) > right_or!(error, ConeSidesExact, 0.0)) << k
+        u16::from(normal.dot(direction.v) > with_mutant!(error, ConeSidesExact, 0.0)) << k
     });
     bits.fold(0, |all, bit| all | bit)
 }

@@ -144,7 +144,7 @@ impl Quantization {
         } else {
             f64::INFINITY
         };
-        let quantized = right_or!(most / (2.0 * WHOLE), QuantizationExact, 0.0);
+        let quantized = with_mutant!(most / (2.0 * WHOLE), QuantizationExact, 0.0);
         let rounded = unit * (self.sizes.len() + 12) as f64 * (1.0 + 2.0 * most) + quantized;
         let error = 1.1 * rounded + 4.0 * rounding * scale;
         motion.shift = [frame.linear(self.center).as_vec3().extend(0.0); E];

@@ -257,7 +257,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
     /// Tests the exceptions, one by one.
     pub(crate) fn test_exceptions(&mut self) {
         let Context { filter, exceptions, .. } = self.sides[0].context;
-        for &pair in right_or!(&**exceptions, ExceptionsForgotten, &[]) {
+        for &pair in with_mutant!(&**exceptions, ExceptionsForgotten, &[]) {
             if self.narrow.hits().note_if_full() {
                 return;
             }
@@ -274,7 +274,7 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
             }
             let [box_a, box_b] = [&a, &b].map(Aabb::of_swept_triangle);
             let is_apart = if apart > 0.0 {
-                right_or!(
+                with_mutant!(
                     box_a.is_farther(&box_b, apart),
                     ExceptionsOfContactsAlone,
                     box_a.is_disjoint(&box_b)

@@ -123,5 +123,5 @@ impl<const E: usize> VertexMotion<E> for DeformedMotion<'_, E> {
 
 /// Returns an upper bound of the rounding error of BD-tree AABBs and positions. It is well above the 2 (r + 1) roundings of each.
 pub(crate) fn rounding_bound(reach: f64, rank: usize) -> f64 {
-    right_or!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
+    with_mutant!(reach * ((4 * rank + 64) as f64 * f64::EPSILON) + f64::MIN_POSITIVE, BoxesNotWidened, 0.0)
 }

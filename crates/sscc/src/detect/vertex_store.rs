@@ -123,7 +123,7 @@ impl VertexStore {
         if let Some(list) = self.moving.list(index) {
             for (k, u) in list.iter().zip(modes) {
                 for end in 0..E {
-                    x[end] += *u * q[end][right_or!(*k as usize, MovingModesAreFirst, 0)];
+                    x[end] += *u * q[end][with_mutant!(*k as usize, MovingModesAreFirst, 0)];
                 }
             }
             return x;

@@ -42,7 +42,7 @@ pub(super) fn intersect_beyond_common_corners(
 ) -> bool {
     let (common_a, common_b) = (a.common_with(&b), b.common_with(&a));
     if common_a == [true; 3] && common_b == [true; 3] {
-        return right_or!(true, DoubledFacesAreFree, false);
+        return with_mutant!(true, DoubledFacesAreFree, false);
     }
     // There are at most two distinct positions: three would be all corners of both.
     let mut common = a.corners_where(common_a);
@@ -50,7 +50,7 @@ pub(super) fn intersect_beyond_common_corners(
         return intersect_triangle_triangle(a.positions, b.positions);
     };
     let edge = [u, common.find(|x| *x != u).unwrap_or(u)];
-    if edge[0] != edge[1] && right_or!(!edges_are_common, EdgeOfOneVertexForgiven, false) {
+    if edge[0] != edge[1] && with_mutant!(!edges_are_common, EdgeOfOneVertexForgiven, false) {
         return true;
     }
     let mut others_a = a.corners_where(common_a.map(|is_common| !is_common));

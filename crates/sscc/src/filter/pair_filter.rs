@@ -35,7 +35,7 @@ impl GroupsBetween<'_> {
     pub(crate) fn is_counted(&self, (a, b): Pair) -> bool {
         let Self([first, second]) = self;
         let [g, h] = [first.of_triangles()[a as usize], second.of_triangles()[b as usize]];
-        right_or!(first.is_counted(g, h), GroupsBetweenForgotten, true)
+        with_mutant!(first.is_counted(g, h), GroupsBetweenForgotten, true)
     }
 }
 
@@ -63,7 +63,7 @@ impl PairFilter {
     /// Applies the filter to a mesh whose vertices are welded by these classes (`None`: not at all), whether or not the filter
     /// welds vertices.
     pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
-        let classes = right_or!(classes, WeldClassesForgotten, None);
+        let classes = with_mutant!(classes, WeldClassesForgotten, None);
         let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
         Self {
             faces: faces.to_vec(),
@@ -124,7 +124,7 @@ impl PairFilter {
     #[inline]
     pub(crate) fn relation(&self, a: u32, b: u32) -> Relation {
         if let Some(groups) = &self.groups
-            && right_or!(!groups.is_pair_counted(a, b), GroupsForgotten, false)
+            && with_mutant!(!groups.is_pair_counted(a, b), GroupsForgotten, false)
         {
             return Relation::Adjacent;
         }
@@ -146,7 +146,7 @@ impl PairFilter {
                 let [class, second] = first_common(self.classes[a as usize], self.classes[b as usize]);
                 // Two vertices of one class are two common ones: they may move apart later.
                 let [_, second_number] = first_common(self.faces[a as usize], self.faces[b as usize]);
-                match (class, second.or(right_or!(second_number, VertexNumbersForgotten, None))) {
+                match (class, second.or(with_mutant!(second_number, VertexNumbersForgotten, None))) {
                     (Some(class), None) => Relation::SharedVertex(class),
                     _ => Relation::Adjacent,
                 }
@@ -160,7 +160,7 @@ impl PairFilter {
         !self.excluded.is_empty()
             && self
                 .excluded
-                .binary_search(&right_or!((a.min(b), a.max(b)), ExcludedInOneOrder, (a, b)))
+                .binary_search(&with_mutant!((a.min(b), a.max(b)), ExcludedInOneOrder, (a, b)))
                 .is_ok()
     }
 
@@ -211,7 +211,7 @@ impl PairFilter {
         let corners = classes_a.iter().zip(corners_a).chain(classes_b.iter().zip(corners_b));
         let mut shared = corners.filter(|(other, _)| **other == class).map(|(_, corner)| corner);
         let first = shared.next();
-        right_or!(shared.all(|corner| Some(corner) == first), WeldedVerticesStayTogether, true)
+        with_mutant!(shared.all(|corner| Some(corner) == first), WeldedVerticesStayTogether, true)
     }
 
     fn collide_as_shared_vertex_pair(

@@ -79,7 +79,7 @@ impl Rings {
         self.marked.clear();
         self.marked.push(center);
         let mut ring = 0..1;
-        for _ in 0..right_or!(self.rings, RingsOneMore, self.rings + 1) {
+        for _ in 0..with_mutant!(self.rings, RingsOneMore, self.rings + 1) {
             for i in ring.clone() {
                 for class in filter.vertex_classes(self.marked[i]).map(|class| class as usize) {
                     if std::mem::replace(&mut self.reached_classes[class], self.search) == self.search {
@@ -141,6 +141,6 @@ impl RingPairs {
             return false;
         }
         let [start, end] = [0, 1].map(|next| self.starts[first as usize + next]);
-        right_or!(self.later[start..end].binary_search(&second).is_ok(), RingsOfClearanceForgotten, false)
+        with_mutant!(self.later[start..end].binary_search(&second).is_ok(), RingsOfClearanceForgotten, false)
     }
 }

@@ -57,7 +57,7 @@ impl PairFilter {
         [b_t0, b_t1]: [&[DVec3; 3]; 2],
     ) -> impl Iterator<Item = SimplexPair<usize>> {
         let pairs = if self.is_vertex_shared(class, pair, a_t0, b_t0)
-            && right_or!(self.is_vertex_shared(class, pair, a_t1, b_t1), MovingVertexSharedAtStart, true)
+            && with_mutant!(self.is_vertex_shared(class, pair, a_t1, b_t1), MovingVertexSharedAtStart, true)
         {
             self.opposite_to_class(class, pair)
         } else {
@@ -108,6 +108,6 @@ fn edges_and_triangles(edge_a: [usize; 2], edge_b: [usize; 2]) -> [Option<Simple
     let edge = |[i, j]: [usize; 2]| [i, j, j];
     [
         Some(SimplexPair { a: edge(edge_a), b: TRIANGLE }),
-        right_or!(Some(SimplexPair { a: TRIANGLE, b: edge(edge_b) }), OneSimplexPairOfTwo, None),
+        with_mutant!(Some(SimplexPair { a: TRIANGLE, b: edge(edge_b) }), OneSimplexPairOfTwo, None),
     ]
 }

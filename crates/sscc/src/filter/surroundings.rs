@@ -29,7 +29,7 @@ pub(crate) fn surroundings(
     let mut search = Rings::new(filter, rings);
     let around = |(a, b): Pair| {
         let around_a = search.around(filter, a).to_vec();
-        let kept = right_or!(around_a.len(), SurroundingsOfOne, 1);
+        let kept = with_mutant!(around_a.len(), SurroundingsOfOne, 1);
         (around_a[..kept].to_vec(), search.around(filter, b).to_vec())
     };
     let counts = |(a, b): Pair| a != b && filter.relation(a, b) != Relation::Adjacent;

@@ -166,7 +166,7 @@ impl TriangleGroups {
 
     /// Whether the table holds between these two meshes.
     pub(crate) fn is_common_with(&self, other: &Self) -> bool {
-        let is_same = |(one, two)| right_or!(Arc::ptr_eq(one, two), GroupsOfOtherScenes, true);
+        let is_same = |(one, two)| with_mutant!(Arc::ptr_eq(one, two), GroupsOfOtherScenes, true);
         self.scene.as_ref().zip(other.scene.as_ref()).is_some_and(is_same)
     }
 

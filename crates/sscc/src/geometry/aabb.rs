@@ -43,7 +43,7 @@ impl Aabb {
     /// Whether the boxes have no point in common. Boxes with NaN are never disjoint.
     #[inline]
     pub fn is_disjoint(&self, other: &Self) -> bool {
-        right_or!(
+        with_mutant!(
             (self.lower.cmpgt(other.upper) | other.lower.cmpgt(self.upper)).any(),
             TouchingBoxesDisjoint,
             (self.lower.cmpge(other.upper) | other.lower.cmpge(self.upper)).any()
@@ -53,7 +53,7 @@ impl Aabb {
     /// Whether the boxes are farther apart than a distance along some axis.
     pub(crate) fn is_farther(&self, other: &Self, distance: f64) -> bool {
         let gap = (self.lower - other.upper).max(other.lower - self.upper).max_element();
-        right_or!(gap > distance, FartherByHalf, gap > 0.5 * distance)
+        with_mutant!(gap > distance, FartherByHalf, gap > 0.5 * distance)
     }
 
     /// Returns the middle of the box.

@@ -13,9 +13,9 @@ pub(crate) fn crossing(point: DVec3, corners: &[DVec3; 3]) -> i32 {
     let p = point.xy();
     let mut turns = 0;
     for (u, v) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i].xy(), corners[j].xy())) {
-        if u.y <= p.y && right_or!(p.y < v.y, CrossingsAtEnds, p.y <= v.y) {
+        if u.y <= p.y && with_mutant!(p.y < v.y, CrossingsAtEnds, p.y <= v.y) {
             turns += i32::from(orient2d(u, v, p) > 0);
-        } else if right_or!(v.y <= p.y && p.y < u.y, CrossingsUpwardAlone, false) {
+        } else if with_mutant!(v.y <= p.y && p.y < u.y, CrossingsUpwardAlone, false) {
             turns -= i32::from(orient2d(u, v, p) < 0);
         }
     }

@@ -64,8 +64,8 @@ fn error(planes: [&Plane; 2], area: f64) -> f64 {
     };
     // A slope beyond the range of numbers is replaced by 0.
     let vague = |plane: &Plane| if plane.is_vague { area * (plane.z.1 - plane.z.0) } else { 0.0 };
-    let clips = right_or!(reach * width * height, VolumeWithoutClipError, 0.0);
-    let heights = right_or!(steep(planes[0]) + steep(planes[1]), VolumeWithoutSteepError, 0.0);
+    let clips = with_mutant!(reach * width * height, VolumeWithoutClipError, 0.0);
+    let heights = with_mutant!(steep(planes[0]) + steep(planes[1]), VolumeWithoutSteepError, 0.0);
     vague(planes[0]) + vague(planes[1]) + ERROR * (clips + heights)
 }
 
@@ -94,7 +94,7 @@ impl Plane {
         let width = (0..3).map(|k| flat[k].distance(flat[(k + 1) % 3])).fold(0.0, f64::max);
         let reach = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let slope = -normal.truncate() / normal.z;
-        let is_vague = right_or!(!slope.is_finite(), SlopeBeyondRangeKept, false);
+        let is_vague = with_mutant!(!slope.is_finite(), SlopeBeyondRangeKept, false);
         let slope = if is_vague { DVec2::ZERO } else { slope };
         Self { area: 0.5 * normal.z, from: p, slope, is_vague, z, width, reach }
     }

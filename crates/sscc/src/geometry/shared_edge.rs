@@ -21,7 +21,7 @@ use super::planar::{injective_projection, project};
 pub fn intersect_shared_edge_pair([u, w]: [DVec3; 2], a: DVec3, b: DVec3) -> bool {
     let triangles = [[u, w, a], [u, w, b]];
     // Most edges are folded less than all the way. (Through collinear corners there is no plane: the side is 0.)
-    if right_or!(Plane::through(&triangles[0]).side(b) != 0, HingesAreFlat, false) {
+    if with_mutant!(Plane::through(&triangles[0]).side(b) != 0, HingesAreFlat, false) {
         return false;
     }
     match triangles.each_ref().map(injective_projection) {

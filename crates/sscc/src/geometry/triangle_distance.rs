@@ -28,7 +28,7 @@ pub const DISTANCE_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
 /// assert_eq!(sscc::distance_triangle_triangle(&a, &a.map(|p| p + DVec3::Z * 2.0)), 2.0);
 /// ```
 pub fn distance_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
-    if right_or!(intersect_triangle_triangle(a, b), TouchingApart, false) {
+    if with_mutant!(intersect_triangle_triangle(a, b), TouchingApart, false) {
         return 0.0;
     }
     // Computes in units of the size, so that no product overflows or vanishes.
@@ -65,7 +65,7 @@ fn segment_to_segment([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2], take: &mut impl 
     if (0.0..=1.0).contains(&s) {
         let offset = d * s - between;
         let share =
-            right_or!(offset.dot(e) / e.length_squared(), LinesUnprojected, nearest(d)).clamp(0.0, 1.0);
+            with_mutant!(offset.dot(e) / e.length_squared(), LinesUnprojected, nearest(d)).clamp(0.0, 1.0);
         take(if share.is_nan() { offset } else { offset - e * share });
     }
 }
@@ -86,7 +86,7 @@ fn to_inside(p: DVec3, triangle: &[DVec3; 3]) -> Option<DVec3> {
     let across = third - edge * along;
     let (mut beta, mut gamma, mut left) = (0.0, 0.0, offset);
     // Each iteration removes the rest that the one before has left, with an error that is a share of this rest.
-    for _ in 0..right_or!(3, NeedlesOnce, 1) {
+    for _ in 0..with_mutant!(3, NeedlesOnce, 1) {
         let more = left.dot(across) / across.length_squared();
         gamma += more;
         beta += left.dot(edge) / edge.length_squared() - more * along;

@@ -77,7 +77,7 @@ fn intersect_crossing(a: &[DVec3; 3], sides_of_a: [i8; 3], b: &[DVec3; 3], sides
     let (apex_a, apex_b) = (find_apex(sides_of_a), find_apex(sides_of_b));
     let [a0, a1, a2] = reorder(a, apex_a.corner, apex_b.is_above);
     let [b0, b1, b2] = reorder(b, apex_b.corner, apex_a.is_above);
-    let touch = right_or!(0, TouchingIsFree, 1);
+    let touch = with_mutant!(0, TouchingIsFree, 1);
     orient3d(a0, a1, b0, b1) <= -touch && orient3d(a0, a2, b0, b2) >= touch
 }
 

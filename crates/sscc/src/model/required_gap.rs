@@ -33,8 +33,8 @@ impl RequiredGap {
         // Twice the error covers the rounding of the extent, of the reach and of positions, which is far smaller.
         let (error, reach) = (2.0 * error * ROUND_UP, 2.0 * mode_reach);
         Self {
-            at_rest: (clearance + right_or!(error * extent, DistanceErrorAtRestForgotten, 0.0)) * ROUND_UP,
-            per_norm: right_or!(error * reach, DistanceErrorOfMotionForgotten, 0.0),
+            at_rest: (clearance + with_mutant!(error * extent, DistanceErrorAtRestForgotten, 0.0)) * ROUND_UP,
+            per_norm: with_mutant!(error * reach, DistanceErrorOfMotionForgotten, 0.0),
         }
     }
 
@@ -51,7 +51,7 @@ impl RequiredGap {
     /// Returns both parts along a direction, rounded up.
     #[inline]
     pub(crate) fn along(&self, dir: DVec3) -> LeastGap {
-        let length = right_or!(dir.length() * ROUND_UP, RequiredGapOfUnitDirections, 1.0);
+        let length = with_mutant!(dir.length() * ROUND_UP, RequiredGapOfUnitDirections, 1.0);
         LeastGap { at_rest: self.at_rest * length, per_norm: self.per_norm * length }
     }
 }

@@ -11,7 +11,7 @@ pub(crate) const ROUND_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
 /// Returns the root of a sum of squares of at most `terms` numbers, rounded up.
 #[inline]
 pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
-    sum_of_squares.sqrt() * right_or!(1.0 + (terms as f64 + 16.0) * f64::EPSILON, NormUpToNearest, 1.0)
+    sum_of_squares.sqrt() * with_mutant!(1.0 + (terms as f64 + 16.0) * f64::EPSILON, NormUpToNearest, 1.0)
 }
 
 /// Returns a quotient of two non-negative numbers, rounded down; 0 in place of NaN and of subnormal numbers, whose rounding is
@@ -19,8 +19,9 @@ pub(crate) fn norm_up(sum_of_squares: f64, terms: usize) -> f64 {
 #[inline]
 pub(crate) fn quotient_down(numerator: f64, denominator: f64) -> f64 {
     let quotient = numerator / denominator;
-    let is_normal = right_or!(quotient >= f64::MIN_POSITIVE, QuotientOfNan, !(quotient < f64::MIN_POSITIVE));
-    if is_normal { quotient * right_or!(ROUND_DOWN, QuotientToNearest, 1.0) } else { 0.0 }
+    let is_normal =
+        with_mutant!(quotient >= f64::MIN_POSITIVE, QuotientOfNan, !(quotient < f64::MIN_POSITIVE));
+    if is_normal { quotient * with_mutant!(ROUND_DOWN, QuotientToNearest, 1.0) } else { 0.0 }
 }
 
 /// Returns the radius at which a gap closes at a rate, rounded down. It is 0 unless the gap is positive (also for NaN), and
@@ -33,14 +34,14 @@ pub(crate) fn radius_down(gap: f64, rate: f64) -> f64 {
 /// Returns the larger one of two numbers; NaN if one of them is NaN, which `max` ignores.
 #[inline(always)]
 pub(crate) fn larger_or_nan<T: PartialOrd>(a: T, b: T) -> T {
-    let is_nan = right_or!(b.partial_cmp(&b).is_none(), MaximumIgnoresNan, false);
+    let is_nan = with_mutant!(b.partial_cmp(&b).is_none(), MaximumIgnoresNan, false);
     if a < b || is_nan { b } else { a }
 }
 
 /// Converts a radius to single precision, rounded down; 0 for NaN.
 pub(crate) fn to_f32_down(radius: f64) -> f32 {
     let rounded = radius as f32;
-    let is_above = right_or!(f64::from(rounded) > radius, RadiusToNearest, false);
+    let is_above = with_mutant!(f64::from(rounded) > radius, RadiusToNearest, false);
     let rounded = if is_above { rounded.next_down() } else { rounded };
     if rounded > 0.0 { rounded.min(f32::MAX) } else { 0.0 }
 }

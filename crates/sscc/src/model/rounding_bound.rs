@@ -64,8 +64,8 @@ impl RoundingBound {
     /// (A factor of 1 would do. Two positions are rounded by `2 (r + 1)` units of 2^-53 of the reach, at both z by
     /// `4 r + 4`. The bound has `4 r + 2 EXTRA_ROUNDINGS`, and evaluation needs less than a third of the latter.)
     pub(crate) fn between_configurations(&self, norm: f64) -> Self {
-        let moved = right_or!(self.per_norm * norm, SafeDistanceErrorAtRest, DVec3::ZERO);
-        let times = right_or!(4.0 * ROUND_UP, GapRoundedOnce, ROUND_UP);
+        let moved = with_mutant!(self.per_norm * norm, SafeDistanceErrorAtRest, DVec3::ZERO);
+        let times = with_mutant!(4.0 * ROUND_UP, GapRoundedOnce, ROUND_UP);
         Self { at_rest: (self.at_rest + moved) * times, per_norm: self.per_norm }
     }
 

@@ -47,14 +47,14 @@ impl ScaledModel {
             // The sums that lead to the positions at the centre are rounded, too.
             let moved: DVec3 = of_vertex.iter().zip(center).map(|(u, q)| (*u * *q).abs()).sum();
             let at_rest = mesh.rest_positions()[i as usize].abs();
-            rest_reach = rest_reach.max(at_rest + right_or!(moved, RestErrorWithoutCenter, DVec3::ZERO));
+            rest_reach = rest_reach.max(at_rest + with_mutant!(moved, RestErrorWithoutCenter, DVec3::ZERO));
             metric.magnitudes(&scaled, &mut magnitudes);
             let norm = |axis: usize| norm_up(magnitudes.iter().map(|m| m[axis] * m[axis]).sum(), row_len);
             mode_reach = mode_reach.max(DVec3::new(norm(0), norm(1), norm(2)));
         }
         // A component without displacements still needs a positive rounding bound if others have displacements: squares of
         // numbers below 2^-537 underflow, and the largest mode is above 2^-200.
-        let floor = right_or!(mode_reach.max_element() * f64::EPSILON, ModeReachWithoutFloor, 0.0);
+        let floor = with_mutant!(mode_reach.max_element() * f64::EPSILON, ModeReachWithoutFloor, 0.0);
         let mode_reach = mode_reach.max(DVec3::splat(floor));
         let rounding = RoundingBound::new(rest_reach, mode_reach, model.rank());
         let required = RequiredGap::default();
@@ -78,7 +78,7 @@ impl ScaledModel {
     /// Returns the gap along a direction that proves two points separate, by more than the clearance if there is one.
     #[inline]
     pub(crate) fn least_gap(&self, dir: DVec3) -> LeastGap {
-        let required = right_or!(self.required.along(dir), DirectionWithoutClearance, LeastGap::default());
+        let required = with_mutant!(self.required.along(dir), DirectionWithoutClearance, LeastGap::default());
         self.rounding.along(dir).plus(required)
     }
 

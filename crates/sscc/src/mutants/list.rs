@@ -445,7 +445,7 @@ mutants! {
     /// Terms of positions are at most as large as within the ball about the centre, wherever q is.
     ReachOfBallAnywhere: CaughtBy("lib query::valid_ball::tests::invalid_q_are_refused");
     /// Terms of positions in a ball about the centre are at most as large as at the centre.
-    ReachOfBallAtCenter: CaughtBy("lib query::valid_ball::tests::no_q_in_the_ball_reaches_farther");
+    ReachOfBallAtCenter: CaughtBy("lib query::valid_ball::tests::every_q_in_the_ball_is_within_its_reach");
     /// The rounding of positions in a motion is that at its start.
     MotionReachAtStart: CaughtBy("lib query::configuration_search::tests::the_rounding_of_a_motion_is_that_of_both_ends");
     /// With certificates near pairs are those beyond the rings of the first question.
@@ -473,11 +473,11 @@ mutants! {
     /// Motions in a region do not test its active pairs.
     ActivePairsNotSwept: CaughtBy("lib query::kinetic::tests::answers_are_those_of_plain_queries_whatever_regions_there_are");
     /// Safe scales omit pairs that collide at the centre.
-    SafeScaleWithoutExceptions: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    SafeScaleWithoutExceptions: CaughtBy("it safe_scale::shapes_up_to_the_safe_scale_are_free");
     /// Pairs of nodes below pairs of buckets are free up to the limit of the pair tree.
-    SafeScaleBelowBuckets: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    SafeScaleBelowBuckets: CaughtBy("it safe_scale::shapes_up_to_the_safe_scale_are_free");
     /// Triangles of two leaves that are free up to a goal are free beyond it.
-    LeavesAdvancedOnce: CaughtBy("it safe_scale::the_way_to_a_safe_scale_is_free");
+    LeavesAdvancedOnce: CaughtBy("it safe_scale::shapes_up_to_the_safe_scale_are_free");
     /// Clamping ends at a |z| that equals the root's radius.
     ClampedToTheRadius: CaughtBy("it safe_scale::clamping_ends_inside_the_root_ellipsoid");
     /// Clamping promises a free q, also where pairs collide at the centre.
@@ -487,7 +487,7 @@ mutants! {
     /// Ignored pairs count if the second triangle has the smaller number.
     ExcludedInOneOrder: CaughtBy("lib filter::pair_filter::tests::ignored_pairs_have_no_order");
     /// Welded vertices are not common to their triangles.
-    WeldClassesForgotten: CaughtBy("it neighbours::welding_undoes_splitting");
+    WeldClassesForgotten: CaughtBy("it neighbours::welded_shapes_have_the_pairs_of_shapes_without_split_vertices");
     /// A vertex that two triangles share at the start of a motion stays shared.
     MovingVertexSharedAtStart: CaughtBy("it detector::welded_vertices_can_move_apart");
     /// The time of impact of two triangles with a common vertex is that of the later one of their edges.
@@ -509,7 +509,7 @@ mutants! {
     /// The normals of a node are those of its last child.
     ConeOfLastChild: CaughtBy("it normal_cones::a_fold_inside_of_a_flat_sheet_is_found");
     /// Each of two meshes is searched in a frame of its own.
-    FramesOfTheirOwn: CaughtBy("it detector::two_meshes_collide_as_all_their_triangles_do");
+    FramesOfTheirOwn: CaughtBy("it detector::pairs_of_two_meshes_are_those_of_brute_force");
     /// The nearest two triangles are not within one node.
     NearestBetweenNodesAlone: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// A ray upward from within a box crosses nothing in it.
@@ -547,7 +547,7 @@ mutants! {
     /// The norm of an interval of weights is that at its start.
     SweepNormAtStart: CaughtBy("it sweep::contacts_of_simple_shapes");
     /// Of an interval with too many candidates those that were found are all.
-    SweepCutOffIsFree: CaughtBy("lib query::sweep::work::tests::where_the_work_is_used_up_the_bracket_is_what_was_proven");
+    SweepCutOffIsFree: CaughtBy("lib query::sweep::work::tests::limited_sweeps_end_at_a_weight_up_to_which_the_shape_is_free");
     /// A configuration whose first colliding pair does not count is free.
     ResolvedByFirstPair: CaughtBy("it resolve::answers_are_free_and_no_farther_than_stepping_back");
     /// The bound of a pair of nodes is that of its first part.

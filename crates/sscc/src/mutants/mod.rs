@@ -4,7 +4,7 @@
 //! the wrong one:
 //!
 //! ```text
-//! let norm = right_or!(self.region.norm, KineticRegionAtCenter, start.norm);
+//! let norm = with_mutant!(self.region.norm, KineticRegionAtCenter, start.norm);
 //! ```
 //!
 //! Without the feature `mutants`, and in every build without debug assertions, the macro expands to its first argument
@@ -12,14 +12,14 @@
 //! mutations.
 
 #[cfg(not(all(feature = "mutants", debug_assertions)))]
-macro_rules! right_or {
+macro_rules! with_mutant {
     ($right:expr, $($mutant:ident, $wrong:expr),+ $(,)?) => {
         $right
     };
 }
 
 #[cfg(all(feature = "mutants", debug_assertions))]
-macro_rules! right_or {
+macro_rules! with_mutant {
     ($right:expr, $($mutant:ident, $wrong:expr),+ $(,)?) => {
         match $crate::mutants::active() {
             $(Some($crate::mutants::Mutant::$mutant) => {

@@ -23,8 +23,9 @@ impl PosedShape {
         // A limit so large that its own rounding is more has all vertices on one side.
         let rounding =
             64.0 * f64::EPSILON * (reach * frame.center().abs().max_element() * frame.scale() + limit.abs());
-        let limit =
-            limit + right_or!(error, HalfSpaceExact, 0.0) + right_or!(rounding, HalfSpaceFrameExact, 0.0);
+        let limit = limit
+            + with_mutant!(error, HalfSpaceExact, 0.0)
+            + with_mutant!(rounding, HalfSpaceFrameExact, 0.0);
         let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
         let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
         self.below.clear();

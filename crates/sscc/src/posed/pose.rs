@@ -32,7 +32,7 @@ impl Pose {
     pub(super) fn apply_to_aabb(&self, Aabb { lower, upper }: Aabb, rounding: f64) -> Aabb {
         let [x, y, z] = [self.rotation.x_axis, self.rotation.y_axis, self.rotation.z_axis].map(DVec3::abs);
         let half = (upper - lower) * 0.5;
-        let widened = DVec3::splat(right_or!(rounding, PosedAabbExact, 0.0));
+        let widened = DVec3::splat(with_mutant!(rounding, PosedAabbExact, 0.0));
         let half = x * half.x + y * half.y + z * half.z + widened;
         let center = self.apply(lower * 0.5 + upper * 0.5);
         Aabb { lower: center - half, upper: center + half }

@@ -70,7 +70,7 @@ impl<const E: usize> PosedMotion<E> {
             let own = layout.bd_tree.root([&*self.q[end]], DVec3::splat(rounding));
             self.pose[end].apply_to_aabb(own, rounding)
         };
-        Ok((1..right_or!(E, SweptWholeAtStart, 1)).fold(whole(0), |all, end| all.union(&whole(end))))
+        Ok((1..with_mutant!(E, SweptWholeAtStart, 1)).fold(whole(0), |all, end| all.union(&whole(end))))
     }
 }
 
@@ -80,7 +80,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
 
     #[inline]
     fn rounding(&self) -> f64 {
-        rounding_bound(self.reach, self.q[0].len()) + right_or!(self.margin, PosedMarginForgotten, 0.0)
+        rounding_bound(self.reach, self.q[0].len()) + with_mutant!(self.margin, PosedMarginForgotten, 0.0)
     }
 
     #[inline]
@@ -97,7 +97,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
         // With a margin, coarse positions would be right, too, but imprecise: their error has more than four times [`Self::rounding`], of which
         // the margin is a part, and widens boxes.
-        right_or!(self.margin == 0.0, PosedCoarseWithMargin, true).then(|| self.q.each_ref().map(|q| &**q))
+        with_mutant!(self.margin == 0.0, PosedCoarseWithMargin, true).then(|| self.q.each_ref().map(|q| &**q))
     }
 
     #[inline]
@@ -125,7 +125,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
             let own = layout.bd_tree.at(node, [&*self.q[end]], DVec3::splat(rounding))?;
             Some(self.pose[end].apply_to_aabb(own, rounding))
         };
-        (1..right_or!(E, PosedNodesAtStart, 1)).try_fold(at(0)?, |all, end| Some(all.union(&at(end)?)))
+        (1..with_mutant!(E, PosedNodesAtStart, 1)).try_fold(at(0)?, |all, end| Some(all.union(&at(end)?)))
     }
 }
 

@@ -85,7 +85,7 @@ impl PosedShape {
     /// # Errors
     /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
-        let is_same_pose = right_or!(self.motion.pose[0] == *pose, PlacedByCoordinatesAlone, true);
+        let is_same_pose = with_mutant!(self.motion.pose[0] == *pose, PlacedByCoordinatesAlone, true);
         if self.motion.q[0] == q && is_same_pose {
             return Ok(self.whole);
         }
@@ -133,7 +133,7 @@ impl PosedShape {
 
     /// Starts a search in the frame of this box, unless the last one was the same.
     pub(super) fn enter(&mut self, around: Aabb) {
-        if right_or!(!self.is_current, PosedVolumesKept, false) || self.motion.around != around {
+        if with_mutant!(!self.is_current, PosedVolumesKept, false) || self.motion.around != around {
             self.motion.around = around;
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);

@@ -95,7 +95,7 @@ impl SweptShape {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
         let around = around.union(&widened(self.whole)).union(&widened(other.whole));
-        let each = right_or!(margin / 2.0, NearMarginHalved, margin / 4.0);
+        let each = with_mutant!(margin / 2.0, NearMarginHalved, margin / 4.0);
         self.enter(around, each);
         other.enter(around, each);
         let sides = [
@@ -117,8 +117,8 @@ impl SweptShape {
 
     /// Starts a search in the frame of this box with this margin, unless the last one was the same.
     fn enter(&mut self, around: Aabb, margin: f64) {
-        let is_margin_new = right_or!(self.motion.margin != margin, NearMarginKept, false);
-        if right_or!(!self.is_current, SweptVolumesKept, false)
+        let is_margin_new = with_mutant!(self.motion.margin != margin, NearMarginKept, false);
+        if with_mutant!(!self.is_current, SweptVolumesKept, false)
             || self.motion.around != around
             || is_margin_new
         {

@@ -135,13 +135,13 @@ impl AffineModes {
             terms += a.abs() * factors.iter().map(|n| n.abs()).sum::<f64>();
             free.map += *map * a;
             map_terms += norm(map) * a.abs();
-            free.length += right_or!(2.0, LocalAffineResidualOnce, 1.0) * residual * a.abs();
+            free.length += with_mutant!(2.0, LocalAffineResidualOnce, 1.0) * residual * a.abs();
         }
         // Each difference is rounded by a unit of its result or of its product; the sum contains both.
         let rounding = (2 * self.combinations.len() + 4) as f64 * f64::EPSILON;
-        free.error = right_or!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
+        free.error = with_mutant!(rounding * terms * ROUND_UP, LocalAffineRounding, 0.0);
         free.map_error = rounding * map_terms * ROUND_UP;
-        free.length *= right_or!(ROUND_UP, LocalAffineResidual, 0.0);
+        free.length *= with_mutant!(ROUND_UP, LocalAffineResidual, 0.0);
     }
 }
 
@@ -158,7 +158,7 @@ fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3
     // their products and sums.
     let terms: f64 = factors.iter().map(|f| f.abs()).sum::<f64>() + norm(&map) + shift.length();
     let rounding = 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms;
-    (most + right_or!(rounding, LocalAffineFitExact, 0.0)) * ROUND_UP
+    (most + with_mutant!(rounding, LocalAffineFitExact, 0.0)) * ROUND_UP
 }
 
 /// The best affine map of each mode, and the Gram matrix of the residuals of all modes.

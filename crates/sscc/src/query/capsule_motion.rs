@@ -42,7 +42,7 @@ impl CapsuleRates {
                 }
                 None => {
                     let most = node.children().fold(DVec3::ZERO, |most, n| most.max(nodes[n as usize]));
-                    right_or!(most, CapsuleInnerNodesStill, DVec3::ZERO)
+                    with_mutant!(most, CapsuleInnerNodesStill, DVec3::ZERO)
                 }
             };
         }
@@ -76,22 +76,22 @@ impl<'q> CapsuleMotion<'q> {
         reach: f64,
     ) -> Self {
         let rounding = rounding_bound(reach, start.len());
-        let widening = right_or!(5.0 * rounding, CapsuleExact, 0.0, CapsuleWidenedOnce, rounding);
-        let ends = [start, right_or!(end, CapsuleWithoutEnd, start)];
+        let widening = with_mutant!(5.0 * rounding, CapsuleExact, 0.0, CapsuleWidenedOnce, rounding);
+        let ends = [start, with_mutant!(end, CapsuleWithoutEnd, start)];
         Self { rates, ends, radius, rounding, widening }
     }
 
     /// Returns an upper bound of the change of a vertex's coordinates within the radius.
     #[inline]
     fn vertex_change(&self, vertex: u32) -> DVec3 {
-        let radius = right_or!(self.radius, CapsuleVerticesHalfAsFar, 0.5 * self.radius);
+        let radius = with_mutant!(self.radius, CapsuleVerticesHalfAsFar, 0.5 * self.radius);
         self.rates.vertices[vertex as usize] * radius + self.widening
     }
 
     /// Returns an upper bound of the change of the coordinates of all vertices of a node within the radius.
     #[inline]
     fn node_change(&self, node: u32) -> DVec3 {
-        let radius = right_or!(self.radius, CapsuleNodesHalfAsFar, 0.5 * self.radius);
+        let radius = with_mutant!(self.radius, CapsuleNodesHalfAsFar, 0.5 * self.radius);
         self.rates.nodes[node as usize] * radius + self.widening
     }
 }

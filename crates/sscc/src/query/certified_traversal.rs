@@ -58,7 +58,7 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
             continue;
         }
         let radius = certificates.node_radii[n as usize];
-        let is_certified = right_or!(norm < radius, NodeRadiusReached, norm <= radius);
+        let is_certified = with_mutant!(norm < radius, NodeRadiusReached, norm <= radius);
         let is_proven = || locals.as_ref().is_some_and(|(proofs, tables)| proofs.is_node_proven(tables, n));
         if is_certified || has_proofs && is_proven() {
             continue;
@@ -69,7 +69,7 @@ pub(super) fn traverse_certified<const E: usize, M: VertexMotion<E>, N: NarrowPh
         let node = hierarchy.nodes()[n as usize];
         for (which, pair) in node.child_pairs().enumerate() {
             // Only the root's children have certificates as pairs.
-            let is_within = |radius: f64| right_or!(norm < radius, RootPairRadiusReached, norm <= radius);
+            let is_within = |radius: f64| with_mutant!(norm < radius, RootPairRadiusReached, norm <= radius);
             if !(n == 0 && is_within(certificates.root_pair_radii[which])) {
                 search.push_overlapping(n, node.first_child, pair);
             }

@@ -38,7 +38,7 @@ impl ConfigurationCheck {
         } else {
             scope.metric.norm_from(q, &scope.center, &mut self.offset)
         };
-        let is_within = right_or!(norm < self.valid_ball.radius, ReachOfBallAnywhere, true);
+        let is_within = with_mutant!(norm < self.valid_ball.radius, ReachOfBallAnywhere, true);
         let reach = if is_within { self.valid_ball.reach } else { context.model.check_coordinates(q)? };
         Ok(Configuration { q, norm, reach })
     }

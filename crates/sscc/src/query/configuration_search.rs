@@ -96,7 +96,7 @@ impl DiscreteSearch {
 #[inline]
 pub(super) fn motion<const E: usize>(ends: [Configuration<'_>; E]) -> DeformedMotion<'_, E> {
     let largest = ends.iter().map(|end| end.reach).fold(0.0, f64::max);
-    let reach = right_or!(largest, MotionReachAtStart, ends[0].reach);
+    let reach = with_mutant!(largest, MotionReachAtStart, ends[0].reach);
     DeformedMotion::new(ends.map(|end| end.q), reach)
 }
 

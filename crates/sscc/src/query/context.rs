@@ -59,7 +59,7 @@ impl QueryContext {
             }
             Some(Arc::new(tables))
         });
-        let proven = used.filter(|_| right_or!(exceptions.is_empty(), ExceptionsProvenFree, true));
+        let proven = used.filter(|_| with_mutant!(exceptions.is_empty(), ExceptionsProvenFree, true));
         let proven_radius = proven.map_or(0.0, Certificates::root_radius);
         let [mut local_norm, mut all_reached_norm] = [f64::INFINITY; 2];
         if let Some(CertificateParts { node_radii, pair_tree, .. }) = used.map(Certificates::parts) {
@@ -90,7 +90,7 @@ impl QueryContext {
         let exceptions = certificates.exceptions();
         let buckets = self.detect.layout.buckets.count();
         let tested =
-            right_or!(exceptions.into(), NearExceptionsOfContacts, Arc::clone(&self.detect.exceptions));
+            with_mutant!(exceptions.into(), NearExceptionsOfContacts, Arc::clone(&self.detect.exceptions));
         Self {
             detect: Context { exceptions: tested, ..self.detect.clone() },
             certificates: Some(certificates.clone()),
@@ -99,7 +99,7 @@ impl QueryContext {
             locals: None,
             local_norm: f64::INFINITY,
             all_reached_norm: all_reached_norm(&certificates.parts().pair_tree, buckets),
-            proven_radius: if right_or!(exceptions.is_empty(), NearExceptionsProvenFree, true) {
+            proven_radius: if with_mutant!(exceptions.is_empty(), NearExceptionsProvenFree, true) {
                 certificates.root_radius()
             } else {
                 0.0
@@ -125,7 +125,7 @@ impl QueryContext {
     pub(super) fn complete_pair_tree(&self, norm: f64) -> Option<&PairTree> {
         let tree = self.used_certificates().map(|parts| &parts.pair_tree);
         let tree = tree.filter(|_| norm < self.all_reached_norm);
-        right_or!(
+        with_mutant!(
             tree.filter(|tree| norm < tree.limit()),
             TreeLimitReached,
             tree.filter(|tree| norm <= tree.limit())
@@ -140,7 +140,7 @@ impl QueryContext {
     /// Whether the root's certificate proves the shape free at this norm, and there are no exceptions to test.
     #[inline]
     pub(super) fn is_proven_free(&self, norm: f64) -> bool {
-        right_or!(norm < self.proven_radius, RootRadiusReached, norm <= self.proven_radius)
+        with_mutant!(norm < self.proven_radius, RootRadiusReached, norm <= self.proven_radius)
     }
 
     /// Whether the root's certificate holds at this norm (it does not cover exceptions). It does not hold at a norm equal to the
@@ -148,7 +148,7 @@ impl QueryContext {
     #[inline]
     pub(super) fn is_root_certified(&self, norm: f64) -> bool {
         let parts = self.used_certificates();
-        right_or!(
+        with_mutant!(
             parts.is_some_and(|parts| norm < parts.node_radii[0]),
             RootRadiusReached,
             parts.is_some_and(|parts| norm <= parts.node_radii[0])

@@ -56,7 +56,7 @@ impl Query {
     ) -> Result<&[Impact], Error> {
         self.forget();
         let [t0, t1] = [self.measure(q_t0)?, self.measure(q_t1)?];
-        self.norm = right_or!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
+        self.norm = with_mutant!(t0.norm.max(t1.norm), SweptNormAtStart, t1.norm);
         // The memory of the swept search is allocated only where it is needed.
         if self.context.is_proven_free(self.norm) {
             self.statistics = Statistics::PROVEN_FREE;

@@ -71,8 +71,8 @@ impl<const E: usize> LocalInequality<E> {
         let (Some(coordinates), Some(radius)) = (motion.coarse_coordinates(), motion.region_radius()) else {
             return false;
         };
-        self.radius = right_or!(radius, LocalProofsInRegions, 0.0);
-        if right_or!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
+        self.radius = with_mutant!(radius, LocalProofsInRegions, 0.0);
+        if with_mutant!(self.radius > 0.0 && tables.rates.is_none(), LocalRegionUnknown, false) {
             return false;
         }
         // The configurations must not be so far away that sums may overflow.
@@ -88,7 +88,7 @@ impl<const E: usize> LocalInequality<E> {
         let FactorScales { sizes, scale, reach } = &tables.scales;
         let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
         let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
-        self.error = right_or!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
+        self.error = with_mutant!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
         self.error.is_finite() && is_near
     }
 
@@ -124,9 +124,9 @@ impl<const E: usize> LocalInequality<E> {
             Some(rates) if self.radius > 0.0 => {
                 let of_certificate = rates.certificates[index];
                 [
-                    right_or!(rates.sum, LocalRegionSumStill, 0.0),
-                    right_or!(of_certificate.map, LocalRegionMapStill, 0.0),
-                    right_or!(of_certificate.strain, LocalRegionStrainStill, 0.0),
+                    with_mutant!(rates.sum, LocalRegionSumStill, 0.0),
+                    with_mutant!(of_certificate.map, LocalRegionMapStill, 0.0),
+                    with_mutant!(of_certificate.strain, LocalRegionStrainStill, 0.0),
                 ]
                 .map(|rate| rate * self.radius)
             }
@@ -151,19 +151,20 @@ impl<const E: usize> LocalInequality<E> {
             sum += more_sum;
             let (gradient, strain) =
                 self.instructions.run(Sums { gradients, ellipsoid, factors, count: modes.len() });
-            let rounding = right_or!(single * bounds.widest * sum, LocalStrainExact, 0.0);
+            let rounding = with_mutant!(single * bounds.widest * sum, LocalStrainExact, 0.0);
             let strain = strain
                 + rounding
-                + right_or!(bounds.widest * exact.error, LocalAffineStrainExact, 0.0)
+                + with_mutant!(bounds.widest * exact.error, LocalAffineStrainExact, 0.0)
                 + more_strain
                 + 1e-30;
             let error = bounds.per_factor * sum
-                + bounds.per_error * (self.error + right_or!(exact.length, LocalAffineLengthForgotten, 0.0))
-                + right_or!(single * bounds.steepest * sum, LocalMapExact, 0.0)
-                + right_or!(bounds.steepest * exact.error + exact.map_error, LocalAffineMapExact, 0.0)
+                + bounds.per_error
+                    * (self.error + with_mutant!(exact.length, LocalAffineLengthForgotten, 0.0))
+                + with_mutant!(single * bounds.steepest * sum, LocalMapExact, 0.0)
+                + with_mutant!(bounds.steepest * exact.error + exact.map_error, LocalAffineMapExact, 0.0)
                 + more_map
                 + 1e-30;
-            let affine = right_or!(exact.map, LocalAffineMapForgotten, DMat3::ZERO);
+            let affine = with_mutant!(exact.map, LocalAffineMapForgotten, DMat3::ZERO);
             (DMat3::IDENTITY + affine + gradient, strain * ROUND_UP, error * ROUND_UP)
         };
         let ends: [(DMat3, f64, f64); E] = std::array::from_fn(at);
@@ -182,10 +183,10 @@ impl<const E: usize> LocalInequality<E> {
         let (maps, turned) = flat_maps(&maps, DVec3::from_array(bounds.across));
         let lost = std::array::from_fn(|end| {
             (bounds.flatness + 1e-14)
-                * (turned[end] + right_or!(ends[end].2, LocalPlaneMapExact, 0.0))
+                * (turned[end] + with_mutant!(ends[end].2, LocalPlaneMapExact, 0.0))
                 * ROUND_UP
         });
-        let flat = allowed(stretches_of(&maps), right_or!(lost, LocalPlaneTurnsAlong, [0.0; E]));
+        let flat = allowed(stretches_of(&maps), with_mutant!(lost, LocalPlaneTurnsAlong, [0.0; E]));
         // If the result is NaN, no ratio is allowed.
         (if flat > plain { flat } else { plain } as f32).next_down()
     }
@@ -209,7 +210,7 @@ fn flat_maps<const E: usize>(maps: &[DMat3; E], across: DVec3) -> ([DMat3; E], [
 
 /// Returns the smaller of two numbers, and NaN if one is NaN, which allows no ratio.
 fn smaller(a: f64, b: f64) -> f64 {
-    right_or!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
+    with_mutant!(if a < b || a.is_nan() { a } else { b }, LocalSweptNanIgnored, a.min(b))
 }
 
 /// The number of SIMD vectors in the longest column of W.

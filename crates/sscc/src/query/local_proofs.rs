@@ -85,7 +85,7 @@ impl<const E: usize> LocalProofs<E> {
         let (ratio, allowed) =
             (tables.certificates.bounds[index].ratio, f64::from(self.allowed(tables, index)));
         // Allowed ratios are rounded down ([`LocalInequality::allowed`]), so that equality would be a proof, too; no infinite one is.
-        right_or!(ratio < allowed, LocalRatioReached, ratio <= allowed)
+        with_mutant!(ratio < allowed, LocalRatioReached, ratio <= allowed)
     }
 
     /// Returns the work, as [`work`] counts it, after which this search finds proven nodes; `u64::MAX` if it has found them, or cannot.
@@ -167,8 +167,8 @@ impl<const E: usize> LocalProofs<E> {
 
     /// Begins a new search, without the proofs of the last one. False if certificates prove nothing about the motion.
     pub(super) fn begin<M: VertexMotion<E>>(&mut self, tables: &LocalTables, motion: &M) -> bool {
-        self.search = right_or!(self.search.wrapping_add(1), LocalProofsKept, self.search);
-        if right_or!(self.search == 0, LocalSearchesWrap, false) {
+        self.search = with_mutant!(self.search.wrapping_add(1), LocalProofsKept, self.search);
+        if with_mutant!(self.search == 0, LocalSearchesWrap, false) {
             self.proven.fill((0, 0));
             self.allowed.fill((0, 0.0));
             self.search = 1;
@@ -193,7 +193,7 @@ impl<const E: usize> LocalProofs<E> {
         let range = &tables.buckets[n as usize];
         let (search, by) = self.proven[range.start as usize];
         let is_within = tables.buckets[by as usize].end >= range.end;
-        (search == self.search && right_or!(is_within, LocalProofOfOnePart, true)).then_some(by)
+        (search == self.search && with_mutant!(is_within, LocalProofOfOnePart, true)).then_some(by)
     }
 
     /// Whether the certificate that proves one of two nodes also proves that no triangle of one collides with one of the other. A
@@ -204,7 +204,7 @@ impl<const E: usize> LocalProofs<E> {
             return false;
         }
         // A certificate proves nothing about two nodes of its list.
-        let of_one_list = right_or!(
+        let of_one_list = with_mutant!(
             false,
             LocalRingWithRing,
             (0..tables.certificates.nodes.len()).any(|index| {

@@ -46,7 +46,7 @@ impl<'a> LocalScales<'a> {
                 // This reach bounds the rounding at both ends, and at points between them.
                 let reach = configuration.reach.max(context.model.reach(center));
                 let mut all = LocalProofs::new(tables);
-                let start = right_or!(center, LocalScaleOfEnd, &end[..]);
+                let start = with_mutant!(center, LocalScaleOfEnd, &end[..]);
                 if all.begin(tables, &DeformedMotion::new([start, &end], reach)) {
                     all.prove(tables, &context.detect.hierarchy, node_radii, configuration.norm);
                     proofs.push((scale, all));

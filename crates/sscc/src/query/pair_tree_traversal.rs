@@ -41,7 +41,7 @@ const NODE: u32 = u32::MAX;
 /// build has a plain comparison, see docs/notes/traversal.md#end-at-buckets.
 macro_rules! is_entry_reached {
     ($entry:expr, $norm:expr) => {
-        right_or!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)
+        with_mutant!(f64::from($entry.radius) <= $norm, TreeRadiusReached, f64::from($entry.radius) < $norm)
     };
 }
 
@@ -96,7 +96,7 @@ pub(super) fn traverse_pair_tree<const E: usize, M: VertexMotion<E>, N: NarrowPh
             let node = hierarchy.nodes()[n as usize];
             let is_reached = |child: &u32| {
                 let radius = node_radii[*child as usize];
-                right_or!(norm >= radius, TreeNodeRadiusReached, norm > radius)
+                with_mutant!(norm >= radius, TreeNodeRadiusReached, norm > radius)
             };
             let children = node.children().filter(is_reached);
             stack.extend(children.map(|child| Visit { nodes: (child, child), entry: NODE }));

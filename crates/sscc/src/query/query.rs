@@ -110,7 +110,7 @@ impl Query {
         // Certificates with a clearance prove nothing about collisions of triangles within their rings.
         let (plain, near): (Option<&Certificates>, Option<&Certificates>) = match certificates {
             Some(certificates)
-                if right_or!(certificates.clearance().is_some(), ClearanceProvesFree, false) =>
+                if with_mutant!(certificates.clearance().is_some(), ClearanceProvesFree, false) =>
             {
                 (None, Some(certificates))
             }

@@ -80,8 +80,11 @@ fn ellipsoid_rows(ellipsoid: &[u16], units: &[f64]) -> Vec<f64> {
 /// The eighth power of the singular value is at most the trace of the fourth power of the Gram matrix.
 fn singular_value_bound(rows: &[f64], len: usize) -> f64 {
     let frobenius = norm(rows);
-    if right_or!(!(frobenius > SMALLEST && frobenius < f64::INFINITY), RegionRatesUnderflow, frobenius == 0.0)
-    {
+    if with_mutant!(
+        !(frobenius > SMALLEST && frobenius < f64::INFINITY),
+        RegionRatesUnderflow,
+        frobenius == 0.0
+    ) {
         return if rows.iter().all(|x| *x == 0.0) { 0.0 } else { f64::INFINITY };
     }
     if len > MOST_MODES {

@@ -33,7 +33,7 @@ impl Query {
         self.norm = self.measure(q)?.norm;
         let line = ConfigurationLine::new(&self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.as_ref().map_or(f64::INFINITY, Certificates::global_radius);
-        let mut best = (global / self.norm).min(line.farthest) * right_or!(DOWN, SafeScaleToNearest, 1.0);
+        let mut best = (global / self.norm).min(line.farthest) * with_mutant!(DOWN, SafeScaleToNearest, 1.0);
         if self.norm == 0.0 {
             best = f64::INFINITY;
         }
@@ -43,7 +43,7 @@ impl Query {
                 return Err(Error::Cancelled);
             }
             let found = self.advance(&line, (x, y), 0.0, best);
-            best = right_or!(best.min(found), SafeScaleWithoutExceptions, best);
+            best = with_mutant!(best.min(found), SafeScaleWithoutExceptions, best);
         }
         let tree = self
             .context
@@ -54,7 +54,7 @@ impl Query {
         let mut locals = LocalScales::new(&self.context, &mut self.check, q, self.norm, best);
         let mut waiting = BinaryHeap::new();
         let local = locals.as_mut().map_or(0.0, |locals| locals.of_pair((0, 0)));
-        let local = local * right_or!(DOWN, SafeScaleToNearest, 1.0);
+        let local = local * with_mutant!(DOWN, SafeScaleToNearest, 1.0);
         waiting.push(MinHeapEntry { key: self.certified_scale(0).max(local), order: (0, 0), item: NONE });
         // In best-first order a pair is advanced only a little farther than the scale up to which all others are free.
         while let Some(MinHeapEntry { key: lower, order: (n, m), item: index }) = waiting.pop() {
@@ -68,7 +68,7 @@ impl Query {
             let mut consider = |(n, m): NodePair, index: u32, bound: f64, best: f64| {
                 let lower = lower.max(bound);
                 let lower = locals.as_mut().filter(|_| lower < best).map_or(lower, |locals| {
-                    lower.max(locals.of_pair((n, m)) * right_or!(DOWN, SafeScaleToNearest, 1.0))
+                    lower.max(locals.of_pair((n, m)) * with_mutant!(DOWN, SafeScaleToNearest, 1.0))
                 });
                 if lower < best {
                     waiting.push(MinHeapEntry { key: lower, order: (n, m), item: index });
@@ -81,7 +81,7 @@ impl Query {
                     index == UNKNOWN || (index != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
                     let limit = self.scale(tree.map_or(0.0, PairTree::limit));
-                    [(UNKNOWN, right_or!(0.0, SafeScaleBelowBuckets, limit)); MAX_SIBLINGS]
+                    [(UNKNOWN, with_mutant!(0.0, SafeScaleBelowBuckets, limit)); MAX_SIBLINGS]
                 } else {
                     let stored = tree.filter(|_| index != NONE).map(|tree| tree.below(index));
                     self.certified_pairs(tree, stored.into_iter().flatten())
@@ -107,7 +107,7 @@ impl Query {
                         }
                     }
                 }
-                if right_or!(true, LeavesAdvancedOnce, false) {
+                if with_mutant!(true, LeavesAdvancedOnce, false) {
                     consider((n, m), index, goal, best);
                 }
             } else {
@@ -162,7 +162,7 @@ impl Query {
     fn scale(&self, radius: f64) -> f64 {
         let scale = radius / self.norm;
         if radius > 0.0 && scale >= f64::MIN_POSITIVE {
-            scale * right_or!(DOWN, SafeScaleToNearest, 1.0)
+            scale * with_mutant!(DOWN, SafeScaleToNearest, 1.0)
         } else {
             0.0
         }

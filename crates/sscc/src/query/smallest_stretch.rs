@@ -40,7 +40,7 @@ fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     // The rounding error of the closed form may be as large as the root of that of its numbers.
     for slack in [2e-7, 2e-6] {
         let shift = candidate - slack * size;
-        if right_or!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
+        if with_mutant!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {
             return shift;
         }
     }
@@ -92,14 +92,15 @@ pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     let distance = maps.iter().map(|map| norm(&(*map - mean))).fold(0.0, larger_or_nan);
     if distance <= SHORT {
         let rounding = 1e-14 * norm(&mean);
-        let lost = right_or!(distance * (1.0 + 1e-12) + rounding, LocalMotionForgotten, rounding);
+        let lost = with_mutant!(distance * (1.0 + 1e-12) + rounding, LocalMotionForgotten, rounding);
         return [(smallest_stretch(&mean) - lost).max(0.0); E];
     }
     let Some(turn) = nearest_rotation(&mean) else { return [0.0; E] };
     let turn = turn.transpose();
     // Any rotation is valid, if it is the same one for all maps.
-    let bounds = maps
-        .map(|map| right_or!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map)));
+    let bounds = maps.map(|map| {
+        with_mutant!(smallest_eigenvalue(&(turn * map)), LocalTurnAtEachEnd, smallest_stretch(&map))
+    });
     if bounds.iter().all(|bound| *bound > 0.0) { bounds } else { [0.0; E] }
 }
 

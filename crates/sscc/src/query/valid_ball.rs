@@ -28,7 +28,7 @@ impl ValidBall {
         let unit = |(k, scale): (usize, f64)| model.mode_displacement_bound(k, UP / scale);
         let rate = scope.metric.scales().into_iter().enumerate().map(unit).map(|x| x * x).sum::<f64>().sqrt();
         let radius = parts.node_radii[0];
-        let moved = right_or!(radius * rate, ReachOfBallAtCenter, 0.0);
+        let moved = with_mutant!(radius * rate, ReachOfBallAtCenter, 0.0);
         let reach = (model.reach(&scope.center) + moved) * UP;
         // NaN must fail this test, too.
         if reach * UP <= limits::LARGEST { Self { radius, reach } } else { none }

@@ -23,9 +23,16 @@ impl<'q> WidenedMotion<'q> {
     pub(super) fn new(motion: DeformedMotion<'q, 1>, layout: &Layout, distance: f64) -> Self {
         let whole = motion.overall_aabb(layout);
         let extent = (whole.upper - whole.lower).max_element();
-        let half =
-            right_or!((distance / 2.0).min(extent), WidenedByHalfOfClearance, (distance / 4.0).min(extent));
-        Self { motion, whole, margin: half + right_or!(ROUNDING_SHARE, WidenedWithoutRounding, 0.0) * extent }
+        let half = with_mutant!(
+            (distance / 2.0).min(extent),
+            WidenedByHalfOfClearance,
+            (distance / 4.0).min(extent)
+        );
+        Self {
+            motion,
+            whole,
+            margin: half + with_mutant!(ROUNDING_SHARE, WidenedWithoutRounding, 0.0) * extent,
+        }
     }
 }
 
@@ -59,7 +66,7 @@ impl VertexMotion<1> for WidenedMotion<'_> {
 
     #[inline]
     fn coarse_slack(&self, _: u32) -> Option<DVec3> {
-        Some(DVec3::splat(right_or!(self.margin, CoarseBoxesOfClearanceNotWidened, 0.0)))
+        Some(DVec3::splat(with_mutant!(self.margin, CoarseBoxesOfClearanceNotWidened, 0.0)))
     }
 
     #[inline]
@@ -70,7 +77,7 @@ impl VertexMotion<1> for WidenedMotion<'_> {
     #[inline]
     fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
         let Aabb { lower, upper } = self.motion.node_aabb(layout, node)?;
-        let margin = right_or!(self.margin, NodesOfClearanceNotWidened, 0.0);
+        let margin = with_mutant!(self.margin, NodesOfClearanceNotWidened, 0.0);
         Some(Aabb { lower: lower - margin, upper: upper + margin })
     }
 }

@@ -119,7 +119,7 @@ impl Bvtt {
             let pair = self.pairs[index];
             if let PairState::Split(_) = pair.state() {
                 let children = &self.pairs[self.children(hierarchy, &pair)];
-                let count = right_or!(children.len(), ParentOfFirstChild, 1);
+                let count = with_mutant!(children.len(), ParentOfFirstChild, 1);
                 self.pairs[index].lower =
                     children[..count].iter().map(|child| child.lower).fold(f32::INFINITY, f32::min);
             }

@@ -60,7 +60,7 @@ pub(super) fn refine_pairs(
     };
     let results = executor.run(&stage)?.unwrap_or_default();
     for (index, bound) in chosen.into_iter().zip(results.into_iter().map(TaskResult::into_bound)) {
-        let pair = &mut bvtt.pairs[right_or!(index, FineRadiusOfAnother, index.saturating_sub(1))];
+        let pair = &mut bvtt.pairs[with_mutant!(index, FineRadiusOfAnother, index.saturating_sub(1))];
         pair.lower = pair.lower.max(to_f32_down(bound?.radius));
     }
     bvtt.pull_up(hierarchy);

@@ -32,7 +32,7 @@ impl Frontier {
                 PairState::Split(_) => stack.extend(bvtt.children(hierarchy, pair)),
                 PairState::Open => frontier.open.push(known),
                 PairState::Bounded => {
-                    frontier.radius = right_or!(
+                    frontier.radius = with_mutant!(
                         frontier.radius.min(known.lower),
                         FrontierBoundedForgotten,
                         frontier.radius

@@ -118,7 +118,7 @@ impl<'a> LeafBounds<'a> {
     pub(super) fn triangle_pairs(&self) -> impl Iterator<Item = BoundedTriangles> {
         self.pairs.chunk_by(|a, b| a.triangles == b.triangles).map(|pairs| BoundedTriangles {
             triangles: pairs[0].triangles,
-            lower: pairs[..right_or!(pairs.len(), LeafPairOfFirstSimplices, 1)]
+            lower: pairs[..with_mutant!(pairs.len(), LeafPairOfFirstSimplices, 1)]
                 .iter()
                 .map(|pair| pair.lower)
                 .fold(f64::INFINITY, f64::min),

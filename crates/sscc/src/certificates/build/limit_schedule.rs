@@ -69,7 +69,7 @@ impl LimitSchedule {
     /// Advances to the next limit. Returns false if there is none. `has_room` is whether there was room for this one;
     /// `count_below` returns the number of pairs with a lower bound below a radius.
     pub(super) fn advance(&mut self, has_room: bool, count_below: impl Fn(f64) -> usize) -> bool {
-        *(if right_or!(has_room, RefusedInnerRoundComplete, true) {
+        *(if with_mutant!(has_room, RefusedInnerRoundComplete, true) {
             &mut self.complete_below
         } else {
             &mut self.too_large
@@ -90,14 +90,14 @@ impl LimitSchedule {
     /// again.
     pub(super) fn outer_limit(&self, has_room: bool) -> f64 {
         let end = if has_room { self.end() } else { self.global_radius };
-        let outer = (OUTER_FACTOR * self.complete_below).min(right_or!(
+        let outer = (OUTER_FACTOR * self.complete_below).min(with_mutant!(
             end,
             OuterRoundEndsAtGlobalRadius,
             self.global_radius
         ));
         // The limit is a number of single precision: so a bound that was cut off there is not below it, and its pair is not
         // stored. With another limit the pair would be stored, with a valid radius: a few more entries, and the same answers.
-        right_or!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
+        with_mutant!(f64::from(to_f32_down(outer)), OuterLimitInDouble, outer)
     }
 
     /// Returns the largest limit to try. The rounds up to the global radius are the same for any farthest radius.

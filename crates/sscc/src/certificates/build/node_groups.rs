@@ -20,8 +20,8 @@ impl NodeGroups {
                 Box::new(node.children().map(|child| of_nodes[child as usize]))
             };
             let first = of_parts.next().flatten();
-            let group =
-                first.filter(|_| right_or!(of_parts.all(|other| other == first), NodeGroupOfFirstPart, true));
+            let group = first
+                .filter(|_| with_mutant!(of_parts.all(|other| other == first), NodeGroupOfFirstPart, true));
             drop(of_parts);
             of_nodes[n] = group;
         }

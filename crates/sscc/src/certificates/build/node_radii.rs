@@ -49,7 +49,7 @@ impl NodeRadii {
         let counter = ProgressCounter::new(progress, 2 * (count + pairs));
         let global_radius = preparation.global_radius;
         let cap =
-            right_or!(builder.complete_below.max(global_radius), RadiiCappedBelowTheTree, global_radius);
+            with_mutant!(builder.complete_below.max(global_radius), RadiiCappedBelowTheTree, global_radius);
         let radii = Self { nodes: vec![0.0; count], root_pairs: vec![0.0; pairs], cap };
         let mut passes = Passes { preparation, builder, counter, radii };
         let upper = passes.run(Precision::Coarse, f64::INFINITY, executor)?;
@@ -150,7 +150,7 @@ impl Passes<'_> {
     /// Returns the smallest radius of a node's children, at most the cap.
     fn smallest_child(&self, node: &Node) -> f64 {
         let radii = node.children().map(|child| self.radii.nodes[child as usize]);
-        right_or!(radii.fold(self.radii.cap, f64::min), RadiusOfPairsAlone, self.radii.cap)
+        with_mutant!(radii.fold(self.radii.cap, f64::min), RadiusOfPairsAlone, self.radii.cap)
     }
 
     /// Returns the task to search the radius, at most `cap`, of a node or of some pairs of its children; `siblings` are their

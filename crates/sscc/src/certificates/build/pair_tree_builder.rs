@@ -92,7 +92,7 @@ impl PairTreeBuilder {
         };
         if round.limit > builder.complete_below {
             let has_room = builder.run_round(hierarchy, round, executor)?;
-            if right_or!(has_room, RefusedOuterRoundComplete, true) {
+            if with_mutant!(has_room, RefusedOuterRoundComplete, true) {
                 builder.complete_below = round.limit;
             }
         }
@@ -124,7 +124,7 @@ impl PairTreeBuilder {
             };
             let Some(results) = executor.run(&stage)? else {
                 bvtt.pairs.truncate(before_round);
-                if right_or!(true, RefusedRoundNotUndone, false) {
+                if with_mutant!(true, RefusedRoundNotUndone, false) {
                     replaced.into_iter().for_each(|(index, pair)| bvtt.pairs[index] = pair);
                 }
                 return Ok(false);

@@ -34,7 +34,7 @@ pub(super) fn lay_out(bvtt: &Bvtt, hierarchy: &Hierarchy, known_below: f64, budg
         }
         next += 1;
     }
-    PairTree::new(right_or!(limit, TreeLimitNotLowered, known_below), starts, entries)
+    PairTree::new(with_mutant!(limit, TreeLimitNotLowered, known_below), starts, entries)
 }
 
 fn is_below(pair: &BvttPair, limit: f64) -> bool {

@@ -162,7 +162,7 @@ impl<'a> RadiusSearch<'a> {
             }
             let has_ended = matches!(candidate, Candidate::Triangles(..)) && self.triangle_pairs_left == 0;
             if has_ended || lower >= self.refine_up_to() {
-                break right_or!(lower.min(self.certified), OpenTrianglesForgotten, self.certified);
+                break with_mutant!(lower.min(self.certified), OpenTrianglesForgotten, self.certified);
             }
             self.refine(candidate, lower);
             if self.certified <= 0.0 {

@@ -53,10 +53,10 @@ pub(super) fn split(
         let pair = &mut subtree[next];
         match preparation.hierarchy.split_above_buckets(n, m) {
             None if is_outer => {
-                let mut radius = right_or!(search.bound_nodes(nodes, limit), OuterPairUnbounded, limit);
+                let mut radius = with_mutant!(search.bound_nodes(nodes, limit), OuterPairUnbounded, limit);
                 if radius < OUTER_SEARCH_SHARE * limit {
                     let searched = search.between_without_subdivision(nodes, limit)?.radius;
-                    radius = right_or!(radius.max(searched), OuterSearchForgotten, limit);
+                    radius = with_mutant!(radius.max(searched), OuterSearchForgotten, limit);
                 }
                 pair.set_state(PairState::Bounded);
                 pair.lower = pair.lower.max(to_f32_down(radius));
@@ -68,7 +68,7 @@ pub(super) fn split(
                 if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }
-                let certified = right_or!(
+                let certified = with_mutant!(
                     radius,
                     CappedPairFreeToTheEnd,
                     if radius < cap { radius } else { preparation.farthest }

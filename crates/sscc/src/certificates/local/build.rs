@@ -177,7 +177,7 @@ impl Builder<'_> {
         let of_images = 2.0 * ellipsoid.defect() * patch.largest_residual() * per_error;
         let bounds = LocalBounds {
             ratio: f64::from(ratio),
-            per_factor: right_or!(
+            per_factor: with_mutant!(
                 of_residuals + of_images,
                 LocalResidualsExact,
                 of_images,
@@ -205,9 +205,9 @@ impl Builder<'_> {
     fn flatness(&self, search: &mut StrainSearch, patch: &Patch, parts: &[u32]) -> (DVec3, f32) {
         let Some(across) = patch.across() else { return (DVec3::ZERO, f32::INFINITY) };
         let highest = patch.heights(across, &mut search.images);
-        search.begin(right_or!(highest, LocalHeightsUnrounded, 0.0));
+        search.begin(with_mutant!(highest, LocalHeightsUnrounded, 0.0));
         let within = search.within(self.gaps, 0, LEAST_FLATNESS);
-        let others: &[u32] = right_or!(&parts[1..], LocalHeightsOfNodeAlone, &[]);
+        let others: &[u32] = with_mutant!(&parts[1..], LocalHeightsOfNodeAlone, &[]);
         let others = others.iter().map(|part| search.between(self.gaps, (0, *part), LEAST_FLATNESS));
         (across, infinite_for_nan(others.fold(within, larger)))
     }

@@ -221,7 +221,7 @@ impl<'g> CornerGaps<'g> {
         let [list_a, list_b] = [n, m].map(|n| self.hierarchy.triangles(&self.hierarchy.nodes()[n as usize]));
         for (index, &s) in list_a.iter().enumerate() {
             for &t in if n == m { &list_b[index + 1..] } else { list_b } {
-                let is_excluded = right_or!(self.filter.is_excluded(s, t), LocalExceptionsKept, false);
+                let is_excluded = with_mutant!(self.filter.is_excluded(s, t), LocalExceptionsKept, false);
                 if self.filter.relation(s, t) == Relation::Adjacent || is_excluded {
                     continue;
                 }
@@ -234,7 +234,8 @@ impl<'g> CornerGaps<'g> {
                         let entry = &mut gaps[i * y.len() + j];
                         // The share alone is more than the rounding to single precision.
                         let shortened = (gap * (1.0 - 1e-6)) as f32;
-                        *entry = entry.min(right_or!(shortened.next_down(), LocalTableToNearest, shortened));
+                        *entry =
+                            entry.min(with_mutant!(shortened.next_down(), LocalTableToNearest, shortened));
                     }
                 }
             }
@@ -251,9 +252,9 @@ fn widest_gaps(differences: &[DVec3; 9]) -> Option<[f64; 9]> {
     let along = |dir: DVec3| {
         let dir = dir.try_normalize()?;
         let gaps = differences.map(|d| {
-            let between = right_or!(d, LocalGapOfCentroids, differences.iter().sum::<DVec3>() / 9.0);
+            let between = with_mutant!(d, LocalGapOfCentroids, differences.iter().sum::<DVec3>() / 9.0);
             let gap = dir.dot(between);
-            right_or!(gap * (1.0 - 1e-14) - GAP_ROUNDING, LocalGapsExact, gap)
+            with_mutant!(gap * (1.0 - 1e-14) - GAP_ROUNDING, LocalGapsExact, gap)
         });
         let smallest = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         (smallest > SMALLEST).then_some((smallest, gaps))

@@ -145,7 +145,7 @@ impl Patch {
         }
         // Offsets and products in double precision err by at most 4 units of 2^-53 of the longest offset, two heights by 9e-16 of
         // it. 1.2e-7 of the number that is added here counts as error: 1.2e-15 of the longest offset.
-        right_or!(largest + 1e-8 * self.longest(), LocalHeightsExact, largest)
+        with_mutant!(largest + 1e-8 * self.longest(), LocalHeightsExact, largest)
     }
 
     /// Computes the images of all residuals, in single precision: three rows for each vertex. Returns the largest norm of an

@@ -87,7 +87,7 @@ impl<'m> PatchModel<'m> {
         modes.clear();
         let rank = self.scales.sizes.len();
         let mut is_moving = vec![false; rank];
-        for v in right_or!(vertices, LocalModesOfOneVertex, &vertices[..1]) {
+        for v in with_mutant!(vertices, LocalModesOfOneVertex, &vertices[..1]) {
             for (is_moving, u) in is_moving.iter_mut().zip(self.model.modes().of_vertex(*v)) {
                 *is_moving |= *u != DVec3::ZERO;
             }

@@ -181,7 +181,7 @@ impl ResidualEllipsoid {
         }
         let frobenius = |numbers: &[f64]| numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
         let rounding = 4.0 * (*rank as f64 + 4.0) * f64::EPSILON * frobenius(inverse) * frobenius(rows);
-        square.sqrt() * (1.0 + 1e-9) + right_or!(rounding, LocalImagesExact, 0.0)
+        square.sqrt() * (1.0 + 1e-9) + with_mutant!(rounding, LocalImagesExact, 0.0)
     }
 
     /// Returns the largest norm of a column, rounded up.

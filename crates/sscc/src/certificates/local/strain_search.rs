@@ -95,7 +95,7 @@ impl StrainSearch {
     /// Computes the means and spreads of the images, whose largest norm is given.
     pub(super) fn begin(&mut self, largest_image: f64) {
         // Squares below the range of single precision are lost, too.
-        self.image_error = right_or!((largest_image * 1.2e-7 + 1e-18) as f32, LocalImagesUnrounded, 0.0);
+        self.image_error = with_mutant!((largest_image * 1.2e-7 + 1e-18) as f32, LocalImagesUnrounded, 0.0);
         let instructions = self.instructions;
         instructions.run(Means(self));
     }
@@ -199,7 +199,7 @@ impl Kernel for Means<'_> {
                     spread = larger(spread, distance * ROUND_UP + search.parts[c].spread);
                 }
             }
-            search.parts[p].spread = right_or!(spread * ROUND_UP, LocalSpreadToNearest, spread);
+            search.parts[p].spread = with_mutant!(spread * ROUND_UP, LocalSpreadToNearest, spread);
         }
         search.means = means;
     }
@@ -237,7 +237,7 @@ impl Kernel for Search<'_, '_> {
             } else {
                 let distance = (b.center - a.center).length() * (1.0 - 1e-14)
                     - a.radius
-                    - right_or!(b.radius, LocalSphereOfOne, 0.0);
+                    - with_mutant!(b.radius, LocalSphereOfOne, 0.0);
                 if distance > 1e-9 {
                     let difference = squared_distance(search.mean(x), search.mean(y)).sqrt();
                     let bound = (difference + a.spread + b.spread) * ROUND_UP + search.image_error;
@@ -282,7 +282,7 @@ impl Kernel for Search<'_, '_> {
                         for (v, t) in of_y.clone().zip(&components[1]) {
                             // The quotient by the gap is rounded up by 1e-4, and the gap by less than 1e-7.
                             let gap = CornerGaps::gap_between(*s, *t) as f32;
-                            let gap = right_or!(gap.next_down(), LocalComponentsToNearest, gap);
+                            let gap = with_mutant!(gap.next_down(), LocalComponentsToNearest, gap);
                             search.compare(
                                 search.image(search.vertices[u]),
                                 search.vertices[v],
@@ -293,7 +293,7 @@ impl Kernel for Search<'_, '_> {
                     }
                 }
                 Some(None) => {
-                    largest = right_or!(f32::INFINITY, LocalTouchingFree, largest);
+                    largest = with_mutant!(f32::INFINITY, LocalTouchingFree, largest);
                     break;
                 }
                 Some(Some(table)) => {
@@ -322,7 +322,7 @@ impl Kernel for Search<'_, '_> {
 /// Returns the larger of two numbers, and NaN if one is NaN.
 #[inline(always)]
 pub(super) fn larger(a: f32, b: f32) -> f32 {
-    right_or!(if b <= a { a } else { b + 0.0 * a }, LocalNanIgnored, a.max(b))
+    with_mutant!(if b <= a { a } else { b + 0.0 * a }, LocalNanIgnored, a.max(b))
 }
 
 #[inline(always)]
@@ -364,7 +364,7 @@ fn largest_singular_value(x: &[f32], y: &[f32]) -> f32 {
     }
     let [xx, yy, zz, xy, xz, yz] = sums.map(|lanes| lanes.iter().map(|x| f64::from(*x)).sum::<f64>());
     // The longest of three rows may be shorter than the singular value by a factor of up to the root of three.
-    let trace = right_or!(xx + yy + zz, LocalRowsAlone, return (xx.max(yy).max(zz)).sqrt() as f32);
+    let trace = with_mutant!(xx + yy + zz, LocalRowsAlone, return (xx.max(yy).max(zz)).sqrt() as f32);
     if trace.is_nan() || trace <= 0.0 {
         return if trace == 0.0 { 0.0 } else { f32::INFINITY };
     }

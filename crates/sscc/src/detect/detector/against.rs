@@ -96,5 +96,5 @@ pub(super) fn in_common_frame<'x, const E: usize>(
     motions: [GivenMotion<'x, E>; 2],
 ) -> [GivenMotion<'x, E>; 2] {
     let whole = motions[0].aabb().union(&motions[1].aabb());
-    motions.map(|motion| motion.in_frame_of(right_or!(whole, FramesOfTheirOwn, motion.aabb())))
+    motions.map(|motion| motion.in_frame_of(with_mutant!(whole, FramesOfTheirOwn, motion.aabb())))
 }

@@ -102,9 +102,9 @@ fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) ->
     let near = sides.map(|side| nearest(&side.boxes, center));
     let mut inside = f64::INFINITY;
     for (side, (distance, _)) in sides.iter().zip(near) {
-        let is_inside = right_or!(side.winding_number(center)? != 0, BallOutsideKept, true);
+        let is_inside = with_mutant!(side.winding_number(center)? != 0, BallOutsideKept, true);
         let own = if is_inside { distance } else { -distance };
-        inside = right_or!(inside.min(own), BallInsideSecond, own);
+        inside = with_mutant!(inside.min(own), BallInsideSecond, own);
     }
     *best = best.max(inside);
     let triangles = [0, 1].map(|k| sides[k].boxes.corners(near[k].1));
@@ -112,14 +112,14 @@ fn bounded(sides: [&Side<'_>; 2], center: DVec3, half: DVec3, best: &mut f64) ->
     for corner in corners(center, half) {
         let [a, b] = triangles.each_ref().map(|triangle| distance_point_triangle(corner, triangle));
         largest = [
-            largest[0].max(right_or!(a, BallCornersShrunk, 0.5 * a)),
+            largest[0].max(with_mutant!(a, BallCornersShrunk, 0.5 * a)),
             largest[1].max(b),
-            largest[2].max(right_or!(0.5, BallMeanShrunk, 0.25) * (a + b)),
+            largest[2].max(with_mutant!(0.5, BallMeanShrunk, 0.25) * (a + b)),
         ];
     }
     let bound = largest
         .into_iter()
-        .fold(inside + right_or!(half.length(), BallBoxOfHalfSize, 0.5 * half.length()), f64::min);
+        .fold(inside + with_mutant!(half.length(), BallBoxOfHalfSize, 0.5 * half.length()), f64::min);
     Ok(Cell { center, half, bound })
 }
 

@@ -52,7 +52,7 @@ impl Components {
         for same in edges.chunk_by(|x, y| x.0 == y.0) {
             let component = of_triangles[same[0].2 as usize] as usize;
             let is_balanced = same.iter().map(|edge| edge.1).sum::<i32>() == 0;
-            all[component].is_closed &= right_or!(is_balanced, OpenIsClosed, true);
+            all[component].is_closed &= with_mutant!(is_balanced, OpenIsClosed, true);
         }
         Self { of_triangles, all }
     }

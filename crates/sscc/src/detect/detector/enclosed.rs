@@ -40,7 +40,7 @@ impl Detector {
         other.check([other_positions])?;
         let components = [self.components_at(positions), other.components_at(other_positions)];
         let [one, two] = components.each_ref().map(|components| &**components);
-        if right_or!(
+        if with_mutant!(
             !one.has_closed() && !two.has_closed(),
             OneOpenMeshHasNone,
             !one.has_closed() || !two.has_closed()
@@ -63,7 +63,7 @@ impl Detector {
                 *of_classes[class as usize].get_or_insert(x) == x
             })
         });
-        if !right_or!(are_together, WeldsStayTogether, true) {
+        if !with_mutant!(are_together, WeldsStayTogether, true) {
             return Arc::new(Components::new(filter.faces()));
         }
         let welded = || triangles.map(|t| filter.vertex_classes(t)).collect::<Vec<_>>();
@@ -109,7 +109,7 @@ impl Side<'_> {
             let is_between = |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
             if !(is_between(0)
                 && is_between(1)
-                && point.z <= right_or!(aabb.upper.z, RaysMissTheirBoxes, aabb.lower.z))
+                && point.z <= with_mutant!(aabb.upper.z, RaysMissTheirBoxes, aabb.lower.z))
             {
                 continue;
             }

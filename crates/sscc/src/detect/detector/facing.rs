@@ -34,7 +34,7 @@ pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option
         let own = components.of_triangle(triangle);
         let outside = side.winding_number_of(point, |t| components.of_triangle(t) != own)?;
         let inside = outside + if volume < 0.0 { -1 } else { 1 };
-        if right_or!(outside * direction < 0 || inside * direction < 0, PartsFaceAnyWay, false) {
+        if with_mutant!(outside * direction < 0 || inside * direction < 0, PartsFaceAnyWay, false) {
             return Ok(None);
         }
     }

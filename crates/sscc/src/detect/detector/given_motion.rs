@@ -42,7 +42,7 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
     /// but by no more than the extent, at which all boxes overlap.
     pub(super) fn widened(self, distance: f64) -> Self {
         let extent = (self.whole.upper - self.whole.lower).max_element();
-        Self { margin: right_or!((distance / 2.0).min(extent), ClearanceHalved, distance / 4.0), ..self }
+        Self { margin: with_mutant!((distance / 2.0).min(extent), ClearanceHalved, distance / 4.0), ..self }
     }
 }
 
@@ -52,7 +52,7 @@ impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
     /// Returns 0, because given positions are exact.
     #[inline]
     fn rounding(&self) -> f64 {
-        right_or!(self.margin, ClearanceOfBoxesAlone, 0.0)
+        with_mutant!(self.margin, ClearanceOfBoxesAlone, 0.0)
     }
 
     #[inline]

@@ -90,15 +90,16 @@ fn nearest(
             return Err(Error::Cancelled);
         }
         visits += 1;
-        if right_or!(least > most, NearestTakenFirst, best.is_some()) {
+        if with_mutant!(least > most, NearestTakenFirst, best.is_some()) {
             continue;
         }
         if !(one.is_leaf(n) && two.is_leaf(m)) {
             parts.clear();
             let pairs = one.parts(n).flat_map(|i| two.parts(m).map(move |j| (i, j)));
             // With one mesh each pair of nodes is visited once.
-            let pairs = pairs
-                .filter(|(i, j)| !(is_self && n == m && right_or!(i > j, NearestBetweenNodesAlone, i >= j)));
+            let pairs = pairs.filter(|(i, j)| {
+                !(is_self && n == m && with_mutant!(i > j, NearestBetweenNodesAlone, i >= j))
+            });
             parts.extend(pairs.map(|pair| (pair, bound(pair))).filter(|(_, least)| *least <= most));
             parts.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
             open.append(&mut parts);

@@ -39,7 +39,7 @@ impl NarrowPhase<1> for ClearanceHits {
             return None;
         }
         let distance = distance_triangle_triangle(a, b);
-        let is_near = right_or!(distance < self.distance, ClearanceReached, distance <= self.distance);
+        let is_near = with_mutant!(distance < self.distance, ClearanceReached, distance <= self.distance);
         is_near.then_some(NearPair { pair, distance })
     }
 

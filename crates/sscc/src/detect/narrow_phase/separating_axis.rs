@@ -7,7 +7,7 @@ use glam::{Vec3A, Vec4};
 #[inline]
 pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
     // Only the time depends on this: an error that is infinite or NaN makes the slack so, too, and no gap is larger.
-    if right_or!(!error.is_finite(), InfiniteErrorTested, false) {
+    if with_mutant!(!error.is_finite(), InfiniteErrorTested, false) {
         return false;
     }
     let origin: [Vec4; E] = std::array::from_fn(|end| x[0][end]);
@@ -61,11 +61,11 @@ impl Directions {
     fn separate<const E: usize>(&self, a: &[[Vec3A; E]; 3], b: &[[Vec3A; E]; 3], error: f32) -> bool {
         let [x, y, z] = self.axes;
         // Underflow is far less than the last term.
-        let errors = right_or!(4.0, SeparatingAxisErrorHalved, 2.0) * error;
+        let errors = with_mutant!(4.0, SeparatingAxisErrorHalved, 2.0) * error;
         let slack = (x.abs() + y.abs() + z.abs()) * errors + f32::MIN_POSITIVE;
         let along = |p: Vec3A| x * p.x + y * p.y + z * p.z;
         let mut separated = [u32::MAX; 2];
-        for end in right_or!(0, SeparatedAtEnd, E - 1)..E {
+        for end in with_mutant!(0, SeparatedAtEnd, E - 1)..E {
             let a = [along(a[0][end]), along(a[1][end]), along(a[2][end])];
             let b = [along(b[0][end]), along(b[1][end]), along(b[2][end])];
             let lower = |t: &[Vec4; 3]| t[0].min(t[1]).min(t[2]);

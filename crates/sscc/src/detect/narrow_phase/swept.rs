@@ -40,7 +40,7 @@ impl NarrowPhase<2> for SweptHits {
             Relation::SharedVertex(class) => filter
                 .moving_simplex_pairs(class, pair, [a_t0, a_t1], [b_t0, b_t1])
                 .filter_map(|simplices| time(&a.simplex(simplices.a), &b.simplex(simplices.b)))
-                .reduce(right_or!(f64::min, LaterOfTwoTimes, f64::max)),
+                .reduce(with_mutant!(f64::min, LaterOfTwoTimes, f64::max)),
             // Continuous queries refuse filters with foldable pairs.
             Relation::Foldable => time(&a, &b),
         };

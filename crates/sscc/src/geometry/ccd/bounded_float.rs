@@ -20,7 +20,7 @@ impl BoundedFloat {
     /// Underflow adds less than 2^-1070 in all.
     #[inline]
     fn rounded(value: f64, error: f64) -> Self {
-        let rounding = right_or!(U, BoundedExact, 0.0) * value.abs();
+        let rounding = with_mutant!(U, BoundedExact, 0.0) * value.abs();
         let error = (error + rounding) * (1.0 + 8.0 * U) + f64::MIN_POSITIVE;
         if error.is_finite() { Self { value, error } } else { Self { value: 0.0, error: f64::INFINITY } }
     }
@@ -58,7 +58,7 @@ impl Number for BoundedFloat {
     /// Each number differs from its value by at most its error, so their minimum differs by at most the larger error.
     #[inline]
     fn minimum(&self, other: &Self) -> Self {
-        let error = right_or!(self.error.max(other.error), SmallerErrorOfTwo, self.error.min(other.error));
+        let error = with_mutant!(self.error.max(other.error), SmallerErrorOfTwo, self.error.min(other.error));
         Self { value: self.value.min(other.value), error }
     }
 

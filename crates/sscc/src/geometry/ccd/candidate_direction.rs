@@ -94,8 +94,8 @@ impl MovingPair {
     #[inline]
     pub(super) fn rounding(&self, dir: DVec3) -> f64 {
         let slack = self.slack * dir.abs().element_sum();
-        right_or!(RELATIVE * dir.abs().dot(self.reach) + ABSOLUTE, SeparationExact, 0.0)
-            + right_or!(slack, CandidateSlackQuartered, slack / 4.0)
+        with_mutant!(RELATIVE * dir.abs().dot(self.reach) + ABSOLUTE, SeparationExact, 0.0)
+            + with_mutant!(slack, CandidateSlackQuartered, slack / 4.0)
     }
 }
 
@@ -117,7 +117,7 @@ impl CandidateDirection {
     /// Whether a stays below b along this direction from t = 0 to 1.
     #[inline]
     pub(super) fn separates(&self) -> bool {
-        (right_or!(0, PlanesAtEnd, 1)..2)
+        (with_mutant!(0, PlanesAtEnd, 1)..2)
             .all(|time| smallest(self.b[time]) - largest(self.a[time]) > self.rounding)
     }
 
@@ -134,7 +134,7 @@ impl CandidateDirection {
                 if !is_separated_at_t {
                     return t;
                 }
-                let is_separated_at_t1 = right_or!(g1 > 0.0, SeparatedForever, true);
+                let is_separated_at_t1 = with_mutant!(g1 > 0.0, SeparatedForever, true);
                 if !is_separated_at_t1 {
                     until = until.min(g0 / (g0 - g1));
                 }
@@ -154,7 +154,7 @@ impl CandidateDirection {
         self.gap(t) > 0.0 && to.gap(s) > 0.0 && {
             let a = sum(interpolate(&self.a, s), interpolate(&to.a, t));
             let b = sum(interpolate(&self.b, s), interpolate(&to.b, t));
-            right_or!(gap(a, b) > self.rounding + to.rounding, TurningByEnds, true)
+            with_mutant!(gap(a, b) > self.rounding + to.rounding, TurningByEnds, true)
         }
     }
 }

@@ -36,7 +36,7 @@ impl ClosestPoints {
         // No direction separates triangles that meet, and searching one is slow. Relative to a corner, coordinates are
         // up to twice as large as those given.
         let TwoTriangles { a, b } = &corners;
-        if right_or!(
+        if with_mutant!(
             intersect_beyond_limits(a, b),
             RelativeCornersLimited,
             crate::intersect_triangle_triangle(a, b)

@@ -51,14 +51,14 @@ pub(super) fn advance(
     pair: &MovingPair,
     tolerance: f64,
 ) -> Option<f64> {
-    let tolerance = tolerance.max(right_or!(MIN_TOLERANCE, ToleranceBelowRounding, 0.0)) * pair.size();
+    let tolerance = tolerance.max(with_mutant!(MIN_TOLERANCE, ToleranceBelowRounding, 0.0)) * pair.size();
     match advance_by_rounded_directions(pair, tolerance) {
         Advance::Free => None,
         Advance::Within(t) => Some(t),
         Advance::Unknown(t) => {
             let mut steps = MAX_FEATURE_STEPS;
             let time = advance_along_features([a, b], pair, t, tolerance, &mut steps);
-            right_or!(time, FeaturesNotFollowed, Some(t))
+            with_mutant!(time, FeaturesNotFollowed, Some(t))
         }
     }
 }

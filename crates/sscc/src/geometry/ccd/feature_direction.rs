@@ -192,7 +192,7 @@ impl<T: Number> Corners<T> {
         let gaps = self.gaps_of_vertices(&dir);
         let change = (slack > 0.0).then(|| {
             let sum = dir.iter().fold(T::zero(), |sum, n| sum.plus(&n.magnitude()));
-            let each = T::from_f64(right_or!(slack, FeaturesWithoutSlack, 0.0));
+            let each = T::from_f64(with_mutant!(slack, FeaturesWithoutSlack, 0.0));
             Polynomial::constant(sum.times(&each)).elevated(gaps[0].degree())
         });
         let mut all = Some(true);
@@ -202,7 +202,7 @@ impl<T: Number> Corners<T> {
                 Some(change) => gap.minus(change),
                 None => gap,
             };
-            let skipped = right_or!(0, FeaturesByEnds, gap.coefficients().len() - 1);
+            let skipped = with_mutant!(0, FeaturesByEnds, gap.coefficients().len() - 1);
             for coefficient in gap.coefficients().iter().skip(skipped) {
                 match coefficient.is_positive() {
                     Some(true) => {}

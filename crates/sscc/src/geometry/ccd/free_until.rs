@@ -27,7 +27,7 @@ pub(crate) fn free_until(a: &MovingTriangle, b: &MovingTriangle, slack: f64, ste
         Advance::Within(t) => t,
         Advance::Unknown(t) => {
             let time = advance_along_features([a, b], &pair, t, FEATURE_GAP * slack, steps);
-            right_or!(time.unwrap_or(f64::INFINITY), SweepFeaturesNotFollowed, t)
+            with_mutant!(time.unwrap_or(f64::INFINITY), SweepFeaturesNotFollowed, t)
         }
     }
 }

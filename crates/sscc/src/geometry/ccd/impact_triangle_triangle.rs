@@ -46,7 +46,7 @@ pub fn impact_triangle_triangle(a: &MovingTriangle, b: &MovingTriangle, toleranc
         None
     } else if intersect_triangle_triangle(&a.t0, &b.t0) {
         Some(0.0)
-    } else if pair.size() < right_or!(MIN_SIZE, SmallPairsNotEnlarged, 0.0) {
+    } else if pair.size() < with_mutant!(MIN_SIZE, SmallPairsNotEnlarged, 0.0) {
         let [a, b] = [a, b].map(|triangle| triangle.scaled(enlargement(pair.size())));
         advance(&a, &b, &MovingPair::new(&a, &b), tolerance)
     } else {

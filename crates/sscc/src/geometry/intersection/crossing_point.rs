@@ -78,7 +78,8 @@ fn weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
     let [Magnitude(m_p), Magnitude(m_q)] = distances(&magnitudes, axis);
     let sum = (d_p + d_q).to_f64();
     let is_accurate = sum > 0.0 && DETERMINANT_ERROR * m_p.max(m_q) <= MAX_DISTANCE_ERROR * sum;
-    right_or!(is_accurate, CrossingByDoubleDoubles, sum > 0.0).then(|| [d_p, d_q].map(|d| d.to_f64() / sum))
+    with_mutant!(is_accurate, CrossingByDoubleDoubles, sum > 0.0)
+        .then(|| [d_p, d_q].map(|d| d.to_f64() / sum))
 }
 
 /// Returns the numbers of [`weights`] from integers, with an absolute error of 2^-64 and rounding. None if the axis is in the

@@ -75,7 +75,7 @@ impl TrianglePair<'_> {
             .iter()
             .enumerate()
             .any(|(side, hull)| is_on_boundary(hull, intersection, side));
-        if right_or!(is_touching, TouchingDepthRounded, false) {
+        if with_mutant!(is_touching, TouchingDepthRounded, false) {
             penetration.depth = 0.0;
         } else {
             // An exact depth above 0 can be below all doubles.

@@ -149,7 +149,7 @@ impl Metric {
     pub(crate) fn magnitudes(&self, scaled: &[DVec3], out: &mut [DVec3]) {
         match &self.factor {
             Factor::Diagonal(_) => out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),
-            Factor::Triangular(factor) => right_or!(
+            Factor::Triangular(factor) => with_mutant!(
                 factor.magnitudes(scaled, out),
                 DenseRateOfModesAlone,
                 out.iter_mut().zip(scaled).for_each(|(m, a)| *m = a.abs()),

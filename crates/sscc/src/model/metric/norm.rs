@@ -51,7 +51,7 @@ impl Metric {
 
 /// Returns the factor that rounds up a root of a sum of `count` squares of products.
 fn up(count: usize) -> f64 {
-    right_or!(1.0 + (count as f64 + 16.0) * f64::EPSILON, NormToNearest, 1.0)
+    with_mutant!(1.0 + (count as f64 + 16.0) * f64::EPSILON, NormToNearest, 1.0)
 }
 
 fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {

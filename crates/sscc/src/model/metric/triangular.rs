@@ -151,7 +151,7 @@ impl Triangular {
 
     /// Returns an upper bound of `|S q|_i` for each row i.
     pub(super) fn products_up(&self, q: &[f64]) -> impl Iterator<Item = f64> + Clone {
-        let gamma = right_or!((self.rank as f64 + 8.0) * f64::EPSILON, DenseProductsExact, 0.0);
+        let gamma = with_mutant!((self.rank as f64 + 8.0) * f64::EPSILON, DenseProductsExact, 0.0);
         (0..self.rank).map(move |i| {
             let products = self.row(i)[i..].iter().zip(&q[i..]).map(|(s, x)| s * x);
             let (sum, size) = products.fold((0.0_f64, 0.0_f64), |(sum, size), p| (sum + p, size + p.abs()));
@@ -192,7 +192,7 @@ impl Triangular {
             return None;
         }
         let up = 1.0 + 4.0 * gamma;
-        let excess = right_or!(rho / (1.0 - rho) * up, DenseInverseExact, 0.0);
+        let excess = with_mutant!(rho / (1.0 - rho) * up, DenseInverseExact, 0.0);
         for row in inverse.chunks_exact_mut(r) {
             let sum: f64 = row.iter().map(|t| t.abs()).sum();
             row.iter_mut().for_each(|t| *t = (t.abs() + excess * sum) * up);

@@ -74,7 +74,7 @@ impl<const E: usize> HullMotion<E> {
         self.factors.push([factor(rest); E]);
         let mut sums = [shift.abs().max_element() + rest * hulls.weights[0]; E];
         for (k, size) in hulls.sizes.iter().enumerate() {
-            let y = |q: &[f64]| q[k] - right_or!(hulls.configuration[k], HullWithoutConfiguration, 0.0);
+            let y = |q: &[f64]| q[k] - with_mutant!(hulls.configuration[k], HullWithoutConfiguration, 0.0);
             let factors = q.map(|q| y(q) * size * frame.scale());
             (0..E).for_each(|end| sums[end] += factors[end].abs() * hulls.weights[k + 1]);
             self.factors.push(factors.map(factor));
@@ -86,12 +86,12 @@ impl<const E: usize> HullMotion<E> {
             f64::INFINITY
         };
         let rank = hulls.rank as f64;
-        let single = right_or!((3.0 * rank + 32.0) * unit * most, HullSinglePrecisionExact, 0.0);
+        let single = with_mutant!((3.0 * rank + 32.0) * unit * most, HullSinglePrecisionExact, 0.0);
         let at_configuration = rounding_bound(hulls.reach, hulls.rank);
-        let double = (rounding + right_or!(at_configuration, HullConfigurationExact, 0.0)) * self.scale;
-        let error = 1.01 * DIAGONAL * (single + right_or!(double, HullShapeExact, 0.0)) + 1e-15;
+        let double = (rounding + with_mutant!(at_configuration, HullConfigurationExact, 0.0)) * self.scale;
+        let error = 1.01 * DIAGONAL * (single + with_mutant!(double, HullShapeExact, 0.0)) + 1e-15;
         self.error = error as f32;
-        self.relative = right_or!((2.0 * (rank + 16.0) * unit) as f32, HullSumsExact, 0.0);
+        self.relative = with_mutant!((2.0 * (rank + 16.0) * unit) as f32, HullSumsExact, 0.0);
         error <= MAX_ERROR
     }
 
@@ -99,7 +99,7 @@ impl<const E: usize> HullMotion<E> {
     pub(super) fn distance(&self, displacement: DVec3) -> f32 {
         // Scaled first: in the units of a tiny model squares would underflow.
         let scaled = (displacement * self.scale).length();
-        let length = right_or!(scaled, HullSlackUnscaled, displacement.length() * self.scale);
+        let length = with_mutant!(scaled, HullSlackUnscaled, displacement.length() * self.scale);
         ((length * (1.0 + 1e-6)) as f32).min(f32::MAX)
     }
 }

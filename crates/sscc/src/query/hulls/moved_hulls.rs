@@ -97,7 +97,7 @@ impl<const E: usize> MovedHulls<E> {
         let [a, b] = [i, j].map(|i| &self.hulls[i]);
         let normal = (a.cofactors + b.cofactors) * at_rest;
         let points = [i, j].map(|i| self.points(hulls, i));
-        let distance = right_or!(a.radius + b.radius, LargerHullRadius, a.radius.max(b.radius));
+        let distance = with_mutant!(a.radius + b.radius, LargerHullRadius, a.radius.max(b.radius));
         self.instructions.run(PlaneTest { points, distance, normal })
     }
 
@@ -149,13 +149,14 @@ impl<const E: usize> MovedHulls<E> {
             let sum = sums[end].x * (1.0 + relative);
             let along =
                 (0..3).map(|j| shape.along[j] * (sums[end][j + 1].abs() + relative * sum)).sum::<f32>();
-            let split = (right_or!(along, HullVectorsForgotten, 0.0) + shape.remainder * squares[end].sqrt())
+            let split = (with_mutant!(along, HullVectorsForgotten, 0.0)
+                + shape.remainder * squares[end].sqrt())
                 * (1.0 + 2.0 * relative);
-            let residual = right_or!(sum.min(split), HullResidualForgotten, 0.0);
-            let stretch = right_or!(norm_bound(&columns), HullNotStretched, 1.0);
+            let residual = with_mutant!(sum.min(split), HullResidualForgotten, 0.0);
+            let stretch = with_mutant!(norm_bound(&columns), HullNotStretched, 1.0);
             let radius = (shape.distance * stretch + residual) * (1.0 + 1e-6);
             let radius = radius_or_infinity(&hull.maps[end], radius);
-            hull.radius = right_or!(hull.radius.max(radius), HullRadiusAtEnd, radius);
+            hull.radius = with_mutant!(hull.radius.max(radius), HullRadiusAtEnd, radius);
             if end == 0 {
                 let [x, y, z] = [columns.x_axis, columns.y_axis, columns.z_axis];
                 let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
@@ -165,7 +166,7 @@ impl<const E: usize> MovedHulls<E> {
             }
         }
         let slack = motion.coarse_slack(node).map_or(0.0, |slack| self.motion.distance(slack));
-        hull.radius += error + right_or!(slack, HullCapsuleNotWidened, 0.0);
+        hull.radius += error + with_mutant!(slack, HullCapsuleNotWidened, 0.0);
         hull.radius *= 1.0 + 1e-6;
     }
 }
@@ -190,7 +191,7 @@ impl MovedHulls<1> {
 fn norm_bound(columns: &Mat3) -> f32 {
     let gram = columns.transpose() * *columns;
     let sum = |column: Vec3| {
-        right_or!(column.abs().element_sum(), HullStretchLargestEntry, column.abs().max_element())
+        with_mutant!(column.abs().element_sum(), HullStretchLargestEntry, column.abs().max_element())
     };
     let [x, y, z] = [gram.x_axis, gram.y_axis, gram.z_axis].map(sum);
     larger_or_nan(larger_or_nan(x, y), z).sqrt() * (1.0 + 1e-5)
@@ -203,7 +204,7 @@ fn norm_bound(columns: &Mat3) -> f32 {
 #[inline]
 fn radius_or_infinity(map: &AffineMap, radius: f32) -> f32 {
     let is_finite = radius.is_finite() && map.iter().all(|row| row.is_finite());
-    right_or!(if is_finite { radius } else { f32::INFINITY }, HullNanIgnored, radius)
+    with_mutant!(if is_finite { radius } else { f32::INFINITY }, HullNanIgnored, radius)
 }
 
 #[cfg(test)]

@@ -116,7 +116,7 @@ impl NodeHull {
         frame[1..].iter_mut().zip(rates).for_each(|(rate, r)| rate[3] = Vec4::from_array(r));
         let CorePoints { points, distance } = core_points::choose(&offsets);
         let core = std::array::from_fn(|axis| points.map(|point| point[axis]));
-        let distance = right_or!(up(distance), HullCoreExact, 0.0);
+        let distance = with_mutant!(up(distance), HullCoreExact, 0.0);
         Self { frame, shape: HullShape { core, distance, along, remainder } }
     }
 }

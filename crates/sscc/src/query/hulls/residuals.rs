@@ -55,7 +55,7 @@ impl Residuals {
         // larger than 16 eps; 32 eps T_k is less than 2^-24 T_k, of which the error of single precision has 14 in
         // reserve (`HullMotion::begin`).
         for (rate, error) in rates.iter_mut().zip(error) {
-            rate[0] = up(f64::from(rate[0]) + right_or!(*error, HullResidualErrorForgotten, 0.0));
+            rate[0] = up(f64::from(rate[0]) + with_mutant!(*error, HullResidualErrorForgotten, 0.0));
         }
         // H_v, from here on.
         for of_vertex in residuals.chunks_exact_mut(rank) {
@@ -73,7 +73,7 @@ impl Residuals {
                 // also be within the relative error of sums, of which `HullMotion::relative` has 21 such units in reserve; and
                 // underflow is far below the constant of `HullMotion::error`, since factors are below 1e13.)
                 let stored = if rate[0] > 0.0 { f64::from(rate[1 + j]) / f64::from(rate[0]) } else { 0.0 };
-                *w = right_or!(stored, HullVectorsUnrounded, *w);
+                *w = with_mutant!(stored, HullVectorsUnrounded, *w);
             }
             let mut most = 0.0_f64;
             for of_vertex in residuals.chunks_exact_mut(rank) {
@@ -88,8 +88,8 @@ impl Residuals {
         // remainder at most the norm of all these quotients: the computed h_vj are used.
         let errors = error.iter().zip(&rates).filter(|(_, rate)| rate[0] > 0.0);
         let error = errors.map(|(error, rate)| (error / f64::from(rate[0])).powi(2)).sum::<f64>().sqrt();
-        let own = right_or!(error, HullResidualErrorForgotten, 0.0);
-        let remainder = right_or!(up(largest + own + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
+        let own = with_mutant!(error, HullResidualErrorForgotten, 0.0);
+        let remainder = with_mutant!(up(largest + own + ROUNDING * rank as f64), HullRemainderForgotten, 0.0);
         Self { rates, along, remainder }
     }
 }

@@ -30,7 +30,7 @@ impl<const E: usize> MovedPoints<'_, E> {
     #[inline(always)]
     pub(super) fn extent<V: Vectors>(&self, vectors: V, dir: Vec3) -> f32 {
         let mut most = f32::NEG_INFINITY;
-        for map in right_or!(&self.maps[..], HullsAtStart, &self.maps[..1]) {
+        for map in with_mutant!(&self.maps[..], HullsAtStart, &self.maps[..1]) {
             most = most.max(extent(vectors, self.points, turned_back(map, dir)));
         }
         most
@@ -106,13 +106,13 @@ impl<const E: usize> Kernel for PlaneTest<'_, E> {
         let Self { points: [a, b], distance, normal } = self;
         let square = normal.length_squared();
         // NaN and infinity fail this test or one of the gap.
-        if !right_or!(SQUARES.contains(&square), HullNormalOfAnyLength, square > 0.0) {
+        if !with_mutant!(SQUARES.contains(&square), HullNormalOfAnyLength, square > 0.0) {
             return false;
         }
         let gap = -b.extent(vectors, -normal) - a.extent(vectors, normal);
-        let reached = distance * distance * right_or!(square, HullNormalTakenAsUnit, 1.0);
-        let is_wide = gap * gap > reached * right_or!(ROUND_UP, HullGapToNearest, 1.0);
-        gap > 0.0 && gap.is_finite() && right_or!(is_wide, HullsTouch, true)
+        let reached = distance * distance * with_mutant!(square, HullNormalTakenAsUnit, 1.0);
+        let is_wide = gap * gap > reached * with_mutant!(ROUND_UP, HullGapToNearest, 1.0);
+        gap > 0.0 && gap.is_finite() && with_mutant!(is_wide, HullsTouch, true)
     }
 }
 

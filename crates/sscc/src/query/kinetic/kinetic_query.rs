@@ -174,7 +174,7 @@ impl KineticQuery {
         self.free_q.clear();
         let ends = [self.query.measure(q_t0)?, self.query.measure(q_t1)?];
         let largest = ends[0].norm.max(ends[1].norm);
-        self.query.norm = right_or!(largest, KineticSweptNormAtStart, ends[0].norm);
+        self.query.norm = with_mutant!(largest, KineticSweptNormAtStart, ends[0].norm);
         if self.query.context.is_proven_free(self.query.norm) {
             self.query.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);
@@ -185,7 +185,7 @@ impl KineticQuery {
         }
         self.query.continuous(q_t0, q_t1)?;
         let is_free = self.query.pairs().is_empty();
-        if right_or!(is_free, FreeEndOfAnyMotion, true) {
+        if with_mutant!(is_free, FreeEndOfAnyMotion, true) {
             self.free_q.extend_from_slice(q_t1);
         }
         let Some(swept) = &self.query.swept else { return Ok(&[]) };
@@ -206,18 +206,18 @@ impl KineticQuery {
         // No region contains exceptions.
         let has_exceptions = !context.detect.exceptions.is_empty();
         // Region and safe distances bound motions that start at the last q; they prove nothing about other starts.
-        let is_start_known = right_or!(t0.q == self.history.last_q, MotionStartUnchecked, true);
-        if !is_start_known || right_or!(has_exceptions, KineticExceptionsForgotten, false) {
+        let is_start_known = with_mutant!(t0.q == self.history.last_q, MotionStartUnchecked, true);
+        if !is_start_known || with_mutant!(has_exceptions, KineticExceptionsForgotten, false) {
             return Ok(false);
         }
         let step = context.scope.metric.norm_from(t1.q, t0.q, &mut self.offset);
         // The region is convex, and contains the start.
         let is_contained = self.region.contains(&context.scope.metric, t1);
-        if !(self.region_pairs.is_safe_for(step) && right_or!(is_contained, MotionLeavesRegion, true)) {
+        if !(self.region_pairs.is_safe_for(step) && with_mutant!(is_contained, MotionLeavesRegion, true)) {
             return Ok(false);
         }
         let active = &self.region_pairs.active;
-        if right_or!(active.is_empty(), ActivePairsNotSwept, true) {
+        if with_mutant!(active.is_empty(), ActivePairsNotSwept, true) {
             return Ok(true);
         }
         let swept = self.query.swept.get_or_insert_with(|| Box::new(SweptSearch::new(context)));
@@ -256,7 +256,7 @@ impl KineticQuery {
         }
         if had_region {
             let is_contained = self.region.contains(metric, configuration);
-            if !(self.region_pairs.has_travel_left() && right_or!(is_contained, RegionNeverLeft, true)) {
+            if !(self.region_pairs.has_travel_left() && with_mutant!(is_contained, RegionNeverLeft, true)) {
                 self.region_pairs.leave_region();
                 self.control.end_region(self.region_pairs.steps);
             }
@@ -330,7 +330,7 @@ impl KineticQuery {
         }
         let Region { reach, radius, .. } = self.region;
         let share = self.region.size() / start.norm;
-        let norm = right_or!(self.region.norm, KineticRegionAtCenter, start.norm);
+        let norm = with_mutant!(self.region.norm, KineticRegionAtCenter, start.norm);
         self.distances.begin(norm);
         let context = &self.query.context;
         let most = MAX_PAIRS_PER_TRIANGLE * context.model.mesh().faces().len() + MAX_MORE_PAIRS;
@@ -363,7 +363,7 @@ impl KineticQuery {
         let mut cost = 0;
         let mut search = broad.search(context, &motion, narrow, usize::MAX);
         search.state.counters = std::mem::take(&mut self.region_counters);
-        right_or!(search.test_exceptions(), KineticExceptionsUntested, ());
+        with_mutant!(search.test_exceptions(), KineticExceptionsUntested, ());
         if region_pairs.steps.is_multiple_of(RETRY_STEPS) {
             self.pending.append(&mut region_pairs.active);
         }
@@ -377,7 +377,7 @@ impl KineticQuery {
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
             let is_short = distance < STEPS_WORTH_STORING * step;
             if is_short
-                || !region_pairs.store(pair, distance) && right_or!(true, VanishingDistancesStored, false)
+                || !region_pairs.store(pair, distance) && with_mutant!(true, VanishingDistancesStored, false)
             {
                 region_pairs.active.push(pair);
             }

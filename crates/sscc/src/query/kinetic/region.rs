@@ -51,10 +51,10 @@ impl Region {
         self.start.copy_from_slice(start.q);
         self.length = metric.norm_from(&self.end, start.q, &mut self.offset);
         self.radius = radius;
-        let reach = right_or!(start.reach.max(reach), RegionReachAtStart, start.reach);
+        let reach = with_mutant!(start.reach.max(reach), RegionReachAtStart, start.reach);
         // [`Self::contains`] compares norms, so that a norm that is rounded down makes the region smaller by the rounding, and no more.
         let largest = start.norm.max(norm) + radius;
-        (self.norm, self.reach) = (right_or!(up(largest), RegionNormToNearest, largest), 2.0 * reach);
+        (self.norm, self.reach) = (with_mutant!(up(largest), RegionNormToNearest, largest), 2.0 * reach);
     }
 
     /// Returns the radius of a ball, or the length of a capsule.
@@ -73,8 +73,8 @@ impl Region {
     /// moves vertices by less than the rounding bound of positions, which
     /// [`CapsuleMotion`](crate::query::capsule_motion::CapsuleMotion) adds.
     pub(super) fn contains(&mut self, metric: &Metric, at: Configuration<'_>) -> bool {
-        let is_within_norm = right_or!(at.norm <= self.norm, RegionNormUnchecked, true);
-        if !(is_within_norm && right_or!(at.reach <= self.reach, RegionReachUnchecked, true)) {
+        let is_within_norm = with_mutant!(at.norm <= self.norm, RegionNormUnchecked, true);
+        if !(is_within_norm && with_mutant!(at.reach <= self.reach, RegionReachUnchecked, true)) {
             return false;
         }
         let Self { start, end, length, point, offset, .. } = self;
@@ -83,7 +83,7 @@ impl Region {
             let to_end = metric.norm_from(at.q, end, offset);
             // The parameter of the nearest point, from its distances to both ends. NaN fails the comparison below.
             let t = 0.5 + 0.5 * ((distance - to_end) / *length) * ((distance + to_end) / *length);
-            let t = right_or!(t.clamp(0.0, 1.0), SegmentWithoutEnds, t);
+            let t = with_mutant!(t.clamp(0.0, 1.0), SegmentWithoutEnds, t);
             for ((x, a), b) in point.iter_mut().zip(&*start).zip(&*end) {
                 *x = a + t * (b - a);
             }

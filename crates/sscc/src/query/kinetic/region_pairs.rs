@@ -38,7 +38,7 @@ pub(super) struct RegionPairs {
 impl RegionPairs {
     /// Adds a step of z.
     pub(super) fn advance(&mut self, step: f64) {
-        self.travelled = right_or!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
+        self.travelled = with_mutant!(up(self.travelled + step), TravelledToNearest, self.travelled + step);
     }
 
     /// Begins a region around the current z, which ends at the latest when z has travelled a distance.
@@ -62,7 +62,7 @@ impl RegionPairs {
         if until <= self.travelled {
             return false;
         }
-        if right_or!(until < self.end, SafeDistancesEndless, false) {
+        if with_mutant!(until < self.end, SafeDistancesEndless, false) {
             self.safe.push(SafePair::new(until, pair));
         } else if self.steps == 0 {
             self.next_remembered.push(SafePair::new(until, pair));
@@ -75,7 +75,7 @@ impl RegionPairs {
     pub(super) fn next_expired(&mut self) -> Option<Pair> {
         // Equality would be a proof here, too: the key was rounded down, the travelled distance up.
         let until = self.safe.peek()?.key;
-        if right_or!(until > self.travelled, SafeDistanceReached, until >= self.travelled) {
+        if with_mutant!(until > self.travelled, SafeDistanceReached, until >= self.travelled) {
             return None;
         }
         self.safe.pop().map(|safe| safe.order)
@@ -93,7 +93,7 @@ impl RegionPairs {
     /// Removes the region and all safe distances, after a jump of z.
     pub(super) fn forget(&mut self) {
         (self.travelled, self.end) = (0.0, 0.0);
-        if right_or!(true, SafeDistancesSurviveJumps, false) {
+        if with_mutant!(true, SafeDistancesSurviveJumps, false) {
             self.remembered.clear();
         }
     }
@@ -101,12 +101,12 @@ impl RegionPairs {
     /// Whether the travelled distance is less than that at which the region ends.
     pub(super) fn has_travel_left(&self) -> bool {
         // Equality would be a proof here, too: the end was rounded down, the travelled distance up.
-        right_or!(self.travelled < self.end, TravelReached, self.travelled <= self.end)
+        with_mutant!(self.travelled < self.end, TravelReached, self.travelled <= self.end)
     }
 
     /// Whether the region lasts for a straight step from here, and all safe pairs stay within their safe distances.
     pub(super) fn is_safe_for(&self, step: f64) -> bool {
-        let travelled = right_or!(up(self.travelled + step), StepOfMotionForgotten, self.travelled);
+        let travelled = with_mutant!(up(self.travelled + step), StepOfMotionForgotten, self.travelled);
         travelled < self.end && self.safe.peek().is_none_or(|pair| pair.key > travelled)
     }
 
@@ -132,7 +132,7 @@ impl RegionPairs {
                 self.next_remembered.push(earlier);
             }
             match remembered.next_if(|safe| safe.order == *pair) {
-                Some(safe) if right_or!(safe.key >= self.end, RememberedWithinRegion, true) => {
+                Some(safe) if with_mutant!(safe.key >= self.end, RememberedWithinRegion, true) => {
                     self.next_remembered.push(safe)
                 }
                 _ => pending.push(*pair),

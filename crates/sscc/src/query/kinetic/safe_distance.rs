@@ -49,7 +49,7 @@ impl SafeDistances {
     /// moved by it.
     pub(super) fn of_triangles(&mut self, filter: &PairFilter, pair: Pair, corners: [[DVec3; 3]; 2]) -> f64 {
         let faces = [pair.0, pair.1].map(|t| self.model.faces[t as usize]);
-        let mut distance = right_or!(self.largest, SafeDistanceUncapped, f64::INFINITY);
+        let mut distance = with_mutant!(self.largest, SafeDistanceUncapped, f64::INFINITY);
         for simplices in filter.simplex_pairs_of_corners(pair.0, pair.1) {
             let modes =
                 |which: usize, simplex: [usize; 3]| simplex.map(|i| self.model.modes(faces[which][i]));

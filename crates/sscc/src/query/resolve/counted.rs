@@ -34,7 +34,7 @@ impl Counted {
     /// # Errors
     /// As [`Query::discrete`].
     pub(super) fn is_free(&self, query: &mut Query, q: &[f64]) -> Result<bool, Error> {
-        let pairs = query.discrete_at_most(q, right_or!(self.others() + 1, ResolvedByFirstPair, 1))?;
+        let pairs = query.discrete_at_most(q, with_mutant!(self.others() + 1, ResolvedByFirstPair, 1))?;
         Ok(!pairs.iter().any(|pair| self.contains(*pair)))
     }
 }

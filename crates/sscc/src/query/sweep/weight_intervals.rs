@@ -125,7 +125,7 @@ impl Query {
                 End::OfRange(start)
             } else {
                 let next = (at..samples.len()).find(|i| samples[*i].pairs > 0);
-                if right_or!(false, IntervalsBySamples, next.is_none()) {
+                if with_mutant!(false, IntervalsBySamples, next.is_none()) {
                     break;
                 }
                 let next = next.unwrap_or(last);
@@ -141,7 +141,7 @@ impl Query {
                 Some(next) => {
                     let start = begin.free().unwrap_or(begin.sample().weight);
                     let from = samples[next].weight;
-                    line.end(from, right_or!(start, IntervalsEndWhereTheyBegin, from))?
+                    line.end(from, with_mutant!(start, IntervalsEndWhereTheyBegin, from))?
                 }
                 None => Some(End::OfRange(samples[last])),
             };

@@ -68,7 +68,7 @@ impl WeightLine {
         let error = (f64::EPSILON / 2.0) * (2 + after) as f64 * reach;
         // The factor covers the rounding of the reach and of partial sums, the constant the underflow of products.
         let slack = 4.0 * error * (1.0 + 1e-9) + f64::MIN_POSITIVE;
-        right_or!(slack, SweepExact, 0.0, SweepSlackQuartered, slack / 4.0)
+        with_mutant!(slack, SweepExact, 0.0, SweepSlackQuartered, slack / 4.0)
     }
 }
 
@@ -84,9 +84,9 @@ pub(super) fn forward(from: f64, step: f64, to: f64) -> f64 {
 /// Returns a weight between two others, at or before the share t of the way. It allows for three roundings of the product, and
 /// for one unit in the last place of the sum.
 pub(super) fn weight_before([w0, w1]: [f64; 2], t: f64) -> f64 {
-    let share = right_or!(t * (1.0 - 4.0 * f64::EPSILON), WeightShareToNearest, t);
+    let share = with_mutant!(t * (1.0 - 4.0 * f64::EPSILON), WeightShareToNearest, t);
     let w = w0 + share * (w1 - w0);
-    let [down, up] = right_or!([w.next_down(), w.next_up()], WeightBeforeToNearest, [w, w]);
+    let [down, up] = with_mutant!([w.next_down(), w.next_up()], WeightBeforeToNearest, [w, w]);
     if w1 > w0 { down.clamp(w0, w1) } else { up.clamp(w1, w0) }
 }
 

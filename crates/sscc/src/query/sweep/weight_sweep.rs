@@ -181,7 +181,7 @@ impl WeightSweep<'_> {
         line.set(weights);
         let [q_t0, q_t1] = line.ends();
         let [t0, t1] = [query.measure(q_t0)?, query.measure(q_t1)?];
-        query.norm = right_or!(t0.norm.max(t1.norm), SweepNormAtStart, t0.norm);
+        query.norm = with_mutant!(t0.norm.max(t1.norm), SweepNormAtStart, t0.norm);
         if query.context.is_proven_free(query.norm) {
             return Ok(Step::Free);
         }
@@ -189,7 +189,7 @@ impl WeightSweep<'_> {
         let limit = work.candidates;
         search.find(&query.context, [t0, t1], query.norm, limit, &mut query.statistics)?;
         work.add_search(&query.statistics, search.narrow.0.list.len());
-        if right_or!(!query.statistics.complete, SweepCutOffIsFree, false) {
+        if with_mutant!(!query.statistics.complete, SweepCutOffIsFree, false) {
             return Ok(Step::TooMany);
         }
         let slack = line.slack(t0.reach.max(t1.reach));
