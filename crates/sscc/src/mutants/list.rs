@@ -534,8 +534,6 @@ mutants! {
     PosedVolumesKept: CaughtBy("lib posed::posed_shape::tests::shapes_move_within_one_frame");
     /// AABBs with an earlier margin are used while the frame stays the same.
     NearMarginKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
-    /// AABBs of an earlier motion are used while the frame stays the same.
-    SweptVolumesKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// Each of two shapes is widened by a quarter of the margin of near pairs.
     NearMarginHalved: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// The height of a plane in the frame of a search has no rounding error.
