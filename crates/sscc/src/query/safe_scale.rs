@@ -81,8 +81,9 @@ impl Query {
                 let ends =
                     index == UNKNOWN || (index != NONE && hierarchy.split_above_buckets(n, m).is_none());
                 let certified = if ends {
-                    let limit = self.scale(tree.map_or(0.0, PairTree::limit));
-                    [(UNKNOWN, right_or!(0.0, SafeScaleBelowBuckets, limit)); MAX_SIBLINGS]
+                    let bound =
+                        right_or!(0.0, SafeScaleBelowBuckets, self.scale(tree.map_or(0.0, PairTree::limit)));
+                    [(UNKNOWN, bound); MAX_SIBLINGS]
                 } else {
                     let stored = tree.filter(|_| index != NONE).map(|tree| tree.below(index));
                     self.certified_pairs(tree, stored.into_iter().flatten())
