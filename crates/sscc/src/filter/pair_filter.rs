@@ -63,8 +63,8 @@ impl PairFilter {
     /// Applies the filter to a mesh whose vertices are welded by these classes (`None`: not at all), whether or not the filter
     /// welds vertices.
     pub(crate) fn with_classes(faces: &[[u32; 3]], classes: Option<&[u32]>, filter: &ContactFilter) -> Self {
-        let classes = with_mutant!(classes, WeldClassesForgotten, None);
-        let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| classes[i as usize]));
+        let of_class = |i: u32, classes: &[u32]| with_mutant!(classes[i as usize], WeldClassesForgotten, i);
+        let of_face = |face: &[u32; 3]| face.map(|i| classes.map_or(i, |classes| of_class(i, classes)));
         Self {
             faces: faces.to_vec(),
             classes: faces.iter().map(of_face).collect(),

@@ -376,9 +376,12 @@ impl KineticQuery {
             });
             let distance = self.distances.of_triangles(&context.filter, pair, corners);
             let is_short = distance < STEPS_WORTH_STORING * step;
-            if is_short
-                || !region_pairs.store(pair, distance) && with_mutant!(true, VanishingDistancesStored, false)
-            {
+            let is_stored = !is_short
+                && with_mutant!(region_pairs.store(pair, distance), VanishingDistancesStored, {
+                    region_pairs.store(pair, distance);
+                    true
+                });
+            if !is_stored {
                 region_pairs.active.push(pair);
             }
             cost += DISTANCE_COST;
