@@ -534,6 +534,8 @@ mutants! {
     PosedVolumesKept: CaughtBy("lib posed::posed_shape::tests::shapes_move_within_one_frame");
     /// AABBs with an earlier margin are used while the frame stays the same.
     NearMarginKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
+    /// AABBs of a swept shape stay those of the motion before.
+    SweptVolumesKept: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// Each of two shapes is widened by a quarter of the margin of near pairs.
     NearMarginHalved: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// The height of a plane in the frame of a search has no rounding error.
@@ -568,6 +570,12 @@ mutants! {
     NanRadiusAccepted: CaughtBy("it certificates::damaged_parts_are_refused");
     /// The gap of two parts is that of the sphere of one to the centre of the other.
     LocalSphereOfOne: CaughtBy("lib certificates::local::strain_search::tests::ratios_are_at_least_those_of_all_pairs");
+    /// The ratio of two parts has the spread of one of them.
+    LocalSpreadOfOne: CaughtBy("lib certificates::local::strain_search::tests::ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs");
+    /// The ratio of parts that are not divided is forgotten.
+    LocalAcceptedForgotten: CaughtBy("lib certificates::local::strain_search::tests::ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs");
+    /// The gap of parts that are not divided is forgotten.
+    LocalAcceptedGapForgotten: CaughtBy("lib certificates::local::strain_search::tests::ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs");
     /// Triangles without a gap at the centre have a ratio.
     LocalTouchingFree: CaughtBy("lib certificates::local::strain_search::tests::triangles_without_a_gap_have_no_ratio");
     /// Gaps along the line between two parts are rounded to nearest.

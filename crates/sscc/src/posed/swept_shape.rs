@@ -118,7 +118,8 @@ impl SweptShape {
     /// Starts a search in the frame of this box with this margin, unless the last one was the same.
     fn enter(&mut self, around: Aabb, margin: f64) {
         let is_margin_new = with_mutant!(self.motion.margin != margin, NearMarginKept, false);
-        if !self.is_current || self.motion.around != around || is_margin_new {
+        let is_motion_new = with_mutant!(!self.is_current, SweptVolumesKept, false);
+        if is_motion_new || self.motion.around != around || is_margin_new {
             (self.motion.around, self.motion.margin) = (around, margin);
             self.is_current = true;
             self.volumes.begin(&self.context.hierarchy, &self.motion);
@@ -262,6 +263,13 @@ mod tests {
             let mut again = Vec::new();
             x.near(&mut y, around, 30.0, 9, &mut again);
             assert_eq!(again, [(0, 0)]);
+        }
+        for (heights, meets) in [([9.0, 9.0], false), ([9.0, -1.0], true), ([9.0, 8.0], false)] {
+            let [t0, t1] = heights.map(at);
+            y.place([&[0.0]; 2], [&t0, &t1]).unwrap();
+            let mut impacts = Vec::new();
+            x.impacts(&mut y, around, &mut impacts);
+            assert_eq!(impacts.len(), usize::from(meets), "{heights:?}");
         }
     }
 }

@@ -240,11 +240,13 @@ impl Kernel for Search<'_, '_> {
                     - with_mutant!(b.radius, LocalSphereOfOne, 0.0);
                 if distance > 1e-9 {
                     let difference = squared_distance(search.mean(x), search.mean(y)).sqrt();
-                    let bound = (difference + a.spread + b.spread) * ROUND_UP + search.image_error;
+                    let spread = with_mutant!(b.spread, LocalSpreadOfOne, 0.0);
+                    let bound = (difference + a.spread + spread) * ROUND_UP + search.image_error;
                     let ratio = bound / distance as f32 * ROUND_UP;
                     if ratio <= ACCEPTED * largest {
-                        accepted = larger(accepted, ratio);
-                        search.smallest_gap = search.smallest_gap.min(distance);
+                        accepted = with_mutant!(larger(accepted, ratio), LocalAcceptedForgotten, accepted);
+                        let gap = with_mutant!(distance, LocalAcceptedGapForgotten, f64::INFINITY);
+                        search.smallest_gap = search.smallest_gap.min(gap);
                         continue;
                     }
                 }

@@ -151,6 +151,35 @@ fn images_are_within_the_spread_of_their_part() {
     assert!(checked > 10_000, "{checked}");
 }
 
+/// Calls `each` with the ratio and the widest gap of each pair of corners that counts, and their triangles.
+fn each_ratio(
+    case: &Case,
+    (width, gaps, patch, images): (usize, &CornerGaps<'_>, &Patch, &[f64]),
+    mut each: impl FnMut(f64, f64, (u32, u32)),
+) {
+    let nodes = case.hierarchy.nodes();
+    let parents = parents(&case.hierarchy);
+    let leaves = (0..nodes.len() as u32).filter(|n| nodes[*n as usize].is_leaf());
+    let triangles: Vec<(u32, u32)> = leaves
+        .flat_map(|n| case.hierarchy.triangles(&nodes[n as usize]).iter().map(move |t| (n, *t)))
+        .collect();
+    for (at, (n, s)) in triangles.iter().enumerate() {
+        for (m, t) in &triangles[at + 1..] {
+            if case.filter.relation(*s, *t) == Relation::Adjacent {
+                continue;
+            }
+            for simplices in case.filter.simplex_pairs(*s, *t) {
+                for (i, j) in simplices.a.into_iter().flat_map(|i| simplices.b.map(|j| (i, j))) {
+                    let [x, y] = [i, j].map(|v| patch.numbers[v as usize] as usize * width);
+                    let rows: Vec<f64> = (0..width).map(|k| images[y + k] - images[x + k]).collect();
+                    let widest = widest_gap(gaps, &parents, (*n, *m), (i, j));
+                    each(singular_value(&rows) / widest, widest, (*s, *t));
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn ratios_are_at_least_those_of_all_pairs() {
     let (mut finite, mut close) = (0, 0);
@@ -173,36 +202,62 @@ fn ratios_are_at_least_those_of_all_pairs() {
                 return;
             }
             finite += 1;
-            let nodes = case.hierarchy.nodes();
-            let parents = parents(&case.hierarchy);
-            let leaves = (0..nodes.len() as u32).filter(|n| nodes[*n as usize].is_leaf());
-            let triangles: Vec<(u32, u32)> = leaves
-                .flat_map(|n| case.hierarchy.triangles(&nodes[n as usize]).iter().map(move |t| (n, *t)))
-                .collect();
-            let width = search.width;
             let mut largest = 0.0_f64;
-            for (at, (n, s)) in triangles.iter().enumerate() {
-                for (m, t) in &triangles[at + 1..] {
-                    if case.filter.relation(*s, *t) == Relation::Adjacent {
-                        continue;
-                    }
-                    for simplices in case.filter.simplex_pairs(*s, *t) {
-                        for (i, j) in simplices.a.into_iter().flat_map(|i| simplices.b.map(|j| (i, j))) {
-                            let [x, y] = [i, j].map(|v| patch.numbers[v as usize] as usize * width);
-                            let rows: Vec<f64> = (0..width).map(|k| exact[y + k] - exact[x + k]).collect();
-                            let widest = widest_gap(gaps, &parents, (*n, *m), (i, j));
-                            let one = singular_value(&rows) / widest;
-                            assert!(one <= f64::from(ratio), "seed {seed}: {one} {ratio}");
-                            assert!(search.smallest_gap <= widest * (1.0 + 1e-12), "seed {seed}");
-                            largest = largest.max(one);
-                        }
-                    }
-                }
-            }
+            each_ratio(&case, (search.width, gaps, patch, exact), |one, gap, _| {
+                assert!(one <= f64::from(ratio), "seed {seed}: {one} {ratio}");
+                assert!(search.smallest_gap <= gap * (1.0 + 1e-12), "seed {seed}");
+                largest = largest.max(one);
+            });
             close += usize::from(largest > 0.8 * f64::from(ratio));
         });
     }
     assert!(finite > 200 && close > 100, "{finite} {close}");
+}
+
+/// Two clusters of triangles that are small and far apart are accepted as a whole, with images whose spheres touch their bound.
+#[test]
+fn ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs() {
+    const TRIANGLES: u32 = 40;
+    let mut accepted = 0;
+    for seed in 0..40 {
+        let random = &mut Numbers(seed + 5);
+        let cluster = |v: u32| v / (3 * TRIANGLES);
+        let corner = |v: u32| DVec3::X * f64::from(cluster(v)) * 10.0 + random.vector() * 0.03;
+        let positions = (0..6 * TRIANGLES).map(corner).collect();
+        let faces = (0..2 * TRIANGLES).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let case = Case::new(positions, faces, Neighbours::Exclude);
+        let signs: Vec<f64> = (0..6 * TRIANGLES).map(|_| random.signed().signum()).collect();
+        with_search(&case, random, |search, gaps, patch, _| {
+            let width = search.width;
+            let mut images = vec![0.0; patch.vertices.len() * width];
+            for (v, sign) in (0..).zip(&signs) {
+                images[patch.numbers[v as usize] as usize * width] = f64::from(cluster(v)) + sign;
+            }
+            search.images = images.iter().map(|x| *x as f32).collect();
+            search.begin(2.0);
+            let (mut largest, mut smallest_gap) = (0.0_f64, f64::INFINITY);
+            each_ratio(&case, (width, gaps, patch, &images), |ratio, gap, (s, t)| {
+                if s / TRIANGLES != t / TRIANGLES {
+                    largest = largest.max(ratio);
+                    smallest_gap = smallest_gap.min(gap);
+                }
+            });
+            // All pairs of parts of both clusters.
+            let Part { first_child, child_count, .. } = search.parts[0];
+            let children = first_child..first_child + child_count;
+            let is_far = |part: u32| search.parts[part as usize].center.x > 5.0;
+            let (near, far): (Vec<u32>, Vec<u32>) = children.partition(|part| !is_far(*part));
+            let floor = (0.97 * largest) as f32;
+            let mut found = 0.0_f32;
+            for pair in near.iter().flat_map(|x| far.iter().map(move |y| (*x, *y))) {
+                found = found.max(search.between(gaps, pair, floor));
+            }
+            assert!(f64::from(found) >= largest, "seed {seed}: {found} {largest}");
+            assert!(search.smallest_gap <= smallest_gap * (1.0 + 1e-12), "seed {seed}");
+            accepted += usize::from(f64::from(found) > 1.005 * largest);
+        });
+    }
+    assert!(accepted > 20, "{accepted}");
 }
 
 /// A floor only ends the search for ratios below it: larger ratios are found all the same.
