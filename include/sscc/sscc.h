@@ -389,8 +389,8 @@ sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
 // Threads: any, while no other call uses the certificates.
 sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
 
-// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. It is infinite if the shape is
-// free at every q, and 0 for NULL.
+// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite, the shape
+// is free at every q. 0 for NULL.
 //
 // Threads: any.
 double sscc_certificates_root_radius(const struct sscc_certificates *certificates);

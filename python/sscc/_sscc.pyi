@@ -50,7 +50,7 @@ class Model:
         mesh (OBJ, PLY, OFF, STL) with its ``modes`` (``.npy``, ``.npz``, VegaFEM's matrices, a folder of target meshes).
 
         ``mesh_name``, or ``FILE#NAME`` as the path, chooses one of several meshes of a glTF file. The model is in the
-        coordinates of its mesh: nodes do not move it. Primitives without morph targets cause a warning. Raises
+        coordinates of its mesh: nodes do not move it. Primitives that lack some morph targets cause a warning. Raises
         FileNotFoundError, OSError, ValueError.
         """
     def save(self, path: _Path) -> None:

@@ -20,7 +20,7 @@ pub struct Fit {
     /// Positions of all vertices: .npy of shape (V, 3) or (T, V, 3), a .pc2 point cache, deformed .vtu, .vtk or .pvd, or a folder of meshes with the same faces
     #[arg(value_name = "POSITIONS")]
     pub positions: PathBuf,
-    /// The q to write: **.npy of shape (r), for several frames (T, r)
+    /// The q to write: *.npy of shape (r), for several frames (T, r)
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     #[command(flatten)]

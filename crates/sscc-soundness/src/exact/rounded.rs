@@ -22,7 +22,7 @@ fn side([a, b, c]: [&Point; 3], d: &Point) -> i8 {
     let area = size(&e) * size(&f);
     let product = area * size(&d);
     // Intervals decide where products are extreme.
-    if !(1e-200..1e200).contains(&product) || area <= 1e-200 {
+    if !(1e-200..1e200).contains(&product) || !(1e-200..1e200).contains(&area) {
         return 0;
     }
     let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];

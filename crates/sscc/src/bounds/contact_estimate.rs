@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::geometry::{TwoTriangles, nearest_to_origin};
 
-/// Number of samples of each determinant over t in [0, 1]. Roots between the same two samples are missed.
+/// Number of samples of each determinant over t in [0, 1]. Two roots between the same two samples are missed.
 const SAMPLES: usize = 24;
 
 /// Largest distance outside a feature at which a contact counts, in barycentric units.

@@ -84,7 +84,7 @@ impl<const E: usize> LocalProofs<E> {
         let Some(index) = tables.certificate_of(0) else { return false };
         let (ratio, allowed) =
             (tables.certificates.bounds[index].ratio, f64::from(self.allowed(tables, index)));
-        // Allowed ratios are rounded down ([`LocalInequality::allowed`]), so that equality would be a proof, too; no infinite one is.
+        // Allowed ratios are rounded down ([`LocalInequality::allowed`]), so that equality would be a proof, too. They are never infinite.
         with_mutant!(ratio < allowed, LocalRatioReached, ratio <= allowed)
     }
 
