@@ -245,7 +245,8 @@ fn ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs() {
             // All pairs of parts of both clusters.
             let Part { first_child, child_count, .. } = search.parts[0];
             let children = first_child..first_child + child_count;
-            let is_far = |part: u32| search.parts[part as usize].center.x > 5.0;
+            let middle = search.parts[0].center.x;
+            let is_far = |part: u32| search.parts[part as usize].center.x > middle;
             let (near, far): (Vec<u32>, Vec<u32>) = children.partition(|part| !is_far(*part));
             let floor = (0.97 * largest) as f32;
             let mut found = 0.0_f32;
