@@ -169,9 +169,9 @@ fn files_that_cannot_grow_stay_old() {
     assert_eq!(files(folder), before);
 }
 
-/// A command that writes to a folder of 16 kB, which is mounted for it alone, as on a full disk.
+/// A command that writes to a folder of 4 kB, which is mounted for it alone, as on a full disk.
 fn on_small_disk(folder: &Path, name: &str, args: &[&str]) -> (Run, Vec<String>) {
-    let script = "mount -t tmpfs -o size=16k none small && printf 'an old file' > small/\"$1\" && shift && \"$@\" 1>&2
+    let script = "mount -t tmpfs -o size=4k none small && printf 'an old file' > small/\"$1\" && shift && \"$@\" 1>&2
         code=$?; for file in small/* small/.[!.]*; do [ -f \"$file\" ] && echo \"$file: $(cat \"$file\")\"; done; exit $code";
     let mut shell = Command::new("unshare");
     shell.args(["-Urm", "bash", "-c", script, "bash", name, env!("CARGO_BIN_EXE_sscc")]);
