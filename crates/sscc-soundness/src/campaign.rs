@@ -18,7 +18,7 @@ use crate::tally::Tally;
 const WRITE_EVERY: Duration = Duration::from_secs(10);
 
 /// Processor time after which a configuration of a campaign makes no more queries.
-const LONGEST: Duration = Duration::from_secs(2);
+const MAX_TIME: Duration = Duration::from_secs(2);
 
 /// The size of a configuration in a quick run, as a share of its full size.
 const QUICK: f64 = 0.03;
@@ -65,7 +65,7 @@ pub fn run(campaign: &Campaign, mut report: impl FnMut(&str)) -> Result<Record, 
         let Some(i) = next.filter(|_| campaign.time.is_none_or(|time| start.elapsed() < time)) else { break };
         let (path, counters) = (&PATHS[i], &mut record.paths[i]);
         let (number, begin) = (counters.configurations, ThreadTime::now());
-        let tally = configuration(path, record.seed, number, 1.0, Some(LONGEST));
+        let tally = configuration(path, record.seed, number, 1.0, Some(MAX_TIME));
         counters.configurations += 1;
         counters.seconds += begin.elapsed().as_secs_f64();
         if !tally.is_clean() {

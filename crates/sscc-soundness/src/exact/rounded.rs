@@ -1,4 +1,4 @@
-//! Tests whether two triangles meet in doubles. It decides nearly all ordinary pairs of triangles, in a tenth of the time.
+//! Tests in doubles, with an error bound, whether two triangles meet. Most ordinary pairs of triangles are decided here.
 //!
 //! The test computes only on which side of a plane a point is. It remains undecided where triangles touch, lie in one plane,
 //! have no area, or have extreme coordinates.

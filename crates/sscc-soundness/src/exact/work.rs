@@ -1,6 +1,6 @@
-//! When a configuration ends before it has asked all that it would: some models take a thousand times longer than others, by
-//! decisions of the oracle that need whole numbers, which take a hundred times longer than intervals, or by the core's own exact
-//! tests. A configuration that is run again has no limit of time, so that it repeats all that the campaign asked.
+//! Limits the work of one configuration. Some models take a thousand times longer than others: decisions of the oracle by
+//! integers take a hundred times longer than those by intervals, and the core's own exact tests may be slow. A configuration
+//! that is run again has no limit of time, so that it makes at least the queries that the campaign made.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use std::time::Duration;
 use cpu_time::ThreadTime;
 
 /// Maximum number of decisions by integers in one configuration.
-const MOST: u64 = 60_000;
+const MAX_DECISIONS: u64 = 60_000;
 
 thread_local! {
     static SPENT: Cell<u64> = const { Cell::new(0) };
@@ -28,5 +28,5 @@ pub fn count() {
 
 /// Whether the configuration has used up its decisions or its time.
 pub fn is_spent() -> bool {
-    SPENT.get() >= MOST || TIME.get().is_some_and(|(start, limit)| start.elapsed() >= limit)
+    SPENT.get() >= MAX_DECISIONS || TIME.get().is_some_and(|(start, limit)| start.elapsed() >= limit)
 }

@@ -448,8 +448,8 @@ mutants! {
     ReachOfBallAtCenter: CaughtBy("lib query::valid_ball::tests::every_q_in_the_ball_is_within_its_reach");
     /// The rounding of positions in a motion is that at its start.
     MotionReachAtStart: CaughtBy("lib query::configuration_search::tests::the_rounding_of_a_motion_is_that_of_both_ends");
-    /// With certificates near pairs are those beyond the rings of the first question.
-    RingsOfFirstQuestion: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
+    /// With certificates, near pairs are those beyond the rings of the first query.
+    RingsOfFirstQuery: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
     /// A region contains q whose positions are rounded by more than its own.
     RegionReachUnchecked: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
     /// A region contains z with a larger |z| than that of its search.
@@ -502,13 +502,13 @@ mutants! {
     SeparatedAtEnd: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
     /// Triangles whose error is not finite are tested for separating directions.
     InfiniteErrorTested: Covered("no gap is larger than a slack that is infinite or NaN");
-    /// Of two shapes the second one has the error of the first.
+    /// The error of the second of two shapes is that of the first one.
     ErrorOfFirstShape: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
     /// Sides of normals have no rounding error.
     ConeSidesExact: CaughtBy("lib detect::normal_cones::tests::certain_sides_are_right");
     /// The normals of a node are those of its last child.
     ConeOfLastChild: CaughtBy("it normal_cones::a_fold_inside_of_a_flat_sheet_is_found");
-    /// Each of two meshes is searched in a frame of its own.
+    /// Each of two meshes is searched in its own frame.
     FramesOfTheirOwn: CaughtBy("it detector::pairs_of_two_meshes_are_those_of_brute_force");
     /// The nearest two triangles are not within one node.
     NearestBetweenNodesAlone: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
@@ -516,7 +516,7 @@ mutants! {
     RaysMissTheirBoxes: CaughtBy("it clearance::enclosed_components_are_counted");
     /// An open mesh is not inside a closed one.
     OneOpenMeshHasNone: CaughtBy("it clearance::enclosed_components_are_counted");
-    /// A ray crosses edges that run upward alone.
+    /// A ray crosses only edges that run upward.
     CrossingsUpwardAlone: CaughtBy("lib geometry::crossing::tests::points_below_edges_and_corners_are_counted_once");
     /// A ball inside of the second body is inside of both.
     BallInsideSecond: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
@@ -546,7 +546,7 @@ mutants! {
     WeightShareToNearest: CaughtBy("lib query::sweep::weight_line::tests::weights_are_rounded_towards_the_start");
     /// The norm of an interval of weights is that at its start.
     SweepNormAtStart: CaughtBy("it sweep::contacts_of_simple_shapes");
-    /// Of an interval with too many candidates those that were found are all.
+    /// If an interval has too many candidates, those that were found count as all.
     SweepCutOffIsFree: CaughtBy("lib query::sweep::work::tests::limited_sweeps_end_at_a_weight_up_to_which_the_shape_is_free");
     /// A configuration whose first colliding pair does not count is free.
     ResolvedByFirstPair: CaughtBy("it resolve::answers_are_free_and_no_farther_than_stepping_back");

@@ -99,7 +99,7 @@ impl NearSearch {
         }
         let detect = &self.context.detect;
         self.rings =
-            self.rings.take().filter(|(count, _)| with_mutant!(*count == rings, RingsOfFirstQuestion, true));
+            self.rings.take().filter(|(count, _)| with_mutant!(*count == rings, RingsOfFirstQuery, true));
         let (_, own) = self.rings.get_or_insert_with(|| (rings, Rings::new(&detect.filter, rings)));
         let list = &mut self.narrow.hits.list;
         // The test of rings is faster if the first triangle is that of the pair before.

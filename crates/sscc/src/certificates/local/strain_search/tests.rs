@@ -214,7 +214,8 @@ fn ratios_are_at_least_those_of_all_pairs() {
     assert!(finite > 200 && close > 100, "{finite} {close}");
 }
 
-/// Two clusters of triangles that are small and far apart are accepted as a whole, with images whose spheres touch their bound.
+/// Two small clusters of triangles that are far apart are not divided. Their images are at the ends of their spreads, so that
+/// the bound of the ratio is nearly reached.
 #[test]
 fn ratios_of_parts_that_are_not_divided_are_at_least_those_of_their_pairs() {
     const TRIANGLES: u32 = 40;
