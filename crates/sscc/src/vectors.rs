@@ -29,8 +29,23 @@ pub(crate) trait Vectors: Copy {
     /// Returns eight numbers of which the upper halves are given; the lower ones are 0.
     fn load_upper_halves(self, x: &[u16; LANES]) -> Self::F32s;
 
+    /// Returns sums.
+    fn add(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
+
+    /// Returns differences.
+    fn subtract(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
+
+    /// Returns products.
+    fn multiply(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
+
     /// Returns `a * b + c`, rounded twice.
     fn multiply_add(self, a: Self::F32s, b: Self::F32s, c: Self::F32s) -> Self::F32s;
+
+    /// Returns the magnitudes.
+    fn abs(self, x: Self::F32s) -> Self::F32s;
+
+    /// Returns the smaller numbers. None may be NaN.
+    fn min(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
 
     /// Returns the larger numbers. None may be NaN.
     fn max(self, a: Self::F32s, b: Self::F32s) -> Self::F32s;
@@ -49,6 +64,9 @@ pub(crate) trait Vectors: Copy {
 
     /// Returns the points that have these coordinates along each axis, one for each lane; their fourth components are 0.
     fn points(self, coordinates: [Self::F32s; 3]) -> [Vec4; LANES];
+
+    /// Returns the coordinates of eight points along each axis, without their fourth components.
+    fn coordinates(self, points: [Vec4; LANES]) -> [Self::F32s; 3];
 }
 
 /// A computation on vectors. Implementations of `run` must be `#[inline(always)]`: only then are they compiled for the
@@ -131,8 +149,33 @@ impl Vectors for Baseline {
     }
 
     #[inline(always)]
+    fn add(self, a: [Vec4; 2], b: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0] + b[0], a[1] + b[1]]
+    }
+
+    #[inline(always)]
+    fn subtract(self, a: [Vec4; 2], b: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0] - b[0], a[1] - b[1]]
+    }
+
+    #[inline(always)]
+    fn multiply(self, a: [Vec4; 2], b: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0] * b[0], a[1] * b[1]]
+    }
+
+    #[inline(always)]
     fn multiply_add(self, a: [Vec4; 2], b: [Vec4; 2], c: [Vec4; 2]) -> [Vec4; 2] {
         [a[0] * b[0] + c[0], a[1] * b[1] + c[1]]
+    }
+
+    #[inline(always)]
+    fn abs(self, [low, high]: [Vec4; 2]) -> [Vec4; 2] {
+        [low.abs(), high.abs()]
+    }
+
+    #[inline(always)]
+    fn min(self, a: [Vec4; 2], b: [Vec4; 2]) -> [Vec4; 2] {
+        [a[0].min(b[0]), a[1].min(b[1])]
     }
 
     #[inline(always)]
@@ -165,6 +208,12 @@ impl Vectors for Baseline {
     fn points(self, [x, y, z]: [[Vec4; 2]; 3]) -> [Vec4; LANES] {
         let [low, high] = [0, 1].map(|i| Mat4::from_cols(x[i], y[i], z[i], Vec4::ZERO).transpose());
         [low.x_axis, low.y_axis, low.z_axis, low.w_axis, high.x_axis, high.y_axis, high.z_axis, high.w_axis]
+    }
+
+    #[inline(always)]
+    fn coordinates(self, [a, b, c, d, e, f, g, h]: [Vec4; LANES]) -> [[Vec4; 2]; 3] {
+        let [low, high] = [Mat4::from_cols(a, b, c, d).transpose(), Mat4::from_cols(e, f, g, h).transpose()];
+        [[low.x_axis, high.x_axis], [low.y_axis, high.y_axis], [low.z_axis, high.z_axis]]
     }
 }
 
@@ -210,6 +259,12 @@ mod avx2 {
         }
     }
 
+    /// Returns two vectors side by side. It is a function, because closures are not inlined.
+    #[inline(always)]
+    fn pair(simd: V3, low: Vec4, high: Vec4) -> __m256 {
+        simd.avx._mm256_insertf128_ps::<1>(simd.avx._mm256_castps128_ps256(low.into()), high.into())
+    }
+
     impl Vectors for V3 {
         type F32s = __m256;
         type Mask = __m256;
@@ -236,9 +291,34 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn add(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_add_ps(a, b)
+        }
+
+        #[inline(always)]
+        fn subtract(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_sub_ps(a, b)
+        }
+
+        #[inline(always)]
+        fn multiply(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_mul_ps(a, b)
+        }
+
+        #[inline(always)]
         fn multiply_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
             let sum = self.avx._mm256_add_ps(self.avx._mm256_mul_ps(a, b), c);
             with_mutant!(sum, MultiplyAddFused, self.fma._mm256_fmadd_ps(a, b, c))
+        }
+
+        #[inline(always)]
+        fn abs(self, x: __m256) -> __m256 {
+            self.avx._mm256_andnot_ps(self.avx._mm256_set1_ps(-0.0), x)
+        }
+
+        #[inline(always)]
+        fn min(self, a: __m256, b: __m256) -> __m256 {
+            self.avx._mm256_min_ps(a, b)
         }
 
         #[inline(always)]
@@ -284,6 +364,24 @@ mod avx2 {
             let high = |i: usize| Vec4::from(avx._mm256_extractf128_ps::<1>(pairs[i]));
             [low(0), low(1), low(2), low(3), high(0), high(1), high(2), high(3)]
         }
+
+        #[inline(always)]
+        fn coordinates(self, [a, b, c, d, e, f, g, h]: [Vec4; LANES]) -> [__m256; 3] {
+            let avx = self.avx;
+            // Each has point i in its low half, and point i + 4 in its high half.
+            let a = pair(self, a, e);
+            let b = pair(self, b, f);
+            let c = pair(self, c, g);
+            let d = pair(self, d, h);
+            // The x and y, and the z, of two points of each half side by side.
+            let [xy_ab, xy_cd] = [avx._mm256_unpacklo_ps(a, b), avx._mm256_unpacklo_ps(c, d)];
+            let [z_ab, z_cd] = [avx._mm256_unpackhi_ps(a, b), avx._mm256_unpackhi_ps(c, d)];
+            [
+                avx._mm256_shuffle_ps::<0b0100_0100>(xy_ab, xy_cd),
+                avx._mm256_shuffle_ps::<0b1110_1110>(xy_ab, xy_cd),
+                avx._mm256_shuffle_ps::<0b0100_0100>(z_ab, z_cd),
+            ]
+        }
     }
 }
 
@@ -305,12 +403,19 @@ mod tests {
             let halves = v.load_upper_halves(&self.0.map(|x| x as u16));
             let mask = v.or(v.greater(a, b), v.greater(c, sum));
             let points = v.points([a, b, sum]);
+            let again = v.coordinates(points);
             let numbers = v
                 .array(sum)
                 .into_iter()
                 .chain(v.array(v.max(a, b)))
                 .chain(points.iter().flat_map(|p| p.to_array()))
-                .chain(v.array(halves));
+                .chain(v.array(halves))
+                .chain(
+                    [v.min(a, b), v.add(a, b), v.subtract(a, b), v.multiply(a, b), v.abs(b)]
+                        .map(|x| v.array(x))
+                        .concat(),
+                )
+                .chain(again.map(|x| v.array(x)).concat());
             (numbers.map(f32::to_bits).collect(), v.bits(mask))
         }
     }
@@ -333,6 +438,10 @@ mod tests {
                 assert_eq!(first.0[2 * LANES + 4 * lane..][..4], [a, b, sum, 0.0].map(f32::to_bits));
                 assert_eq!(first.0[6 * LANES + lane], u32::from(integers[lane] as u16) << 16);
                 assert_eq!(first.1 >> lane & 1 != 0, a > b || c > sum);
+                let others = [if a < b { a } else { b }, a + b, a - b, a * b, b.abs(), a, b, sum];
+                for (i, expected) in others.into_iter().enumerate() {
+                    assert_eq!(first.0[(7 + i) * LANES + lane], expected.to_bits(), "operation {i}");
+                }
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Tests of a bucket against itself and of two buckets: packets of boxes against packets, down to triangle pairs.
 
-use super::aabb8::{LANES, PacketPair, PairsOfLanes};
-use super::narrow_phase::NarrowPhase;
-use super::node_volumes::{BucketSlot, are_slots_separated};
+use super::aabb8::{LANES, Lanes, PacketPair, PairsOfLanes};
+use super::candidates::Candidates;
+use super::narrow_phase::{NarrowPhase, TrianglePairs};
 use super::search::{Search, TriangleVertices};
 use super::vertex_motion::VertexMotion;
 use crate::filter::Relation;
@@ -28,10 +28,12 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         let masked =
             with_mutant!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked };
+        self.state.candidates.share_no_vertex = false;
         for (i, j) in PairsOfLanes(pair.overlaps(volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
-            self.test_packet_pair(first, second, false);
+            self.test_packet_pair(first, second);
         }
+        self.test_candidates();
     }
 }
 
@@ -73,24 +75,28 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         let share_no_vertex = SIDES == 2
             || self.sides[0].context.filter.groups().is_none()
                 && !volumes.layout.buckets.can_share_vertex(n, m);
+        self.state.candidates.share_no_vertex = share_no_vertex;
         for (i, j) in PairsOfLanes(overlaps.pairs) {
             let first = BucketLane { bucket: n, lane: i };
             let second = BucketLane { bucket: m, lane: j };
-            self.test_packet_pair(first, second, share_no_vertex);
+            self.test_packet_pair(first, second);
         }
+        self.test_candidates();
     }
 
     /// Tests two packets whose boxes overlap (with one side, the second is not before the first), or one packet against itself.
-    /// `share_no_vertex`: the two packets share no vertex, so that all their triangle pairs count. Then neither masks nor vertex
-    /// classes are read, which are far apart in memory.
+    /// The last pairs of triangles remain candidates.
     #[inline]
-    fn test_packet_pair(&mut self, x: BucketLane, y: BucketLane, share_no_vertex: bool) {
+    fn test_packet_pair(&mut self, x: BucketLane, y: BucketLane) {
         let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
         let buckets = [&first.layout.buckets, &last.layout.buckets];
         let packets =
             [buckets[0].packets(x.bucket).start + x.lane, buckets[1].packets(y.bucket).start + y.lane];
-        let (masked, has_adjacent) =
-            if share_no_vertex { (0, true) } else { buckets[0].masked_pairs(packets[0], packets[1]) };
+        let (masked, has_adjacent) = if self.state.candidates.share_no_vertex {
+            (0, true)
+        } else {
+            buckets[0].masked_pairs(packets[0], packets[1])
+        };
         let starts = [buckets[0].slots(packets[0]).start, buckets[1].slots(packets[1]).start];
         // Most triangles of a packet are separate from the whole other packet.
         let outer = [(first.packets(x.bucket), x.lane), (last.packets(y.bucket), y.lane)];
@@ -98,24 +104,45 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
         let pair = PacketPair { first: triangles[0], second: triangles[1], rows: 0, masked };
         let overlaps = pair.overlaps_within(first.instructions, outer);
         self.state.counters.box_tests += LANES as u64 * u64::from(2 + overlaps.rows);
-        let mut open = 0;
         for (row, column) in PairsOfLanes(overlaps.pairs) {
             let slots = [starts[0] + row, starts[1] + column];
             if !has_adjacent && self.are_adjacent(slots) {
                 continue;
             }
             let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
-            let a = BucketSlot { bucket: x.bucket, slot: slots[0] };
-            let b = BucketSlot { bucket: y.bucket, slot: slots[1] };
-            if are_slots_separated((first, a), (last, b)) {
-                continue;
+            let corners = [first.mapped_corners(x.bucket, slots[0]), last.mapped_corners(y.bucket, slots[1])];
+            if self.state.candidates.push(slots, corners) {
+                self.test_candidates();
             }
+        }
+    }
+
+    /// Tests all candidates, and removes them.
+    fn test_candidates(&mut self) {
+        let candidates = &mut self.state.candidates;
+        if candidates.count == 0 {
+            return;
+        }
+        let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
+        let errors = [first.corner_error(), last.corner_error()];
+        let error = with_mutant!(errors[0].max(errors[1]), ErrorOfFirstShape, errors[0]);
+        let pairs = TrianglePairs {
+            positions: [first.mapped_positions(), last.mapped_positions()],
+            corners: &candidates.corners,
+            count: candidates.count,
+            error,
+        };
+        let separated = pairs.separated(first.instructions);
+        let open = Lanes(!separated & ((1 << candidates.count) - 1));
+        candidates.count = 0;
+        for lane in open {
+            let slots = candidates.slots[lane as usize];
             first.prefetch_corners(first.layout.buckets.corners()[slots[0]]);
             last.prefetch_corners(last.layout.buckets.corners()[slots[1]]);
-            open |= 1 << (LANES * row + column);
         }
-        for (row, column) in PairsOfLanes(open) {
-            let slots = [starts[0] + row, starts[1] + column];
+        for lane in open {
+            let Candidates { slots, share_no_vertex, .. } = &self.state.candidates;
+            let (slots, share_no_vertex) = (slots[lane as usize], *share_no_vertex);
             let [a, b] = [(0, slots[0]), (Self::LAST, slots[1])].map(|(side, slot)| {
                 let buckets = &self.sides[side].volumes.layout.buckets;
                 TriangleVertices { triangle: buckets.triangle(slot), vertices: buckets.corners()[slot] }

@@ -84,10 +84,10 @@ impl<const E: usize> CoarsePositions<E> {
         layout.coarse.move_bucket(bucket, &self.motion, &mut self.positions);
     }
 
-    /// Returns the corners of the triangle in a slot of a moved bucket, in the frame.
-    #[inline(always)]
-    pub(crate) fn corners(&self, layout: &Layout, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
-        layout.coarse.corners(bucket, slot, &self.positions)
+    /// Returns the positions in the frame, of which those of moved buckets are current.
+    #[inline]
+    pub(crate) fn all(&self) -> &[[Vec4; E]] {
+        &self.positions
     }
 
     /// Returns the vertices of a moved bucket, in the frame.

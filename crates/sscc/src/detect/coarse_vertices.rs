@@ -92,18 +92,12 @@ impl CoarseVertices {
         &positions[groups.start * LANES..groups.end * LANES]
     }
 
-    /// Returns the corners of the triangle in a slot of a bucket whose vertices have been moved, in the frame; their fourth
-    /// components are unused.
+    /// Returns the places of the corners of the triangle in a slot of a bucket, in the positions of all buckets.
     #[inline]
-    pub(crate) fn corners<const E: usize>(
-        &self,
-        bucket: u32,
-        slot: usize,
-        positions: &[[Vec4; E]],
-    ) -> [[Vec4; E]; 3] {
-        let first = self.starts[bucket as usize] as usize * LANES;
+    pub(crate) fn corners(&self, bucket: u32, slot: usize) -> [u32; 3] {
+        let first = self.starts[bucket as usize] * LANES as u32;
         let [a, b, c] = self.corners[slot];
-        [positions[first + a as usize], positions[first + b as usize], positions[first + c as usize]]
+        [first + u32::from(a), first + u32::from(b), first + u32::from(c)]
     }
 }
 
@@ -214,7 +208,7 @@ mod tests {
             for bucket in 0..layout.buckets.count() as u32 {
                 layout.coarse.move_bucket(bucket, &motion, &mut positions);
                 for slot in layout.buckets.packets(bucket).flat_map(|packet| layout.buckets.slots(packet)) {
-                    let corners = layout.coarse.corners(bucket, slot, &positions);
+                    let corners = layout.coarse.corners(bucket, slot).map(|i| positions[i as usize]);
                     for (v, coarse) in layout.buckets.corners()[slot].into_iter().zip(corners) {
                         for (x, coarse) in layout.vertices.position(v, ends).into_iter().zip(coarse) {
                             let off = (coarse.truncate().as_dvec3() - frame.linear(x)).abs().max_element();

@@ -82,11 +82,10 @@ impl<const E: usize> ExactPositions<E> {
         std::array::from_fn(|end| corners.map(|x| x[end]))
     }
 
-    /// Returns the positions of three moved vertices in the frame, corner by corner.
+    /// Returns the positions in the frame by vertex, of which those of moved vertices are current.
     #[inline]
-    pub(crate) fn mapped(&self, vertices: [u32; 3]) -> [[Vec4; E]; 3] {
-        let [a, b, c] = vertices;
-        [self.mapped[a as usize], self.mapped[b as usize], self.mapped[c as usize]]
+    pub(crate) fn mapped(&self) -> &[[Vec4; E]] {
+        &self.mapped
     }
 
     /// Returns an AABB of moved vertices at all configurations, in the frame.

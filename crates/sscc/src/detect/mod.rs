@@ -16,6 +16,7 @@ pub(crate) mod broad_phase;
 mod brute_force;
 pub(crate) mod bucket_pair;
 pub(crate) mod buckets;
+mod candidates;
 mod coarse_positions;
 mod coarse_vertices;
 mod colliding_pairs;

@@ -15,7 +15,6 @@ use super::coarse_positions::CoarsePositions;
 use super::exact_positions::ExactPositions;
 use super::f32_frame::F32Frame;
 use super::layout::Layout;
-use super::narrow_phase::are_separated;
 use super::vertex_motion::VertexMotion;
 use crate::geometry::Aabb;
 use crate::hierarchy::{BRANCHING, Hierarchy};
@@ -270,7 +269,9 @@ impl<const E: usize> NodeVolumes<E> {
             for half in 0..2 {
                 let mut triangles = [AabbF32::EMPTY; LANES / 2];
                 for (triangle, slot) in triangles.iter_mut().zip(slots.clone().skip(half * LANES / 2)) {
-                    *triangle = AabbF32::of_triangle(self.mapped_corners(bucket, slot)).widened(by);
+                    let (positions, [a, b, c]) = (self.mapped_positions(), self.mapped_corners(bucket, slot));
+                    let corners = [positions[a as usize], positions[b as usize], positions[c as usize]];
+                    *triangle = AabbF32::of_triangle(corners).widened(by);
                     union = union.union(triangle);
                 }
                 self.triangles[packet].set_half(half, &triangles);
@@ -301,13 +302,19 @@ impl<const E: usize> NodeVolumes<E> {
         union
     }
 
-    /// Returns the corners of the triangle in a slot of a bucket, in the frame.
-    #[inline(always)]
-    fn mapped_corners(&self, bucket: u32, slot: usize) -> [[Vec4; E]; 3] {
+    /// Returns the positions in the frame, of which those of open buckets are current.
+    #[inline]
+    pub(super) fn mapped_positions(&self) -> &[[Vec4; E]] {
+        if self.coarse.are_used() { self.coarse.all() } else { self.positions.mapped() }
+    }
+
+    /// Returns the places of the corners of the triangle in a slot of a bucket, in [`Self::mapped_positions`].
+    #[inline]
+    pub(super) fn mapped_corners(&self, bucket: u32, slot: usize) -> [u32; 3] {
         if self.coarse.are_used() {
-            self.coarse.corners(&self.layout, bucket, slot)
+            self.layout.coarse.corners(bucket, slot)
         } else {
-            self.positions.mapped(self.layout.buckets.corners()[slot])
+            self.layout.buckets.corners()[slot]
         }
     }
 
@@ -316,7 +323,7 @@ impl<const E: usize> NodeVolumes<E> {
     pub(crate) fn mapped_vertices(&self, bucket: u32) -> impl Iterator<Item = (u32, Vec4)> {
         let is_coarse = self.coarse.are_used();
         let moved = if is_coarse { self.coarse.of_bucket(&self.layout, bucket) } else { &[] };
-        let exact = |v: u32| self.positions.mapped([v; 3])[0];
+        let exact = |v: u32| self.positions.mapped()[v as usize];
         let at = move |(i, v): (usize, &u32)| (*v, moved.get(i).copied().unwrap_or_else(|| exact(*v))[0]);
         self.layout.buckets.vertices(bucket).iter().enumerate().map(at)
     }
@@ -353,22 +360,4 @@ impl<const E: usize> NodeVolumes<E> {
     pub(crate) fn corners(&self, vertices: [u32; 3]) -> [[DVec3; 3]; E] {
         self.positions.corners(vertices)
     }
-}
-
-/// Whether a test in single precision proves that two triangles have no point in common. Each is given by volumes and a
-/// slot of an open bucket; both volumes are in the same frame, or identical.
-#[inline]
-pub(crate) fn are_slots_separated<const E: usize>(
-    (x, a): (&NodeVolumes<E>, BucketSlot),
-    (y, b): (&NodeVolumes<E>, BucketSlot),
-) -> bool {
-    let error = with_mutant!(x.corner_error.max(y.corner_error), ErrorOfFirstShape, x.corner_error);
-    are_separated(&x.mapped_corners(a.bucket, a.slot), &y.mapped_corners(b.bucket, b.slot), error)
-}
-
-/// A slot and its bucket.
-#[derive(Clone, Copy)]
-pub(crate) struct BucketSlot {
-    pub(crate) bucket: u32,
-    pub(crate) slot: usize,
 }

@@ -5,6 +5,7 @@
 //! (`SIDES`). Both use the same tests of nodes ([`traversal`](super::traversal)) and of buckets
 //! ([`bucket_pair`](super::bucket_pair)). In a node pair `(n, m)` n is of the first side and m of the last.
 
+use super::candidates::Candidates;
 use super::context::Context;
 use super::narrow_phase::NarrowPhase;
 use super::node_volumes::NodeVolumes;
@@ -99,6 +100,7 @@ pub(crate) struct SearchState {
     /// Tested pairs of buckets whose tight AABBs do not overlap, although the AABBs by which the traversal found them do.
     pub(crate) loose_pairs: usize,
     is_cancelled: bool,
+    pub(super) candidates: Candidates,
     pub(crate) counters: Counters,
 }
 

@@ -24,5 +24,5 @@ pub(crate) use discrete::DiscreteHits;
 pub use impact::Impact;
 pub(crate) use narrow_phase::NarrowPhase;
 pub(crate) use near::NearHits;
-pub(crate) use separating_axis::are_separated;
+pub(crate) use separating_axis::TrianglePairs;
 pub(crate) use swept::SweptHits;
