@@ -81,8 +81,8 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
     }
 
     /// Tests two packets whose boxes overlap (with one side, the second is not before the first), or one packet against itself.
-    /// `share_no_vertex`: the two packets share no vertex, so that all their triangle pairs count. Then neither masks nor vertex
-    /// classes are read, which are far apart in memory.
+    /// `share_no_vertex`: the two packets share no vertex and no groups apply, so that none of their triangle pairs is
+    /// adjacent. Then neither masks nor vertex classes, which are far apart in memory, are read.
     #[inline]
     fn test_packet_pair(&mut self, x: BucketLane, y: BucketLane, share_no_vertex: bool) {
         let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];

@@ -6,7 +6,8 @@ use glam::{Vec3A, Vec4};
 /// separates them at both ends. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
 #[inline]
 pub(crate) fn are_separated<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
-    // Only the time depends on this: an error that is infinite or NaN makes the slack so, too, and no gap is larger.
+    // This check only saves time: an error that is infinite or NaN makes the slack infinite or NaN, too, and no gap is
+    // larger.
     if with_mutant!(!error.is_finite(), InfiniteErrorTested, false) {
         return false;
     }
@@ -128,7 +129,7 @@ mod tests {
     /// The triangles have a common corner. Each is moved away from the other by the whole error bound, along the normal
     /// that makes the error largest; sums are rounded as well.
     #[test]
-    fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
+    fn touching_triangles_with_errors_of_the_whole_bound_are_not_separated() {
         let random = &mut Random(9);
         // The positions, the margins and the moved positions are exact in single precision.
         let grid = |x: DVec3| (x * 2.0_f64.powi(20)).round() / 2.0_f64.powi(20);
