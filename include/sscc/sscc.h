@@ -2,11 +2,11 @@
  * sscc: exact collision detection for deformable triangle meshes. C interface; C++ has sscc.hpp beside it.
  *
  * OUTCOMES. Functions return a status; sscc_error_message() has the details. If the status is not SSCC_STATUS_OK, no output was
- * written. Some functions return a count or a radius in place of a status. No panic of the library crosses the C interface.
+ * written. Some functions return a count, a radius or a text instead. No panic of the library crosses the C interface.
  *
  * HANDLES. sscc_X_new, _load, _compute and _clone return a handle, which the caller owns until sscc_X_free. Freeing NULL has no
  * effect. Using a handle after it was freed, or freeing it twice, is undefined behaviour; libraries with debug assertions refuse it
- * with SSCC_STATUS_HANDLE. Handles share the data from which they were made, so each can be freed at any time.
+ * with SSCC_STATUS_HANDLE. Handles share the data from which they were made, so they can be freed in any order.
  *
  * ARRAYS. They belong to the caller, have the stated length, and must not change during a call; the library does not use them
  * afterwards. Inputs may be the same array. An output must not overlap an input. NULL is refused unless the length is 0 or the
@@ -18,7 +18,8 @@
  *
  * CALLBACKS. They must return normally, without exceptions or longjmp. sscc.hpp catches exceptions and throws them again.
  *
- * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing.
+ * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing, except sscc_query_safe_scale and
+ * detectors that rebuild their hierarchy because its cost has grown.
  *
  * STABILITY. Within one SSCC_ABI_VERSION functions, constants and structs do not change; later versions of the library
  * add functions and constants, and fields at the end of structs that begin with their size. Programs need not be compiled again.
@@ -50,9 +51,10 @@ enum sscc_status
   SSCC_STATUS_NULL = 2,
   // A pointer is not a multiple of the size of the numbers to which it points.
   SSCC_STATUS_MISALIGNED = 3,
-  // Two arrays or two elements of a matrix overlap, or two handles that must differ are the same.
+  // Two arrays overlap, elements of a matrix overlap or are interleaved, or two handles that must differ are the same.
   SSCC_STATUS_OVERLAP = 4,
-  // An argument has the wrong length, is out of range or not finite.
+  // An argument is invalid, such as a wrong length or a number out of range; or the floating-point mode of the
+  // thread is not that of the proofs.
   SSCC_STATUS_ARGUMENT = 5,
   // The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
   SSCC_STATUS_HANDLE = 6,
@@ -62,7 +64,7 @@ enum sscc_status
   SSCC_STATUS_CAPACITY = 8,
   // The certificates are of another model.
   SSCC_STATUS_OTHER_MODEL = 9,
-  // More pairs collide than an answer can contain.
+  // There are more colliding pairs than an answer or certificates can contain, or too many pairs to ignore.
   SSCC_STATUS_TOO_MANY = 10,
   // A file cannot be read or written, or its content is malformed.
   SSCC_STATUS_FILE = 11,
@@ -133,8 +135,8 @@ enum sscc_neighbours
   SSCC_NEIGHBOURS_EXCLUDE = 0,
   // Pairs with exactly one common vertex count when they have another point in common.
   SSCC_NEIGHBOURS_INCLUDE_ONE_VERTEX = 1,
-  // Pairs with common vertices count when they have a common point other than these and the edges between them. This is for
-  // discrete queries of detectors only.
+  // Pairs with common vertices count when they have a common point other than these and the edges between them.
+  // Doubled faces always count. This is for discrete queries of detectors only.
   SSCC_NEIGHBOURS_INCLUDE_FOLDED = 2,
 };
 #ifndef __cplusplus
@@ -191,7 +193,8 @@ typedef struct sscc_certificates sscc_certificates;
 // A detector: finds the triangles of a mesh that collide at given positions. Repeated answers allocate nothing.
 typedef struct sscc_detector sscc_detector;
 
-// A kinetic query: answers as a query, and reuses its work while q moves in small steps. After a warm-up, answers allocate nothing.
+// A kinetic query: it gives the answers of a query, and reuses its work while q moves in small steps. After a warm-up,
+// answers allocate nothing.
 typedef struct sscc_kinetic sscc_kinetic;
 
 // A mesh with its modes. It never changes. Certificates and queries share it, and it may be freed before them.
@@ -223,7 +226,7 @@ typedef struct sscc_filter {
   const uint32_t *groups;
   // Number of triangles in `groups`.
   size_t groups_count;
-  // 1: pairs within one group do not count, which needs `groups`. 0: all pairs count.
+  // 1: pairs within one group do not count, which needs `groups`. 0: groups have no effect.
   int32_t between_groups_only;
   // One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
   int32_t weld;
@@ -239,7 +242,8 @@ typedef struct sscc_certify_options {
   size_t size;
   // Relative tolerance of the root's radius, in (0, 1); 0 means 0.1.
   double epsilon;
-  // The largest radius, in units of the paper's global radius, at least 1; 0 means 1.
+  // The largest radius, in units of the paper's global radius: finite, at least 1; 0 means 1. It has no effect with
+  // SSCC_SCHEME_PAPER.
   double reach;
   // The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
   const double *center;
@@ -255,17 +259,18 @@ typedef struct sscc_certify_options {
   size_t budget;
   // Memory of local certificates, in bytes for each triangle; 0 means 64.
   size_t local_budget;
-  // The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles.
+  // The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles,
+  // rounded up. If more pairs collide there, none is an exception, and nodes that contain one have radius 0.
   size_t max_exceptions;
   // Number of threads, of which at most 1024 are started; 0 means all cores. The certificates are the same for any number.
   size_t threads;
   // One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
   int32_t metric;
-  // One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. For the latter both budgets must be 0.
+  // One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With SSCC_SCHEME_PAPER both budgets must be 0.
   int32_t scheme;
   // 1: pairs that collide at rest never count, and neither do those within `ignore_rings` rings of them.
   int32_t ignore_rest;
-  // Rings around pairs that collide at rest.
+  // Rings around pairs that collide at rest. They have no effect if `ignore_rest` is 0.
   uint32_t ignore_rings;
 } sscc_certify_options;
 
@@ -275,9 +280,9 @@ typedef struct sscc_certify_options {
 // computation.
 typedef int (*sscc_progress_fn)(void *user, size_t done, size_t total);
 
-// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from threads of the
-// library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
-// handles of the computation or the query.
+// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from
+// threads of the library, never from two at a time; a query or a detector calls it from the thread of the call. It
+// must not throw, and must not free the handles of the computation, the query or the detector.
 typedef int (*sscc_cancel_fn)(void *user);
 
 // A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
@@ -297,7 +302,7 @@ typedef struct sscc_matrix {
   size_t column_stride;
 } sscc_matrix;
 
-// A matrix of 32-bit numbers of the caller, with the same strides as sscc_matrix. Faces are F x 3: vertices, counted from 0.
+// A matrix of 32-bit numbers of the caller, with strides as in sscc_matrix. Faces are F x 3: vertices, counted from 0.
 typedef struct sscc_index_matrix {
   // The first element.
   const uint32_t *data;
@@ -324,9 +329,10 @@ typedef struct sscc_impact {
 // Receives one pair of an answer. It returns another value than 0 to end the visit. It must not throw.
 typedef int (*sscc_visit_fn)(void *user, struct sscc_pair pair);
 
-// The cost of the last answer of a query or a detector.
+// The cost of the last answer of a query, a kinetic query or a detector, and the kind of its proof.
 typedef struct sscc_statistics {
-  // |z| of q about the centre, in the metric of the certificates; 0 for a detector.
+  // |z| about the centre, rounded up, in the metric of the certificates; for a continuous answer the larger one of
+  // start and end; 0 for a detector.
   double norm;
   // Nodes and node pairs that were opened.
   uint64_t opened;
@@ -389,8 +395,8 @@ sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
 // Threads: any, while no other call uses the certificates.
 sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
 
-// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite, the shape
-// is free at every q. 0 for NULL.
+// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite,
+// that holds at every q. 0 for NULL.
 //
 // Threads: any.
 double sscc_certificates_root_radius(const struct sscc_certificates *certificates);
@@ -400,8 +406,9 @@ double sscc_certificates_root_radius(const struct sscc_certificates *certificate
 // Threads: any.
 size_t sscc_certificates_exception_count(const struct sscc_certificates *certificates);
 
-// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
-// not count. The arrays are copied. Rest positions determine the hierarchy, and which vertices are welded.
+// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a
+// common vertex do not count. The arrays are copied. Rest positions determine the hierarchy and, with SSCC_WELD_ON,
+// which vertices are welded.
 //
 // Threads: any.
 sscc_status sscc_detector_new(struct sscc_matrix positions,
@@ -462,8 +469,9 @@ sscc_status sscc_detector_continuous(struct sscc_detector *detector,
                                      struct sscc_matrix x_t1,
                                      size_t *count);
 
-// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives their number.
-// `detector` stores the answer. `other` must be a different detector; for a mesh with itself, use a copy.
+// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives
+// their number. All such pairs count: the filters of the detectors have no effect. `detector` stores the answer.
+// `other` must be a different detector; for a mesh with itself, use a copy.
 //
 // Threads: one call at a time for each of both detectors.
 sscc_status sscc_detector_against(struct sscc_detector *detector,
@@ -706,8 +714,8 @@ sscc_status sscc_query_continuous(struct sscc_query *query,
                                   size_t rank,
                                   size_t *count);
 
-// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinite if no vertex
-// moves. It takes longer than an answer, and allocates.
+// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; 0 if the
+// shape collides at the centre, infinite if no vertex moves. It takes longer than an answer, and allocates.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_safe_scale(struct sscc_query *query,
@@ -771,9 +779,9 @@ sscc_status sscc_shape_place(struct sscc_shape *shape,
                              const struct sscc_pose *pose,
                              struct sscc_box *bounds);
 
-// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. `shape`
-// stores the answer. `bounds` is an AABB that contains all compared shapes, or NULL; it affects only the time. `other` must be
-// a different shape.
+// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number.
+// `shape` stores the answer. `bounds` is a finite AABB that contains all compared shapes, or NULL; it affects only the
+// time. `other` must be a different shape.
 //
 // Threads: one call at a time for each of both shapes.
 sscc_status sscc_shape_against(struct sscc_shape *shape,

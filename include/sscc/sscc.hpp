@@ -49,8 +49,8 @@ using index_matrix = sscc_index_matrix;
 
 namespace detail {
 
-// Whether the elements of a container are contiguous. Of the types of Eigen only vectors without a stride are contiguous; sscc::map
-// is for matrices, in any order of storage.
+// Whether a view accepts a container: its elements must be contiguous. Of the types of Eigen a view accepts only vectors without a
+// stride; sscc::map is for matrices, in any order of storage.
 template <class C, class = void>
 struct is_contiguous : std::true_type {};
 template <class C>
@@ -66,7 +66,7 @@ class view {
   constexpr view() noexcept = default;
   constexpr view(T* data, std::size_t size) noexcept : data_(data), size_(size) {}
   // Any container with data() and size(): std::vector, std::array, std::span, Eigen::VectorXd, a column of a column-major matrix.
-  // Not a row of such a matrix, and not a matrix: their elements are not contiguous.
+  // A row of such a matrix is refused, because its elements are not contiguous, and so is a matrix: use map().
   template <class C, class P = decltype(std::declval<C&>().data()),
             class = std::enable_if_t<std::is_convertible_v<P, T*> && !std::is_same_v<std::decay_t<C>, view> &&
                                      detail::is_contiguous<std::decay_t<C>>::value>>
@@ -104,7 +104,7 @@ inline index_matrix faces(view<const std::uint32_t> vertices) noexcept {
   return {vertices.data(), vertices.size() / 3, 3, 0, 0};
 }
 
-// Refers to a matrix, map or reference of Eigen without a copy, in any order of storage. It must outlive the call.
+// Refers to a matrix, map or reference of Eigen without a copy, in any order of storage. The matrix must outlive the call.
 template <class M>
 auto map(const M& m) noexcept {
   using scalar = std::remove_cv_t<std::remove_pointer_t<decltype(m.data())>>;
@@ -482,7 +482,8 @@ class certificates {
     return compute(m, options, std::forward<Progress>(progress), [] { return false; });
   }
 
-  // Calls progress(done, total), and cancel(), which is called often.
+  // Calls progress(done, total), and cancel(), which is called often. Each cancels if it throws or returns true. Threads of the
+  // library call them, one call at a time.
   template <class Progress, class Cancel>
   static returns<certificates> compute(const model& m, const certify_options& options, Progress&& progress,
                                        Cancel&& cancel) {
@@ -541,7 +542,8 @@ class query : public detail::searching<detail::query_api> {
     return detail::make<query, sscc_query>([&](auto out) { return sscc_query_clone(get(), out); });
   }
 
-  // Returns all colliding pairs at q, sorted. If there are none, the shape is proven free.
+  // Returns all colliding pairs at q, or `limit` of them if there are more, sorted. If none are found and the limit is not 0, the
+  // shape is proven free.
   returns<view<const pair>> discrete(view<const double> q,
                                      std::size_t limit = std::numeric_limits<std::size_t>::max()) {
     std::size_t count = 0;
@@ -564,7 +566,8 @@ class query : public detail::searching<detail::query_api> {
     return continuous_answer(s, count);
   }
 
-  // Returns the share of the way from the centre to q up to which the shape is proven free.
+  // Returns a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]. It can be larger than 1,
+  // and is infinite if no vertex moves.
   returns<double> safe_scale(view<const double> q) {
     double scale = 0.0;
     const status s = sscc_query_safe_scale(get(), q.data(), q.size(), &scale);

@@ -8,11 +8,11 @@ release mode first (``maturin develop --release``). Peers, where they are instal
 - libigl, constructions: `igl.copyleft.cgal.remesh_self_intersections(..., detect_only=True)`, CGAL's exact kernel.
 - libigl, predicates: `igl.predicates.find_self_intersections`, with Shewchuk's predicates.
 - CGAL: `CGAL_Polygon_mesh_processing.self_intersections` (``pip install cgal``), for manifold meshes. Its polyhedron is
-  built before, because Python builds it vertex by vertex.
+  built before the timed call, because Python builds it vertex by vertex.
 
 All run in one process, one after the other in each repetition. The table has medians, and the time of each peer as a
-multiple of that of sscc. An answer with other pairs is marked: libigl and CGAL omit contacts at coincident vertices, so
-these are joined before, by position and influences.
+multiple of that of sscc. An answer with other pairs is marked. libigl and CGAL omit contacts at coincident vertices.
+Therefore vertices of characters that have equal positions and influences are joined first.
 """
 
 from __future__ import annotations

@@ -145,7 +145,7 @@ pub fn pairs_of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Pair>> {
 /// Returns the answer of a pickled form.
 ///
 /// # Errors
-/// If the bytes are not a whole number of pairs, or the proof has another number.
+/// If the bytes are not a whole number of pairs, or the number of the proof is not known.
 pub fn unpickled((bytes, norm, cost): &PickledAnswer<'_>) -> PyResult<sscc::Answer> {
     let (proof, complete, opened, box_tests, triangle_tests) = *cost;
     let Some(&proof) = PROOFS.get(usize::from(proof)) else {

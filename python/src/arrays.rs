@@ -1,4 +1,5 @@
-//! Conversion of arrays. Input: any memory order, byte order and numeric type, or lists of numbers. Output: read-only.
+//! Conversion of arrays. Input: floats of at most 64 bits and integers in any memory and byte order, or lists of
+//! numbers. Output: arrays that an object keeps are read-only ([`cached`], [`frozen`]); others are copies.
 //!
 //! Other threads may write to an array at any time, even while this thread holds the GIL, since NumPy releases it in
 //! long loops. So each entry is copied first, and decisions use the copy.
@@ -163,7 +164,7 @@ fn is_empty(array: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(array.getattr("size")?.extract::<usize>()? == 0)
 }
 
-/// Refuses integers that a float64 cannot hold exactly.
+/// Refuses integers beyond 2^53, which a float64 may not hold exactly.
 fn check_exact(array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
     if is_empty(array)? {
         return Ok(());

@@ -16,7 +16,7 @@ use crate::pool::{self, Pool};
 #[pyclass(frozen, module = "sscc", name = "Batch")]
 pub struct Batch {
     pub answers: Vec<sscc::Answer>,
-    /// The arrays of the getters, in their order below.
+    /// The arrays of the getters, each at the number that its getter has below.
     arrays: [CachedArray; 10],
 }
 

@@ -43,7 +43,7 @@ impl Certificates {
         &self.pool.certified.certificates
     }
 
-    /// Whether the root's certificate alone answers the query. Releasing the GIL would then cost more than the query.
+    /// Whether the root's radius alone answers the query. Releasing the GIL would then cost more than the query.
     #[inline]
     fn is_quick(&self, q: &[f64]) -> bool {
         let core = self.core();

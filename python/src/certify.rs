@@ -127,7 +127,8 @@ pub fn certify(
     Ok(Certificates { model: model.clone().unbind(), pool: Arc::new(pool) })
 }
 
-/// Returns the number of rings around pairs that collide at rest. `True` means 0: these pairs only.
+/// Returns the number of rings around pairs that collide at rest. `True` means 0: these pairs only. `None` for `False`
+/// and for an absent argument: no pair is ignored.
 pub fn rest_rings(typed: Option<&Bound<'_, PyAny>>) -> PyResult<Option<u32>> {
     if let Some(Ok(is_ignored)) = typed.map(|typed| typed.extract::<bool>()) {
         return Ok(is_ignored.then_some(0));

@@ -34,7 +34,8 @@ impl CollidingTriangles {
         Self { numbers, faces, corners }
     }
 
-    /// Returns the index of a triangle, which is its number in [`Self::mesh`].
+    /// Returns the index of a triangle, which is its number in [`Self::mesh`]; None if it is not one of these
+    /// triangles.
     pub fn place(&self, triangle: u32) -> Option<u32> {
         self.numbers.binary_search(&triangle).ok().map(|place| place as u32)
     }
@@ -84,7 +85,7 @@ impl CollidingTriangles {
     /// Returns the triangles of a pickled form.
     ///
     /// # Errors
-    /// If the bytes do not have this form.
+    /// If the bytes do not have this form, the numbers do not ascend, or a position is out of range.
     pub fn from_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<Self> {
         let damaged = || value("the pickled answer is damaged: its bytes are not those of triangles");
         let (records, []) = bytes.as_bytes().as_chunks::<RECORD>() else { return Err(damaged()) };

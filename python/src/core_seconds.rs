@@ -9,7 +9,8 @@ use crate::batch::{entries, rows};
 use crate::certificates::Certificates;
 use crate::errors::refused;
 
-/// Returns the time (s) of the core for the rows of Q: as one batch, and for each row as a single query.
+/// Returns the time (s) of the core for the rows of Q: as one batch, and, if `one_by_one`, for each row as a single
+/// query.
 #[pyfunction]
 #[pyo3(signature = (certificates, Q, threads, one_by_one=true))]
 #[allow(non_snake_case)]

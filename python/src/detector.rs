@@ -49,7 +49,7 @@ impl Detector {
         self.pool.built(&positions.points, positions.name)
     }
 
-    /// Adds the triangles of the pairs at these positions.
+    /// Returns the answer with the triangles of its pairs at these positions.
     fn found(&self, frame: Answer, positions: &[DVec3]) -> FoundFrame {
         FoundFrame::of(frame, |pairs| Contacts::within((&self.pool.mesh.faces, positions), pairs))
     }

@@ -48,7 +48,7 @@ impl FoundFrame {
     /// Returns the answer of a pickled form.
     ///
     /// # Errors
-    /// If the bytes are damaged.
+    /// If the bytes are damaged, or there are pairs without triangles or the reverse.
     pub fn unpickled((frame, contacts): &PickledAnswer<'_>) -> PyResult<Self> {
         let contacts = contacts.as_ref().map(Contacts::unpickled).transpose()?.map(Arc::new);
         let frame = unpickled(frame)?;
@@ -129,7 +129,7 @@ impl DetectorAnswer {
         let curves = match &self.found.contacts {
             Some(contacts) => {
                 let (contacts, pairs) = (Arc::clone(contacts), self.found.frame.pairs.clone());
-                // The work runs on another thread, because nothing can cancel it.
+                // Nothing can cancel this work. It runs on another thread, so that Ctrl-C need not wait for its end.
                 let silent = PyBool::new(py, false).to_owned().into_any();
                 run(py, Some(&silent), "", move |_| contacts.curves(&pairs))??
             }

@@ -21,7 +21,8 @@ pub fn kind(message: impl Into<String>) -> PyErr {
     PyTypeError::new_err(message.into())
 }
 
-/// Converts an error of the core. `name`, such as `q1` or `Q[5]`, replaces "q" in its message.
+/// Converts an error of the core. `name`, such as `q1` or `Q[5]`, replaces "q" in the message of an error of
+/// coordinates, and precedes any other message except that of a cancellation.
 pub fn refused(error: &Error, name: &str) -> PyErr {
     let message = error.to_string();
     match error {

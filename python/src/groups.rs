@@ -60,7 +60,7 @@ pub fn ignored_pairs(groups: &TriangleGroups) -> Vec<Pair> {
     pairs.filter(|(g, h)| table.listed.binary_search(&[*g as u16, *h as u16]).is_err()).collect()
 }
 
-/// Copies group numbers. The core refuses numbers that are too large.
+/// Copies group numbers. It refuses numbers that do not fit into 32 bits; the core refuses numbers above 65535.
 fn copied(numbers: &[i64], name: &str) -> PyResult<Vec<u32>> {
     let number = |number: &i64| {
         u32::try_from(*number).map_err(|_| {

@@ -31,7 +31,7 @@ struct SignalChecks {
     raised: Option<PyErr>,
 }
 
-/// Cancels a query on the thread that Python called, as soon as a signal handler raises an exception.
+/// Cancels a query on the thread that Python called, after a signal handler has raised an exception.
 pub fn signals() -> &'static CancelToken {
     static TOKEN: LazyLock<CancelToken> = LazyLock::new(|| CancelToken::when(has_raised));
     &TOKEN
@@ -111,8 +111,9 @@ impl Reporter {
         result
     }
 
-    /// Waits for work on another thread. An exception of a signal handler or of the reporting function cancels the work
-    /// and is the error, at the latest `max_wait` after the cancellation. `None` if the work ended without a result.
+    /// Waits for work on another thread. An exception of a signal handler or of the reporting function cancels the
+    /// work. Then the exception is the error, which is returned at the end of the work, or after `max_wait` if that is
+    /// earlier. `None` if the work ended without a result.
     fn wait<T>(&self, waiting: &Receiver<T>, monitor: &Monitor, max_wait: Duration) -> PyResult<Option<T>> {
         let (mut raised, mut reported, mut left) = (None, 0.0, max_wait);
         loop {

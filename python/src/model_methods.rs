@@ -137,7 +137,7 @@ impl Model {
         table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
     }
 
-    /// Returns the q of a load.
+    /// Returns the q of forces on the vertices and of gravity.
     #[pyo3(name = "static", signature = (forces, *, gravity=None))]
     fn static_configuration<'py>(
         &self,

@@ -140,8 +140,9 @@ pub fn _polynomial(
 struct BodyOptions {
     rank: Option<usize>,
     material: PartialMaterial,
-    /// Fixed vertices, and a box in which all vertices are fixed.
+    /// Fixed vertices.
     fixed: Vec<u32>,
+    /// A box in which all vertices are fixed, too, as two corners.
     fixed_box: Option<[DVec3; 2]>,
     resolution: Option<usize>,
 }

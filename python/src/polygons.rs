@@ -8,7 +8,8 @@ use crate::arrays::{floats, integers, table};
 use crate::errors::value;
 use crate::model::points;
 
-/// Returns the triangles of polygons, (F, 3), and warnings. `place` names the mesh in errors.
+/// Returns the triangles of polygons, (F, 3), and warnings. `place` names the mesh in warnings and in errors of the
+/// polygons.
 #[pyfunction]
 pub fn _triangulated<'py>(
     py: Python<'py>,

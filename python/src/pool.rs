@@ -91,7 +91,8 @@ pub fn threads(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<usize>> {
     crate::arguments::count(threads, "threads", 1..=1024)
 }
 
-/// Runs work on this number of threads (`None` means all cores), in its own pool: a forked process cannot use the global pool.
+/// Runs work on this number of threads (`None` means all cores), in its own pool: a forked process cannot use the
+/// global pool. If the threads cannot be started, the work uses the global pool.
 pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
         Ok(pool) => pool.install(work),

@@ -25,13 +25,14 @@ impl NamedPositions {
         Ok(Self { name, points: points(&floats(any, name)?, name)? })
     }
 
-    /// Returns the exception if these positions are not of a mesh of `vertices` vertices, or out of range.
+    /// Returns the exception if these positions are not of a mesh of `vertices` vertices, or are out of range; else
+    /// `None`.
     pub fn fault(&self, vertices: usize) -> Option<PyErr> {
         fault(&self.points, vertices).map(|error| refused(&error, self.name))
     }
 }
 
-/// Returns the first reason why the core refuses positions.
+/// Returns the first reason why the core refuses positions; `None` if it accepts them.
 pub fn fault(positions: &[DVec3], vertices: usize) -> Option<Error> {
     if positions.len() != vertices {
         return Some(Error::PositionCount { found: positions.len(), vertices });
@@ -103,7 +104,8 @@ impl Weld {
     }
 }
 
-/// Returns the filter of the arguments `neighbours` and `ignored`, for a mesh of this number of faces.
+/// Returns the filter of the arguments `neighbours` and `ignored`, for a mesh of this number of faces. It welds equal
+/// positions if `weld` is [`Weld::ByPosition`].
 pub fn contact_filter(
     neighbours: Option<&Bound<'_, PyAny>>,
     weld: &Weld,

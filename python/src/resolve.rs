@@ -24,7 +24,7 @@ fn options(
     Ok(ResolveOptions::default().start(start).all(switch(all, "all")?.unwrap_or(false)))
 }
 
-/// Returns an error that names the argument at fault: the start if it collides, else the configuration.
+/// Returns an error that names the argument at fault: the start if it collides, else the argument `name`.
 fn refused_search(error: &Error, name: &str) -> PyErr {
     if *error == Error::ResolveStart { value(format!("start: {error}")) } else { refused(error, name) }
 }

@@ -21,7 +21,7 @@ use crate::interrupt::run_borrowing;
 use crate::pool;
 use crate::watching::Watching;
 
-/// Times per second, if neither this rate nor times are given.
+/// Times per second, if neither a rate nor times are given.
 const RATE: f64 = 30.0;
 
 /// A node: its number and name, the name of its mesh, its vertices and triangles.
@@ -91,7 +91,7 @@ fn times_of(
     let rate = number(fps, "fps")?;
     match (animation, times, rate) {
         (None, None, None) => Ok(Times::List(vec![0.0])),
-        (None, ..) => Err(value("times and fps are those of an animation: give one")),
+        (None, ..) => Err(value("times and fps are those of an animation: give an animation")),
         (_, Some(_), Some(_)) => Err(value("give times or fps, not both")),
         (_, Some(times), None) => Ok(Times::List(vector(times, "times")?)),
         (_, None, rate) => Ok(Times::PerSecond(rate.unwrap_or(RATE))),

@@ -1,4 +1,4 @@
-//! The core's part of `sscc.batch`: jobs of one large model, and queries in chunks.
+//! The part of `sscc.batch` in Rust: jobs of one large model, and batches of queries.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

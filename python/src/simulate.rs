@@ -12,7 +12,7 @@ use crate::interrupt::run_borrowing;
 use crate::pool;
 use crate::watching::Watching;
 
-/// Simulates a scene; returns its summary (JSON), the folder and the files in it.
+/// Simulates a scene; returns its summary (JSON), the folder of the results, and the written files.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _simulate(

@@ -92,7 +92,7 @@ impl<'py> SweepArguments<'_, 'py> {
         PyList::new(py, made.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// Returns the q at the start, and the range of each mode to sweep.
+    /// Returns the q at the start, and the modes to sweep with their ranges.
     fn ways(&self, pool: &Pool) -> PyResult<(Vec<f64>, Vec<ModeRange>)> {
         let certified = &pool.certified;
         let (loaded, center) = (&*certified.loaded, certified.certificates.center());

@@ -18,9 +18,10 @@ class Resolved(NamedTuple):
     q: NDArray[np.float64] | None
     """The free q (r,), which is the given q if that is free. None if none was found."""
     change: float
-    """Its distance from the given q in the metric, ``|S (resolved q - q)|``; infinite if none was found."""
+    """The distance of the free q from the given q in the metric, ``|S (free q - q)|``; infinite if none was found."""
     safe_scale_change: float
-    """The distance of the last free q on the line from the start to the given q; 0 if the given q is free."""
+    """The distance from the given q to the last free q on the line from the start to it; 0 if the given q is free, infinite if no
+    free q was found."""
 
     def __repr__(self) -> str:
         if self.q is None:
@@ -38,9 +39,9 @@ class FreeSamples(NamedTuple):
     q: NDArray[np.float64]
     """The free configurations (n, r), in the order of their draws."""
     draws: NDArray[np.int64]
-    """The row of the draw of each (n,)."""
+    """The row in the draws of each free configuration (n,)."""
     changes: NDArray[np.float64]
-    """The distance of each from its draw in the metric (n,): 0 where the draw was free."""
+    """The distance of each free configuration from its draw, in the metric (n,): 0 where the draw was free."""
     drawn: int
     """Number of draws."""
     free: int

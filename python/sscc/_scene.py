@@ -55,7 +55,7 @@ class SceneAnswer:
     """The number of the second node; None for the mesh of ``node`` with itself."""
     against_node_name: str | None
     index: int
-    """The number of the time; for continuous queries, of the time at the start."""
+    """The number of the time, counted from 0; for continuous queries, of the time at the start."""
     time: float | None
     """The time (s); None for the scene as it is stored."""
     pairs: NDArray[np.uint32]
@@ -182,7 +182,8 @@ class Scene:
         times: ArrayLike | None = None,
         fps: float | None = None,
     ) -> NDArray[np.float64]:
-        """Returns the positions of a node's mesh at each time, as a player shows them: (T, V, 3)."""
+        """Returns the positions of a node's mesh at each time, as a player shows them: (T, V, 3). ``times`` and ``fps`` are as in
+        ``check``. Raises FileNotFoundError, OSError, ValueError, TypeError."""
         return _scene_positions(self.path, _name(node, "node"), _name(animation, "animation"), times, fps)
 
 

@@ -30,7 +30,7 @@ def key(task: str, *parts: bytes) -> bytes:
 
 
 def options_bytes(options: Mapping[str, object]) -> bytes:
-    """Returns options as bytes. Equal values have equal bytes."""
+    """Returns options as bytes. Equal values of equal types have equal bytes."""
     written = b""
     for name, value in sorted(options.items()):
         if isinstance(value, (np.ndarray, list, tuple)):
@@ -57,6 +57,6 @@ def unseal(key: bytes, sealed: bytes) -> bytes:
     if found != key:
         raise ValueError(
             f"a result belongs to another model, other options or another build of sscc (this process has {_build()}): "
-            "install the same version on all machines"
+            "use the same model, options and version on all machines"
         )
     return content

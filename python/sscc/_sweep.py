@@ -24,7 +24,8 @@ class Sweep(NamedTuple):
     first_free: float | None
     """The shape is proven free at every weight from ``start`` to this one. None if it collides at ``start``."""
     first_hit: float | None
-    """The first weight at which the shape collides, at most 1e-9 of the range beyond ``first_free``. None if none was found."""
+    """A weight at which the shape collides: without a note, the first one, at most 1e-9 of the range beyond ``first_free``.
+    With a note it is ``start``, a weight with a grazing contact, or a collision farther away. None if none was found."""
     pairs: NDArray[np.uint32]
     """The pairs that collide at ``first_hit``: (n, 2), i < j, sorted, read-only."""
     note: str | None
@@ -55,13 +56,16 @@ class Interval(NamedTuple):
     end: float
     """The last weight of the interval."""
     free_until: float | None
-    """The shape is proven free up to this weight. None if the interval begins at the end of the range."""
+    """The shape is proven free up to this weight, from the interval before or the lower end of the range. None if the interval
+    begins at that end."""
     free_from: float | None
-    """The shape is proven free from this weight. None if the interval ends at the end of the range."""
+    """The shape is proven free from this weight on, up to the next interval. None if the interval ends at the upper end of the
+    range."""
     exact: bool
-    """Whether the shape collides at ``start`` and ``end``, which are within 1e-9 of a sweep's range from the free weights."""
+    """Whether the shape collides at ``start`` and ``end``, which are then at most 1e-9 of a sweep's range from the free weights
+    beside them. Otherwise nothing is proven beyond the free weights."""
     pairs: int
-    """The maximum number of pairs that collide at a sample or an end."""
+    """The maximum number of pairs that collide at a sample inside, at an end, or at a collision found beyond an inexact end."""
     depth: float
     """The largest penetration depth of a pair (model unit)."""
     deepest: float
@@ -84,7 +88,8 @@ class Intervals(NamedTuple):
     end: float
     """The largest weight."""
     intervals: list[Interval]
-    """The intervals in ascending order. Every weight outside of them is proven free."""
+    """The intervals in ascending order. The shape is proven free outside of them, up to their ``free_until`` and from their
+    ``free_from`` on."""
     samples: NDArray[np.float64]
     """Weight, number of pairs and largest penetration depth of each sample: (n, 3), read-only."""
 

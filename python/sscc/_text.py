@@ -12,7 +12,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def number(value: float) -> str:
-    """Returns a number with four digits."""
+    """Returns a number with four significant digits."""
     return f"{value:.4g}"
 
 

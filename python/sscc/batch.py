@@ -72,7 +72,8 @@ def certify(
 
     models: models or files, or a mapping from names to them. Without a mapping, the name of a file is its path, and the
         name of a model its index (``models[3]``). The client reads a file when a worker can take it.
-    progress, options: as in ``Model.certify``; the same for all models. ``threads`` is 1 by default.
+    progress, options: as in ``Model.certify``, without ``clearance`` and ``rings``; the same for all models. ``threads`` is 1 by
+        default.
 
     The error of a model that cannot be read or certified is in ``failures``; the other models are certified.
     """
@@ -136,8 +137,9 @@ def certify_in_shards(
     The work has a few dozen stages. Each worker process prepares the model once.
 
     shards: largest number of jobs of one stage. None means four for each thread of the workers. A job uses one thread. The
-        certificates do not depend on it.
-    progress, options: as in ``Model.certify``; ``threads`` is the number of threads of the client.
+        certificates do not depend on the number of jobs.
+    progress, options: as in ``Model.certify``, without ``clearance`` and ``rings``; ``threads`` is the number of threads of the
+        client.
     """
     _check_client(client)
     if not isinstance(model, Model):

@@ -2,7 +2,8 @@
 
 A ``source`` is a file or a surface as ``(vertices, faces)``: (V, 3) numbers and (F, 3) integers. Files are
 triangle meshes (OBJ, PLY, OFF, STL) or solids of tetrahedra and cubes (Medit ``.mesh``, VegaFEM ``.veg``, gmsh
-``.msh``, TetGen ``.node``, ``.ele``). A surface must be closed; its solid is a lattice of cubes around it.
+``.msh``, TetGen ``.node``, ``.ele``, VTK ``.vtu``, ``.vtk``). A surface must be closed and must not meet itself, except for
+polynomial modes without a solid; its solid is a lattice of cubes around it.
 
 Common arguments:
 
@@ -14,7 +15,7 @@ Common arguments:
 
 ``skinning`` returns modes, not a model: the modes of linear blend skinning.
 
-All raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
+All functions raise ValueError, TypeError, FileNotFoundError or OSError with a message that names the argument or the file.
 """
 
 from __future__ import annotations
@@ -87,8 +88,8 @@ def polynomial(
 ) -> Model:
     """Returns a model with the 24 quadratic polynomials of the rest position without rigid motions.
 
-    Modes of a surface need no volume, and its metric is the displacement metric. With ``solid=True``, a ``resolution`` or a
-    material, and for solids in files, the model has the stiffness and the forces of the body, and the metric is its
+    For a surface the modes need no volume, and the metric is the displacement metric. With ``solid=True``, a ``resolution`` or a
+    material, and for solids in files, the model has the stiffness and the forces of the body, and the metric is the body's
     strain energy.
     """
     material = (youngs, poisson, density)

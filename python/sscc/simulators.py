@@ -6,8 +6,8 @@ The vertices of a model are all vertices of the body, with the simulator's numbe
 - ``from_simplicits``: bodies of Simplicits (NVIDIA Kaolin), moved by handles.
 - ``from_sofa``: modes of SOFA's plugin ModelOrderReduction.
 
-Only ``from_mujoco`` needs its simulator: the other functions take arrays. All raise ValueError or TypeError with a message that
-names the argument.
+Only ``from_mujoco`` needs its simulator: the other functions take arrays, or files of numbers. All raise ValueError or TypeError
+with a message that names the argument or the file; a file that cannot be read raises FileNotFoundError or OSError.
 """
 
 from __future__ import annotations

@@ -22,11 +22,11 @@ class UsdMesh(NamedTuple):
     name: str
     """The path of its prim."""
     faces: NDArray[np.uint32]
-    """Triangles (F, 3). Polygons are cut as in OBJ files."""
+    """Triangles (F, 3). Polygons are triangulated as in OBJ files."""
     frames: NDArray[np.float64]
     """Positions in the coordinates of the stage, (T, V, 3)."""
     times: NDArray[np.float64]
-    """The time of each frame (s); only 0 for a mesh that does not move."""
+    """The time of each frame (s); only 0 for a mesh without time samples."""
 
     def __repr__(self) -> str:
         sizes = f"{counted(len(self.faces), 'triangle')}, {counted(len(self.times), 'frame')}"
@@ -34,18 +34,20 @@ class UsdMesh(NamedTuple):
 
 
 def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
-    """Returns the mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which it has a sample.
+    """Returns the mesh of a USD file (``.usd``, ``.usda``, ``.usdc``, ``.usdz``) at every time at which its points or
+    its transforms have a sample.
 
     prim: the path of a prim of type Mesh. None means the only one.
 
-    Skins and instances are evaluated, instances of a PointInstancer are not. A subdivision surface is replaced by its control
-    mesh. Alembic files can be read if the installed USD has the plugin for them.
+    Skins and instances are evaluated. Instances of a PointInstancer are not: a warning names it. A subdivision surface
+    is replaced by its control mesh. Alembic files can be read if the installed USD has the plugin for them.
 
     >>> mesh = sscc.from_usd("cloth.usda")
     >>> sscc.Detector(mesh.faces, mesh.frames[0]).check_many(mesh.frames).colliding
 
     ``numpy.save("frames.npy", mesh.frames)`` writes the file for ``sscc check --frames``. Raises ImportError without the package
-    usd-core, FileNotFoundError, ValueError.
+    usd-core, OSError (such as FileNotFoundError) if the file cannot be opened, and ValueError for a
+    malformed file, for a mesh that is missing or not unique, and for faces that change over time.
     """
     try:
         from pxr import Usd, UsdGeom, UsdSkel
@@ -125,7 +127,7 @@ def _mesh(place: str, name: str, mesh: Any, per_second: float) -> UsdMesh:
 
 
 def _triangles(place: str, counts: Any, corners: Any, rest: NDArray[np.float64]) -> NDArray[np.uint32]:
-    """Returns the triangles of polygons, cut as by all readers of the package."""
+    """Returns the triangles of polygons, as all readers of the package triangulate them."""
     counts, corners = (np.asarray(() if found is None else found, dtype=np.int64) for found in (counts, corners))
     faces, warnings = _triangulated(place, counts, corners, rest)
     for text in warnings:

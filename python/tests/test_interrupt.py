@@ -35,7 +35,7 @@ def large() -> sscc.Model:
 
 @pytest.fixture(scope="module")
 def medium() -> sscc.Model:
-    """Returns a torus of 12,800 triangles: its certificates take seconds."""
+    """Returns a torus of 12,768 triangles: its certificates take seconds."""
     return sscc.Model(*torus(112, 57, 12))
 
 
@@ -47,7 +47,7 @@ def one_point() -> sscc.Certificates:
 
 
 def seconds_until_stopped(work: Callable[[], object], after: float = 0.3) -> float:
-    """Presses Ctrl-C during the work, and returns the time until it stops (s)."""
+    """Presses Ctrl-C during the work, and returns the processor time until it stops (s)."""
     pressed = []
 
     def press() -> None:

@@ -11,7 +11,10 @@ export function vibrationName(app: App, mode: number): string {
     return `vibrating ${app.shape.modeName(mode)}`;
 }
 
-/** Vibrates a mode about its centre; a morph target between the ends of its range. */
+/**
+ * Vibrates a mode about its centre. The amplitude is the displayed distance from the centre, or a default if that is small.
+ * A mode whose range begins or ends at its centre, as that of a morph target, moves to one side of the centre only.
+ */
 export function vibrate(app: App, mode: number): void {
     const name = vibrationName(app, mode);
     if (app.motion.name === name) {
@@ -67,7 +70,7 @@ export async function toFirstCollision(app: App, direction: number[], name: stri
         return;
     }
     app.say(`first self-collision along ${name} at ${digits(first.scale)}; ${proven}`);
-    // A person has moved the shape meanwhile: it stays as it is.
+    // If a person has moved the shape meanwhile, it stays as it is.
     if (app.pose.serial !== serial) return;
     const { center } = app.shape.model;
     const seconds = 1.4;

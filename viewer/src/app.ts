@@ -12,13 +12,13 @@ import type { Stage } from "./stage";
 export interface RecordedFrame {
     /** Number of colliding pairs; null if unknown. */
     pairs: number | null;
-    /** The largest number in one step since the previous frame. */
+    /** The largest number of colliding pairs in one step between the previous frame and this one. */
     since: number;
     /** The pairs that were not tested: ", apart from ...", or nothing. */
     apart: string;
     /**
-     * Of a continuous check, whose pairs are those of the step to the next frame: the earliest time of impact (0 to 1),
-     * null without pairs.
+     * The earliest time of impact (0 to 1) in a frame of a continuous check, null without pairs; undefined in other recordings.
+     * The pairs of a continuous check are those of the step to the next frame.
      */
     impact?: number | null | undefined;
     /** Whether it is the last frame of a continuous check: no step follows. */
@@ -36,7 +36,7 @@ export interface App {
     readonly checker: Checker | null;
     /** Null where WebGL is missing. */
     readonly stage: Stage | null;
-    /** The shape that the modes move; null while several bodies play, or without a stage. */
+    /** The shape that the modes move; null without a stage, and while a recording is displayed that has bodies of its own. */
     body: Body | null;
     /** The pair chosen in the list of collisions. */
     chosen: [number, number] | null;
@@ -50,7 +50,7 @@ export interface App {
     say(message: string, wrong?: boolean): void;
 }
 
-/** Runs an action of a person; an error is shown in one line. */
+/** Runs an action that a person started, and shows its error in one line. */
 export async function attempt(app: App, work: () => Promise<void>): Promise<void> {
     try {
         await work();

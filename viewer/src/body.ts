@@ -144,7 +144,7 @@ export class Body {
         uniforms.stripe.value = 9 * pixels;
     }
 
-    /** Cuts away what hides a disc of the world from the eye (middle and radius); radius 0: nothing. */
+    /** Cuts away the parts that hide a disc from the eye. `cut`: middle and radius of the disc in the world; radius 0: no cut. */
     setCut(cut: THREE.Vector4): void {
         this.material.uniforms.cut.value.copy(cut);
     }
@@ -244,7 +244,7 @@ export class Body {
         this.hidden.dispose();
     }
 
-    /** Places every vertex of the only instance. */
+    /** Sets the positions of the vertices, which all instances share. On the graphics card, U q is added to them. */
     place(positions: Float32Array): void {
         const attribute = this.geometry.getAttribute("position") as THREE.BufferAttribute;
         const { source } = this;

@@ -6,7 +6,7 @@ export interface Contact {
     /** The body of each triangle. */
     bodies: [number, number];
     pair: [number, number];
-    /** Time of impact in the step after the frame, from 0 to 1; null of a frame by itself. */
+    /** Time of impact in the step after the frame, from 0 to 1; null if the frame is checked by itself. */
     time: number | null;
 }
 
@@ -65,7 +65,7 @@ export class Contacts {
         return found;
     }
 
-    /** The earliest time of impact; null without pairs, undefined of frames by themselves. */
+    /** The earliest time of impact; null without pairs, undefined if frames are checked by themselves. */
     impact(frame: number): number | null | undefined {
         if (!this.times) return undefined;
         const [from, to] = [this.range(frame, 0)[0], this.range(frame, this.bodies - 1)[1]];

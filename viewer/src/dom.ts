@@ -31,7 +31,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(
     return element;
 }
 
-/** A number with `n` significant digits. */
+/** A number with `n` significant digits, or with all digits of its integer part if these are more; infinite for null. */
 export function digits(value: number | null | undefined, n = 4): string {
     if (value === null || value === undefined) return "infinite";
     if (!Number.isFinite(value)) return String(value);

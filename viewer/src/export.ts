@@ -27,7 +27,7 @@ export function track(app: App): { q: number[][]; times: number[] } {
     return { q: rows, times };
 }
 
-/** Saves the recording if it is displayed, else the last motion. A report writes the file itself. */
+/** Saves the recording if it is displayed, else the last motion. Where there is a server, it writes the file of a motion. */
 export async function exportGlb(app: App, recorded: { bodies: MovingBody[]; times: number[] } | null): Promise<void> {
     const { q, times } = track(app);
     const given = recorded?.bodies.some((body) => body.positions !== null) ?? false;

@@ -14,7 +14,7 @@ export interface Ball {
 const SAMPLES = 24;
 /** Balls larger than this multiple of the median do not count: bodies that scatter would make the view too large. */
 const LARGEST = 2;
-/** The view follows the bodies when their middle is farther from its own, as a share of the radius. */
+/** The view follows the bodies when their middle is farther than this from the middle of the view, as a share of its radius. */
 const SLACK = 0.3;
 
 export class Framing {
@@ -23,7 +23,7 @@ export class Framing {
     readonly flight: { length: number; middle: THREE.Vector3 };
     private readonly at: THREE.Vector3;
 
-    /** `ball`: of a frame; null if it is empty. */
+    /** `ball` returns a ball around the bodies in a frame; null if there are none. */
     constructor(
         frames: number,
         private readonly ball: (frame: number) => Ball | null,

@@ -27,7 +27,7 @@ export function verdict(app: App): Verdict {
         return { kind: "free", text: `free${step} (as recorded)${recorded.apart}` };
     }
     const { root, tests } = app.shape.model.free ?? EARLIER;
-    // Decided in the frame that draws the shape. The answer agrees, and adds the cost of the query.
+    // This is decided in the frame that draws the shape. The answer agrees, and adds the cost of the query.
     if (app.shape.isRootCertified(pose.q)) return { kind: "root", text: root };
     if (!checker) return { kind: "unknown", text: "not checked: this is a report" };
     if (checker.error) return { kind: "unknown", text: "unknown: no answer" };
@@ -46,7 +46,7 @@ export function sinceText(since: number): string {
     return since > 0 ? `collided between frames: at most ${count(since, "pair")} in one step` : "";
 }
 
-/** The ratio of |z| to the root's radius: percent up to twice the radius, beyond it a multiple. */
+/** The ratio of |z| to the root's radius: in percent below twice the radius, else as a multiple. */
 function shareText(share: number): string {
     if (share < 2) return `${(100 * share).toFixed(1)}%`;
     if (!Number.isFinite(share)) return "beyond any multiple";

@@ -1,7 +1,8 @@
 /**
- * Writes a motion as GLB, with rigid motions on the nodes. Of meshes, each frame but the first is a morph target. Else the morph targets are the modes that move, scaled to their
- * range; a first target with the weight 1 has the lower ends of all ranges. So all weights are in [0, 1], and programs
- * that clamp weights there, as Blender does, show every vertex at its position.
+ * Writes a motion as GLB, with rigid motions on the nodes. If a body has given positions, each frame but the first is a
+ * morph target. Otherwise the morph targets are the modes that move, scaled to their range, and a first target with the
+ * weight 1 has the lower ends of all ranges. So all weights are in [0, 1], and programs that clamp weights to this
+ * interval, as Blender does, show every vertex at its position.
  */
 import type { Shape } from "./shape";
 
@@ -62,7 +63,7 @@ function extent(array: Float32Array | Uint32Array, size: number): { min: number[
     return { min, max };
 }
 
-/** How a mesh moves by morph targets. */
+/** The morph targets of a mesh, and their weights. */
 interface Morphs {
     base: Float32Array;
     targets(): { name: string; moves: Float32Array }[];

@@ -48,7 +48,10 @@ function thinned(samples: Intervals["samples"]): Intervals["samples"] {
     return kept;
 }
 
-/** The marks of one mode along its slider: where it collides, and the depth at each sample. A click shows the deepest weight. */
+/**
+ * The marks of one mode along its slider: where it collides, and the depth at each sample. A click on an interval shows its
+ * weight with the largest depth.
+ */
 function marks(app: App, mode: number, found: Intervals, base: Float64Array): HTMLElement {
     const [low, high] = app.shape.range(mode);
     const x = (weight: number): number => (WIDTH * (weight - low)) / (high - low);

@@ -3,7 +3,10 @@ import { type App, attempt } from "./app";
 import { count, dismiss, h } from "./dom";
 import { readNpy } from "./npy";
 
-/** Reads rows of numbers, separated by commas, blanks, semicolons or brackets. Each non-empty line is a row. */
+/**
+ * Reads rows of numbers, separated by commas, blanks, semicolons, parentheses or brackets. Each line is a row, except empty lines
+ * and those that begin with #.
+ */
 export function parseRows(text: string, rank: number): number[][] {
     const lines = text
         .split(/[\n\r]+/)

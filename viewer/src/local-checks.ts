@@ -35,7 +35,7 @@ interface Package {
     Query: new (model: object, certificates: Certificates) => Query;
 }
 
-/** The script of the package declares it. */
+/** The package, which its script declares. */
 declare const ssccPackage: Package;
 
 async function inflate(bytes: ArrayBuffer): Promise<ArrayBuffer> {

@@ -23,7 +23,7 @@ export function isMesh(model: Model): boolean {
     return model.arrays.modes === undefined;
 }
 
-/** Completes the meshes of a scene. */
+/** Gives the meshes of a scene the fields that only models with modes have. */
 export function completeScene(scene: Scene): Scene {
     return { ...scene, models: scene.models.map((model) => (isMesh(model) ? { ...NO_MODES, ...model } : model)) };
 }

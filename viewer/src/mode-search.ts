@@ -1,29 +1,32 @@
 /**
- * A search over modes, one request each, the other weights being those displayed when it began: its button, its state, and
- * its results. Rows show them; they are pale while other weights are displayed.
+ * A search over modes: its button, its state, and its results. It sends one request for each mode; the other weights are those
+ * that were displayed when it began. Rows show the results, pale while other weights are displayed.
  */
 import { type App, attempt } from "./app";
 import { h } from "./dom";
 import type { ModeRow } from "./mode-row";
 import { RequestError } from "./source";
 
-/** What a search asks, and how its results are shown. */
+/** The request of a search, and how its results are shown. */
 export interface SearchKind<T> {
     /** The path of the request. */
     path: string;
     label: string;
     title: string;
-    /** What follows the number of modes that are done, as in "searched". */
+    /** The word after the number of finished modes, such as "searched". */
     done: string;
-    /** Where a row shows the result. */
+    /** The element in which a row shows the result. */
     cell(row: ModeRow): HTMLElement;
-    /** The content of that place. */
+    /** The content of that element. */
     show(mode: number, result: T, base: Float64Array): (Node | string)[];
-    /** Refuses to begin, by an error. */
+    /** Throws an error if the search cannot begin. */
     check(): void;
 }
 
-/** Shows results pale that were found with other weights than those displayed, but for that of their mode. Returns whether any are. */
+/**
+ * Makes results pale that were found with other weights than those displayed; the weight of a result's own mode may differ.
+ * Returns whether any result is pale.
+ */
 export function fade(
     app: App,
     base: Float64Array,
@@ -129,7 +132,7 @@ export class ModeSearch<T> {
         this.changed();
     }
 
-    /** Results hold where all weights but that of their mode are those of the search. Others are shown pale. */
+    /** Makes the results pale that do not hold: a result holds if all weights but that of its mode are those of the search. */
     private compare(): void {
         const modes = this.results.keys();
         const isStale = fade(this.app, this.base, modes, (mode) => this.kind.cell(this.rows[mode]));

@@ -1,9 +1,12 @@
-/** Motions of q. Each q is displayed together with its answer, so the gauge and the picture agree. */
+/**
+ * Motions of q. Each q is displayed together with its answer, so the gauge and the picture agree; without an answer if that takes
+ * too long.
+ */
 import type { Checker } from "./checker";
 import type { Frames } from "./frames";
 import type { Pose } from "./pose";
 
-/** Longest time that a q waits for its answer before it is displayed (ms). */
+/** Longest time that a motion waits for an answer before it proposes its next q (ms). */
 const MAX_WAIT = 250;
 
 export class Motion {
@@ -57,7 +60,7 @@ export class Motion {
         for (const listener of this.listeners) listener();
     }
 
-    /** Displays q together with its answer. */
+    /** Displays q when its answer arrives or a later q replaces it; at once if the page cannot check q. */
     propose(q: ArrayLike<number>, now = performance.now(), wanted: () => boolean = () => true): void {
         const serial = this.pose.next();
         if (!this.checker) {

@@ -1,4 +1,4 @@
-/** Reads a .npy file: one or two axes of float32 or float64, in C or Fortran order. */
+/** Reads a .npy file: one or two axes of little-endian float32 or float64, in C or Fortran order. One axis is one row. */
 export function readNpy(buffer: ArrayBuffer): number[][] {
     const bytes = new Uint8Array(buffer);
     if (bytes.length < 12 || String.fromCharCode(...bytes.subarray(1, 6)) !== "NUMPY")

@@ -85,7 +85,7 @@ export class Playback {
         return this.tracks.some((track) => track.positions !== null);
     }
 
-    /** Whether the recording is one body that only deforms: it moves the shape of the sliders. */
+    /** Whether the recording is one body that only deforms, without a ground: it moves the shape of the sliders. */
     get posed(): boolean {
         const { bodies, ground } = this.data;
         return !this.given && bodies.length === 1 && bodies[0].rigid === null && ground === null;
@@ -165,7 +165,7 @@ export class Playback {
             apart: this.data.apart ?? "",
         };
         if (this.posed) {
-            // A live page checks each frame again.
+            // A page that can check q checks each frame again.
             if (app.checker) app.motion.propose(this.row(0, frame));
             else {
                 app.recorded = pairs ? recorded : null;

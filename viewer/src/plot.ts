@@ -1,4 +1,4 @@
-/** Line plots as SVG, with linear or logarithmic axes. Dashes distinguish lines as well as colours. */
+/** Line plots as SVG, with linear or logarithmic axes. Lines differ in their dashes and in their colours. */
 import { digits, h, svg } from "./dom";
 import type { Axis, PlotData, Series } from "./protocol";
 
@@ -198,7 +198,7 @@ function line(
     }
 }
 
-/** Shows the values nearest to the pointer. */
+/** Shows the values of all series at the x nearest to the pointer. */
 function read(
     event: PointerEvent,
     root: SVGSVGElement,

@@ -65,26 +65,27 @@ export interface PlotData {
 export interface PlaybackBody {
     name: string;
     model: number;
-    /** q of each frame; of a mesh its positions, relative to the centre. */
+    /** q of each frame; undefined for a mesh. */
     q?: string;
+    /** The positions of a mesh in each frame, relative to the centre; undefined for a model. */
     positions?: string;
     rigid: string | null;
     /** The point about which the body turns. Of meshes the origin of the page's coordinates, the same for all. */
     center: number[];
-    /** Colliding pairs of triangles in each frame, or of a continuous check in the step after it. */
+    /** Number of colliding pairs of triangles in each frame; of a continuous check, in the step after it. Null if unknown. */
     pairs: number[] | null;
 }
 
 /** Colliding pairs of each frame and body; of a continuous check those of the step after each frame. */
 export interface ContactsData {
-    /** One for each list, ordered by frame, then by body, and the end. */
+    /** The start of each list in `pairs`, ordered by frame, then by body; then the end. */
     offsets: string;
     pairs: string;
     /** Times of impact from 0 to 1, of a continuous check. */
     times: string | null;
     /** The body of each second triangle, where some pairs are of two bodies; earlier versions have none. */
     seconds?: string | null;
-    /** Whether the second triangles belong to the second body, else, without `seconds`, to the body of the list. */
+    /** Whether the second triangles belong to the second body. Otherwise, and without `seconds`, they belong to that of the list. */
     is_between: boolean;
 }
 
@@ -123,7 +124,7 @@ export interface Report {
     scene: Scene;
     /** Base64. */
     arrays: Record<string, string>;
-    /** What checks q within the report; most reports have none. */
+    /** The data by which the report itself checks q; most reports have none. */
     checks?: ChecksData | null;
 }
 
@@ -146,7 +147,7 @@ export interface Answer {
     triangles?: number[];
     microseconds: number;
     root_certified: boolean;
-    /** What proved the answer, apart from exceptions. */
+    /** The kind of proof of the answer, apart from exceptions. */
     proof: "radius" | "local" | "search";
     opened: number;
     box_tests: number;
@@ -158,7 +159,7 @@ export interface Answer {
 export interface SafeScale {
     certified: number | null;
     first: { scale: number; pairs: [number, number][] } | null;
-    /** The scale up to which the search covers every shape. */
+    /** The scale up to which the search covers every shape; null: infinite. */
     searched: number | null;
     /** Whether the search ended before its time limit. */
     complete: boolean;
@@ -168,13 +169,13 @@ export interface SafeScale {
 export interface Sweep {
     from: number;
     to: number;
-    /** Proven free from `from` up to this weight; null: it collides at `from`. */
+    /** The shape is proven free from `from` up to this weight; null: it collides at `from`. */
     first_free: number | null;
-    /** The first weight at which it collides; null: none. */
+    /** A weight at which the shape collides, the first one unless there is a note; null: none was found. */
     first_hit: number | null;
     pairs: [number, number][];
     count: number;
-    /** What is unusual about the result. */
+    /** A sentence about an unusual result; null for a usual one. */
     note: string | null;
 }
 
@@ -184,7 +185,7 @@ export interface Interval {
     to: number;
     free_until: number | null;
     free_from: number | null;
-    /** Whether it collides at both ends. */
+    /** Whether the shape collides at both ends. */
     exact: boolean;
     pairs: number;
     depth: number;
@@ -192,7 +193,7 @@ export interface Interval {
     deepest: number;
 }
 
-/** The intervals of one mode; every weight outside of them is proven free. */
+/** The intervals of one mode. Outside of them the shape is proven free: up to their `free_until`, and from their `free_from`. */
 export interface Intervals {
     name: string;
     from: number;

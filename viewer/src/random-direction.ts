@@ -5,8 +5,8 @@ import type { Shape } from "./shape";
 const MOVED_TARGETS = 6;
 
 /**
- * Direction `number` of a fixed sequence. Lower modes have larger entries, as in usual motions. A morph target, whose range
- * begins at its centre, moves only into its range, and only a few of many move.
+ * Direction `number` of a fixed sequence. Lower modes have larger entries, as in usual motions. A mode whose range
+ * begins or ends at its centre, as that of a morph target, moves only into its range, and only a few of many such modes move.
  */
 export function randomDirection(shape: Shape, number: number): number[] {
     let state = number * 0x9e3779b9;

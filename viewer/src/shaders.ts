@@ -1,6 +1,6 @@
 /**
- * Deformation on the graphics card: x = p + U q, the modes in a texture. Row i of `weights` holds the number of modes
- * that are not zero for instance i, then (mode, weight) of each. So only modes that are not zero cost time.
+ * Deformation on the graphics card: x = p + U q, with the modes in a texture. Row i of `weights` has the number of weights of
+ * instance i that are not zero, then (mode, weight) for each of these. So only modes with such weights cost time.
  */
 export const vertexShader = /* glsl */ `
 precision highp float;
@@ -33,7 +33,7 @@ void main() {
 }`;
 
 /**
- * What hides the chosen pair is cut away: the parts of the surface that are nearer to the eye than the pair, in the cone from
+ * Cuts away the parts of the surface that hide the chosen pair: those that are nearer to the eye than the pair, in the cone from
  * the eye to a disc around the pair. `cut` has the middle of the disc in the world, and its radius; 0: nothing is cut.
  */
 const cutAway = /* glsl */ `

@@ -4,7 +4,7 @@ import type { Source } from "./source";
 
 export type Vector = [number, number, number];
 
-/** Larger than the rounding error of |z|, here and in the certificates. */
+/** A factor larger than the rounding errors of |z|, here and in the certificates. */
 const ROUNDING = 1 + 1e-12;
 
 export class Shape {
@@ -102,13 +102,13 @@ export class Shape {
         return this.model.mode_names?.[k] || `mode ${k}`;
     }
 
-    /** The range of a mode's slider: 0 to 1 for morph targets. */
+    /** The range of a mode's slider, such as 0 to 1 for morph targets; in reports of earlier versions center +- limits. */
     range(k: number): readonly [number, number] {
         const { center, limits, ranges } = this.model;
         return ranges?.[k] ?? [center[k] - limits[k], center[k] + limits[k]];
     }
 
-    /** Whether the range of a mode begins at its centre, as that of a morph target. */
+    /** Whether the range of a mode begins or ends at its centre, as that of a morph target. */
     isOneSided(k: number): boolean {
         return this.range(k).includes(this.model.center[k]);
     }

@@ -16,7 +16,7 @@ export interface Source {
     readonly checks: boolean;
     readonly scene: Scene;
     array(name: string): Promise<ArrayBuffer>;
-    /** Sends a request to the server; a report has no server, and throws. */
+    /** Sends a request to the server. A report answers `/api/check` itself if it has checks, and throws for other requests. */
     ask<T>(path: string, body?: unknown, signal?: AbortSignal): Promise<T>;
     bytes(path: string, body?: unknown): Promise<ArrayBuffer>;
 }

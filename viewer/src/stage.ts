@@ -20,7 +20,7 @@ const FRAME_REACH = 5;
 /** The smallest distance to a pair, as a share of the radius of the whole. */
 const CLOSEST = 0.06;
 
-/** What hides a disc around a pair is cut away: its radius as a multiple of the pair's, and at least as a share of the distance. */
+/** The radius of the disc around a pair: a multiple of the pair's radius, but at least a share of the distance to the eye. */
 const CUT_REACH = 2;
 const CUT_SHARE = 0.08;
 
@@ -132,7 +132,7 @@ export class Stage {
         this.applyCut(true);
     }
 
-    /** Shows what is cut away, or hides it again. */
+    /** Shows the parts that are cut away, or hides them again. */
     toggleCut(): void {
         this.applyCut(!this.isCutting);
     }
@@ -152,7 +152,7 @@ export class Stage {
         this.fly(middle.clone(), new THREE.Vector3(...this.toEye), this.distance(radius));
     }
 
-    /** Shows a grid at a height, about the point below `middle`; null: none. `cell`: the size of its cells, at least. */
+    /** Shows a grid at a height, about the point below `middle`; null: none. `cell`: the smallest size of its cells. */
     setGround(height: number | null, middle: Vector = [0, 0, 0], size = 1, cell = 1): void {
         if (this.ground) this.scene.remove(this.ground);
         this.ground = null;
@@ -223,7 +223,7 @@ export class Stage {
         return controls;
     }
 
-    /** The distance from which a ball fills the picture; adapts the near and far planes to it. */
+    /** The distance from which a ball fills the picture. Also sets the near and far planes by the radius of `home`. */
     private distance(radius: number): number {
         const narrow = Math.min(1, this.camera.aspect);
         const distance = (radius * 1.08) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;

@@ -1,4 +1,4 @@
-/** Small pictures of the largest certified deformations (paper, Figure 11). A click shows one. */
+/** Small pictures of the largest certified deformations (paper, Figure 11). A click on a picture shows its deformation. */
 import type { App } from "./app";
 import { h } from "./dom";
 

@@ -4,7 +4,7 @@ import { count, digits, h, svg } from "./dom";
 import type { Frames } from "./frames";
 
 const SPEEDS = [2, 1, 0.5, 0.25, 0.1, 0.02];
-/** The initial speed makes a motion without sound last at least this time (s). */
+/** The initial speed makes a motion without sound last at least this time (s), if one of `SPEEDS` does. */
 const MIN_DURATION = 3;
 
 export interface Track {
@@ -137,13 +137,13 @@ export class Timeline {
         this.element.remove();
     }
 
-    /** Whether bodies collide with themselves in a frame or in a step since the previous frame. */
+    /** Whether triangles collide in a frame, or in a step since the previous frame. */
     private touches(frame: number): boolean {
         const { pairs, since } = this.track;
         return (pairs?.[frame] ?? 0) > 0 || (since?.[frame] ?? 0) > 0;
     }
 
-    /** Seeks the next start of a contact. */
+    /** Seeks the next start of a contact, or the previous one if `step` is -1. */
     private jump(step: number): void {
         for (let f = this.frame + step; f >= 0 && f < this.track.times.length; f += step) {
             if (this.touches(f) && !this.touches(f - 1)) {

@@ -1,4 +1,4 @@
-/** The direction from which a pair of triangles is best seen: both from their sides, with little in front of them. */
+/** The direction from which a pair of triangles is best seen: both face the eye, with few triangles in front of them. */
 import type { Vector } from "./shape";
 
 /** A surface of the picture. */
@@ -9,14 +9,14 @@ export interface Surface {
     own: number[];
 }
 
-/** Directions that are compared, beside the present one. */
+/** Number of directions that are compared, beside the present one. */
 const DIRECTIONS = 128;
 /** The cost of one surface in front of the pair; further ones cost as much, up to `MAX_LAYERS`. */
 const LAYER_COST = 0.5;
 const MAX_LAYERS = 4;
 /** The advantage of the present direction over the opposite one is twice this number. */
 const TURN_COST = 0.12;
-/** The camera does not look along the vertical axis, where it cannot turn. */
+/** Largest share of the vertical axis in a direction: the camera cannot turn if it looks along this axis. */
 const MAX_SLOPE = 0.94;
 
 const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -42,7 +42,7 @@ function sphere(n: number): Vector[] {
 
 /**
  * Returns the unit vector from a pair to the eye. `normals`: of both triangles, of any length; `now`: the present direction to
- * the eye; `up`: the vertical axis. For F triangles takes time of the order of F x 100 products.
+ * the eye; `up`: the vertical axis. It takes about 100 dot products for each triangle.
  */
 export function bestView(surfaces: Surface[], middle: Vector, normals: Vector[], now: Vector, up: Vector): Vector {
     const directions = [unit(now), ...sphere(DIRECTIONS).filter((d) => Math.abs(dot(d, up)) < MAX_SLOPE)];

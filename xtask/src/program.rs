@@ -6,15 +6,15 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Returns the cargo that started this program.
+/// Returns a command of the cargo that started this program, which builds as [`build_from_nothing`] states.
 pub fn cargo() -> Command {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     build_from_nothing(&mut cargo);
     cargo
 }
 
-/// Disables incremental compilation unless a crate of the project was compiled with it before. It would make the first build
-/// of the tests a twentieth longer, and the first build of the wheel twice as long.
+/// Disables incremental compilation unless a crate of the project was compiled with it before. Incremental compilation
+/// would make the first build of the tests a twentieth longer, and the first build of the wheel twice as long.
 pub fn build_from_nothing(command: &mut Command) {
     let state = env::current_exe().map(|xtask| xtask.with_file_name("incremental"));
     let mut crates = state.and_then(fs::read_dir).into_iter().flatten().flatten();

@@ -1,5 +1,6 @@
 //! Time of queries through the functions of C against those of Rust, interleaved, on the spring of the demo:
-//! `sscc demo --out DIR`, then `cargo bench -p sscc-c -- DIR`. A query through C also copies its pairs; one in Rust reads them.
+//! `sscc demo --out DIR`, then `cargo bench -p sscc-c -- DIR`. A query through C also copies its pairs; a query
+//! in Rust returns a slice of them.
 #![allow(unsafe_code, reason = "functions of C")]
 #![allow(clippy::print_stdout, clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 

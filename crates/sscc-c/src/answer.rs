@@ -45,7 +45,7 @@ impl Answer {
         impacts.len()
     }
 
-    /// Stores at most one pair, after [`Self::forget`].
+    /// Stores at most one pair, after [`Self::forget`], and returns the number of pairs.
     pub fn set_first(&mut self, pair: Option<Pair>) -> usize {
         self.set_pairs(pair.as_slice())
     }

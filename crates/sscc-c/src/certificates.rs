@@ -108,8 +108,8 @@ pub unsafe extern "C" fn sscc_certificates_free(certificates: *mut sscc_certific
     guard(|| unsafe { free(certificates) })
 }
 
-/// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite, the shape
-/// is free at every q. 0 for NULL.
+/// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite,
+/// that holds at every q. 0 for NULL.
 ///
 /// Threads: any.
 ///

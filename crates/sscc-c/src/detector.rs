@@ -46,8 +46,9 @@ impl Handle for sscc_detector {
     }
 }
 
-/// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a common vertex do
-/// not count. The arrays are copied. Rest positions determine the hierarchy, and which vertices are welded.
+/// Creates a detector of a mesh (rest positions V x 3, faces F x 3). `filter` is NULL for the default: pairs with a
+/// common vertex do not count. The arrays are copied. Rest positions determine the hierarchy and, with SSCC_WELD_ON,
+/// which vertices are welded.
 ///
 /// Threads: any.
 ///
@@ -229,8 +230,9 @@ pub unsafe extern "C" fn sscc_detector_continuous(
     })
 }
 
-/// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives their number.
-/// `detector` stores the answer. `other` must be a different detector; for a mesh with itself, use a copy.
+/// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives
+/// their number. All such pairs count: the filters of the detectors have no effect. `detector` stores the answer.
+/// `other` must be a different detector; for a mesh with itself, use a copy.
 ///
 /// Threads: one call at a time for each of both detectors.
 ///

@@ -10,7 +10,7 @@ pub trait Handle: Sized {
     /// The name of the type in messages.
     const NAME: &'static str;
 
-    /// Refuses to be freed during a call that uses it.
+    /// Returns an error during a call that uses the object, which must not be freed then.
     fn check_idle(&self) -> Result<()> {
         Ok(())
     }

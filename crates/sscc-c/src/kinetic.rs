@@ -15,7 +15,8 @@ use crate::pointers::{output, output_array, slice};
 use crate::status::{Result, guard, sscc_status};
 use crate::types::{sscc_cancel_fn, sscc_impact, sscc_pair, sscc_statistics, sscc_visit_fn};
 
-/// A kinetic query: answers as a query, and reuses its work while q moves in small steps. After a warm-up, answers allocate nothing.
+/// A kinetic query: it gives the answers of a query, and reuses its work while q moves in small steps. After a warm-up,
+/// answers allocate nothing.
 pub struct sscc_kinetic(Exclusive<State>);
 
 /// A kinetic query and its last answer.

@@ -1,11 +1,12 @@
-//! The C interface of sscc: `include/sscc/sscc.h`, which cbindgen writes from this crate, and which `tests/header.rs` compares.
+//! The C interface of sscc: `include/sscc/sscc.h`, which cbindgen writes from this crate. `tests/it/header.rs` compares
+//! the header with the code.
 //!
 //! Modules of nouns (`model`, `query`, ...) have the exported functions, `sscc_<noun>_<verb>`. Each function borrows its handles
 //! (`handle`), checks its arrays (`pointers`, `matrix`) and calls the core, within `guard` (`status`), which converts errors and
 //! panics to a status. Pointers are used in `exclusive`, `handle`, `pointers` and `matrix`; the other modules rely on the
 //! guarantee of the caller.
 #![allow(non_camel_case_types, reason = "names of C")]
-#![allow(clippy::missing_errors_doc, reason = "a status says it")]
+#![allow(clippy::missing_errors_doc, reason = "sscc_status has them")]
 
 mod answer;
 mod callbacks;

@@ -25,7 +25,7 @@ pub struct sscc_matrix {
     pub column_stride: usize,
 }
 
-/// A matrix of 32-bit numbers of the caller, with the same strides as sscc_matrix. Faces are F x 3: vertices, counted from 0.
+/// A matrix of 32-bit numbers of the caller, with strides as in sscc_matrix. Faces are F x 3: vertices, counted from 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sscc_index_matrix {
@@ -63,7 +63,8 @@ impl<T: Copy> Matrix<T> {
     /// Checks a matrix.
     ///
     /// # Errors
-    /// When the data is NULL, misaligned or larger than memory, or two elements overlap.
+    /// For a matrix with elements: when the data is NULL, misaligned or larger than memory; when two elements overlap,
+    /// or neither rows nor columns follow each other (they are interleaved).
     ///
     /// # Safety
     /// All elements are initialized, and do not change during the call.

@@ -20,8 +20,8 @@ pub enum sscc_neighbours {
     Exclude = 0,
     /// Pairs with exactly one common vertex count when they have another point in common.
     IncludeOneVertex = 1,
-    /// Pairs with common vertices count when they have a common point other than these and the edges between them. This is for
-    /// discrete queries of detectors only.
+    /// Pairs with common vertices count when they have a common point other than these and the edges between them.
+    /// Doubled faces always count. This is for discrete queries of detectors only.
     IncludeFolded = 2,
 }
 
@@ -51,7 +51,7 @@ pub struct sscc_filter {
     pub groups: *const u32,
     /// Number of triangles in `groups`.
     pub groups_count: usize,
-    /// 1: pairs within one group do not count, which needs `groups`. 0: all pairs count.
+    /// 1: pairs within one group do not count, which needs `groups`. 0: groups have no effect.
     pub between_groups_only: i32,
     /// One of SSCC_WELD_DEFAULT, SSCC_WELD_ON, SSCC_WELD_OFF.
     pub weld: i32,
@@ -101,7 +101,8 @@ pub struct sscc_certify_options {
     pub size: usize,
     /// Relative tolerance of the root's radius, in (0, 1); 0 means 0.1.
     pub epsilon: f64,
-    /// The largest radius, in units of the paper's global radius, at least 1; 0 means 1.
+    /// The largest radius, in units of the paper's global radius: finite, at least 1; 0 means 1. It has no effect with
+    /// SSCC_SCHEME_PAPER.
     pub reach: f64,
     /// The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
     pub center: *const f64,
@@ -117,17 +118,18 @@ pub struct sscc_certify_options {
     pub budget: usize,
     /// Memory of local certificates, in bytes for each triangle; 0 means 64.
     pub local_budget: usize,
-    /// The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles.
+    /// The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles,
+    /// rounded up. If more pairs collide there, none is an exception, and nodes that contain one have radius 0.
     pub max_exceptions: usize,
     /// Number of threads, of which at most 1024 are started; 0 means all cores. The certificates are the same for any number.
     pub threads: usize,
     /// One of SSCC_METRIC_MODEL, SSCC_METRIC_DISPLACEMENT, SSCC_METRIC_MASS, SSCC_METRIC_IDENTITY, SSCC_METRIC_SCALES.
     pub metric: i32,
-    /// One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. For the latter both budgets must be 0.
+    /// One of SSCC_SCHEME_FULL, SSCC_SCHEME_PAPER. With SSCC_SCHEME_PAPER both budgets must be 0.
     pub scheme: i32,
     /// 1: pairs that collide at rest never count, and neither do those within `ignore_rings` rings of them.
     pub ignore_rest: i32,
-    /// Rings around pairs that collide at rest.
+    /// Rings around pairs that collide at rest. They have no effect if `ignore_rest` is 0.
     pub ignore_rings: u32,
 }
 
@@ -143,7 +145,8 @@ unsafe impl Versioned for sscc_certify_options {}
 /// Returns the contact filter of a mesh.
 ///
 /// # Errors
-/// When a field has an invalid value.
+/// As [`read_versioned`], and as [`slice`] for the arrays; when a field has an invalid value, or a pair names no
+/// triangle.
 ///
 /// # Safety
 /// As [`read_versioned`], and the arrays have as many elements as the struct states.
@@ -180,10 +183,10 @@ pub unsafe fn contact_filter(filter: *const sscc_filter, mesh: &TriMesh) -> Resu
     Ok(chosen)
 }
 
-/// Returns the options for certificates of a model.
+/// Returns the options for certificates of a model. The computation itself checks `epsilon`, `reach` and `center`.
 ///
 /// # Errors
-/// When a field has an invalid value.
+/// As [`contact_filter`]; when options exclude each other, or the metric cannot be used for the model.
 ///
 /// # Safety
 /// As [`contact_filter`].
@@ -197,7 +200,7 @@ pub unsafe fn certify_options(
     let is_paper = choose(&[false, true], given.scheme, "options.scheme")?;
     if is_paper && (given.budget, given.local_budget) != (0, 0) {
         return Err(Failure::argument(
-            "options: the scheme of the paper stores neither tree: leave both budgets 0",
+            "options: SSCC_SCHEME_PAPER stores no pair tree and no local certificates: leave both budgets 0",
         ));
     }
     if is_paper {

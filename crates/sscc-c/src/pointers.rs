@@ -63,7 +63,7 @@ pub unsafe fn optional<T: Copy>(pointer: *const T, name: &str) -> Result<Option<
 /// Returns the numbers of an array; NULL is an array without numbers.
 ///
 /// # Errors
-/// When the array is NULL although the length is not 0, misaligned, or longer than memory.
+/// When the array is NULL although the length is not 0; when it is misaligned, or larger than memory.
 ///
 /// # Safety
 /// The array has that many initialized numbers, which do not change during the call.
@@ -142,7 +142,7 @@ fn empty_or_refused<'a, T>(data: *const T, length: usize, name: &str) -> Result<
     Err(refused(data.is_null(), data.is_aligned(), align_of::<T>(), length, name))
 }
 
-/// Refuses a pointer to `length` numbers that is NULL or misaligned.
+/// Refuses a pointer to `length` numbers that is NULL or misaligned, and numbers that do not fit into memory.
 #[inline(always)]
 pub fn check<T>(data: *const T, length: usize, name: &str) -> Result<()> {
     if is_valid(data, length) {
@@ -187,7 +187,8 @@ pub unsafe trait Versioned: Copy {}
 /// Reads a struct that begins with its size; NULL is a struct of zeros.
 ///
 /// # Errors
-/// When the pointer is misaligned, the size is not that of any version, or fields are set that this version does not have.
+/// When the pointer is misaligned; when the size is not a multiple of that of a `usize`, is 0, or is larger than 4096;
+/// when fields are set that this version does not have.
 ///
 /// # Safety
 /// The pointer is NULL, or points to as many initialized bytes as its first field states, which do not change during the call.

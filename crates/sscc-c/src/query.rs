@@ -219,8 +219,8 @@ pub unsafe extern "C" fn sscc_query_continuous(
     })
 }
 
-/// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; infinite if no vertex
-/// moves. It takes longer than an answer, and allocates.
+/// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; 0 if the
+/// shape collides at the centre, infinite if no vertex moves. It takes longer than an answer, and allocates.
 ///
 /// Threads: one call at a time for each query.
 ///

@@ -128,9 +128,9 @@ fn rust_pose(pose: sscc_pose) -> Pose {
     Pose { rotation, translation: DVec3::from_array(pose.translation) }
 }
 
-/// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number. `shape`
-/// stores the answer. `bounds` is an AABB that contains all compared shapes, or NULL; it affects only the time. `other` must be
-/// a different shape.
+/// Finds all pairs (triangle of this shape, triangle of the other one) that collide; `count` receives their number.
+/// `shape` stores the answer. `bounds` is a finite AABB that contains all compared shapes, or NULL; it affects only the
+/// time. `other` must be a different shape.
 ///
 /// Threads: one call at a time for each of both shapes.
 ///

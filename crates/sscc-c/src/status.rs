@@ -21,9 +21,10 @@ pub enum sscc_status {
     Null = 2,
     /// A pointer is not a multiple of the size of the numbers to which it points.
     Misaligned = 3,
-    /// Two arrays or two elements of a matrix overlap, or two handles that must differ are the same.
+    /// Two arrays overlap, elements of a matrix overlap or are interleaved, or two handles that must differ are the same.
     Overlap = 4,
-    /// An argument has the wrong length, is out of range or not finite.
+    /// An argument is invalid, such as a wrong length or a number out of range; or the floating-point mode of the
+    /// thread is not that of the proofs.
     Argument = 5,
     /// The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
     Handle = 6,
@@ -33,7 +34,7 @@ pub enum sscc_status {
     Capacity = 8,
     /// The certificates are of another model.
     OtherModel = 9,
-    /// More pairs collide than an answer can contain.
+    /// There are more colliding pairs than an answer or certificates can contain, or too many pairs to ignore.
     TooMany = 10,
     /// A file cannot be read or written, or its content is malformed.
     File = 11,

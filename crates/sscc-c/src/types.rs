@@ -1,4 +1,4 @@
-//! Structs and constants of answers. They never change; later versions add new ones.
+//! Structs and constants of answers, and types of callbacks. They never change; later versions add new ones.
 
 use std::ffi::{c_int, c_void};
 
@@ -38,11 +38,12 @@ pub enum sscc_proof {
     Local = 2,
 }
 
-/// The cost of the last answer of a query or a detector.
+/// The cost of the last answer of a query, a kinetic query or a detector, and the kind of its proof.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct sscc_statistics {
-    /// |z| of q about the centre, in the metric of the certificates; 0 for a detector.
+    /// |z| about the centre, rounded up, in the metric of the certificates; for a continuous answer the larger one of
+    /// start and end; 0 for a detector.
     pub norm: f64,
     /// Nodes and node pairs that were opened.
     pub opened: u64,
@@ -82,9 +83,9 @@ pub struct sscc_pose {
 /// computation.
 pub type sscc_progress_fn = Option<extern "C" fn(user: *mut c_void, done: usize, total: usize) -> c_int>;
 
-/// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from threads of the
-/// library, never from two at a time; a query calls it from the thread of the call. It must not throw, and must not free the
-/// handles of the computation or the query.
+/// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from
+/// threads of the library, never from two at a time; a query or a detector calls it from the thread of the call. It
+/// must not throw, and must not free the handles of the computation, the query or the detector.
 pub type sscc_cancel_fn = Option<extern "C" fn(user: *mut c_void) -> c_int>;
 
 /// Receives one pair of an answer. It returns another value than 0 to end the visit. It must not throw.

@@ -12,17 +12,17 @@
 //! separate if `delta - e0 - (g delta + e + e1) |z|` is positive, with the rounding e0 and e1 of computed positions along u.
 //!
 //! The cone is given by four directions: a pyramid that contains all differences of corners, and so of points. On the cone of
-//! three directions `|u'G u| |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric part of
-//! `u_i'G u_j`. If that is more than g, the cone is halved.
+//! three directions `|u'G u| / |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric
+//! part of `u_i'G u_j`. If that is more than g, the cone is halved.
 
 use crate::corners::{Triangle, differences};
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
 use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 
-/// The largest number of cones of a witness.
+/// The number of cones of a witness from which on no cone is halved.
 const MAX_CONES: usize = 1024;
-/// The largest depth of halved cones, each of which makes numbers longer.
+/// The largest number of times that a cone is halved, because each halving makes numbers longer.
 const MAX_DEPTH: usize = 64;
 
 /// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts.
@@ -75,7 +75,8 @@ impl AffineMap {
         }
         let Some(gap) = differences.iter().map(|d| dot(dir, d)).min() else { return false };
         let residual = self.largest_residual(x, y, &differences).root_up();
-        // All terms except the gap are for a unit direction, whose components are at most 1.
+        // The inequality for a unit direction, times the length of `dir`. Rounding errors along a unit direction are
+        // bounded by those along a vector of ones, because its components are at most 1.
         let length = squared_norm(dir).root_up();
         let [rest_error, rate_error] = model.errors(&std::array::from_fn(|_| Dyadic::new(1, 0)));
         let closing = &(&gap * &rate) + &(&length * &(&residual + &rate_error));
@@ -98,7 +99,8 @@ impl AffineMap {
         largest
     }
 
-    /// Whether the rate holds on the cone of three directions, which is halved as often as necessary.
+    /// Whether the rate holds on the cone of three directions, which is halved as often as necessary, within the
+    /// limits.
     fn holds(&self, cone: [&Vector; 3], squared_rate: &Dyadic, cones: &mut usize, depth: usize) -> bool {
         *cones += 1;
         let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];

@@ -138,7 +138,8 @@ impl Certificates {
     }
 }
 
-/// Checks that each triangle is listed once, and that the triangles of each node are the disjoint union of those of its children.
+/// Checks that each triangle is listed once, that the triangles of each node are the disjoint union of those of its
+/// children, and that no leaf is larger than a bucket.
 fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
@@ -154,10 +155,7 @@ fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
         let has_children = (2..=MAX_CHILDREN).contains(&node.children)
             && u64::from(node.first_child) == next
             && end <= nodes.len() as u64;
-        claim(
-            has_children,
-            "hierarchy: a node has other children than two to four nodes after the last ones",
-        )?;
+        claim(has_children, "hierarchy: the children of a node are not the next two to four nodes")?;
         let (mut is_union, mut first) = (levels[n] < MAX_LEVELS, u64::from(node.first));
         for child in node.children() {
             let part = nodes[child as usize];
@@ -166,7 +164,7 @@ fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
             levels[child as usize] = levels[n] + 1;
         }
         is_union &= first == u64::from(node.first) + u64::from(node.count);
-        claim(is_union, "hierarchy: a node is not the disjoint union of its children")?;
+        claim(is_union, "hierarchy: a node is too deep, or not the disjoint union of its children")?;
         next = end;
     }
     claim(next == nodes.len() as u64, "hierarchy: some nodes have no parent")

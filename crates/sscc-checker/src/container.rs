@@ -55,8 +55,8 @@ impl<'a> Container<'a> {
         hasher.update(&bytes[..DIGITS.start]).update(&[b'0'; 64]).update(&bytes[DIGITS.end..]);
         let is_whole = hasher.finalize().to_hex().as_bytes() == &bytes[DIGITS];
         require(is_whole, "its content does not match its BLAKE3 digest")?;
-        let file =
-            Self::parse_header(bytes).ok_or_else(|| Refusal::Input("its header is not known".into()))?;
+        let file = Self::parse_header(bytes)
+            .ok_or_else(|| Refusal::Input("its header is malformed or too large".into()))?;
         require(file.text("format")? == format, "it is of another kind")?;
         match file.text("version")?.parse() {
             Ok(version) if (1..=newest).contains(&version) => Ok(file),

@@ -63,8 +63,8 @@ impl Direction {
         Self { dir, errors, vertices: HashMap::new(), apart: HashMap::new() }
     }
 
-    /// Whether the direction separates two simplices below a radius, which is always the same for one direction: whether it separates
-    /// all nine pairs of corners.
+    /// Whether the direction separates two simplices below a radius, that is, all nine pairs of their corners. Results
+    /// are kept, so all calls on one direction must have the same radius.
     pub(crate) fn separates(&mut self, model: &ScaledModel, [x, y]: Simplices, radius: &Radius) -> bool {
         for i in x.into_iter().chain(y) {
             self.vertices.entry(i).or_insert_with(|| Corner::of(model, i).along(&self.dir));
@@ -75,7 +75,7 @@ impl Direction {
         })
     }
 
-    /// Whether the direction separates any two triangles below a radius.
+    /// Whether the direction separates two triangles, or quarters of them, below a radius.
     pub(crate) fn separates_corners(&self, x: &Triangle, y: &Triangle, radius: &Radius) -> bool {
         let [x, y] = [x, y].map(|triangle| triangle.each_ref().map(|corner| corner.along(&self.dir)));
         x.iter().all(|i| y.iter().all(|j| are_apart(i, j, &self.errors, radius)))

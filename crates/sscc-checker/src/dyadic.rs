@@ -14,7 +14,7 @@ pub(crate) struct Dyadic {
     exponent: i64,
 }
 
-/// The smallest number of binary digits of roots and quotients.
+/// The smallest number of binary digits of roots.
 const ROOT_BITS: usize = 64;
 
 impl Dyadic {
@@ -22,7 +22,8 @@ impl Dyadic {
         Self { mantissa: mantissa.into(), exponent }
     }
 
-    /// Returns the exact value of a finite number; 0 for other numbers, which files may not contain.
+    /// Returns the exact value of a finite number; 0 for other numbers, which only the node maps of a proof can
+    /// contain: any map is valid.
     pub(crate) fn of(x: f64) -> Self {
         let bits = x.to_bits();
         let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
@@ -54,7 +55,7 @@ impl Dyadic {
         Self { mantissa: self.mantissa.clone(), exponent: self.exponent + power }
     }
 
-    /// Replaces this number by another one that is larger.
+    /// Replaces this number by another one if the other one is larger.
     pub(crate) fn raise(&mut self, other: Self) {
         if other > *self {
             *self = other;
@@ -65,7 +66,8 @@ impl Dyadic {
         self * self
     }
 
-    /// Returns a number with at most `bits` digits that is at least this one, which must not be negative.
+    /// Returns a number of at most `bits` significant binary digits that is at least this one, which must not be
+    /// negative.
     pub(crate) fn round_up(&self, bits: usize) -> Self {
         let cut = self.mantissa.bit_len().saturating_sub(bits);
         if cut == 0 {
@@ -86,7 +88,7 @@ impl Dyadic {
         Self { mantissa: IBig::from(shifted.sqrt()) + IBig::ONE, exponent: (exponent - shift as i64) / 2 }
     }
 
-    /// Returns the quotient by a positive number, with about `bits` digits.
+    /// Returns the quotient by a positive number, rounded towards 0, with at least `bits` binary digits.
     pub(crate) fn divided_by(&self, divisor: &Self, bits: usize) -> Self {
         let shift = (bits + divisor.mantissa.bit_len()).saturating_sub(self.mantissa.bit_len());
         let exponent = self.exponent - divisor.exponent - shift as i64;

@@ -24,7 +24,8 @@ pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal
 struct Traversal<'a> {
     certificates: &'a Certificates,
     entries: Vec<Entry>,
-    /// Stored pairs visited so far. More visits than pairs mean that the links form a circle.
+    /// Stored pairs visited so far. More visits than pairs mean that links lead to the same pair twice, or form a
+    /// circle.
     visited: usize,
 }
 

@@ -4,7 +4,7 @@ use crate::dyadic::Dyadic;
 use crate::scaled::Radius;
 
 /// Whether `gap - (rate + root(square)) |z'|` is positive for all z' below a radius: it must be positive at `z' = 0` and not
-/// negative at the radius, where the root is compared by squares.
+/// negative at the radius, where the root is compared by squares. Below an infinite radius, rate and square must be 0.
 pub(crate) fn stays_open(gap: &Dyadic, rate: &Dyadic, square: &Dyadic, radius: &Radius) -> bool {
     let Radius::Finite(radius) = radius else {
         return gap.is_positive() && rate.is_zero() && square.is_zero();

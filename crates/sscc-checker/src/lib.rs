@@ -54,11 +54,12 @@ impl Confirmed {
     }
 }
 
-/// Checks a proof. `certificates`, `proof`: the bytes of the files.
+/// Checks a proof, on this number of threads (at least 1). `certificates`, `proof`: the bytes of the files.
 ///
 /// # Errors
-/// [`Refusal::Input`] if a file is damaged, of another model, or of a kind that is not checked; [`Refusal::Proof`] if the
-/// proof does not hold.
+/// [`Refusal::Input`] if the certificates are damaged, of another model, or of a kind that is not checked, or the proof
+/// is of other certificates; [`Refusal::Proof`] if the hierarchy, the pair tree or an exception of the certificates is
+/// invalid, or the proof is damaged or does not hold.
 pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");
     let of_proof = |refusal: Refusal| refusal.of("proof");

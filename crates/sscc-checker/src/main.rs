@@ -1,4 +1,5 @@
-//! `sscc-checker MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds for all entries, 1 if not, 2 on other errors.
+//! `sscc-checker [--sample] MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds for all entries (with
+//! `--sample`: for those that it has), 1 if not, 2 on other errors.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -11,7 +12,7 @@ const USAGE: &str = "usage: sscc-checker [--sample] MODEL.model.safetensors CERT
        sscc-checker [--sample] MESH.obj MODES.npy CERTIFICATES PROOF
 
 --sample: a proof of some of the entries suffices.
-Exit codes: 0 confirmed, 1 not, 2 a file cannot be read, is damaged or of another model";
+Exit codes: 0 confirmed, 1 not confirmed, 2 a file cannot be read, is damaged or of another model";
 
 fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
     let (mesh, modes, certificates, proof): (&Path, Option<&Path>, _, _) = match paths {

@@ -20,7 +20,8 @@ impl Model {
     /// Creates a model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
     ///
     /// # Errors
-    /// When sizes do not fit each other, a face names a vertex that does not exist, or a number is not finite or beyond 2^200.
+    /// When there are no faces or no modes, sizes do not fit each other, a face names a vertex that does not exist, or
+    /// a number is not finite or beyond 2^200.
     pub fn new(
         positions: Vec<[f64; 3]>,
         faces: Vec<[u32; 3]>,
@@ -29,7 +30,7 @@ impl Model {
     ) -> Result<Self, Refusal> {
         let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
         let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
-        require(fits, "model: the modes are not a matrix of three rows for each vertex")?;
+        require(fits, "model: it has no faces, no modes, or not three rows of modes for each vertex")?;
         let has_vertices = faces.as_flattened().iter().all(|i| (*i as usize) < positions.len());
         require(has_vertices, "model: a face names a vertex that does not exist")?;
         let is_in_range = positions.as_flattened().iter().chain(&modes).all(|x| x.abs() <= LARGEST);

@@ -2,7 +2,7 @@
 //!
 //! Let `q - center = T z'` with a matrix T of short numbers that is nearly the inverse of the factor S: `S T = I + D`, with
 //! `|D| <= delta` in the Frobenius norm. Then `z = S (q - center) = (I + D) z'`, and `|z| < R` implies `|z'| < R / (1 - delta)`.
-//! All rates are per unit of z', with the modes `A = U T`; so only R is rounded, upwards.
+//! All rates are per unit of z', with the modes `A = U T`. So the change of coordinates rounds only R, upwards.
 //!
 //! The positions at the centre are the computed ones, from which witnesses are found. Their distance from the exact ones is part of
 //! the rounding.

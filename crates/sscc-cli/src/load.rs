@@ -1,4 +1,4 @@
-//! Loads models and certificates as the arguments state. Errors name the file.
+//! Loads models, and computes certificates, as the arguments state. Errors name the file or the flag.
 
 use std::fs;
 use std::path::Path;
@@ -77,9 +77,9 @@ pub fn certify(model: &ReducedModel, path: &Path, options: &CertifyOptions) -> R
     computed.with_context(|| path.display().to_string())
 }
 
-/// Computes certificates for a command without `--certificates`, and prints a note. They have no pair tree and no local
-/// certificates unless `--scheme`, `--budget`, `--local-budget` or `--reach` requests them: a few queries do not save the time that
-/// these take to compute.
+/// Computes certificates for a command without `--certificates`, and prints a note. If none of `--scheme`, `--budget`,
+/// `--local-budget` and `--reach` is given, they have no pair tree and no local certificates: a few queries do not save
+/// the time that these take to compute.
 pub fn certificates_now(
     loaded: &LoadedModel,
     files: &args::Model,
@@ -99,8 +99,8 @@ pub fn in_file(error: Error, path: &Path) -> Error {
     if is_named { error } else { error.context(path.display().to_string()) }
 }
 
-/// Refuses an unusable output before any long work: one with another ending, one that is an input, one in a folder
-/// that cannot be written to.
+/// Refuses an unusable output before any long work: one with another ending, one that is an input or no file, one in a
+/// folder that cannot be written to.
 pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()> {
     let shown = output.display();
     let file_name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Time between two updates of the bar.
+/// Minimum time between two updates of the bar.
 const UPDATE_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Shows the steps done, and the simulated seconds per second of wall-clock time.

@@ -3,9 +3,10 @@
 /// The outcome of a command that ran to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The command is done; for `check`, every q is free.
+    /// The command is done, and has no finding.
     Done,
-    /// `check` found a collision, or `audit` a violation.
+    /// `check` found a collision (or a pair nearer than the clearance), `sweep` a weight or a combination that is not
+    /// free, `audit` a violation, or `resolve` no free q for some row.
     Finding,
 }
 

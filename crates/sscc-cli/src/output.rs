@@ -55,7 +55,7 @@ impl Output {
         self.check_pipe(written)
     }
 
-    /// Writes buffered text, and closes the output.
+    /// Writes buffered text, and releases standard output.
     pub fn finish(mut self) -> anyhow::Result<()> {
         self.flush()
     }

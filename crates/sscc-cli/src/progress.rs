@@ -1,4 +1,4 @@
-//! The progress bar on standard error, shown for work that takes more than a second.
+//! The progress bar on standard error, if that is a terminal, for work that takes more than a second.
 
 use std::io::{IsTerminal, stderr, stdout};
 use std::sync::OnceLock;

@@ -33,7 +33,8 @@ impl Target {
         Ok(Self { path: path.to_owned(), folder, name })
     }
 
-    /// Returns an error if the folder has anything but the files of an earlier collection, which would be lost.
+    /// Returns an error if the collection cannot be written, or if its folder is no folder or has anything but the
+    /// files of an earlier collection: other files would be lost.
     pub fn check(&self) -> Result<(), IoError> {
         check_target(&self.path)?;
         let refused = |cause| not_written(&self.folder, cause);

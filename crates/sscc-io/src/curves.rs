@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn no_curves_and_invalid_ones() {
+    fn no_curves_give_a_valid_file_and_positions_that_are_not_finite_are_rejected() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("c.ply");
         write_ply_curves(&path, &ContactCurves::default()).unwrap();

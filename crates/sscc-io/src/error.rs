@@ -51,7 +51,7 @@ pub enum IoError {
         /// Supported endings.
         supported: &'static str,
     },
-    /// Files that do not fit each other, or values that the format cannot hold.
+    /// Files that do not fit each other, values that the format cannot hold, or another request that cannot be met.
     #[error("{}: {cause}", line(path))]
     Request {
         /// The file to which the error belongs.

@@ -25,7 +25,7 @@ pub fn read_whole(path: &Path) -> Result<Vec<u8>, IoError> {
         .ok()
         .and_then(|len| bytes.try_reserve_exact(len).ok())
         .ok_or_else(|| refused(io::Error::from(ErrorKind::OutOfMemory)))?;
-    // At most the size from above is read. If the file grows meanwhile, it is truncated there, and its parser fails.
+    // At most the size from above is read. If the file grows meanwhile, its bytes beyond that size are not read.
     file.take(size).read_to_end(&mut bytes).map_err(refused)?;
     if bytes.is_empty() {
         return Err(FormatError::whole("the file is empty").of(path));
@@ -46,7 +46,7 @@ pub(crate) fn check_content(start: &[u8]) -> Result<(), FormatError> {
 /// Opens a regular file, and returns its size in bytes.
 ///
 /// # Errors
-/// As [`read_whole`], but the file may be empty or too large for memory.
+/// As [`read_whole`], but the file may be empty, a Git LFS pointer or too large for memory.
 pub(crate) fn open_regular(path: &Path) -> Result<(File, u64), IoError> {
     // The check comes before opening: opening a pipe waits for a writer.
     let metadata = fs::metadata(path).map_err(|cause| read_error(path, cause))?;

@@ -8,7 +8,7 @@ use crate::file::read_error;
 use crate::natural_order;
 
 /// Returns the files of a folder that `is_wanted`, in the natural order of their names without endings, so `9.obj` comes
-/// before `10.obj`, and `walk.obj` before `walk-1.obj`. Hidden files and folders are skipped.
+/// before `10.obj`, and `walk.obj` before `walk-1.obj`. Folders and hidden files are skipped.
 pub(crate) fn list_files(folder: &Path, is_wanted: impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, IoError> {
     let refused = |cause| read_error(folder, cause);
     let mut paths = Vec::new();

@@ -1,8 +1,8 @@
 //! Readers and writers of sscc: meshes, solids, modes, glTF, arrays and containers.
 //!
-//! [`load_model`] loads a model from files of any supported format. [`load_model_with`] also returns the names of morph
-//! targets, the variances and the default pose of a glTF file. Containers ([`container`]) store models and
-//! certificates; NumPy reads them, and a digest detects any changed byte.
+//! [`load_model`] loads a model from files of any supported format. [`load_model_with`] also returns the names of the
+//! modes, the numbers that a `.npz` file has for each mode, and the default q of a glTF file. Containers
+//! ([`container`]) store models and certificates; NumPy reads them, and a digest detects any changed byte.
 //!
 //! ```
 //! use sscc::{Certificates, CertifyOptions, Query};
@@ -55,8 +55,9 @@
 //! certificates weld them by default.
 //!
 //! All readers accept untrusted bytes. They report an error of one line with the file, the place and the cause. They
-//! never panic, and never allocate by a number that the size of the file does not confirm. Files are read as a whole,
-//! because a mapped file that is truncated while in use ends the process. Files are replaced atomically.
+//! never panic, and never allocate by a number that the size of the file does not confirm. Files are read, as a whole
+//! or block by block, and never mapped, because a mapped file that is truncated while in use ends the process. Files
+//! are replaced atomically.
 //!
 //! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 

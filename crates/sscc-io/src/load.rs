@@ -41,7 +41,7 @@ impl<'a> LoadOptions<'a> {
 pub struct LoadedModel {
     /// The model.
     pub model: ReducedModel,
-    /// Units and provenance.
+    /// Units and provenance; also forces, mass and standard deviations, if the files have them.
     pub info: ModelInfo,
     /// Default q of a glTF file (r numbers).
     pub default_q: Option<Vec<f64>>,
@@ -79,7 +79,7 @@ pub struct LoadedMesh {
     pub warnings: Vec<String>,
 }
 
-/// Loads a model with modes alone and returns the model with its units and provenance: see [`load_model_with`].
+/// Loads a model as [`load_model_with`] does, without a mesh name, and returns it with its units and provenance.
 ///
 /// # Errors
 /// As [`load_model_with`].

@@ -25,7 +25,9 @@ pub enum GroupsBy {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct NamedGroups {
-    /// The name of each group that has triangles, in the order of its first triangle. No two are equal.
+    /// The name of each group; no two are equal. Groups of a mesh file have triangles, and are in the order of their
+    /// first triangles. Those of [`read_group_numbers`](crate::read_group_numbers) are all numbers up to the largest
+    /// one.
     pub names: Vec<String>,
     /// The group of each triangle: an index of `names`.
     pub of_triangle: Vec<u32>,
@@ -38,7 +40,7 @@ impl NamedGroups {
     /// Returns the group of this name.
     ///
     /// # Errors
-    /// The cause, with the names of all groups.
+    /// When there is none: the cause, with the names of the first groups.
     pub fn number(&self, name: &str) -> Result<u32, String> {
         match self.names.iter().position(|known| known == name) {
             Some(number) => Ok(number as u32),
@@ -84,8 +86,8 @@ pub(crate) struct GroupCollector {
 }
 
 impl GroupCollector {
-    /// Puts the next triangles, up to number `end`, into the group of this name. Names of groups without triangles are
-    /// not kept.
+    /// Puts the next triangles, those before number `end`, into the group of this name. Names of groups without
+    /// triangles are not kept.
     pub fn extend_to(&mut self, end: usize, name: &str) -> Result<(), FormatError> {
         if end <= self.groups.of_triangle.len() {
             return Ok(());

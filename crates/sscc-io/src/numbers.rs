@@ -40,7 +40,8 @@ pub fn read_rows(path: &Path) -> Result<Rows, IoError> {
 /// where `#` begins a comment.
 ///
 /// # Errors
-/// When the file cannot be read, is malformed or has no numbers.
+/// When the file cannot be read, is malformed or has no numbers; when a number in a text file is not finite; when an
+/// array is of another dimension.
 pub fn read_vector(path: &Path) -> Result<Vec<f64>, IoError> {
     let bytes = read_whole(path)?;
     let parse = if ending(path) == "npy" { parse_vector } else { parse_text };
@@ -96,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_and_vectors() {
+    fn arrays_of_one_and_two_axes_are_read_and_others_are_refused() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("q.npy");
         npy::write_npy(&path, &[2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
@@ -124,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn vectors_as_text() {
+    fn vectors_are_read_from_text_with_comments() {
         assert_eq!(parse_text(b"1 2e-3 # weights\r\n\n-4\n").unwrap(), [1.0, 2e-3, -4.0]);
         assert_eq!(parse_text(b"1\nx").unwrap_err().to_string(), "line 2: 'x' is not a number");
         assert_eq!(parse_text(b"1\nnan").unwrap_err().to_string(), "line 2: 'nan' is not a finite number");

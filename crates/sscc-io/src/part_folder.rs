@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_renamed_or_nothing() {
+    fn all_paths_are_renamed_or_none() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let mut part = PartFolder::create_in(directory.path()).unwrap();

@@ -10,7 +10,8 @@ use crate::{FormatError, LoadedMesh, Place};
 ///
 /// # Errors
 /// When the counts do not add up to the corners; when a polygon has fewer than three corners or a vertex that does not
-/// exist; when a position is not finite.
+/// exist, or takes too long to triangulate; when there are no positions or no polygons; when a position is not finite
+/// or beyond [`LARGEST`](sscc::limits::LARGEST).
 pub fn triangulate(
     positions: Vec<DVec3>,
     counts: &[u64],

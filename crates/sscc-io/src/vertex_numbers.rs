@@ -7,11 +7,13 @@ use crate::numbers::read_vector;
 use crate::text::{Lines, decoded, without_comment};
 use crate::{FormatError, IoError};
 
-/// Reads vertex numbers, counted from 0: a `.npy` array of shape (n), or text with numbers between white space or commas,
-/// where `#` begins a comment. A text file whose name ends in `.bou`, as VegaFEM writes fixed vertices, counts from 1.
+/// Reads vertex numbers, counted from 0: a `.npy` array of shape (n), or text with numbers separated by white space or
+/// commas, where `#` begins a comment. A text file whose name ends in `.bou`, as VegaFEM writes fixed vertices, counts
+/// from 1.
 ///
 /// # Errors
-/// When the file cannot be read or is malformed, has no numbers, or a number is not that of a vertex.
+/// When the file cannot be read or is malformed, has no numbers, or a number is no integer from 0 (`.bou`: 1) to 2^32 -
+/// 1.
 pub fn read_vertex_numbers(path: &Path) -> Result<Vec<u32>, IoError> {
     match ending(path).as_str() {
         "npy" => read_vector(path)?.into_iter().map(of_real).collect::<Result<_, _>>(),

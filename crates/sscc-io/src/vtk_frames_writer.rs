@@ -19,8 +19,9 @@ use crate::vtk_writer::vtu;
 /// Writes frames of a mesh as a `.pvd` collection: `x.pvd`, and the files `x/x_000000.vtu`, `x/x_000001.vtu`, ..., which
 /// [`write_vtu_pose`](crate::write_vtu_pose) describes.
 ///
-/// Files are written to a temporary folder beside `x`. [`VtkFramesWriter::finish`] renames it, and replaces an earlier collection of that
-/// name. A writer that is dropped before removes the folder, and earlier files are unchanged.
+/// Files are written to a temporary folder beside `x`. [`VtkFramesWriter::finish`] renames them, and replaces an
+/// earlier collection of that name. If a writer is dropped before that, the folder is removed, and earlier files are
+/// unchanged.
 pub struct VtkFramesWriter {
     target: Target,
     part: PartFolder,
@@ -29,8 +30,8 @@ pub struct VtkFramesWriter {
 }
 
 impl VtkFramesWriter {
-    /// Checks, before long work, that a collection can be written without loss of these inputs, as [`create`](Self::create) does
-    /// without inputs.
+    /// Checks, before long work, that [`create`](Self::create) can begin a collection, and that the collection would
+    /// replace no file of these inputs.
     ///
     /// # Errors
     /// As [`create`](Self::create); when an input, which may be a file, `FILE#NAME`, a folder or a collection, has files in the folder
@@ -50,8 +51,9 @@ impl VtkFramesWriter {
     /// Begins a collection.
     ///
     /// # Errors
-    /// When the name is no text or does not end in `.pvd`; when its folder has files other than those of an earlier collection, which
-    /// the present `.pvd` file names; or when no folder can be created beside it.
+    /// When the name is no text or does not end in `.pvd`; when the target is a folder or a device; when its folder is
+    /// a file, or has files other than those of an earlier collection, which the present `.pvd` file names; or when no
+    /// folder can be created beside it.
     pub fn create(path: &Path) -> Result<Self, IoError> {
         let target = Target::new(path)?;
         target.check()?;
@@ -91,10 +93,11 @@ impl VtkFramesWriter {
     }
 
     /// Completes the collection: an earlier one is set aside, and removed when the new one is in place. If the process ends in
-    /// between, the earlier collection is whole in the temporary folder.
+    /// between, each file of the earlier collection is in its place or in the temporary folder.
     ///
     /// # Errors
-    /// When the target has become one that [`create`](Self::create) refuses, or cannot be replaced. It is then unchanged.
+    /// When the target has become one that [`create`](Self::create) refuses, or cannot be replaced. It is then
+    /// unchanged, unless renaming its files back fails, too: then the temporary folder is kept, which contains them.
     pub fn finish(mut self) -> Result<(), IoError> {
         let text = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n\

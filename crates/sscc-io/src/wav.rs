@@ -22,7 +22,8 @@ const MAX_BYTES: usize = u32::MAX as usize - 4096;
 /// Writes a sound with one channel. `rate` is in samples per second; the nominal range of samples is -1 to 1.
 ///
 /// # Errors
-/// When a sample is not finite, there are more than 4 GiB of them, or the file cannot be written.
+/// When the rate is 0, or so large that a second has 4 GiB of samples or more; when a sample is not finite in single
+/// precision; when the samples take more than 4 GiB minus 4097 bytes; when the file cannot be written.
 pub fn write_wav(path: &Path, rate: u32, samples: &[f64], format: WavFormat) -> Result<(), IoError> {
     let bytes = wav_to_bytes(rate, samples, format).map_err(|cause| IoError::request(path, cause))?;
     write_whole(path, &bytes)

@@ -1,5 +1,5 @@
-//! Proofs of certificates, and the checker, which shares no code with their computation: it confirms true proofs and refuses
-//! all others.
+//! The checker confirms the proofs of right certificates, and refuses the proofs of wrong ones. It shares no code with
+//! the computation of certificates and proofs.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
 use sscc::parts::{CertificateParts, Digest, Prover, Scope};
@@ -72,7 +72,7 @@ fn tampered(file: &[u8], tensor: &str, change: impl FnOnce(&mut [u8])) -> Vec<u8
     bytes
 }
 
-/// Returns the options of certificates for a seed: all kinds of filters, metrics, centres and budgets.
+/// Returns the options of certificates for a seed. Seeds differ in the filter, the metric, the centre and the budget.
 fn options(seed: u64, model: &ReducedModel) -> CertifyOptions {
     let (rank, triangles) = (model.rank(), model.mesh().faces().len() as u32);
     let mut random = Numbers(seed);
@@ -165,7 +165,7 @@ fn a_radius_one_unit_too_large_is_refused() {
             Err(refusal) => break refusal.to_string(),
         }
     };
-    // The proof of that entry alone.
+    // From here on, the proof is that of this entry alone.
     let number = refused.split(['y', ',']).nth(1).unwrap().trim().parse().unwrap();
     let prover = Prover::new(&model, &certificates).unwrap();
     let proof = [prover.header(1), prover.prove(&[number], None, &()).unwrap()].concat();
@@ -210,7 +210,7 @@ fn dropped_pairs_are_refused() {
     // A triangle that is in two nodes and another one in none.
     let twice = tampered(&file, "order", |bytes| bytes.copy_within(4..8, 0));
     assert!(refusal(check(&model, &twice, &proof), true).contains("listed twice"));
-    // A leaf with children, a node with children beyond all nodes, and one with a single child.
+    // A leaf with children, a node with children beyond all nodes, one with a single child, and one with five.
     let nodes = certificates.parts().hierarchy.nodes();
     let leaf = nodes.iter().position(|node| node.is_leaf()).unwrap();
     for (node, [first_child, children]) in
@@ -384,10 +384,11 @@ fn outcome_of_the_mutation_of_this_process() {
     }
 }
 
-/// The checker refuses certificates and proofs by wrong bounds: `cargo test -p sscc-io --features mutants --test proofs`.
+/// Certificates by wrong bounds have no proof, or the checker refuses it:
+/// `cargo test -p sscc-io --features mutants --test proofs`.
 #[cfg(feature = "mutants")]
 #[test]
-fn proofs_by_mutated_bounds_are_refused() {
+fn certificates_by_mutated_bounds_are_not_confirmed() {
     let outcomes = |mutation: Option<&str>| -> Vec<String> {
         let mut child = std::process::Command::new(std::env::current_exe().unwrap());
         child.args(["--exact", "outcome_of_the_mutation_of_this_process", "--ignored", "--nocapture"]);

@@ -34,7 +34,7 @@ impl<'a> Body<'a> {
     /// Assembles the matrices of a solid with fixed vertices.
     ///
     /// # Errors
-    /// When a fixed vertex does not exist, or all are fixed.
+    /// When a fixed vertex does not exist, all are fixed, or numbers are out of range.
     pub fn new(solid: &'a Solid, fixed: &[u32]) -> Result<Self, ModesError> {
         let vertices = solid.vertices().len();
         let mut rows = vec![0; vertices];

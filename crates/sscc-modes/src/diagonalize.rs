@@ -70,8 +70,8 @@ pub struct DiagonalModes {
 /// ```
 ///
 /// # Errors
-/// When the stiffness has another rank or an eigenvalue below -1e-12 of the largest, or an entry of the new modes is
-/// out of range.
+/// When the stiffness has another rank or an eigenvalue below -1e-12 of the largest, the eigenvalues do not converge,
+/// or an entry of the new modes is out of range.
 pub fn diagonalize(modes: &Modes, stiffness: &Stiffness) -> Result<DiagonalModes, ModesError> {
     let rank = modes.rank();
     if stiffness.rank() != rank {

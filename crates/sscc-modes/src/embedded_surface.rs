@@ -28,7 +28,7 @@ impl EmbeddedSurface {
     ///
     /// # Errors
     /// When the surface is open, not consistently oriented, collides with itself, encloses no volume or has several
-    /// pieces, or the number of cubes is too large.
+    /// pieces; when `cells` is 0 or there are too many cubes; when the work is cancelled.
     pub fn new(
         surface: &TriMesh,
         cells: Option<usize>,
@@ -96,7 +96,7 @@ impl EmbeddedSurface {
         Ok(Modes::new(r, displacements)?)
     }
 
-    /// Returns the vertices of the solid that move a vertex of the surface; fixing them fixes it.
+    /// Returns the vertices of the solid that move a vertex of the surface. If they are fixed, so is this vertex.
     pub fn holding(&self, vertex: usize) -> impl Iterator<Item = u32> {
         self.interpolation.vertices[vertex].iter().filter(|(_, share)| *share != 0.0).map(|(v, _)| *v)
     }

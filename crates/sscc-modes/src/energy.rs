@@ -4,7 +4,8 @@ use sscc::{Metric, MetricKind};
 
 use crate::ModesError;
 
-/// The paper's `ell` for [`filter_eigenvalues`]: filtered weights are at most 100 times the smallest.
+/// The paper's `ell` for [`filter_eigenvalues`]: filtered weights are at most 100 times the smallest positive
+/// eigenvalue.
 pub const DEFAULT_ELL: f64 = 100.0;
 
 /// Limits the weights of very stiff modes, which would dominate `|z|` and weaken certificates:

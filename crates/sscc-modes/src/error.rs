@@ -143,7 +143,7 @@ pub enum ModesError {
         /// Maximum number of modes.
         max: usize,
     },
-    /// A diagonal entry of the stiffness is not positive.
+    /// A pivot of the stiffness is not positive.
     #[error(
         "the stiffness is not positive at free vertex {vertex} (counted from 0): check the elements and materials around it"
     )]
@@ -280,7 +280,7 @@ pub enum ModesError {
     /// Error of the crate `sscc-solid`.
     #[error(transparent)]
     Solid(#[from] sscc_solid::SolidError),
-    /// Error of the crate `sscc`: a number of the modes or the metric is out of range.
+    /// Error of the crate `sscc`: a number of the modes or the metric is out of range, or the work was cancelled.
     #[error(transparent)]
     Core(#[from] sscc::Error),
 }

@@ -6,14 +6,16 @@ use sscc_solid::Stiffness;
 
 use crate::{ModesError, stiffness_eigenvalues};
 
-/// Maximum eigenvalue, relative to the largest entry, that counts as 0, because it may be rounding.
+/// Maximum magnitude of a negative eigenvalue, relative to the largest entry, that counts as 0, because it may be
+/// rounding.
 const ZERO_TOLERANCE: f64 = 1e-12;
 
 /// Returns the natural frequencies (Hz) of mass-orthonormal modes: in the order of the modes if the stiffness is
 /// diagonal, else ascending.
 ///
 /// # Errors
-/// When an eigenvalue is negative (the model is not at rest), or the eigenvalues do not converge.
+/// When an eigenvalue is below -1e-12 of the largest entry (the model is not at rest), or the eigenvalues do not
+/// converge.
 pub fn natural_frequencies(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError> {
     let eigenvalues = match stiffness.is_diagonal() {
         true => stiffness.diagonal().collect(),
@@ -27,7 +29,7 @@ pub fn natural_frequencies(stiffness: &Stiffness) -> Result<Vec<f64>, ModesError
 }
 
 /// Returns the frequency (Hz) of each mode; None if the stiffness is not diagonal (modes are coupled), or an eigenvalue
-/// is negative.
+/// is below -1e-12 of the largest entry.
 pub fn mode_frequencies(stiffness: &Stiffness) -> Option<Vec<f64>> {
     if !stiffness.is_diagonal() {
         return None;

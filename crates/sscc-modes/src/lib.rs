@@ -28,8 +28,9 @@
 //! the example at [`diagonalize`] gives a model whose metric is strain energy.
 //!
 //! All results have the same bits on every machine: sums have a fixed order, and sines and cosines come from `libm`.
-//! The exceptions are [`diagonalize`], [`pca_modes`] and the modes of solids, whose linear algebra depends on the
-//! vector instructions of the processor.
+//! The exceptions are [`diagonalize`], [`pca_modes`], the modes of solids, [`stiffness_eigenvalues`],
+//! [`natural_frequencies`] of coupled modes, [`static_configuration`] and [`DisplacementFit`], whose linear algebra
+//! depends on the vector instructions of the processor.
 
 mod body;
 mod cancel;

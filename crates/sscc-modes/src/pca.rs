@@ -45,7 +45,7 @@ pub struct Pca {
 ///
 /// # Errors
 /// When there are fewer than two frames, one has another number of vertices or a position out of range, all are equal,
-/// or fewer independent directions exist than requested; when `progress` cancels.
+/// fewer independent directions exist than requested, or `rank` is 0; when `progress` cancels.
 pub fn pca_modes(
     mesh: &TriMesh,
     frames: &[Vec<DVec3>],
@@ -155,7 +155,7 @@ fn components(
     Ok((values, vectors, 3.0 * used.len() as f64 * count as f64 * rounding * rounding))
 }
 
-/// Returns the number of largest variances that explain this share.
+/// Returns the number of largest variances whose sum is at least `wanted`; all if none is.
 fn explaining(wanted: f64, variances: &[f64]) -> usize {
     let mut sum = 0.0;
     let reached = variances.iter().position(|x| {

@@ -35,12 +35,12 @@ pub fn generalized_forces(modes: &Modes, forces: &[(u32, DVec3)]) -> Result<Vec<
     Ok(sum)
 }
 
-/// Returns the linear static answer to generalized forces in the span of the modes: the q with `K~ q = U'f`. For a
-/// diagonal stiffness `q_i = u_i.f / lambda_i`.
+/// Returns the linear static answer to generalized forces in the span of the modes: the q with `K q = U'f`, where K is
+/// the symmetric part of the stiffness. For a diagonal stiffness `q_i = u_i.f / lambda_i`.
 ///
 /// # Errors
 /// When there is not one force for each mode, an eigenvalue is negative, the load acts along a direction without stiffness, or
-/// an entry of q is not finite.
+/// the norm of the forces or an entry of q is not finite.
 pub fn static_configuration(stiffness: &Stiffness, forces: &[f64]) -> Result<Vec<f64>, ModesError> {
     let rank = stiffness.rank();
     if forces.len() != rank {
@@ -51,7 +51,7 @@ pub fn static_configuration(stiffness: &Stiffness, forces: &[f64]) -> Result<Vec
     let (values, vectors) = symmetric_eigen(matrix.as_ref())?;
     let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let size = forces.iter().map(|f| f * f).sum::<f64>().sqrt();
-    // With an infinite size, no share of the load is defined.
+    // If the norm is not finite, shares of the load are not defined.
     if !size.is_finite() {
         return Err(ModesError::OutOfRange);
     }
@@ -87,17 +87,18 @@ pub struct FittedConfiguration {
     pub q: Vec<f64>,
     /// Norm of the residual over that of the displacements; 0 without displacements.
     pub residual: f64,
-    /// The largest distance of a vertex from its place.
+    /// The largest distance of a vertex from its given position (model unit).
     pub largest: f64,
     /// The vertex at that distance.
     pub vertex: u32,
 }
 
 impl DisplacementFit {
-    /// Prepares fits for these modes. Modes may depend on the others, up to 1e-6 of the largest singular value.
+    /// Prepares fits for these modes, which may be linearly dependent: with each mode divided by its norm, directions
+    /// whose singular value is at most 1e-6 of the largest one are omitted.
     ///
     /// # Errors
-    /// When the products of the modes are out of range.
+    /// When the norm of a mode is not finite.
     pub fn new(modes: &Modes) -> Result<Self, ModesError> {
         let rank = modes.rank();
         let entry = |row: usize, k: usize| modes.displacements()[row / 3 * rank + k][row % 3];
@@ -168,7 +169,7 @@ mod tests {
             static_configuration(&diagonal(&[0.0, 2.0]), &[1.0, 1.0]),
             Err(ModesError::NoStaticAnswer)
         );
-        // The load is so large that no share of it is defined.
+        // The norm of the load is not finite.
         assert_eq!(static_configuration(&diagonal(&[0.0, 2.0]), &[1e200, 1.0]), Err(ModesError::OutOfRange));
         assert!(static_configuration(&diagonal(&[-1.0, 2.0]), &[1.0, 1.0]).is_err());
         assert!(static_configuration(&diagonal(&[1.0, 2.0]), &[1.0]).is_err());

@@ -50,7 +50,8 @@ impl SolidModes {
 /// Computes the `rank` lowest vibrations of a solid: `K x = lambda M x` (linear modal analysis; paper, section 6),
 /// without the rigid motions that the `fixed` vertices permit (six for a free body).
 ///
-/// The inertia of `K - sigma M` counts the eigenvalues below the last one, so none is missing.
+/// A small problem is solved completely. In others the inertia of `K - sigma M` counts the eigenvalues up to a gap
+/// after the last one, so none is missing.
 ///
 /// # Errors
 /// When a fixed vertex does not exist, all are fixed, the body has fewer modes, parts of the body share only an edge or a
@@ -73,7 +74,7 @@ pub fn linear_modes(
 /// mass-weighted principal component analysis. The basis is rotated so that the stiffness at rest is diagonal.
 ///
 /// # Errors
-/// As [`linear_modes`].
+/// As [`linear_modes`], and when `rank` is 0 or larger than 100.
 pub fn nonlinear_modes(
     solid: &Solid,
     fixed: &[u32],

@@ -22,7 +22,7 @@ impl Solid {
     /// Returns the boundary. Costs O(n log n) in the number of faces.
     ///
     /// # Errors
-    /// When three elements share a face, so that elements overlap.
+    /// When three or more elements share a face, so that elements overlap.
     pub fn boundary(&self) -> Result<Boundary, SolidError> {
         let triangles = outer_triangles(
             self.tets(),
@@ -45,7 +45,7 @@ impl VolumeMesh {
     /// [`Solid::boundary`].
     ///
     /// # Errors
-    /// When three elements share a face.
+    /// When three or more elements share a face.
     pub fn surface_mesh(&self) -> Result<TriMesh, SolidError> {
         let within = tets_within(self.tets(), self.surface());
         let kept: Vec<usize> = (0..within.len()).filter(|tet| within[*tet]).collect();
@@ -99,7 +99,7 @@ impl Boundary {
     /// Restricts modes of the solid's vertices to the boundary's vertices.
     ///
     /// # Errors
-    /// When the modes have fewer vertices than the solid.
+    /// When a vertex of the boundary is beyond those of the modes.
     pub fn on_surface(&self, modes: &Modes) -> Result<Modes, SolidError> {
         let (rank, found) = (modes.rank(), modes.vertices());
         let needed = self.vertices.iter().max().map_or(0, |v| *v as usize + 1);

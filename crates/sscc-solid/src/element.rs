@@ -129,7 +129,8 @@ pub(crate) fn cube_is_inverted(corners: &[DVec3; 8]) -> bool {
     let size = corners.iter().map(|p| p.distance(corners[0])).fold(0.0, f64::max);
     CORNERS.iter().flat_map(|c| [*c, *c * GAUSS]).any(|at| {
         let determinant = jacobian(corners, &trilinear(at).1).determinant();
-        // The reference cube has side 2, so the determinant is an eighth of the volume. NaN (an overflow) is inverted, too.
+        // The reference cube has side 2, so the determinant is an eighth of the volume. NaN (an overflow) counts as
+        // inverted, too.
         determinant.is_nan() || determinant <= 1e-9 * size * size * size
     })
 }

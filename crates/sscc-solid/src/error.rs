@@ -141,7 +141,7 @@ pub enum SolidError {
     },
     /// A cube is flat or inverted at some point.
     #[error(
-        "cube {cube} (counted from 0) is flat or inverted at a corner: list its corners around its lower face, then around its upper one"
+        "cube {cube} (counted from 0) is flat or inverted at a corner or an integration point: list its corners around its lower face, then around its upper one"
     )]
     InvertedCube {
         /// The cube, from 0.

@@ -8,17 +8,17 @@ use crate::{Solid, SolidError};
 /// Mass, centre of mass and inertia of a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
-    /// Mass.
+    /// Mass (density times the model unit cubed).
     pub mass: f64,
     /// Centre of mass (model unit).
     pub center: DVec3,
-    /// Inertia tensor about the centre of mass: the integral of `|x|^2 - x x'` over the mass.
+    /// Inertia tensor about the centre of mass: the integral of `|x|^2 I - x x'` over the mass.
     pub inertia: DMat3,
 }
 
 impl MassProperties {
     /// Returns the mass properties of a uniform body within a closed surface whose triangles are oriented outwards. None
-    /// if the enclosed volume is not positive.
+    /// if the mass within is not positive and finite.
     pub fn within(surface: &TriMesh, density: f64) -> Option<Self> {
         let p = surface.rest_positions();
         let origin = p[surface.faces()[0][0] as usize];

@@ -9,7 +9,8 @@ use crate::{Material, PartialMaterial, Solid, SolidError, VolumeMesh, tets_withi
 pub struct MeshedSolid {
     /// The solid.
     pub solid: Solid,
-    /// Vertex of the solid for each vertex of the mesh; None for vertices of removed elements only.
+    /// Vertex of the solid for each vertex of the mesh. If elements are removed, None for the vertices that belong to
+    /// no other element.
     pub vertices: Vec<Option<u32>>,
     /// Properties that the mesh gives for the materials of the solid's elements.
     pub stated: Vec<PartialMaterial>,
@@ -22,8 +23,8 @@ impl VolumeMesh {
     /// Properties of materials are those in `given`, then those of the mesh, then those of the default material.
     ///
     /// # Errors
-    /// As [`Solid::new`]; when a property of a material is outside its range; when an element has a material whose stiffness
-    /// is not computed, and `given` does not replace all of its stiffness.
+    /// As [`Solid::with_middles`]; when a property of a material is outside its range; when an element has a material
+    /// whose stiffness is not computed, and `given` does not replace all of its stiffness.
     pub fn solid(&self, given: &PartialMaterial) -> Result<MeshedSolid, SolidError> {
         let within = tets_within(self.tets(), self.surface());
         let kept: Vec<usize> = (0..within.len()).filter(|t| within[*t]).collect();

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-/// Returns the number of monomials of a degree in `rank` variables, at most `usize::MAX`.
+/// Returns the number of monomials of a degree in `rank` variables; `usize::MAX` if its computation overflows.
 pub fn count(rank: usize, degree: usize) -> usize {
     let mut product = 1_usize;
     for k in 0..degree {

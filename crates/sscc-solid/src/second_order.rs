@@ -10,8 +10,8 @@ use crate::integration_point::{IntegrationPoint, jacobian};
 /// Corners of the edge of each middle node.
 pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
-/// Minimum Jacobian determinant at a node or an integration point, over the longest edge cubed. Below it, the element is flat
-/// or inverted there.
+/// Jacobian determinant at a node or an integration point, over the cube of the largest distance of a node from the
+/// first one. If it is at most this, the element is flat or inverted there.
 const MIN_JACOBIAN: f64 = 1e-9;
 
 /// Orbits of four integration points in barycentric coordinates, with the weight of each point. With [`EDGE_ORBIT`], the 14

@@ -32,8 +32,8 @@ impl Solid {
     /// first. If all tetrahedra have a negative volume, the constructor reverses all of them.
     ///
     /// # Errors
-    /// When there is no element, an index is out of range, a coordinate is beyond [`sscc::limits`], a vertex belongs
-    /// to no element, or an element is flat or inverted.
+    /// When there is no element, an element has no material, an index is out of range, a coordinate is beyond
+    /// [`sscc::limits`], a vertex belongs to no element, or an element is flat or inverted.
     pub fn new(
         vertices: Vec<DVec3>,
         tets: Vec<[u32; 4]>,

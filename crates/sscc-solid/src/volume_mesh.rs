@@ -39,9 +39,9 @@ impl VolumeMesh {
     /// Creates a mesh from these parts.
     ///
     /// # Errors
-    /// When there is no vertex or no element, only some tetrahedra are of second order, an index is out of range, a coordinate
-    /// is beyond [`sscc::limits`], an element or a face names a vertex twice, an element is duplicated, or an element has no
-    /// material.
+    /// When there is no vertex, more than 2^32 - 1, or no element, only some tetrahedra are of second order, an index
+    /// is out of range, a coordinate is beyond [`sscc::limits`], an element or a face names a vertex twice, an element
+    /// is duplicated, or an element has no material.
     pub fn new(parts: VolumeMeshParts) -> Result<Self, SolidError> {
         let VolumeMeshParts { vertices, tets, middles, cubes, surface, materials, element_material } = &parts;
         if vertices.is_empty() {

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_names_and_files() {
+    fn a_q_is_read_from_numbers_names_and_files() {
         let folder = tempfile::tempdir().unwrap();
         let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         let [mesh, targets] = ["a.obj", "targets"].map(|name| folder.path().join(name));

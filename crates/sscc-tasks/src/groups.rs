@@ -15,12 +15,12 @@ use crate::named_meshes::{NamedMesh, is_in_one_mesh, names_of_pairs, tables};
 /// Pairs of groups of triangles that do not count, or that count exclusively. By default all pairs count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GroupRules {
-    /// Pairs `A,B` of names of groups whose triangles do not count (`--ignore-groups`).
+    /// Pairs `A,B` of names of groups: pairs of their triangles do not count (`--ignore-groups`).
     pub ignored: Vec<String>,
     /// Pairs `A,B` of names of groups (`--only-groups`): no other pairs count. Not allowed together with `ignored`.
     pub only: Vec<String>,
     /// The groups (`--group-by`): `group`, `object` (or `node`), `mesh`, `material`, or a file of numbers. None means
-    /// `group`; between the meshes of a scene, or two meshes, any of these names of glTF files.
+    /// `group`; for the nodes of a scene and for two meshes, a group may have a name of any of these four kinds.
     pub by: Option<PathBuf>,
 }
 
@@ -47,7 +47,8 @@ impl GroupRules {
     /// Returns the groups of a model with modes; None if all pairs count. `mesh_name` is the name of a glTF mesh.
     ///
     /// # Errors
-    /// When the groups cannot be read, no group has a given name, or their number differs from that of the triangles.
+    /// When the groups cannot be read, a text is not a pair of names of groups, there are not as many group numbers as
+    /// triangles, or `by` is given without pairs.
     pub fn of_model(
         &self,
         path: &Path,
@@ -193,10 +194,11 @@ impl GroupRules {
     }
 }
 
-/// The kinds of names in a scene, except primitives.
+/// The kinds of names in a scene, except those of primitives.
 const ANY_KIND: [GroupsBy; 3] = [GroupsBy::Object, GroupsBy::Mesh, GroupsBy::Material];
 
-/// Returns the groups with empty names for groups that a file does not name: their generated name is a number or `default`.
+/// Returns the groups with empty names for groups that a file does not name: their generated name is `#` with a number,
+/// or `default`.
 fn with_own_names(mut groups: NamedGroups) -> NamedGroups {
     for name in &mut groups.names {
         let is_number = |rest: &str| rest.bytes().all(|byte| byte.is_ascii_digit());
@@ -276,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_without_rules() {
+    fn without_pairs_all_count_and_a_kind_of_groups_is_refused() {
         let mut rules = GroupRules::default();
         assert!(rules.of_mesh("missing.obj".as_ref(), None, 1).unwrap().is_none());
         rules.by = Some("material".into());

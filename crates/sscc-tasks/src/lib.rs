@@ -1,7 +1,7 @@
 //! Tasks on files as a library: collisions of meshes, frames and animations from files ([`detect`]) and of rows of a
-//! model ([`check_rows`]), sweeps ([`sweep_model`]), ways out of collisions ([`resolve_rows`]), certificates by options in
-//! part ([`CertificateRequest`]), modes of solids and samples ([`elastic_model`]), and models from recipes with a cache
-//! ([`CertifiedModel`]).
+//! model ([`check_rows`]), sweeps ([`sweep_model`]), free configurations near colliding ones ([`resolve_rows`]),
+//! certificates by options that may be absent ([`CertificateRequest`]), modes of solids ([`elastic_model`]) and of
+//! frames ([`pca_model`]), and models from recipes with a cache ([`CertifiedModel`]).
 //!
 //! Long work takes a [`sscc::Progress`], or a [`Watch`] where it has several stages, and is cancelled by it. Nothing is
 //! printed.

@@ -19,7 +19,7 @@ pub fn machine_description() -> String {
     parts.join(", ")
 }
 
-/// Returns the number of threads that this machine runs at once; 1 if the system does not report it.
+/// Returns the number of threads that this process can run at once; 1 if the system does not report it.
 pub fn available_threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
@@ -34,7 +34,7 @@ impl PeakMemory {
         fs::write("/proc/self/clear_refs", "5").ok().map(|()| Self(()))
     }
 
-    /// Returns the peak memory (bytes) since [`PeakMemory::start`].
+    /// Returns the peak memory (bytes) since [`PeakMemory::start`]; None if the system does not report it.
     pub fn bytes(self) -> Option<u64> {
         line_of("/proc/self/status", "VmHWM").and_then(|text| kibibytes(&text))
     }
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn the_peak_is_since_the_start() {
+    fn the_peak_memory_is_that_since_the_start() {
         let before = PeakMemory::start().unwrap().bytes().unwrap();
         let size = 200 << 20;
         let peak = PeakMemory::start().unwrap();
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_read() {
+    fn kibibytes_are_read_as_bytes() {
         assert_eq!(kibibytes("2 kB"), Some(2048));
         assert_eq!(kibibytes("many"), None);
     }

@@ -7,8 +7,8 @@ pub fn nearest<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
     names.into_iter().min_by_key(|name| levenshtein(typed, name))
 }
 
-/// Returns "; did you mean 'NAME'?" with the nearest name if it has about half of its characters in common with `typed`, else
-/// an empty text.
+/// Returns "; did you mean 'NAME'?" with the nearest name if its edit distance to `typed` is at most half the length of
+/// the longer one, else an empty text.
 pub fn did_you_mean<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let typed: String = typed.chars().take(MAX_COMPARED).collect();
     let is_near =
@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edits_are_counted() {
+    fn the_nearest_name_has_the_fewest_edits() {
         assert_eq!(["", "spring", "sprnig", "string"].map(|name| levenshtein(name, "spring")), [6, 0, 2, 1]);
         assert_eq!(nearest("sprng", ["bunny", "spring"]), Some("spring"));
         assert_eq!(nearest("x", []), None);

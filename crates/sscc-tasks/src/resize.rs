@@ -16,7 +16,7 @@ pub enum Resize {
     Keep,
     /// All lengths of its files are multiplied by this factor.
     Factor(f64),
-    /// The longest side of its AABB.
+    /// The longest side of its AABB (m).
     LongestSide(f64),
 }
 
@@ -24,7 +24,7 @@ impl Resize {
     /// Returns the factor on all lengths, for a body with these vertices.
     ///
     /// # Errors
-    /// When the factor is not positive and finite.
+    /// When the factor is not positive and finite, such as for a longest side if all points are equal.
     pub fn factor(self, points: &[DVec3]) -> Result<f64, TaskError> {
         let (key, factor) = match self {
             Self::Keep => return Ok(1.0),

@@ -16,9 +16,10 @@ pub struct ResolveReport {
     pub resolved: bool,
     /// The free configuration.
     pub q: Option<Vec<f64>>,
-    /// Its distance from q in the metric.
+    /// Its distance from q in the metric; infinite without a free configuration.
     pub change: f64,
-    /// The distance from q of the last free configuration on the line from the start to q.
+    /// The distance from q of the last configuration on the line from the start to q that continuous queries prove
+    /// free; infinite without a free configuration.
     pub safe_scale_change: f64,
 }
 
@@ -51,11 +52,11 @@ impl fmt::Display for ResolveReport {
     }
 }
 
-/// Resolves every row on this number of threads, in order. `progress` may cancel it.
+/// Resolves every row, on this number of threads. The reports are in the order of the rows.
 ///
 /// # Errors
-/// When the certificates are of another model, a row is not a configuration of it, or the start of the options is not a
-/// configuration or collides.
+/// When the certificates are of another model, a row is not a configuration of it, the start of the options is not a
+/// configuration or collides, or `progress` cancels.
 pub fn resolve_rows(
     model: &ReducedModel,
     certificates: &Certificates,

@@ -23,8 +23,8 @@ pub struct StaticAnswer {
 /// (m/s^2) on its whole mass: see [`static_configuration`].
 ///
 /// # Errors
-/// When the model has no stiffness, or for gravity no mass, a vertex does not exist, or the load has no static configuration,
-/// or one that queries refuse.
+/// When the model has no stiffness, or for gravity no mass; when a vertex does not exist; when the load has no static
+/// configuration, or has one that queries refuse.
 pub fn static_answer(
     model: &ReducedModel,
     info: &ModelInfo,

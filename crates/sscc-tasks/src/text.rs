@@ -35,7 +35,8 @@ pub fn quoted(text: &str) -> String {
     format!("'{shown}'")
 }
 
-/// Formats a radius or a length with four digits; "unlimited" if it is infinite.
+/// Formats a radius or a length with four significant digits, and below 1e6 with all digits before the point;
+/// "unlimited" if it is infinite.
 pub fn length(value: f64) -> String {
     match value {
         0.0 => "0".into(),
@@ -49,7 +50,7 @@ pub fn length(value: f64) -> String {
 }
 
 /// Formats longest side (m), mass (kg) and first frequency (Hz) of a body. Wrong units of a size are visible in each of them.
-/// A body of unknown mass is held.
+/// Without a mass the text states that the body is held.
 pub fn size_and_mass(side: f64, mass: Option<f64>, first: f64) -> String {
     let mass = mass.map_or_else(|| "held".into(), |mass| format!("mass {} kg", length(mass)));
     format!("longest side {} m, {mass}, first mode {} Hz", length(side), length(first))
@@ -91,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_for_people() {
+    fn numbers_have_groups_units_and_four_digits() {
         assert_eq!([0, 999, 16_000, 1_234_567].map(grouped), ["0", "999", "16,000", "1,234,567"]);
         assert_eq!(counted(1_u32, "pair"), "1 pair");
         assert_eq!(counted(0_u32, "pair"), "0 pairs");

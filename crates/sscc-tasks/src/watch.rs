@@ -28,7 +28,7 @@ pub enum Stage {
     Detection,
 }
 
-/// [`Progress`] of work that has several stages. Cancels all of them.
+/// [`Progress`] of work that has several stages. One cancellation ends all of them.
 pub trait Watch: Progress {
     /// Called when a stage begins. Later progress belongs to this stage.
     fn begin(&self, stage: Stage);

@@ -22,7 +22,8 @@ pub enum ZeroRadius {
         /// Number of rings beyond which pairs count.
         rings: u32,
     },
-    /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0.
+    /// Only exceptions collide at the centre (with a clearance: are nearer than it), but two of these triangles are too
+    /// close for a bound above 0.
     TooClose {
         /// Triangles of the smallest part with radius 0, sorted.
         triangles: Vec<u32>,
@@ -30,10 +31,12 @@ pub enum ZeroRadius {
 }
 
 impl ZeroRadius {
-    /// Finds the reason; None if the root's radius is not 0. Costs up to two discrete queries.
+    /// Finds the reason; None if the root's radius is not 0. Costs up to two discrete queries, or one query of the
+    /// clearance.
     ///
     /// # Errors
-    /// When the certificates are of another model, or `progress` cancels.
+    /// When the certificates are of another model, more than [`sscc::Detector::MAX_PAIRS`] pairs are nearer than the
+    /// clearance, or `progress` cancels.
     pub fn find(
         model: &ReducedModel,
         certificates: &Certificates,

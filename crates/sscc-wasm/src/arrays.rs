@@ -22,7 +22,7 @@ impl fmt::Display for LengthError {
 
 impl std::error::Error for LengthError {}
 
-/// The error that a number is not a valid count or vertex number.
+/// The error that a number is not a valid limit or vertex number, or that `faces` has a wrong length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberError(String);
 
@@ -50,7 +50,10 @@ pub fn rows<'a, const N: usize, T>(
     }
 }
 
-/// Returns the vertex numbers of triangles, which may be any numbers in JavaScript.
+/// Returns the vertex numbers of triangles. JavaScript may pass any numbers.
+///
+/// # Errors
+/// When their number is not a multiple of 3, or one is not an integer of 32 bits.
 pub fn triangles(numbers: &[f64]) -> Result<Vec<[u32; 3]>, NumberError> {
     let rows = rows::<3, _>("faces", numbers).map_err(|error| NumberError(error.to_string()))?;
     let is_vertex = |number: &f64| number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(number);
@@ -65,6 +68,9 @@ pub fn triangles(numbers: &[f64]) -> Result<Vec<[u32; 3]>, NumberError> {
 }
 
 /// Returns the largest number of pairs: no limit for `undefined` and infinity.
+///
+/// # Errors
+/// When the number is negative, NaN, or not an integer.
 pub fn limit(number: Option<f64>) -> Result<usize, NumberError> {
     match number {
         None | Some(f64::INFINITY) => Ok(usize::MAX),

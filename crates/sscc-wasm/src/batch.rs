@@ -16,7 +16,7 @@ pub struct Batch {
 /// The reason why a batch has no answers.
 #[derive(Debug)]
 pub enum BatchError {
-    /// The number of numbers is not a multiple of the row length.
+    /// The length of the array is not a multiple of the number of modes.
     Length(LengthError),
     /// A row is not a configuration of the model.
     Row(usize, sscc::Error),
@@ -37,7 +37,7 @@ impl Batch {
     /// Returns the answers of a query at configurations of `rank` numbers each.
     ///
     /// # Errors
-    /// When the length is not a multiple of `rank`; the error of the first q that has one.
+    /// When the length of the array is not a multiple of `rank`; else the error of the first q that has one.
     pub(crate) fn answer(query: &mut sscc::Query, rank: usize, numbers: &[f64]) -> Result<Self, BatchError> {
         if !numbers.len().is_multiple_of(rank) {
             return Err(BatchError::Length(LengthError { name: "rows", length: numbers.len(), row: rank }));

@@ -22,19 +22,21 @@ impl Certificates {
         Ok(container::certificates_to_bytes(&self.0)?)
     }
 
-    /// The norm |z| below which the whole shape is proven free, apart from the exceptions.
+    /// The norm |z| below which the whole shape is proven free, apart from the exceptions. If the certificates have a
+    /// clearance, the shape keeps it below this norm, but triangles within the rings may collide.
     #[wasm_bindgen(getter, js_name = rootRadius)]
     pub fn root_radius(&self) -> f64 {
         self.0.root_radius()
     }
 
-    /// The norm |z| up to which radii reach.
+    /// The norm |z| at which radii are capped.
     #[wasm_bindgen(getter, js_name = globalRadius)]
     pub fn global_radius(&self) -> f64 {
         self.0.global_radius()
     }
 
-    /// The pairs that collide at the centre, which every query tests (2 triangle numbers for each).
+    /// The pairs that collide at the centre, or are nearer than the clearance there; no radius covers them, and every
+    /// query tests them (2 triangle numbers for each).
     #[wasm_bindgen(getter)]
     pub fn exceptions(&self) -> Vec<u32> {
         numbers(self.0.exceptions())

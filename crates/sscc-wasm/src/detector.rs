@@ -14,7 +14,8 @@ pub struct Detector(sscc::Detector);
 
 #[wasm_bindgen]
 impl Detector {
-    /// Creates a detector. `positions`: 3 coordinates for each vertex, in any pose. `faces`: 3 vertex numbers for each triangle.
+    /// Creates a detector. `positions`: 3 coordinates for each vertex, in any pose; they determine the hierarchy and,
+    /// with the option `weld`, which vertices are welded. `faces`: 3 vertex numbers for each triangle.
     #[wasm_bindgen(constructor)]
     pub fn new(
         positions: &[f64],
@@ -32,14 +33,14 @@ impl Detector {
         Ok(numbers(self.0.discrete(&points("positions", positions)?)?))
     }
 
-    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is true if the pairs are
-    /// all.
+    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is
+    /// false if the limit ended the search.
     #[wasm_bindgen(js_name = discreteAtMost)]
     pub fn discrete_at_most(&mut self, positions: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.0.discrete_at_most(&points("positions", positions)?, arrays::limit(limit)?)?))
     }
 
-    /// Returns the pairs that touch while all vertices move on straight lines from `x0` to `x1`.
+    /// Returns the pairs that collide while all vertices move on straight lines from `x0` to `x1`.
     pub fn continuous(&mut self, x0: &[f64], x1: &[f64]) -> Result<Impacts, JsError> {
         Ok(self.0.continuous(&points("x0", x0)?, &points("x1", x1)?)?.into())
     }

@@ -3,7 +3,7 @@
 use sscc::Impact;
 use wasm_bindgen::prelude::*;
 
-/// The pairs of triangles that touch during a motion.
+/// The pairs of triangles that collide during a motion.
 #[wasm_bindgen]
 pub struct Impacts(Vec<Impact>);
 
@@ -27,7 +27,7 @@ impl Impacts {
         self.0.iter().flat_map(|impact| [impact.pair.0, impact.pair.1]).collect()
     }
 
-    /// The time of impact of each pair, from 0 to 1 (n).
+    /// The time of impact of each pair, from 0 to 1, never later than the true one (n).
     #[wasm_bindgen(getter)]
     pub fn times(&self) -> Vec<f64> {
         self.0.iter().map(|impact| impact.time).collect()

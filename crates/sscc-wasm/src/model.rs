@@ -93,13 +93,13 @@ impl Model {
         self.model.rank()
     }
 
-    /// The names of morph targets (r), or an empty array.
+    /// The names of morph targets (r); an empty array if the model is not of a glTF file.
     #[wasm_bindgen(getter, js_name = modeNames)]
     pub fn mode_names(&self) -> Vec<String> {
         self.mode_names.clone()
     }
 
-    /// The weights at which a glTF file shows the model (r numbers).
+    /// The weights at which a glTF file shows the model (r numbers); `undefined` for other models.
     #[wasm_bindgen(getter, js_name = defaultQ)]
     pub fn default_q(&self) -> Option<Vec<f64>> {
         self.default_q.clone()

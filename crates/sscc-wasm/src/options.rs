@@ -10,7 +10,7 @@ const TYPES: &str = r#"
 export interface FilterOptions {
     /** Whether pairs with common vertices count; "exclude" by default. "include-folded" is for detectors only. */
     neighbours?: "exclude" | "include-one-vertex" | "include-folded";
-    /** Whether vertices of equal positions (and modes) are one, for adjacency alone; by default in models of glTF files. */
+    /** Whether vertices of equal positions (and modes) are one, for adjacency alone; by default true for models of glTF files only. */
     weld?: boolean;
 }
 
@@ -20,7 +20,7 @@ export interface CertifyOptions extends FilterOptions {
     scheme?: "full" | "paper";
     /** Relative tolerance of the root's radius, in (0, 1); 0.1 by default. */
     epsilon?: number;
-    /** How far radii may reach, in units of the global radius, at least 1 (default). */
+    /** The largest radius, in units of the paper's global radius: finite, at least 1; 1 by default. No effect with "paper". */
     reach?: number;
     /** The q from which radii are measured; 0 by default. */
     center?: number[] | Float64Array;
@@ -51,14 +51,15 @@ enum Scheme {
 
 #[wasm_bindgen]
 extern "C" {
-    /// Returns `None` for a value without JSON, and an error for circles, and if the replacement of a value fails.
+    /// Returns `None` for a value without JSON. Returns an error for an object that contains itself or a `BigInt`, and
+    /// if the replacement of a value fails.
     #[wasm_bindgen(js_namespace = JSON, catch)]
     fn stringify(
         value: &JsValue,
         replacement: &Closure<dyn FnMut(String, JsValue) -> Result<JsValue, JsValue>>,
     ) -> Result<Option<String>, JsValue>;
 
-    /// Whether a value is a typed array.
+    /// Whether a value is a typed array (or a `DataView`).
     #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
     fn is_typed_array(value: &JsValue) -> bool;
 
@@ -83,7 +84,11 @@ pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
     }
 }
 
-/// Returns the replacement of a value in JSON. An error for values that JSON would omit or replace by null.
+/// Returns the replacement of a value in JSON: a plain array for a typed array, else the value.
+///
+/// # Errors
+/// For options that are not an object, for numbers that are not finite, and for functions and symbols: JSON would
+/// replace them by null or omit them. `undefined` is valid, and JSON omits it.
 fn replaced(key: String, value: JsValue) -> Result<JsValue, JsValue> {
     let refused = |cause: String| Err(JsValue::from_str(&cause));
     if key.is_empty() && !value.is_object() {
@@ -112,7 +117,10 @@ fn name(key: &str) -> String {
 }
 
 impl Options {
-    /// Parses options from JSON. An unknown key is an error.
+    /// Parses options from JSON; the defaults for `None`.
+    ///
+    /// # Errors
+    /// When the JSON is not an object, a key is not known, or a value has another type.
     pub fn parse(json: Option<&str>) -> Result<Self, OptionsError> {
         json.map_or(Ok(Self::default()), |json| {
             if !json.starts_with('{') {
@@ -127,6 +135,9 @@ impl Options {
     }
 
     /// Returns the options for certificates of a model with this mesh.
+    ///
+    /// # Errors
+    /// When the name of `neighbours` is not known.
     pub fn for_mesh(self, mesh: &TriMesh) -> Result<CertifyOptions, sscc::Error> {
         let mut options = CertifyOptions::default()
             .filter(self.filter(mesh)?)
@@ -144,7 +155,10 @@ impl Options {
         Ok(options)
     }
 
-    /// Returns the contact filter, if there are no other options.
+    /// Returns the contact filter.
+    ///
+    /// # Errors
+    /// When another option is set, or the name of `neighbours` is not known.
     pub fn filter_alone(&self, mesh: &TriMesh) -> Result<ContactFilter, OptionsError> {
         let Self { neighbours: _, weld: _, scheme, epsilon, reach, center, ignore_rest } = self;
         if scheme.is_some()

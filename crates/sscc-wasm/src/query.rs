@@ -33,8 +33,8 @@ impl Query {
         Ok(numbers(self.query.discrete(q)?))
     }
 
-    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is true if the pairs are
-    /// all.
+    /// Returns at most `limit` of the pairs, or all without a limit; which ones is not fixed. `statistics.complete` is
+    /// false if the limit ended the search.
     #[wasm_bindgen(js_name = discreteAtMost)]
     pub fn discrete_at_most(&mut self, q: &[f64], limit: Option<f64>) -> Result<Vec<u32>, JsError> {
         Ok(numbers(self.query.discrete_at_most(q, arrays::limit(limit)?)?))
@@ -51,18 +51,21 @@ impl Query {
         Ok(self.query.count(q)?)
     }
 
-    /// Returns all colliding pairs at each of n configurations (n r numbers, q after q), in one call, which is faster than n calls. The
-    /// statistics are then those of the last q. An error is that of the first q that has one.
+    /// Returns all colliding pairs at each of n configurations (an array of n r numbers, one q after the other). One
+    /// call is faster than n calls. The statistics are then those of the last q. The error is that of the first q that
+    /// has one.
     pub fn batch(&mut self, rows: &[f64]) -> Result<Batch, JsError> {
         Ok(Batch::answer(&mut self.query, self.q.len(), rows)?)
     }
 
-    /// Returns the pairs that touch while all vertices move on straight lines from their positions at `q0` to those at `q1`.
+    /// Returns the pairs that collide while all vertices move on straight lines from their positions at `q0` to those
+    /// at `q1`.
     pub fn continuous(&mut self, q0: &[f64], q1: &[f64]) -> Result<Impacts, JsError> {
         Ok(self.query.continuous(q0, q1)?.into())
     }
 
-    /// Returns a scale s such that `centre + t (q - centre)` is proven free for all t from 0 to s.
+    /// Returns a scale s such that the shape is proven free at `centre + t (q - centre)` for all t from 0 to s. It is 0
+    /// if the shape collides at the centre, and infinite if no vertex moves.
     #[wasm_bindgen(js_name = safeScale)]
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, JsError> {
         Ok(self.query.safe_scale(q)?)
@@ -85,7 +88,7 @@ impl Query {
     /// Returns the number of colliding pairs, at most `limit`, at the q that was written; -1 on an error.
     #[wasm_bindgen(skip_typescript)]
     pub fn find(&mut self, limit: usize) -> i32 {
-        // An answer has less than 2^31 pairs, because the memory is used up before.
+        // An answer has fewer than 2^31 pairs, because the memory is used up before.
         self.query.discrete_at_most(&self.q, limit).map_or(-1, |pairs| pairs.len() as i32)
     }
 

@@ -14,7 +14,8 @@ impl From<sscc::Statistics> for Statistics {
 
 #[wasm_bindgen]
 impl Statistics {
-    /// |z|, rounded up; for a continuous query the larger one of both ends; 0 for a detector.
+    /// |z|, rounded up, in the metric and about the centre of the certificates; for a continuous query the larger one
+    /// of start and end; 0 for a detector.
     #[wasm_bindgen(getter)]
     pub fn norm(&self) -> f64 {
         self.0.norm
@@ -33,7 +34,7 @@ impl Statistics {
         name.to_owned()
     }
 
-    /// Whether all pairs are listed; false if a limit ended the search.
+    /// Whether all pairs are listed; false if a limit or an error ended the search.
     #[wasm_bindgen(getter)]
     pub fn complete(&self) -> bool {
         self.0.complete

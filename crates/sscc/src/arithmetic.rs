@@ -1,9 +1,10 @@
 //! The check that a thread computes as all proofs assume: it rounds to nearest, and numbers underflow gradually.
 //!
 //! A host can change the floating-point mode of a thread: audio threads often flush small numbers to zero. Then rounding
-//! bounds are too small, and a difference of two positions may be 0 though they differ. Meshes, certificates, queries,
-//! detectors and shapes check the mode when they are made, and so does every search. Only a query that the root's radius answers
-//! does not check it: it stays one comparison.
+//! bounds are too small, and a difference of two positions may be 0 though they differ. Meshes and queries check the
+//! mode when they are made, certificates when they are computed, shapes when they are placed, and detectors and the
+//! searches of queries each time. Only a query that the root's radius answers does not check it: that query stays one
+//! comparison.
 
 use std::hint::black_box;
 
@@ -46,7 +47,7 @@ mod tests {
     /// Checks the results of each rounding mode and of flushing. `crates/sscc-c/tests/it/arithmetic.rs` sets the modes
     /// themselves.
     #[test]
-    fn each_wrong_mode_is_told_by_its_results() {
+    fn each_wrong_mode_is_recognized_by_its_results() {
         let next = 1.0 + f64::EPSILON;
         let half = 0.5 * f64::MIN_POSITIVE;
         assert_eq!(check_results(1.0, next, half), Ok(()));

@@ -26,7 +26,7 @@ pub enum Error {
         /// Their number.
         count: usize,
     },
-    /// A rest position out of range.
+    /// A rest position or a given position out of range.
     #[error(
         "vertex {vertex} (counted from 0) has the position {position:?}: not finite, or beyond 2^200; change the unit"
     )]
@@ -36,7 +36,7 @@ pub enum Error {
         /// Its position.
         position: [f64; 3],
     },
-    /// Positions of another mesh.
+    /// Positions of another mesh, or vertex classes of another mesh.
     #[error("there are {found} positions, but the mesh has {vertices} vertices: are they of another mesh?")]
     PositionCount {
         /// Positions given.
@@ -70,7 +70,7 @@ pub enum Error {
          face outward"
     )]
     OpenMesh(&'static str),
-    /// Folded neighbours where only distances can be bounded.
+    /// A contact filter with folded neighbours, where only distances can be bounded.
     #[error(
         "include-folded is for discrete queries of meshes without modes: triangles with a common edge have distance 0 in \
          every shape, so that {queries} cannot decide when they fold; use include-one-vertex"
@@ -79,7 +79,7 @@ pub enum Error {
         /// The queries that cannot decide them.
         queries: &'static str,
     },
-    /// A search for a free configuration from a colliding one.
+    /// A colliding start of a search for a free configuration: the start must be free.
     #[error("the start collides; give a free q, or leave it out")]
     ResolveStart,
     /// No modes.
@@ -157,7 +157,8 @@ pub enum Error {
         /// The entry.
         value: f64,
     },
-    /// A q at which positions leave the range in which predicates are exact.
+    /// A q, or a pose of a shape, at which positions leave the range in which predicates are exact; a pose that is not
+    /// finite.
     #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
     CoordinatesRange,
     /// A mode that does not exist.
@@ -196,7 +197,7 @@ pub enum Error {
         /// Maximum number of accepted pairs.
         most: usize,
     },
-    /// More pairs around given ones than can be ignored.
+    /// More pairs around given ones than can be ignored or examined.
     #[error(
         "within {rings} rings of these pairs of triangles there are too many to ignore (at most {most}): choose fewer rings"
     )]

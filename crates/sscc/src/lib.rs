@@ -34,10 +34,10 @@
 //! ```
 //!
 //! Data flows one way: [`TriMesh`] and [`Modes`] make a [`ReducedModel`]; from it follow a [`parts::Hierarchy`] and
-//! [`Certificates`]; a [`Query`] reads both. Models and certificates are shared by their clones, and no query, detector or
-//! body has a lifetime: keep them where they are used. This crate reads no files and no clock and prints nothing. It needs `std`;
-//! without the feature `parallel` (on by default) it starts no thread and does not need rayon, and gives the same bits. Positions
-//! are vectors of [`glam`], which it re-exports.
+//! [`Certificates`]; a [`Query`] reads both. Clones of models and certificates share their data, and no query, detector
+//! or body has a lifetime parameter, so any structure can own it. This crate reads no files and no clock and prints
+//! nothing. It needs `std`; without the feature `parallel` (on by default) it starts no thread and does not need rayon,
+//! and gives the same bits. Positions are vectors of [`glam`], which it re-exports.
 //!
 //! # Any mesh
 //!
@@ -96,8 +96,9 @@
 //! | Along which curves does a mesh intersect itself or another, and how deep is each pair? | [`parts::contact_curves`], [`parts::contact_curves_between`] |
 //! | Do two moving triangles meet, and when? | [`impact_triangle_triangle`] |
 //!
-//! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh. Above it a
-//! query costs at most about as much as refitting all boxes.
+//! Below the root's radius ([`Certificates::root_radius`]) an answer is one comparison, however large the mesh, and the
+//! tests of exceptions, if there are any. Above it a query costs at most about as much as refitting all boxes and
+//! testing the triangles whose boxes overlap.
 //!
 //! # Which pairs count
 //!
@@ -149,10 +150,10 @@
 //! # Contacts at rest
 //!
 //! Closed lips touch, and many meshes intersect themselves somewhere. One such pair would make the radius of every node
-//! that contains it 0. So the pairs that collide at rest (or at the centre, if one is given) become *exceptions*: no radius
-//! covers them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). The root's certificate then proves
-//! all pairs free but the exceptions. Their number is limited to half that of the triangles, or to
-//! [`CertifyOptions::max_exceptions`].
+//! that contains it 0. So the pairs that collide at rest (or at the centre, if one is given) become *exceptions*: no
+//! radius covers them, every query tests them, and answers stay exact ([`Certificates::exceptions`]). The root's
+//! certificate then proves all pairs free but the exceptions. There are at most half as many as triangles, or
+//! [`CertifyOptions::max_exceptions`]; if more pairs collide there, none becomes an exception.
 //!
 //! [`CertifyOptions::ignore_rest`] excludes such pairs for good.
 //!
@@ -161,14 +162,14 @@
 //! A radius is a length `|z| = |S q|` in q-space, and the [`Metric`] weights the modes. Answers are the same under every
 //! metric, but the share of configurations that one comparison proves free depends on it.
 //!
-//! | metric | weight of a unit of a mode |
+//! | metric | length `\|z\|` of a unit of a mode |
 //! | --- | --- |
-//! | [`Metric::displacement`] (default) | the largest distance that it moves a vertex: `\|z\|` is a length |
-//! | [`Metric::mass`] | the root mean square displacement, weighted by area |
+//! | [`Metric::displacement`] (default) | the largest distance that it moves a vertex |
+//! | [`Metric::mass`] | the root of the sum of squared displacements of vertices, weighted by their areas |
 //! | [`Metric::identity`] | 1 |
-//! | [`Metric::from_weights`], [`Metric::from_scales`] | a given number |
-//! | [`Metric::from_matrix`], [`Metric::from_factor`] | a given dense matrix `M = S'S`, such as an inverse covariance |
-//! | `energy_metric` in the crate `sscc-modes` | its strain energy, for modes in which the stiffness is diagonal (paper, section 6) |
+//! | [`Metric::from_weights`], [`Metric::from_scales`] | the root of a given weight, or a given scale |
+//! | [`Metric::from_matrix`], [`Metric::from_factor`] | `sqrt(M_kk)` of a given dense matrix `M = S'S`, such as an inverse covariance |
+//! | `energy_metric` in the crate `sscc-modes` | the root of its strain energy, for modes in which the stiffness is diagonal (paper, section 6) |
 //!
 //! A metric belongs to a model ([`ReducedModel::with_metric`]) or to certificates alone:
 //!

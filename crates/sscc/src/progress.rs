@@ -2,7 +2,7 @@
 
 use crate::CancelToken;
 
-/// Receives the progress of a long computation, and may give the token that cancels it. Several threads call it.
+/// Receives the progress of a long computation, and may give the token that cancels it. Several threads may call it.
 pub trait Progress: Sync {
     /// Receives the report that `done` of `total` steps are finished. Threads may report out of order.
     fn report(&self, done: usize, total: usize);

@@ -1,4 +1,5 @@
-//! Tests that a query which the root's certificate answers allocates nothing, and neither does a repeated query.
+//! Tests that repeated queries of models and of detectors allocate nothing, and neither does the first query that the
+//! root's certificate answers.
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 

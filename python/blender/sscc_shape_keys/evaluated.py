@@ -1,7 +1,7 @@
 """Exact self-collisions of the evaluated mesh of an object: after shape keys, armatures and all modifiers.
 
 An answer belongs to the fingerprint of the evaluated mesh. Each status reads the mesh again and compares fingerprints.
-So an answer never belongs to another shape.
+So an answer is never shown for another shape.
 """
 
 from __future__ import annotations
@@ -54,14 +54,14 @@ _last: dict[int, bytes] = {}
 
 
 def forget() -> None:
-    """Forgets all answers."""
+    """Removes all answers and detectors."""
     _detectors.clear()
     _answers.clear()
     _last.clear()
 
 
 def read(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> EvaluatedMesh:
-    """Returns the mesh that Blender draws. Raises `Unsupported` for objects without faces."""
+    """Returns the mesh that Blender draws. Raises `Unsupported` without an object, in Edit Mode and without faces."""
     if obj is None:
         raise Unsupported("select an object with a mesh")
     if obj.mode == "EDIT":
@@ -104,7 +104,7 @@ def has_same_polygons(a: bpy.types.Mesh, b: bpy.types.Mesh) -> bool:
 
 
 def check(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> Status:
-    """Answers for the mesh that Blender draws now. Raises `Unsupported`, and ValueError for vertices at infinity."""
+    """Answers for the mesh that Blender draws now. Raises `Unsupported`, and ValueError if a position is not finite."""
     mesh = read(obj, depsgraph)
     detector = _kept(_detectors, mesh.topology(), lambda: sscc.Detector(mesh.faces))
     pairs = detector.check(mesh.positions).pairs
@@ -125,7 +125,7 @@ def check(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> Statu
 
 
 def status(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> Status | None:
-    """Returns the answer for the mesh that Blender draws now; None if this object has not been checked."""
+    """Returns the answer for the mesh that Blender draws now; None if there is no object, or it was not checked."""
     if obj is None or obj.session_uid not in _last:
         return None
     try:
@@ -139,7 +139,7 @@ def status(obj: bpy.types.Object | None, depsgraph: bpy.types.Depsgraph) -> Stat
 
 
 def _kept(store: OrderedDict[bytes, T], name: bytes, make: Callable[[], T]) -> T:
-    """Returns the entry of that name, made if there is none. Drops the oldest entries."""
+    """Returns the entry of that name, made if there is none. Removes the entries that were used least recently."""
     if name not in store:
         store[name] = make()
     store.move_to_end(name)

@@ -1,7 +1,8 @@
 """Certificates by fingerprint, and the status of an object.
 
 A fingerprint covers the content of mesh and keys. Each status reads the content again and looks up its certificates by
-fingerprint. So a status never belongs to another shape, and a shape after an undo is certified again at once.
+fingerprint. So a status never belongs to another shape, and after an undo the certificates of the shape are found again,
+if they are among the last that were used.
 """
 
 from __future__ import annotations

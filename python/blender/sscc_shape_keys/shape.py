@@ -14,7 +14,7 @@ import numpy as np
 
 
 class Unsupported(Exception):
-    """The current state of an object is not supported. The message says how to change it."""
+    """The current state of an object is not supported. The message states the cause or the remedy."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Shape:
 
 
 def check(obj: bpy.types.Object | None) -> None:
-    """Raises `Unsupported` if the shape on the screen is not the shape of the keys."""
+    """Raises `Unsupported` if there are no shape keys, or the shape on the screen is not the shape of the keys."""
     if obj is None or obj.type != "MESH":
         raise Unsupported("select a mesh")
     mesh = obj.data

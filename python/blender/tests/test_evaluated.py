@@ -116,7 +116,7 @@ def test_answers_are_those_of_the_evaluated_mesh() -> None:
     assert len(evaluated._detectors) == 1
 
 
-def test_modifiers_that_change_the_faces_are_marked_only() -> None:
+def test_collisions_are_only_marked_if_modifiers_change_the_faces() -> None:
     obj = strip()
     bend(rig(obj), 130)
     obj.modifiers.new("Subdivision", "SUBSURF").levels = 1
@@ -162,7 +162,7 @@ def test_the_panel_shows_both_answers() -> None:
     assert "evaluated mesh: free" in shown and "the mesh has no shape keys beside the basis" in shown
 
 
-def test_objects_without_faces_state_the_reason() -> None:
+def test_objects_without_faces_are_refused_with_the_reason() -> None:
     empty = bpy.data.objects.new("Empty", None)
     bpy.context.collection.objects.link(empty)
     bpy.context.view_layer.objects.active = empty

@@ -11,7 +11,7 @@ use super::packages::{BUILD_PROGRAMS, EIGEN_PACKAGE};
 /// Beginning of a command in `docs/c.md` that the command of this build replaces.
 const BUILT: &str = "cargo run --release -- ";
 
-/// Runs all checks. Skips an example if Eigen is not installed.
+/// Runs all checks. Skips the example `eigen_maps` if Eigen is not installed.
 pub fn run(checks: &mut Checks) {
     checks.check("commands of docs/c.md", &BUILD_PROGRAMS, commands);
     checks.check("spring.cpp answers as the command", &BUILD_PROGRAMS, spring);
@@ -44,7 +44,7 @@ fn commands(checks: &Checks) -> Result<(), String> {
     let block = block(checks, "sh")?;
     let lines: Vec<&str> = block.lines().filter(|line| !line.is_empty()).collect();
     if lines.len() != 4 {
-        return Err(format!("docs/c.md has {} commands", lines.len()));
+        return Err(format!("docs/c.md has {} commands, 4 were expected", lines.len()));
     }
     for line in lines {
         let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();

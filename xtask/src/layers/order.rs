@@ -41,7 +41,8 @@ impl Order {
         Ok(Self(order))
     }
 
-    /// Returns the reason why one name of a list must not import another; None if it may, or if one of them has no place.
+    /// Returns the reason why one name of a list must not import another; None if it may, or if there is no
+    /// such list or one of them has no place.
     pub fn reason_against(&self, list: &str, from: &str, to: &str) -> Option<String> {
         let levels = self.0.get(list)?;
         match levels.get(from)?.cmp(levels.get(to)?) {
@@ -51,7 +52,7 @@ impl Order {
         }
     }
 
-    /// Returns the crates without a place, and lists of crates that do not exist.
+    /// Returns a violation for each crate without a place, and for each name in the file that is not that of a crate.
     pub fn unknown_crates(&self, crates: &[Crate]) -> Vec<String> {
         let mut violations = Vec::new();
         let levels = self.0.get("crates").cloned().unwrap_or_default();
@@ -65,7 +66,8 @@ impl Order {
         violations
     }
 
-    /// Returns the modules without a place in the list of their folder, and places without a module.
+    /// Returns a violation for each module without a place in the list of its folder, and for each place without a
+    /// module.
     pub fn unplaced_modules(&self, krate: &Crate) -> Vec<String> {
         let mut violations = Vec::new();
         if !self.0.contains_key(&krate.name) {

@@ -46,7 +46,7 @@ impl Column {
     /// Creates the method for one model.
     ///
     /// # Errors
-    /// When the model lacks the certificates that the method needs.
+    /// When the model lacks the certificates that the method needs, or they are of another model.
     pub fn engine<'a>(&self, model: &'a CertifiedModel) -> Result<Box<dyn Engine + 'a>, Error> {
         (self.make)(model)
     }

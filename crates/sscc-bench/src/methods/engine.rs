@@ -7,13 +7,13 @@ pub trait Engine {
     /// Returns the pairs that collide at q, sorted.
     ///
     /// # Errors
-    /// When q has the wrong length, or is out of range.
+    /// When q has the wrong length, has an entry that is not finite, or moves vertices out of range.
     fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error>;
 
     /// Returns the pairs that collide during the motion from q_t0 to q_t1, sorted, each with its time of impact.
     ///
     /// # Errors
-    /// When a q has the wrong length, or is out of range.
+    /// When q_t0 or q_t1 has the wrong length, has an entry that is not finite, or moves vertices out of range.
     fn continuous(&mut self, q_t0: &[f64], q_t1: &[f64]) -> Result<&[Impact], Error>;
 }
 

@@ -82,7 +82,7 @@ pub struct Record {
     /// Mean processor time of the parts of a step over the whole scene (ms).
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub simulation_ms: Means,
-    /// Mean milliseconds of discrete queries.
+    /// Mean milliseconds of discrete queries over the compared steps.
     pub discrete_ms: Means,
     /// Mean milliseconds of continuous queries.
     #[serde(skip_serializing_if = "Means::is_empty")]
@@ -93,16 +93,17 @@ pub struct Record {
     /// Mean milliseconds of discrete queries over the steps that are free, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub free_ms: Means,
-    /// Median milliseconds of discrete queries over the free steps.
+    /// Median milliseconds of discrete queries over the free steps, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub free_ms_median: Means,
     /// Mean milliseconds of discrete queries over the colliding steps, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub colliding_ms: Means,
-    /// Median milliseconds of discrete queries over the colliding steps.
+    /// Median milliseconds of discrete queries over the colliding steps, of the methods that ran on all of them.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub colliding_ms_median: Means,
-    /// Mean milliseconds over all steps, of the methods that ran on all; empty if all methods did.
+    /// Mean milliseconds of discrete queries over all measured steps, of the methods that ran on all of them; empty if
+    /// all methods did.
     #[serde(skip_serializing_if = "Means::is_empty")]
     pub discrete_ms_all_steps: Means,
     /// Description of the machine.
@@ -119,13 +120,13 @@ pub struct SceneTotals {
     pub body_steps: usize,
     /// Pairs of a step and a body in which the body collides with itself.
     pub colliding_body_steps: usize,
-    /// Processor seconds of the parts of its simulation; None without a simulation.
+    /// Processor seconds of the parts of the scene's simulation; None without a simulation.
     pub seconds: Option<[f64; STEP_PARTS.len()]>,
 }
 
 impl Record {
     /// Creates the record of `objects` bodies of one model. `scene` has the totals of the whole scene; None if the
-    /// measured steps are the whole scene.
+    /// measured steps are the whole scene, with one body.
     pub fn new(
         scenario: String,
         share: f64,

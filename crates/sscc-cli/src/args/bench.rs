@@ -16,7 +16,8 @@ use clap::Args;
         "sscc bench bunny128 --steps 50 --json"
     ),
     after_help = "\
-All methods answer the same queries, interleaved on one thread, and must list the same pairs.\n\
+The methods answer the same queries, interleaved on one thread. Where there are many queries, methods without \
+certificates answer a sample of them. All exact methods must list the same pairs.\n\
 Exit codes: 0 done, 2 error, or two exact methods differ."
 )]
 pub struct Bench {
@@ -39,7 +40,7 @@ pub struct Bench {
     /// Amplitudes, mixed, norms and growth: measure this model only
     #[arg(long, value_name = "MODEL")]
     pub only: Option<String>,
-    /// Replace every model by a spring of 4,000 triangles, to test the bench in seconds
+    /// Replace every model by a spring of 4,000 triangles, to test the bench in seconds; not for growth
     #[arg(long)]
     pub quick: bool,
     /// Figures, scenes, growth and norms: also plot the results

@@ -34,8 +34,8 @@ use sscc::{Clearance, Method};
     ),
     after_help = "\
 With --q or --trajectory, the certificates contain the metric, the centre, the neighbours, welding and ignored pairs; a \
-flag that contradicts them is refused. Without, a mesh needs no modes: it is checked as it is, or in frames or an \
-animation.\n\
+flag that contradicts them is refused. Without --q and --trajectory, a mesh needs no modes: it is checked as it is, or \
+in frames or an animation.\n\
 Exit codes: 0 everything is free, 1 something collides (with --clearance: is nearer than that), 2 error."
 )]
 pub struct Check {
@@ -45,7 +45,8 @@ pub struct Check {
     /// files. A file that cannot be read does not end the run
     #[arg(value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
-    /// Certificates of this model, from `sscc certify`; without them they are computed first
+    /// Certificates of this model, from `sscc certify`; without them they are computed first (not with --clearance, and
+    /// not for another --method than certified)
     #[arg(long, value_name = "FILE")]
     pub certificates: Option<PathBuf>,
     #[command(flatten)]
@@ -83,7 +84,8 @@ pub struct Check {
     /// limit stops the search, the count is a lower bound
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,
-    /// Also write the shape of the last answer with its colliding triangles marked: .ply (red) or .obj (in groups)
+    /// Also write the shape of the last answer with its colliding triangles marked: .ply (red), .obj (in groups) or
+    /// .vtu (as data of the triangles)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "first", "limit", "against", "meshes"])]
     pub pose: Option<PathBuf>,
     /// Also write the curves in which the last answer's surfaces intersect, as polylines: .obj or .ply

@@ -17,7 +17,7 @@ use clap::Args;
 )]
 pub struct Info {
     /// A model (*.model.safetensors, .glb, .gltf, .vrm, .npz), certificates (*.sscc.safetensors), a mesh (.obj, .off, .ply,
-    /// .stl) or a solid (.mesh, .veg, .msh, .node, .ele)
+    /// .stl) or a solid (.mesh, .veg, .msh, .node, .ele, .vtu, .vtk)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]

@@ -65,8 +65,8 @@ pub use view::View;
         "sscc certify demo/spring.model.safetensors -o spring.sscc.safetensors"
         "sscc check demo/spring.model.safetensors --certificates spring.sscc.safetensors --trajectory demo/spring.npy"
     ),
-    after_help = "Exit codes: 0 done (check: every q is free), 1 check found a collision or audit a violation, 2 error, \
-        130 interrupted."
+    after_help = "Exit codes: 0 done (check: every q is free), 1 finding of check, sweep, resolve or audit (see the \
+        help of the command), 2 error, 130 interrupted."
 )]
 pub struct Cli {
     /// The subcommand.

@@ -55,7 +55,7 @@ pub struct Options {
     /// [default: half the number of triangles]
     #[arg(long, value_name = "N")]
     pub max_exceptions: Option<usize>,
-    /// Which certificates to store [default: full; paper where check or view computes them]
+    /// Which certificates to store [default: full; paper where check, sweep, resolve or view computes them]
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub scheme: Option<Scheme>,
     /// Memory for the pair tree of the scheme full, in bytes for each triangle; a node pair takes 8 [default: 64]

@@ -22,8 +22,8 @@ along the surface. Modes of solids are mass-orthonormal, and their default metri
 (pca, or polynomial modes of a surface) have the displacement metric."
 )]
 pub struct Modes {
-    /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele);
-    /// for pca a folder of meshes with the same faces (the frames)
+    /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele,
+    /// .vtu, .vtk); for pca a folder of meshes with the same faces (the frames)
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors
@@ -85,8 +85,9 @@ pub enum ModesKind {
     Linear,
     /// A basis for large deformations (modal derivatives), with the reduced forces of the solid
     Nonlinear,
-    /// The 24 quadratic polynomials of the rest position without rigid motions; with --resolution or --material also
-    /// the stiffness and reduced forces of a solid
+    /// The 24 quadratic polynomials of the rest position without rigid motions (fewer for special shapes, such as a
+    /// sphere); for a solid, or with --solid, --resolution or --material, also the stiffness and reduced forces of the
+    /// solid
     Polynomial,
     /// The mean and the principal components of an animation; a unit of q is one standard deviation
     Pca,

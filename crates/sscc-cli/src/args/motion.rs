@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 /// The motion of a mesh without modes.
 #[derive(Debug, Args)]
 pub struct Motion {
-    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, a .pvd collection
-    /// of .vtu files, or a folder of meshes with the same faces (9.obj before 10.obj)
+    /// Frames of the mesh: .npy of shape (T, V, 3) with the positions of all vertices, a .pc2 point cache, deformed
+    /// .vtu, .vtk or .pvd, or a folder of meshes with the same faces (9.obj before 10.obj)
     #[arg(long, value_name = "FRAMES", conflicts_with_all = ["trajectory", "q", "animation"])]
     pub frames: Option<PathBuf>,
     /// Another mesh: list the pairs (triangle of MODEL, triangle of this mesh) that collide
@@ -17,7 +17,7 @@ pub struct Motion {
     /// The other mesh where its glTF file has several, as --mesh-name for MODEL
     #[arg(long, value_name = "NAME", requires = "against")]
     pub against_mesh: Option<String>,
-    /// Frames of the other mesh, as many as those of --frames
+    /// Frames of the other mesh; if both meshes move, as many as those of --frames
     #[arg(long, value_name = "FRAMES", requires = "against")]
     pub against_frames: Option<PathBuf>,
     /// The animation of a .glb, .gltf or .vrm, by name or number, as a player would show it: nodes, morph targets, skins
@@ -35,8 +35,8 @@ pub struct Motion {
         allow_hyphen_values = true
     )]
     pub times: Option<Vec<f64>>,
-    /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. A glTF file with
-    /// several meshes that is not animated is always compared in this way
+    /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. The
+    /// nodes of a glTF file with several meshes are always compared in this way without --animation
     #[arg(long, conflicts_with_all = ["trajectory", "q", "frames", "against"])]
     pub between_nodes: bool,
     /// Check the mesh at this node only, by its name or its number in the file [default: every node with a mesh]

@@ -40,7 +40,7 @@ pub struct View {
     /// displacement metric, over the number of modes; certificates for each number are computed first
     #[arg(long)]
     pub compare_metrics: bool,
-    /// Write the page to this file (.html), in place of a server
+    /// Write the page to this file (.html), and start no server
     #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_open"])]
     pub report: Option<PathBuf>,
     /// Folder of the npm package `sscc`: the report checks shapes itself, without a server

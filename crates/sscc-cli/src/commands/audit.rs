@@ -1,4 +1,5 @@
-//! `sscc audit`: attacks certificates, and reports violations and tightness; or has a proof of them checked.
+//! `sscc audit`: attacks certificates, and reports violations and tightness; with `--exact` it proves some of their
+//! entries, and has the proof checked.
 
 use std::time::Instant;
 
@@ -90,7 +91,7 @@ struct ExactReport {
     entries: usize,
     proven: usize,
     seconds: f64,
-    /// The reason why the proof does not hold; null if it does.
+    /// The reason why an entry has no proof, or why the proof does not hold; null if it holds.
     refused: Option<String>,
     /// The content that the checker left out; null if the proof does not hold.
     left_out: Option<String>,

@@ -138,8 +138,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the proof of the certificates, or of a sample of their entries, beside its target; the report does not have
-/// the number of bytes yet.
+/// Writes the proof of the certificates, or of a sample of their entries, to a file beside its target. The returned
+/// report has 0 bytes: their number is known when that file replaces the target.
 fn write_proof(
     args: &Certify,
     path: &Path,

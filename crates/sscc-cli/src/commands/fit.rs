@@ -1,4 +1,4 @@
-//! `sscc fit`: the q of given positions, by least squares.
+//! `sscc fit`: computes the q whose shape is nearest to given positions, by least squares.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `sscc load`: the q of a load.
+//! `sscc load`: computes the linear static q of a model under a load.
 
 use std::path::{Path, PathBuf};
 

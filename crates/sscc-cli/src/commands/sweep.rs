@@ -70,7 +70,8 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
 }
 
-/// Writes the page with the model at q, its intervals along the sliders, and the curve of the depth over each weight.
+/// Writes the page with the model at q, its intervals along the sliders, and the curve of the depth over each weight
+/// that has intervals.
 fn write_report(
     report: &Path,
     model: &Path,

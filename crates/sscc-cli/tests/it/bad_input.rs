@@ -12,7 +12,7 @@ const MESH: &str = "mesh.obj";
 const STRIPS: &str = "strips.model.safetensors";
 const CERTIFIED: &str = "strips.sscc.safetensors";
 
-/// Asserts that a command is refused with a message that contains `named`, and leaves no file.
+/// Asserts that a command is refused with a message that contains each of `named`, and leaves no file.
 fn refused(folder: &Path, args: &[&str], named: &[&str]) {
     let before = files(folder);
     let run = sscc(folder, args);
@@ -80,7 +80,7 @@ fn files_that_are_not_models_are_refused() {
     }
 }
 
-/// A missing file is reported before its kind, by every command and every reader.
+/// Every command and every reader reports that a file is missing, before it checks the kind of the file.
 #[test]
 fn missing_files_are_reported() {
     let directory = strips();
@@ -118,7 +118,7 @@ fn missing_files_are_reported() {
 }
 
 #[test]
-fn missing_meshes_are_reported() {
+fn requests_for_meshes_that_a_file_does_not_have_are_refused() {
     let directory = strips();
     let folder = directory.path();
     write(folder, "still.gltf", r#"{"asset":{"version":"2.0"},"meshes":[{"name":"a","primitives":[]}]}"#);
@@ -247,7 +247,7 @@ fn certificates_that_do_not_fit_are_refused() {
         refused(folder, &["check", STRIPS, "--certificates", certificates, "--q=0,0"], named);
         refused(folder, &["audit", STRIPS, "--certificates", certificates], named);
     };
-    // The same mesh with its modes moved by one rounding.
+    // The same mesh with other modes.
     let modes: Vec<f64> = (0..144).map(|i| if i == 100 { 1e-300 } else { 0.0 }).collect();
     write_npy(&folder.join("other.npy"), &[72, 2], &modes).unwrap();
     let certify = ["certify", MESH, "--modes", "other.npy", "-o", "other.sscc.safetensors"];

@@ -114,7 +114,7 @@ fn records_have_all_keys_and_models_come_from_the_cache() {
     assert_eq!(of("scenario"), vec![json!("amplitudes/spring"); 7]);
     assert_eq!((&reports[0]["colliding_steps"], &reports[6]["colliding_steps"]), (&json!(0), &json!(1)));
 
-    // All three motions, and separately their states that collide.
+    // The largest |z| of the three motions is 2, 4 and 8 times the root's radius.
     let mixed = ["mixed", "--only", "spring", "--quick", "--samples", "4", "--json"];
     let run = bench(folder.path(), &mixed);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
@@ -125,7 +125,7 @@ fn records_have_all_keys_and_models_come_from_the_cache() {
     let share = |report: &Value| report["share"].as_f64().unwrap();
     assert!((share(&motions[2]) / share(&motions[1]) - 2.0).abs() < 1e-9, "{motions:?}");
 
-    // One plot of times, one of kinds of proof.
+    // The picture has a plot of times, and one of the kinds of proof.
     let norms = ["norms", "--only", "spring", "--quick", "--samples", "2", "--json", "--plot", "norms.svg"];
     let run = bench(folder.path(), &norms);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
@@ -145,7 +145,7 @@ fn records_have_all_keys_and_models_come_from_the_cache() {
     let growth = ["growth", "--only", "spring-4k", "--samples", "2", "--json", "--plot", "growth.svg"];
     let run = bench(folder.path(), &growth);
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
-    // One point for each line of the plot.
+    // Each line of the plot has one point.
     let plot = fs::read_to_string(folder.path().join("growth.svg")).unwrap();
     assert_eq!((plot.matches("<circle").count(), plot.matches("certified (ms)").count()), (4, 1));
     assert_eq!((files(&cache), written()), (made.clone(), before));
@@ -162,7 +162,7 @@ fn records_have_all_keys_and_models_come_from_the_cache() {
     check_kinetic(folder.path());
     assert_eq!((files(&cache), written()), (made.clone(), before));
 
-    // One changed byte in each file.
+    // A file with a changed byte is made anew.
     let contents: Vec<Vec<u8>> = made.iter().map(|path| fs::read(path).unwrap()).collect();
     for (path, bytes) in made.iter().zip(&contents) {
         let mut damaged = bytes.clone();
@@ -275,7 +275,7 @@ fn figures_are_drawn() {
     assert_eq!(column(&metrics, "modes"), [5.0, 10.0, 20.0]);
     let [energy, displacement] = ["energy_mm", "displacement_mm"].map(|key| column(&metrics, key));
     assert!(energy.iter().zip(&displacement).all(|(e, d)| *e > 0.0 && *d > 0.0));
-    // More modes cost less under the energy metric, as in the paper.
+    // More modes reduce the proven deformation less under the energy metric, as in the paper.
     assert!(energy[2] / energy[0] > displacement[2] / displacement[0], "{energy:?} {displacement:?}");
     assert_eq!(svg.matches("<polyline").count(), 2);
 

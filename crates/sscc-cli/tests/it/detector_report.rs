@@ -92,7 +92,7 @@ fn reports_that_cannot_be_written_are_refused() {
         let run = sscc(folder, &[&["check"], args].concat());
         assert!(run.refusal().contains(named), "{run:?}");
     }
-    // An animation of more frames than a report holds.
+    // The animation has more frames than a report can contain.
     let args = ["check", "flag.gltf", "--animation", "wave", "--fps", "2000000", "--report", "r.html"];
     let run = sscc(folder, &args);
     let message = run.refusal();

@@ -1,4 +1,4 @@
-//! The output in docs/command.md is that of the command, apart from times.
+//! The output that docs/command.md shows for the Stanford bunny is that of the command, apart from times.
 
 use std::fs;
 use std::path::Path;
@@ -8,14 +8,15 @@ use sscc_testing::models;
 
 use crate::common::sscc;
 
-/// Returns the blocks of text of the guide's section: the words after `$ sscc`, and the lines below.
+/// Returns the commands in the first block of text of a section of the guide: for each the words after `$ sscc`, and
+/// the lines below.
 fn samples(section: &str) -> Vec<(Vec<&str>, Vec<&str>)> {
     let text = section.split_once("```text\n").unwrap().1.split_once("```").unwrap().0;
     let blocks = text.split("$ sscc ").skip(1).map(|block| block.split_once('\n').unwrap());
     blocks.map(|(words, lines)| (words.split(' ').collect(), lines.trim_end().lines().collect())).collect()
 }
 
-/// Replaces times, and the number of threads, by T.
+/// Replaces times and the number of threads, each with its unit, by `T T`.
 fn without_times(line: &str) -> String {
     let mut words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
     for at in 1..words.len() {
@@ -29,7 +30,8 @@ fn without_times(line: &str) -> String {
     words.join(" ")
 }
 
-/// Whether a JSON line is that of the sample, which leaves out the pairs after the first ones: `...`.
+/// Whether a JSON line is that of the sample, apart from its time. The sample has `...` in place of the pairs after the
+/// first ones.
 fn is_json_line(sample: &str, line: &str) -> bool {
     let (start, end) = sample.split_once("...").unwrap();
     let parts = |text: &str| {
@@ -41,8 +43,8 @@ fn is_json_line(sample: &str, line: &str) -> bool {
 }
 
 #[test]
-fn the_bunny_of_the_guide() {
-    let Some(folder) = models("the_bunny_of_the_guide") else { return };
+fn the_guide_shows_the_output_for_the_bunny() {
+    let Some(folder) = models("the_guide_shows_the_output_for_the_bunny") else { return };
     let guide =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/command.md")).unwrap();
     let (_, section) = guide.split_once("## On the Stanford bunny").unwrap();

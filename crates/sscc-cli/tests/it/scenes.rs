@@ -1,4 +1,5 @@
-//! A glTF file with several meshes is a scene: every node with itself, and every two nodes.
+//! A glTF file with several meshes is a scene: `sscc check` checks every node with itself, and every two nodes with
+//! each other.
 
 use std::fs;
 use std::path::Path;
@@ -41,7 +42,7 @@ fn write(folder: &Path, name: &str, file: &Value) {
     fs::write(folder.join(name), file.to_string()).unwrap();
 }
 
-/// The lines of a check, without times and counters.
+/// Returns the JSON lines of a check. Asserts that the exit code is that of these lines.
 fn lines(folder: &Path, args: &[&str]) -> Vec<Value> {
     let run = sscc(folder, &[&["check"], args, &["--json"]].concat());
     assert!(run.code == Some(0) || run.code == Some(1), "{run:?}");
@@ -51,7 +52,7 @@ fn lines(folder: &Path, args: &[&str]) -> Vec<Value> {
 }
 
 #[test]
-fn scenes_are_all_meshes_with_themselves_and_with_each_other() {
+fn every_node_of_a_scene_is_checked_with_itself_and_with_every_other_node() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let random = &mut Numbers(5);
@@ -110,7 +111,8 @@ fn scenes_are_all_meshes_with_themselves_and_with_each_other() {
     assert!(compared == 40 && (5..35).contains(&collided), "{compared} {collided}");
 }
 
-/// Groups by names of nodes, meshes and materials, compared with the pairs of the whole scene whose triangles have the names.
+/// Groups have the names of nodes, meshes and materials. The pairs are compared with those of the whole scene whose
+/// triangles have these names.
 #[test]
 fn groups_of_scenes_hold_within_and_between_nodes() {
     let directory = tempfile::tempdir().unwrap();
@@ -178,7 +180,7 @@ fn groups_of_scenes_hold_within_and_between_nodes() {
         }
     }
     assert!(differences > 50, "{differences}");
-    // One kind of names alone.
+    // With --group-by, only the names of that kind are groups.
     let refused =
         |args: &[&str]| sscc(folder, &[&["check", "scene.gltf"], args].concat()).refusal().to_owned();
     assert_eq!(
@@ -197,7 +199,7 @@ fn groups_of_scenes_hold_within_and_between_nodes() {
     assert!(text.contains("pairs of groups that do not count"), "{text}");
 }
 
-/// Frames of a node are written with the checked positions, and read again.
+/// The frames of a node are written with the checked positions, and can be read again.
 #[test]
 fn frames_of_a_node_are_written() {
     let directory = tempfile::tempdir().unwrap();
@@ -218,10 +220,10 @@ fn frames_of_a_node_are_written() {
     let wanted = [[1.0, 1.0, 1.5], [-1.0, -1.0, -0.5], [-3.0, -3.0, -2.5]];
     lines(folder, &[&animated[..], &out].concat());
     assert_eq!(numbers("needle.npy"), wanted);
-    // A motion has each time once.
+    // With --continuous, too, each time is written once.
     lines(folder, &[&animated[..], &out, &["--continuous"]].concat());
     assert_eq!(numbers("needle.npy"), wanted);
-    // Frames are those of a mesh without animation.
+    // The written frames can be checked as frames of the mesh without its animation.
     let of_frames = ["pass.gltf#needle", "--frames=needle.npy", "--against=pass.gltf#sheet", "--continuous"];
     assert_eq!(lines(folder, &of_frames)[0]["pairs"], json!([[0, 0]]));
     lines(folder, &["pass.gltf#needle", "--frames=needle.npy", "--frames-out=copy.npy"]);
@@ -282,7 +284,7 @@ fn groups_hold_between_two_meshes() {
         refused(&["--ignore-groups=neck,cuff"])
             .contains("no triangle is in a group 'cuff'; groups: 'skin', ")
     );
-    // Triangles without a line "g" are in the group "default"; there is no group for a missing material.
+    // The triangle of the group "arm" is far from the needles.
     assert_eq!(check(&["--ignore-groups=arm,hem"]), json!([[0, 0], [0, 1]]));
     fs::write(folder.join("n.txt"), "0 1").unwrap();
     let numbers = refused(&["--group-by=n.txt", "--ignore-groups=0,1"]);
@@ -346,7 +348,7 @@ fn nodes_of_animations_are_compared_on_request() {
     assert_eq!(check(&["--times=0,0.5,1", "--between-nodes"]).len(), 6);
     let at = check(&["--times=0.25", "--between-nodes"]);
     assert_eq!((at.len(), &at[2]["against_node"]), (3, &json!(1)));
-    // At rest one is a unit above the other, and their AABBs are apart.
+    // At rest one is a unit above the other, and their AABBs do not overlap.
     assert_eq!(lines(folder, &["pass.gltf"]).len(), 2);
     assert_eq!(lines(folder, &["pass.gltf", "--clearance", "1"]).len(), 2);
     let near = lines(folder, &["pass.gltf", "--clearance", "1.0000001"]);
@@ -363,7 +365,8 @@ fn nodes_of_animations_are_compared_on_request() {
     assert_eq!(of_nodes(&["pass.gltf", "--between-nodes"]), of_nodes(&["pass.gltf"]));
 }
 
-/// Pairs of two nodes that collide at the first time, and those around them, do not count at any time.
+/// With `--ignore-rest`, the pairs of two nodes that collide at the first time count at no time; with
+/// `--ignore-rest=1`, neither do the pairs within one ring of them.
 #[test]
 fn pairs_of_nodes_at_the_first_time_are_ignored() {
     let directory = tempfile::tempdir().unwrap();
@@ -387,7 +390,7 @@ fn pairs_of_nodes_at_the_first_time_are_ignored() {
     assert_eq!(check(&["--ignore-rest=1"]), (vec![], json!(2)));
     let near = check(&["--ignore-rest", "--clearance=0.125"]);
     assert_eq!(near, (vec![second], json!(1)));
-    // On its way it touches both.
+    // On its way the needle touches both triangles.
     assert_eq!(check(&["--continuous"]).0, [json!([0, [[0, 0], [1, 0]]])]);
     assert_eq!(check(&["--continuous", "--ignore-rest"]).0, [json!([0, [[1, 0]]])]);
     assert_eq!(check(&["--continuous", "--ignore-rest=1"]).0, [json!(null); 0]);
@@ -458,9 +461,9 @@ fn scenes_without_meshes_are_refused_in_one_line() {
     assert_eq!((found.len(), &found[0]["node"]), (1, &json!(1)));
 }
 
-/// An extension that shows a mesh at many places is named: its instances are not compared.
+/// A warning names an extension that shows a mesh at many places: its instances are not compared.
 #[test]
-fn instances_are_named() {
+fn a_warning_names_the_extension_of_instances() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -474,7 +477,8 @@ fn instances_are_named() {
     }
 }
 
-/// The robot of many parts: each two nodes as frames of their own, by the detector between files.
+/// The pairs of two nodes of the robot are those of the detector between two files, each of which shows one of the
+/// nodes.
 #[test]
 fn published_scenes_are_compared_part_by_part() {
     let Some(models) = models("published_scenes_are_compared_part_by_part") else { return };
@@ -483,7 +487,6 @@ fn published_scenes_are_compared_part_by_part() {
     let between: Vec<&Value> = scene.iter().filter(|line| line.get("against_node").is_some()).collect();
     assert_eq!(scene.len() - between.len(), 14);
     assert!(between.len() > 5, "{}", between.len());
-    // Torso and head are the meshes of one node each.
     let copy = tempfile::tempdir().unwrap();
     fs::copy(folder.join("RobotExpressive.glb"), copy.path().join("copy.glb")).unwrap();
     fs::copy(folder.join("RobotExpressive.glb"), copy.path().join("robot.glb")).unwrap();
@@ -491,7 +494,7 @@ fn published_scenes_are_compared_part_by_part() {
         let [a, b] = ["node_name", "against_node_name"].map(|key| line[key].as_str().unwrap());
         let args = [format!("robot.glb#{a}"), format!("copy.glb#{b}")];
         let run = sscc(copy.path(), &["check", &args[0], "--against", &args[1], "--json"]);
-        // Some meshes have other names than their nodes.
+        // A name that does not select one mesh is refused.
         if run.code == Some(2) {
             continue;
         }

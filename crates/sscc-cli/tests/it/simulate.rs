@@ -115,7 +115,7 @@ fn a_scene_is_simulated_and_written() {
     let folder = folder(SCENE);
     let run = simulate(folder.path(), &["scene.toml", "--json"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    // The effect of the shake: half of 0.2^2 and half of 0.5^2.
+    // The shake adds half of 0.2^2 and half of 0.5^2, in joules.
     let note = run
         .stderr
         .strip_prefix("note: body 0 (spring): shake gives 0.1450 J; alone it moves vertices by at most ");
@@ -196,7 +196,8 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!(floats(&report, &body["rigid"]).len(), 7 * times.len());
     let pairs: Vec<u64> =
         body["pairs"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).collect();
-    // `pairs` counts the collisions in each frame, and `pairs_since` those in the steps since the frame before.
+    // `pairs` is the number of pairs in each frame. `pairs_since` is the largest number of pairs in a step between the
+    // frame before and this one.
     let frames = sscc_io::gltf::key_frames(800, 1.0 / 8000.0, 60.0);
     let own = |state: usize| trajectories["self_pairs"].1[state] as u64;
     let max = |states: Range<usize>| states.map(own).max().unwrap_or(0);
@@ -210,7 +211,7 @@ fn a_scene_is_simulated_and_written() {
     assert_eq!(offsets.len(), 4 * (times.len() + 1));
     assert_eq!(&bytes_of(&report, &playback["sound"])[..4], b"RIFF");
 
-    // The text output; a finished simulation is not run again.
+    // The text output. A finished simulation is not run again.
     let run = simulate(folder.path(), &["scene.toml"]);
     for part in
         ["spring: 4,000 triangles, 10 modes (embedded spring)", "scene: one body, 800 steps", "written: "]
@@ -236,7 +237,7 @@ fn the_motion_is_the_same_for_any_number_of_threads_and_any_detection() {
     assert!(found.windows(2).all(|pair| pair[0] == pair[1]));
 }
 
-/// Certificates are measured in amplitudes of modes: with doubled amplitudes the radius is halved.
+/// The unit of radii is the amplitude of the modes: if all amplitudes are doubled, the radius is halved.
 #[test]
 fn radii_are_measured_in_amplitudes() {
     let radius = |amplitudes: &str| {
@@ -267,8 +268,8 @@ fn a_killed_simulation_resumes_to_the_same_bits() {
     for times in 1..=2 {
         let mut child =
             prepared(CACHE.path(), killed.path(), &["scene.toml"]).stderr(Stdio::null()).spawn().unwrap();
-        // Killed with states in the log that are later than the checkpoint: the run has cut off such states of the run
-        // before, and has written its own.
+        // The run is killed when the log has states that are later than the checkpoint. By then the run has removed
+        // such states of the run before, and has written its own.
         let length = || fs::metadata(&log).unwrap().len();
         let (before, mut was_cut) = (length(), false);
         while !(was_cut && length() >= checkpointed + 1000) {
@@ -293,7 +294,7 @@ fn a_killed_simulation_resumes_to_the_same_bits() {
 
 #[test]
 fn a_diverging_motion_is_reported_and_its_states_are_written() {
-    // So fast that even the shortest parts of a step have no solution.
+    // The shake is so fast that even the shortest parts of a step have no solution.
     let text = SCENE
         .replace("kind = \"linear\"\nrank = 10", "kind = \"nonlinear\"\nrank = 4")
         .replace("shake = [0.2, 0.5]", "shake = [1e20]")
@@ -317,10 +318,10 @@ fn a_diverging_motion_is_reported_and_its_states_are_written() {
     assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("[\"stopped early\",\"step "));
 }
 
-/// A motion that fails in a later step: all states before are written, and are those of a run that ends there.
+/// If a step fails, all states before it are written. They are those of a run that ends there.
 #[test]
 fn the_steps_before_a_failure_are_written() {
-    // Coordinates are at most 2^200, about 1.6e60, which the body leaves after 128 steps.
+    // Coordinates are at most 2^200, about 1.6e60. The body leaves this range after 128 steps.
     let text = SCENE
         .replace("velocity = [0, 0, -2]", "velocity = [0, 0, 1e62]")
         .replace("[sound]\nmodes = 30\n", "");

@@ -45,7 +45,7 @@ pub struct Body {
     pub(crate) pairs: Vec<Pair>,
     /// Whether q was outside the certificate of the root in the last detection.
     pub(crate) root_failed: bool,
-    /// Whether q was moved since the last step.
+    /// Whether q was moved since the integrator's last step.
     pub(crate) has_moved: bool,
     /// The elastic energy of nonlinear forces at q, and at the beginning of the step, where they are known.
     elastic_energy: Option<f64>,
@@ -99,7 +99,7 @@ impl Oscillator {
 }
 
 impl Detector {
-    /// Creates the query of a body. An equal one of a body of the same shape is cloned.
+    /// Creates the query of a body. The discrete query of a body with the same shape and detection is cloned.
     fn new(shape: &Shape, detection: Detection, same_shape: Option<&Body>) -> Result<Self, DynamicsError> {
         let (model, certificates) = (shape.model(), shape.certificates());
         let known = same_shape.filter(|other| other.detection == detection);
@@ -143,8 +143,8 @@ fn initial_motion(shape: &Shape, start: &Start, step: f64) -> Result<RigidMotion
 }
 
 impl Body {
-    /// Creates a body in its initial state. `same_shape` is an existing body of the same shape; its query and posed
-    /// shape are cloned instead of computed.
+    /// Creates a body in its initial state. `same_shape` is an existing body of the same shape. Its posed shape is
+    /// cloned instead of computed, and so is its discrete query if it has the same detection.
     pub(crate) fn new(
         shape: &Shape,
         start: &Start,
@@ -342,7 +342,8 @@ impl Body {
     }
 
     /// Finds the impacts of the body with itself in the motion from the beginning of the step to the current state. Finds no
-    /// impact for a body that collides with itself at the beginning: it may pass through itself until it is free.
+    /// impact if self-collisions are not detected, nor for a body that collides with itself at the beginning: it may
+    /// pass through itself until it is free.
     pub(crate) fn find_own_impacts(&mut self) -> Result<(), DynamicsError> {
         self.impacts.clear();
         if !self.pairs.is_empty() || self.detection == Detection::Off {
@@ -486,7 +487,7 @@ impl Body {
         }
     }
 
-    /// Records that q was moved between steps. The next step then computes the acceleration again.
+    /// Records that q was moved since the integrator's last step. The next step then computes the acceleration again.
     pub(crate) fn mark_moved(&mut self) {
         (self.has_moved, self.elastic_energy) = (true, None);
     }

@@ -35,8 +35,8 @@ impl Shape {
     /// for the cost.
     ///
     /// # Errors
-    /// When certificates or elasticity do not belong to this model, the certificates have a clearance, linear forces couple modes, or nonlinear forces are
-    /// not the gradient of an energy.
+    /// When the certificates are of another model or have a clearance, the elasticity has another rank, linear forces
+    /// couple modes, or nonlinear forces are not the gradient of an energy.
     pub fn new(
         model: ReducedModel,
         certificates: Certificates,
@@ -122,7 +122,7 @@ impl Shape {
         &self.0.mass
     }
 
-    /// Returns the integral of each mode over the mass (r vectors).
+    /// Returns the integral of each mode over the mass (r vectors); zeros unless [`Shape::with_moments`] has set them.
     pub fn moments(&self) -> &[DVec3] {
         &self.0.moments
     }

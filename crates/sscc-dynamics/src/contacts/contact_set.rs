@@ -15,7 +15,8 @@ use crate::Body;
 /// Contacts between triangles, kept from step to step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactSet {
-    /// Sorted by [`Contact::key`], except for the rigid contacts of the current step at the end.
+    /// Sorted by [`Contact::key`], except for the contacts at the end that began after the beginning of the current
+    /// step.
     pub list: Vec<Contact>,
     /// Number of contacts at the beginning of this step; the list is sorted up to here.
     sorted: usize,
@@ -31,12 +32,12 @@ pub(crate) struct ContactSet {
 /// Added to the features of contacts that impacts began: see [`Contact::features`].
 const IMPACT: u8 = 16;
 
-/// Contacts whose points are nearer to each other than this share of the skin are duplicates.
+/// Points are rounded to multiples of this share of the skin. Contacts with equal rounded points are duplicates.
 const POINT_SIZE: f64 = 1e-4;
 
 impl ContactSet {
     /// Ends contacts that opened, and begins contacts of collisions between bodies, and within them if the laws require it.
-    /// The geometry of a pair that collides for long is computed again.
+    /// The geometry of a pair that has collided for the laws' `max_age` steps is computed again.
     pub fn update(&mut self, bodies: &[Body], collisions: &BodyCollisions, laws: &ContactLaws) {
         let ContactLaws { skin, max_age, .. } = *laws;
         self.old.clear();
@@ -124,7 +125,7 @@ impl ContactSet {
             for (n, nearest) in found.iter().enumerate() {
                 let [x, y] = nearest.points.map(|x| (x / size).round().to_array().map(|x| x as i64));
                 let is_duplicate = !self.points.insert((indices, x, y));
-                // The first contact remembers the pair.
+                // The first contact is kept, because it shows that the pair has contacts.
                 if is_duplicate && n > 0 {
                     continue;
                 }
@@ -188,7 +189,7 @@ impl ContactSet {
         Some((contact, x.distance(y)))
     }
 
-    /// Sorts the contacts of this step in.
+    /// Sorts the contacts that began in this step into the list.
     pub fn end_step(&mut self) {
         if self.list.len() > self.sorted {
             self.list.sort_by_key(Contact::key);
@@ -235,15 +236,15 @@ impl ContactSet {
     }
 }
 
-/// Gap, in skins, beyond which a contact ends. It exceeds 1: a contact whose spring throws a point slightly farther than the
-/// skin continues when the point returns.
+/// Gap, in skins, at which a contact ends. It exceeds 1: a contact whose spring throws a point slightly farther than
+/// the skin continues when the point returns.
 const MAX_GAP: f64 = 3.0;
 
 /// Maximum preload, in skins.
 const MAX_PRELOAD: f64 = 100.0;
 
-/// Returns the preload for the next step. A load compresses the spring; the preload therefore grows slowly while the
-/// gap is less than half the skin, so that resting bodies stay apart.
+/// Returns the preload for the next step. A load compresses the spring. The preload therefore grows slowly while the
+/// gap is less than half the skin, so that resting bodies do not touch, and shrinks slowly while the gap is larger.
 fn adapt_preload(preload: f64, gap: f64, skin: f64, preload_rate: f64) -> f64 {
     (preload + preload_rate * (skin / 2.0 - gap).min(skin)).clamp(0.0, MAX_PRELOAD * skin)
 }

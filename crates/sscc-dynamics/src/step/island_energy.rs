@@ -12,7 +12,7 @@ use crate::contacts::world_contacts::WorldContacts;
 
 /// Charges the change of energy by the corrections of this step to energy budgets. Velocities are scaled down where
 /// the budgets are too small. `before` holds the energies of each corrected body at the beginning of the step and at its
-/// end without the correction. The forces of these bodies are known.
+/// end without the correction. The nonlinear forces of these bodies have been evaluated at their q.
 pub(crate) fn limit_energy(
     bodies: &mut [Body],
     contacts: &mut WorldContacts,
@@ -50,8 +50,8 @@ pub(crate) fn limit_energy(
     }
 }
 
-/// Removes an amount of kinetic energy from bodies, as far as they have it. `keeps_momenta` demands that momentum and
-/// angular momentum of all of them together stay, as long as this is possible. Returns the energy removed.
+/// Removes an amount of kinetic energy from bodies, as far as they have it. If `keeps_momenta`, their total momentum
+/// and angular momentum stay unless more energy is removed than their relative motion has. Returns the energy removed.
 fn remove_kinetic_energy(bodies: &mut [Body], members: &[usize], amount: f64, keeps_momenta: bool) -> f64 {
     let mut removed = 0.0;
     if keeps_momenta {
@@ -168,7 +168,7 @@ mod tests {
         for n in 0..2 {
             assert!((after[n] - before[n]).length() < 1e-12 * (1.0 + before[n].length()), "{n}");
         }
-        // More than there is: all bodies stop.
+        // If more is removed than the bodies have, all of them stop.
         let left = kinetic(&bodies);
         let removed = remove_kinetic_energy(&mut bodies, &members, 2.0 * first, true);
         assert!((removed - left).abs() < 1e-12 * left && kinetic(&bodies) < 1e-12 * left);

@@ -47,7 +47,7 @@
 //! the tensors. A bucket has at most 64 triangles and is not the root; the tree holds no pairs within a bucket.
 //! Clearances are new in version 8, local certificates in version 6, groups in version 5; version 6 has no flat patches.
 //! A file is written in the oldest of the versions 4, 5, 7 and 8 that supports its contents. Version 3 has a tree with
-//! pairs within buckets, which is not read. Versions 1 and 2 have no tree, and a text `pairs` ("root-children").
+//! pairs within buckets, which is not read. Versions 1 and 2 have no tree. They have a text `pairs` ("root-children").
 
 use std::path::Path;
 
@@ -62,7 +62,7 @@ use crate::error::quoted;
 use crate::file::{read_whole, write_whole};
 use crate::{FormatError, IoError, Place};
 
-/// Files without groups and local certificates are written in this version, which earlier builds read.
+/// Files without groups, local certificates and a clearance are written in this version, which earlier builds read.
 const PLAIN_VERSION: u32 = 4;
 
 /// Value of the text `weld` if equal vertices count as one.
@@ -113,7 +113,8 @@ pub fn write_certificates(path: &Path, certificates: &Certificates) -> Result<()
 /// Reads certificates.
 ///
 /// # Errors
-/// When the file cannot be read, is damaged, of another kind or a newer version, or its parts do not fit each other.
+/// When the file cannot be read, is damaged, of another kind or a newer version; when a tensor or a text is missing,
+/// unknown or out of range, or its parts do not fit each other.
 pub fn read_certificates(path: &Path) -> Result<Certificates, IoError> {
     certificates_from_bytes(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -261,7 +262,7 @@ fn read_pairs(file: &Container<'_>, name: &str) -> Result<Vec<Pair>, FormatError
     }
 }
 
-/// Reads the pair tree. [`CertificateParts`] checks that it fits the hierarchy.
+/// Reads the pair tree. [`Certificates::try_from`] checks that it fits the hierarchy.
 fn read_pair_tree(file: &Container<'_>) -> Result<PairTree, FormatError> {
     if file.version() < 4 {
         return Ok(PairTree::default());

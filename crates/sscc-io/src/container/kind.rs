@@ -18,10 +18,11 @@ pub struct Kind {
 /// files without them are still written in the older version.
 pub const MODEL: Kind = Kind { format: "sscc.model", called: "a model file", version: 3 };
 
-/// Certificates of a model: `*.sscc.safetensors`. Version 1 has no ignored pairs, centre, contact filter or exceptions;
-/// version 2 has no pair tree. The pair tree of version 3 includes pairs within buckets and is not read. Version 4 has
-/// no groups of triangles, version 5 no local certificates; files without them are still written in the older version.
-/// Local certificates of version 6 have no flat patches.
+/// Certificates of a model: `*.sscc.safetensors`. Version 1 has no ignored pairs; its files have the centre 0, the
+/// default contact filter and no exceptions. Version 2 has no pair tree. The pair tree of version 3 includes pairs
+/// within buckets and is not read. Version 4 has no groups of triangles, version 5 no local certificates, version 7 no
+/// clearance; files without them are still written in the older version. Local certificates of version 6 have no flat
+/// patches.
 pub const CERTIFICATES: Kind = Kind { format: "sscc.certificates", called: "a certificate file", version: 8 };
 
 impl Kind {

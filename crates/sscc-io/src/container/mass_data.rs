@@ -43,7 +43,8 @@ pub(super) fn write(writer: &mut ContainerWriter, data: &MassData, rank: usize) 
 /// Reads the mass data of a model of rank r; None if the file has none.
 ///
 /// # Errors
-/// When the mass is not positive, or a number is not finite.
+/// When the mass is not positive, a number is not finite, the support is unknown, or an entry is missing or has another
+/// type or shape.
 pub(super) fn read(file: &Container<'_>, rank: usize) -> Result<Option<MassData>, FormatError> {
     let names = file.names();
     if ![PROPERTIES, MOMENTS].into_iter().any(|name| names.iter().any(|known| known == name)) {

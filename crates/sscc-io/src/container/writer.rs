@@ -28,7 +28,7 @@ pub struct ContainerWriter {
 }
 
 impl ContainerWriter {
-    /// Creates a container of the given kind in its newest version, without content.
+    /// Creates a container of the given kind and its version, without content.
     pub fn new(kind: Kind) -> Self {
         let mut writer = Self { texts: BTreeMap::new(), tensors: BTreeMap::new(), error: None };
         writer.text("format", kind.format).text("version", &kind.version.to_string());
@@ -88,7 +88,8 @@ impl ContainerWriter {
     /// Returns the bytes of the file.
     ///
     /// # Errors
-    /// When a name was used twice, values did not fill their shape, or names and texts exceed 1 MiB in all.
+    /// When a name was used twice or is reserved, values did not fill their shape, or names, shapes and texts exceed 1
+    /// MiB in all.
     pub fn finish(self) -> Result<Vec<u8>, FormatError> {
         if let Some(error) = self.error {
             return Err(error);

@@ -27,7 +27,7 @@ impl<'a> Accessors<'a> {
         Ok(reader)
     }
 
-    /// Loads the buffers of these accessors; some may not exist.
+    /// Loads the buffers of these accessors. Accessors that do not exist are skipped.
     pub fn load(&mut self, accessors: impl Iterator<Item = usize>) -> Result<(), FormatError> {
         let (root, before) = (self.root, self.buffers.external_size());
         for accessor in accessors.filter_map(|index| root.accessors.get(index)) {

@@ -5,8 +5,8 @@
 //! linearly, and rotations on the shortest arc. Bodies of one model share its data in the file.
 //!
 //! Two animations of one key frame follow the motion, with the minimum and the maximum of each weight. Blender (5.0)
-//! needs them: it clamps weights to [0, 1] and to the weights of the first key frame of each animation. Players show
-//! the first animation, the motion, by default.
+//! needs them: it clamps weights to the range of 0, 1 and the weights of the first key frame of each animation. Players
+//! show the first animation, the motion, by default.
 
 use std::path::Path;
 
@@ -45,8 +45,9 @@ pub struct Track {
 /// Writes an animation (`.glb`). `times` are the times of the key frames (s), ascending.
 ///
 /// # Errors
-/// When a track does not have one entry per time, or its model does not exist; when a number is not finite in single
-/// precision; when the file exceeds 4 GiB or cannot be written.
+/// When there is no key frame or no track; when the times do not increase in single precision; when a track does not
+/// have one entry per time, or its model does not exist; when a number is not finite in single precision; when the file
+/// exceeds 4 GiB or cannot be written.
 pub fn write_animation(
     path: &Path,
     models: &[NamedModel<'_>],
@@ -58,11 +59,12 @@ pub fn write_animation(
 }
 
 /// Returns the indices of the key frames for about `rate` frames per second: the step nearest to the time of each
-/// frame, the first and the last of `steps`, each once. `step` is the time step (s).
+/// frame, the first and the last of `steps`. No two have the same time in single precision. `step` is the time step
+/// (s).
 pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     let Some(last) = steps.checked_sub(1) else { return Vec::new() };
     let stride = (1.0 / (rate * step)).max(1.0);
-    // With NaN or a rate below one frame, only the first and the last step remain.
+    // With a rate of 0 or below one frame, only the first and the last step remain; with a rate that is NaN, all steps.
     let count = if stride.is_finite() { (last as f64 / stride) as usize } else { 0 };
     let mut frames: Vec<usize> =
         (0..=count).map(|frame| ((frame as f64 * stride).round() as usize).min(last)).collect();

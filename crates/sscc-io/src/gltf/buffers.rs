@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn data_uris() {
+    fn data_uris_are_decoded_from_base64_alone() {
         assert_eq!(embedded("data:application/octet-stream;base64,AAEC/w==").unwrap(), [0, 1, 2, 255]);
         assert_eq!(embedded("data:;base64,AAEC/w").unwrap(), [0, 1, 2, 255]);
         assert!(embedded("data:;base64,A").unwrap_err().starts_with("not base64"));

@@ -125,7 +125,10 @@ fn faces_of(
         return Err(refused(cause));
     }
     topology.triangles(&corners).ok_or_else(|| {
-        refused(format!("{} indices are not a multiple of 3: each triangle needs three", corners.len()))
+        refused(format!(
+            "{} corners are no triangles: a list needs a multiple of 3, a strip or a fan at least 3",
+            corners.len()
+        ))
     })
 }
 

@@ -1,7 +1,7 @@
 //! Structure of a glTF file's JSON, as far as meshes need it.
 //!
-//! Fields that the format requires are required here, which also bounds memory: a list of empty entries would take a
-//! hundred times its bytes.
+//! Fields that the format requires are required here. This also bounds memory, because a list of empty entries would
+//! take a hundred times its bytes.
 
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
@@ -136,8 +136,8 @@ pub(super) enum Extras {
     Other(IgnoredAny),
 }
 
-/// Extensions that compress the geometry of a primitive or the bytes of a view. Where a file does not require them, it
-/// has the same data without compression, which the reader takes.
+/// The extension that compresses the geometry of a primitive. Where a file does not require it, the file has the same
+/// data without compression, which the reader takes.
 #[derive(Default, Deserialize)]
 pub(super) struct Extensions {
     #[serde(rename = "KHR_draco_mesh_compression")]

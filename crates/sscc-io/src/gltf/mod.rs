@@ -58,14 +58,14 @@ pub fn is_gltf(path: &Path) -> bool {
 /// - Primitives of triangles, strips and fans are joined in file order, indexed or not. Points, lines and primitives
 ///   without positions are left out.
 /// - Where primitives have different numbers of morph targets, the missing ones move nothing ([`MorphModel::notes`]).
-/// - Positions are float32, or integers of 8 or 16 bits as in KHR_mesh_quantization, accessors plain or sparse.
+/// - Positions are float32, or integers of 8 or 16 bits as in KHR_mesh_quantization. Accessors may be sparse.
 /// - A target without positions is a mode of zeros.
 ///
 /// # Errors
 /// When a file cannot be read or is malformed, has a version other than 2.x, geometry that exists only compressed, or
-/// requires an extension that could change positions; when a buffer is outside of the folder; when several
-/// meshes have morph targets and none is named, or the named one has none;
-/// when the numbers would take more than 100 times the files' size and 64 MiB.
+/// requires an extension that could change positions; when a buffer is outside of the folder; when no mesh has morph
+/// targets, or several have and none is named; when the name is that of no mesh, of several, or of one without morph
+/// targets; when the numbers would take more than 64 MiB plus 100 times the size of the files.
 pub fn read(path: &Path, mesh_name: Option<&str>) -> Result<MorphModel, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, mesh_name, Some(folder)).map_err(|error| error.of(path))
@@ -82,7 +82,7 @@ pub fn parse(bytes: &[u8], mesh_name: Option<&str>) -> Result<MorphModel, Format
 /// Reads the groups of the triangles of a mesh, which is chosen as [`read`] chooses it.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`read`], and when there are more than 65,536 groups.
 pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, IoError> {
     let bytes = read_whole(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -92,7 +92,7 @@ pub fn read_groups(path: &Path, mesh_name: Option<&str>, by: GroupsBy) -> Result
 /// As [`read_groups`], from the bytes of a file without external buffers.
 ///
 /// # Errors
-/// As [`read`], and when a buffer is in another file.
+/// As [`read_groups`], and when a buffer is in another file.
 pub fn parse_groups(bytes: &[u8], mesh_name: Option<&str>, by: GroupsBy) -> Result<NamedGroups, FormatError> {
     groups_in(bytes, mesh_name, None, by)
 }

@@ -19,7 +19,7 @@ pub struct MorphModel {
     pub modes: Modes,
     /// Default weights of the mesh, a q (r numbers); zeros if the file has none. They are not applied to `mesh`.
     pub default_weights: Vec<f64>,
-    /// Names of the targets (r); `target 0`, `target 1`, ... if the file has none.
+    /// Names of the targets (r); `target 0`, `target 1`, ... if the file does not have one for each.
     pub target_names: Vec<String>,
     /// Name of the mesh; `#0` for an unnamed first mesh, and so on.
     pub mesh_name: String,

@@ -21,7 +21,8 @@ pub(super) struct PartNames {
     nodes: NodeNames,
 }
 
-/// Names and meshes of nodes, in maps by node number: a hostile file may have many empty nodes, in three bytes of text each.
+/// Names and meshes of nodes, in maps without entries for empty nodes: a hostile file may have many of these, in three
+/// bytes of text each.
 #[derive(Default)]
 struct NodeNames {
     names: BTreeMap<usize, Box<str>>,
@@ -61,8 +62,8 @@ impl PartNames {
         self.nodes.first_of_mesh.get(&u32::try_from(mesh).ok()?).copied()
     }
 
-    /// Returns the name of a primitive's group; `node` shows its mesh. Materials that do not exist are named by number:
-    /// they do not change the shape.
+    /// Returns the name of a primitive's group; `node` shows its mesh. A material that does not exist is no error,
+    /// because materials do not change the shape: it is named by its number.
     pub fn group(&self, by: GroupsBy, node: Option<usize>, mesh: usize, primitive: usize) -> String {
         let numbered = |name: Option<&Box<str>>, number: usize| {
             name.map_or_else(|| format!("#{number}"), |name| own(name))

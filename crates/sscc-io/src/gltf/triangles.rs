@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_topologies() {
+    fn lists_strips_and_fans_have_the_triangles_of_the_standard() {
         let corners = [7, 1, 2, 3, 4, 5];
         assert_eq!(Topology::List.triangles(&corners).unwrap(), [[7, 1, 2], [3, 4, 5]]);
         let strip = Topology::Strip.triangles(&corners).unwrap();

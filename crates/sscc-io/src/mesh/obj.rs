@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn all_forms_of_corners() {
+    fn all_forms_of_corners_are_read() {
         for line in ["f 1 2 3 4", "f 1/9 2/9 3/9 4/9", "f 1//7 2//7 3//7 4//7", "f 1/1/1 2/2/2 3/3/3 4/4/4"] {
             assert_eq!(faces(line), [[0, 1, 2], [0, 2, 3]], "{line}");
         }

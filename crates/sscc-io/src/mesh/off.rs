@@ -10,11 +10,11 @@ use crate::{FormatError, Place};
 
 /// Parses an OFF file: the word `OFF`, the counts of vertices, faces and edges (on the same line or the next), one line
 /// for each vertex, and one for each face (`n i_1 .. i_n`, from 0). Comments (`#`), colours, and the normals and texture
-/// coordinates of the variants `[ST][C][N]OFF` are skipped. There may be no blank between `OFF` and the counts.
+/// coordinates of the variants `[ST][C][N]OFF` are skipped. The blank between `OFF` and the counts may be missing.
 ///
 /// # Errors
 /// When the file is binary or has another dimension (`4OFF`, `nOFF`), the number of lines differs from the counts, a line
-/// is malformed, an index names no vertex, or [`TriMesh::new`] rejects the mesh.
+/// is malformed, a face has fewer than 3 corners, an index names no vertex, or [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }

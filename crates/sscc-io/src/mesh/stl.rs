@@ -29,8 +29,8 @@ const TRIANGLE: usize = 50;
 /// triangles.
 ///
 /// # Errors
-/// When the size of a binary file does not match its count in another way; when a text file has unknown statements or facets without
-/// exactly 3 corners, or ends early; when [`TriMesh::new`] rejects the mesh.
+/// When the size of a binary file does not match its count, except in these cases; when a text file has unknown
+/// statements or facets without exactly 3 corners, or ends early; when [`TriMesh::new`] rejects the mesh.
 pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
     soup(bytes)?.into_mesh()
 }

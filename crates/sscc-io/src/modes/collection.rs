@@ -111,7 +111,7 @@ mod tests {
     proptest! {
         /// A randomly damaged file is an error of one line, or still a collection of files below the folder.
         #[test]
-        fn damaged_collections(
+        fn damaged_collections_are_errors_or_still_collections(
             damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
             part in prop::sample::select(vec!["", "&#46;", "&amp;", "<![CDATA[x]]>", "<!--", "<DataSet", "'", "/", "]]>", "\0"]),
             at in any::<prop::sample::Index>(),

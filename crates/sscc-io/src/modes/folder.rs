@@ -16,16 +16,16 @@ use crate::{FormatError, IoError};
 /// Maximum number of meshes in a folder.
 const MAX_MESHES: usize = 10_000;
 
-/// Reads the targets of a neutral mesh: every mesh file in the folder, ordered by the bytes of their names, so `10.obj`
-/// comes before `9.obj`. Mode k is target k minus the neutral mesh, each difference rounded to f64. Names are those of
-/// the files, without endings.
+/// Reads the targets of a neutral mesh: every mesh file and every grid of VTK in the folder, ordered by the bytes of
+/// their names, so `10.obj` comes before `9.obj`. The points of a grid are moved by its displacements. Mode k is target
+/// k minus the neutral mesh, each difference rounded to f64. Names are those of the files, without endings.
 ///
 /// Other files, folders, hidden files, and the neutral mesh itself are skipped.
 ///
 /// # Errors
 /// When the folder cannot be read, or has no mesh or more than 10,000; when a target cannot be read, has another number
-/// of vertices, has faces that differ from the neutral ones (it may have none), or has a coordinate that is not finite
-/// or too large.
+/// of vertices, has faces that differ from the neutral ones (a mesh file may have none), or has a coordinate that is
+/// not finite or beyond [`limits::LARGEST`].
 pub fn read(folder: &Path, neutral: &TriMesh, neutral_path: &Path) -> Result<NamedModes, IoError> {
     let request = |cause: String| IoError::request(folder, cause);
     // The neutral mesh may have another path (links, `..`).

@@ -17,13 +17,13 @@ use crate::npy::Blocks;
 use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::{FormatError, IoError};
 
-/// Memory for the positions of meshes from a folder, in bytes. Further meshes are read again.
+/// Memory for the positions of meshes from a folder and of grids of VTK, in bytes. Further ones are read again.
 const MAX_KEPT: usize = 1 << 30;
 
 /// The frames of a mesh: positions of all its vertices in each.
 ///
-/// Frames of a `.npy` file are read where they are needed. Meshes of a folder take longer to read than to check, so their
-/// positions are kept, up to 1 GiB.
+/// Frames of a `.npy` file are read when they are needed; a point cache is read as a whole. Meshes of a folder and
+/// grids of VTK take longer to read than to check, so [`FrameReader::check`] keeps their positions, up to 1 GiB.
 pub struct FrameReader {
     path: PathBuf,
     mesh: TriMesh,
@@ -52,8 +52,9 @@ impl FrameReader {
     /// `mesh_path` names the mesh in messages.
     ///
     /// # Errors
-    /// When the path is none of them; when the array has no frame, another shape, or is cut off; when the folder has no mesh or
-    /// more than 10,000.
+    /// When the path is none of them; when the array or the point cache is malformed, cut off, without a frame or for
+    /// another number of vertices; when the collection or the first grid of VTK is malformed; when the folder has no
+    /// mesh or more than 10,000.
     pub fn open(path: &Path, mesh: &TriMesh, mesh_path: &Path) -> Result<Self, IoError> {
         let source = if path.is_dir() {
             let files = frame_files(path)?;
@@ -111,7 +112,7 @@ impl FrameReader {
         }
     }
 
-    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes.
+    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes and grids, up to 1 GiB.
     ///
     /// # Errors
     /// As [`FrameReader::read`].
@@ -256,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_do_not_fit() {
+    fn frames_that_do_not_fit_the_mesh_are_refused() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.npy");
         let open = || FrameReader::open(&path, &mesh(), "m.obj".as_ref());

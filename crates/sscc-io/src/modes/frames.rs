@@ -17,19 +17,20 @@ pub struct Frames {
     pub mesh: TriMesh,
     /// Positions of all vertices in each frame, including the first one.
     pub positions: Vec<Vec<DVec3>>,
-    /// File name of each frame.
+    /// Path of the file of each frame.
     pub paths: Vec<PathBuf>,
     /// Lines about content of the first frame whose meaning is not clear.
     pub warnings: Vec<String>,
 }
 
-/// Reads every mesh file of a folder, in the natural order of their names without endings, so `9.obj` comes before
-/// `10.obj`, and `walk.obj` before `walk-1.obj`. Other files, folders and hidden files are skipped.
+/// Reads every mesh file and every grid of VTK of a folder, in the natural order of their names without endings, so
+/// `9.obj` comes before `10.obj`, and `walk.obj` before `walk-1.obj`. The points of a grid are moved by its
+/// displacements. Other files, folders and hidden files are skipped.
 ///
 /// # Errors
-/// When the folder cannot be read, or has no mesh in it or more than 10,000; when a mesh cannot be read, has another
-/// number of vertices or faces other than the first one's (it may have none), or a coordinate that is not finite or too
-/// large.
+/// When the folder cannot be read, or has no mesh or more than 10,000; when a mesh cannot be read, has another number
+/// of vertices or faces other than those of the first one (a mesh file may have none), or a coordinate that is not
+/// finite or beyond [`sscc::limits::LARGEST`].
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     let paths = frame_files(folder)?;
     let (mesh, warnings) = read_first(&paths[0])?;

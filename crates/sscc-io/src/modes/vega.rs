@@ -18,7 +18,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Size of one entry.
+    /// Size of one entry in bytes.
     fn size(self) -> u64 {
         match self {
             Self::Single => 4,
@@ -27,7 +27,7 @@ impl Precision {
     }
 }
 
-/// Size of the header.
+/// Size of the header in bytes.
 const HEADER: usize = 8;
 
 /// Parses a modal matrix for a mesh with this number of vertices.

@@ -28,7 +28,7 @@ pub fn parse(bytes: &[u8]) -> Result<Array, FormatError> {
 /// Parses a `.npy` file of signed or unsigned integers of 1, 2, 4 or 8 bytes; else as [`parse`].
 ///
 /// # Errors
-/// As [`parse`], and when a number is beyond i64.
+/// As [`parse`], but an integer may be as large as i64 allows.
 pub fn parse_integers(bytes: &[u8]) -> Result<Array<i64>, FormatError> {
     array(bytes, NumberKind::Integers, integers)
 }
@@ -76,7 +76,7 @@ impl<T: Copy> Array<T> {
     /// Returns one entry; `index` has one number per axis.
     ///
     /// # Panics
-    /// When the index is beyond the shape.
+    /// When the entry would be beyond the data. Another index beyond the shape returns another entry.
     pub fn at<const N: usize>(&self, index: [usize; N]) -> T {
         self.data[index.iter().zip(&self.strides).map(|(i, stride)| i * stride).sum::<usize>()]
     }

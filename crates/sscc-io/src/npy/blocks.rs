@@ -1,4 +1,4 @@
-//! Reads an array of floats block by block, so that files larger than memory can be read.
+//! Reads an array of numbers block by block, so that files larger than memory can be read.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -10,13 +10,13 @@ use super::header::{Header, Item, NumberKind};
 use crate::file::{check_content, open_regular, read_error, read_whole};
 use crate::{FormatError, IoError};
 
-/// Headers are read in full up to this size; NumPy writes at most a few hundred bytes for arrays of numbers.
+/// Headers are read in full up to this size in bytes; NumPy writes at most a few hundred bytes for arrays of numbers.
 const MAX_HEADER: u64 = 1 << 20;
 
 /// Arrays in Fortran order are read as a whole up to this size of the file, in bytes.
 const MAX_FORTRAN: u64 = 1 << 30;
 
-/// An open `.npy` file. A block has all entries with one index along the first axis.
+/// An open `.npy` file. A block is a range of its entries in C order.
 pub(crate) struct Blocks {
     path: PathBuf,
     shape: Vec<usize>,
@@ -34,8 +34,8 @@ impl Blocks {
     /// Opens a file and checks its size.
     ///
     /// # Errors
-    /// When the file cannot be read, its header is malformed or has another type, its length differs from the header, or
-    /// the array has no axis; when it is in Fortran order and larger than 1 GiB.
+    /// When the file cannot be read or is a Git LFS pointer, its header is malformed, longer than 1 MiB or has another
+    /// type, or its length differs from the header; when it is in Fortran order and larger than 1 GiB.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         let (mut file, size) = open_regular(path)?;
         let mut start = Vec::new();
@@ -71,7 +71,7 @@ impl Blocks {
     /// Returns `length` numbers from the entry `start` in C order on.
     ///
     /// # Errors
-    /// When the file cannot be read, or is shorter than it was when it was opened.
+    /// When the file cannot be read, or is shorter than it was when it was opened; when an integer is beyond 2^53.
     ///
     /// # Panics
     /// When the block is beyond the array.

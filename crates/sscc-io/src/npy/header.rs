@@ -20,12 +20,12 @@ pub(super) enum Class {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item {
     pub class: Class,
-    /// Size of one entry: 2, 4 or 8 for floats; 1, 2, 4 or 8 for integers.
+    /// Size of one entry in bytes: 2, 4 or 8 for floats; 1, 2, 4 or 8 for integers.
     pub size: usize,
     pub big: bool,
 }
 
-/// Kind of numbers that a reader accepts; one of floats also accepts integers.
+/// Kind of numbers that a reader accepts; a reader of floats also accepts integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NumberKind {
     Floats,

@@ -1,4 +1,4 @@
-//! Reader for NumPy arrays (`.npy`) of numbers.
+//! Reader and writer for NumPy arrays (`.npy`) of numbers.
 //!
 //! The module has its own parser: in the crate `npyz`, parsing takes time exponential in the number of open brackets.
 //! Here the header must have the form that NumPy writes for an array of numbers. The tests compare both on valid files.

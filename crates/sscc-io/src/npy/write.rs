@@ -41,7 +41,7 @@ fn header(shape: &[usize]) -> Option<Vec<u8>> {
 /// Writes an array of f64 (C order: last axis fastest) as `.npy`.
 ///
 /// # Errors
-/// When the number of values does not fit the shape, or the file cannot be written.
+/// When the number of values does not fit the shape, the shape has more than 32 axes, or the file cannot be written.
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> Result<(), IoError> {
     let Some(bytes) = to_bytes(shape, values) else {
         let cause = format!("{} values do not fill an array of shape {shape:?}", values.len());

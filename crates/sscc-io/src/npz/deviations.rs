@@ -6,9 +6,9 @@ use sscc::Modes;
 /// have single precision.
 const TOLERANCE: f64 = 1e-3;
 
-/// Returns the standard deviation of each entry of q. Components of unit length have the variances of their entries of q.
-/// Components whose squared lengths are their variances are scaled already: a unit of q is one standard deviation.
-/// Variances below 0 come from rounding, and count as 0.
+/// Returns the standard deviation of each entry of q. If the squared length of each component is its variance, the
+/// components are scaled already: a unit of q is one standard deviation. Else they count as of unit length, so that the
+/// variance of an entry of q is that of its component. Variances below 0 come from rounding, and count as 0.
 ///
 /// Returns None if a variance is not finite.
 pub(super) fn deviations(variances: &[f64], modes: &Modes) -> Option<Vec<f64>> {

@@ -53,7 +53,8 @@ pub struct NpzModel {
 ///
 /// # Errors
 /// When the file cannot be read, is not an archive, is damaged or too large when unpacked; when the mean, the modes or
-/// the faces are missing, or their type or shape is not in the table; when a face names no vertex.
+/// the faces are missing, or their type or shape is not in the table; when two arrays are for one part; when there is
+/// another number of weights than of modes; when a face names no vertex, or a number is out of range.
 pub fn read_npz_model(path: &Path) -> Result<NpzModel, IoError> {
     parse_model(&read_whole(path)?).map_err(|error| error.of(path))
 }
@@ -77,7 +78,8 @@ pub fn parse_model(bytes: &[u8]) -> Result<NpzModel, FormatError> {
 /// of the mesh up to 2^-20 of their largest coordinate (the precision of float32 and of text with 6 digits).
 ///
 /// # Errors
-/// As [`parse_model`], and when the modes or the mean belong to another mesh.
+/// As [`parse_model`] for the modes and for the mean, which may be missing; when the modes or the mean belong to
+/// another mesh.
 pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<NamedModes, FormatError> {
     let parts = Parts::read(bytes, &[Part::Mean, Part::Modes, Part::Components], Some(Part::Weights))?;
     let positions = mesh.rest_positions();

@@ -97,8 +97,8 @@ impl Parts {
         Ok(TriMesh::new(mean, faces)?)
     }
 
-    /// Returns one number for each of r modes. An array of this name with two axes is ignored: body models store
-    /// skinning weights there.
+    /// Returns one number for each of r modes. An array of this name that has not exactly one axis is ignored: body
+    /// models store skinning weights there.
     pub fn weights(&self, rank: usize) -> Result<Option<Vec<f64>>, FormatError> {
         let weights = self.get(Part::Weights, |bytes| {
             let array = npy::parse(bytes)?;

@@ -73,7 +73,8 @@ impl EarCandidates {
         [cells.x, cells.y].map(|cell| (cell as usize).min(self.count - 1))
     }
 
-    /// Whether a candidate in the box is accepted by `accepts`.
+    /// Whether `accepts` holds for a candidate in the cells of the box. These may also contain candidates outside of
+    /// the box.
     pub fn any_in_box(
         &self,
         low: DVec2,

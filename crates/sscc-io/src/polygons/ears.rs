@@ -12,7 +12,8 @@ use super::ear_candidates::EarCandidates;
 use super::work::{STEPS_OF_EXACT_SIGNS, TooIntricate, Work};
 
 /// Cuts a polygon into triangles of its corners' numbers, with the polygon's orientation (`turn`: 1 left, -1 right); n
-/// corners give n - 2 triangles. None if at some step there is no ear, which happens if the polygon crosses itself.
+/// corners give n - 2 triangles. None if at some step there is no ear, or the last triangle has the opposite
+/// orientation: the polygon then crosses itself, or turns the other way.
 ///
 /// A simple polygon that turns this way always has an ear with area. Only polygons that touch themselves, or have repeated
 /// corners, also get triangles without area. All decisions are exact.

@@ -20,7 +20,7 @@ pub(crate) struct Soup {
 }
 
 impl Soup {
-    /// Returns the soup of triangles without polygons.
+    /// Returns the soup of triangles without larger polygons.
     pub fn of_triangles(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         Self {
             positions,
@@ -36,7 +36,7 @@ impl Soup {
         self.into_mesh_with_warnings().map(|(mesh, _)| mesh)
     }
 
-    /// Returns the mesh, and lines about polygons whose triangles the file does not determine.
+    /// Returns the mesh, and the warnings, among them lines about polygons whose triangles the file does not determine.
     pub fn into_mesh_with_warnings(self) -> Result<(TriMesh, Vec<String>), FormatError> {
         let Self { positions, mut fans, larger, has_split_vertices, mut warnings } = self;
         // Invalid positions are an error of the mesh.
@@ -47,8 +47,9 @@ impl Soup {
         Ok((if has_split_vertices { mesh.with_split_vertices() } else { mesh }, warnings))
     }
 
-    /// Whether these triangles are those of this file's polygons, for any positions: each triangle of the file is in its
-    /// place, and those in the place of a larger polygon have its border.
+    /// Checks that these triangles are those of this file's polygons, for any positions: each triangle of the file is
+    /// in its place, and those in the place of a larger polygon have its border. The error is the number of a triangle
+    /// that differs.
     pub fn has_polygons_of(&self, triangles: &[[u32; 3]]) -> Result<(), usize> {
         let mut larger = self.larger.iter().peekable();
         let mut at = 0;

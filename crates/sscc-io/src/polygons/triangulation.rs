@@ -1,4 +1,4 @@
-//! Replaces the fans of polygons that they do not triangulate.
+//! Replaces the fans that do not triangulate their polygons.
 
 use glam::DVec3;
 
@@ -9,7 +9,8 @@ use super::simple::is_simple;
 use super::work::Work;
 use crate::FormatError;
 
-/// Thickness of a polygon over its diameter beyond which a caller is warned. The faces of rounded shapes stay below it.
+/// Thickness of a polygon over the diagonal of its box beyond which a caller is warned. The faces of rounded shapes
+/// stay below it.
 const MAX_THICKNESS: f64 = 0.05;
 
 /// Maximum number of faces that a warning names.
@@ -164,7 +165,7 @@ mod tests {
         let corners: Vec<u32> = found[3..6].iter().flatten().copied().collect();
         assert_ne!(found[3..6], fans[3..6]);
         assert!(corners.iter().all(|corner| (7..12).contains(corner)));
-        // The notch is corner 10: the triangle beside it that a fan has would cover it.
+        // The notch is corner 10. The triangle that the fan has beside it would cover the notch.
         assert!(!found.contains(&[7, 9, 10]));
     }
 

@@ -125,7 +125,10 @@ impl Builder {
 
     /// Notes faces of a kind that is not read: an error if the file has no solid elements.
     pub fn unread_faces(&mut self, kind: &str, place: Place) {
-        let cause = format!("{kind} is not supported: only triangles and quadrilaterals of first order are");
+        let cause = format!(
+            "{kind} is not supported: only triangles and quadrilaterals of first order are, and triangles of 6 \
+             nodes in files of gmsh and VTK"
+        );
         self.unread_faces.get_or_insert_with(|| FormatError::new(place, cause));
     }
 

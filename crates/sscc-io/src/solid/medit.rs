@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn sections_in_any_order() {
+    fn sections_are_read_in_any_order() {
         let mesh = parse(TETS.as_bytes()).unwrap();
         assert_eq!((mesh.vertices().len(), mesh.vertices()[4]), (5, DVec3::ONE));
         assert_eq!((mesh.tets(), mesh.surface()), (&[[0, 1, 2, 3], [1, 2, 3, 4]][..], &[[0, 1, 2]][..]));

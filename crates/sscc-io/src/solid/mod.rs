@@ -44,7 +44,8 @@ pub fn read_volume_mesh(path: &Path) -> Result<VolumeMesh, IoError> {
 /// As [`read_volume_mesh`], but for a Medit, gmsh or VTK file without tetrahedra and cubes returns the surface of its faces.
 ///
 /// # Errors
-/// As [`read_volume_mesh`], but a file may have faces in place of elements; these must not be of higher order.
+/// As [`read_volume_mesh`], but such a file may have faces in place of elements. Faces of higher order are then an
+/// error, except triangles of 6 nodes in files of gmsh and VTK.
 pub fn read_volume_or_surface(path: &Path) -> Result<VolumeOrSurface, IoError> {
     let parse = match ending(path).as_str() {
         "mesh" => medit::parse_any,

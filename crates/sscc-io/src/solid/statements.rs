@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_and_fields() {
+    fn comments_blank_lines_and_separators_are_skipped() {
         let lines: Vec<_> = statements(b"# a\n\n 1, 2,,3\t4 # b\r\n").unwrap().map(Result::unwrap).collect();
         assert_eq!(lines, [(3, "1, 2,,3\t4")]);
         assert_eq!(corners::<4>(&mut fields(lines[0].1)).unwrap(), [1, 2, 3, 4]);

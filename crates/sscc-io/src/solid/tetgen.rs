@@ -81,8 +81,8 @@ pub fn parse_nodes(bytes: &[u8]) -> Result<Nodes, FormatError> {
 /// attribute becomes the name of the material.
 ///
 /// # Errors
-/// When elements have 10 nodes, the number of lines differs from the header, or a declared attribute is missing; else as
-/// [`read_volume_mesh`](super::read_volume_mesh).
+/// When elements have another number of nodes than 4, the number of lines differs from the header, or a declared
+/// attribute is missing; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(nodes: &Nodes, bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     let mut builder = Builder::new(nodes.first);
     for position in &nodes.positions {

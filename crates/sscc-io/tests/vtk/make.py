@@ -1,6 +1,6 @@
 """Writes the files of this folder with meshio 5.3.5 and VTK 9.7.2: `python make.py`.
 
-Two tetrahedra that are apart; the displacements `U` move the second one into the first.
+The files have two tetrahedra that do not touch. The displacements `U` move the second one into the first.
 """
 
 import os

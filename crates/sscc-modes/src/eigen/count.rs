@@ -19,7 +19,8 @@ pub(super) struct Count {
 }
 
 /// Counts the eigenvalues of `K x = lambda M x` up to a bound in the widest gap (relative) after the first `count` of
-/// `values`, ascending. None if the count is uncertain by rounding in every gap.
+/// `values`, ascending. Tries the next gap if the count is uncertain by rounding; None if it is uncertain in all that
+/// are tried.
 pub(super) fn count_below_gap(
     stiffness: &BlockSparse,
     mass: &BlockSparse,

@@ -25,8 +25,8 @@ const MAX_STEPS_PER_BLOCK: usize = 60;
 pub(super) struct ShiftInvert<'a> {
     pub space: &'a Space<'a>,
     pub factor: &'a Cholesky,
-    /// An eigenvalue above this bound ends the search, because the body is a mechanism. The operator would amplify
-    /// rounding in its direction, and the others would not converge.
+    /// An eigenvalue of at least this bound ends the search, because the body is a mechanism. The operator would
+    /// amplify rounding in its direction, and the others would not converge.
     pub ceiling: f64,
 }
 
@@ -46,8 +46,8 @@ impl ShiftInvert<'_> {
 }
 
 /// Computes the `wanted` largest eigenvalues (Wu and Simon 2000, with blocks). Starts from a random block and the known
-/// vectors. `progress` counts `shown` of them. Returns fewer, inaccurate values if the first one exceeds the ceiling of
-/// the operator.
+/// vectors. `progress` counts `shown` of them. Returns inaccurate values without vectors if the first one reaches the
+/// ceiling of the operator.
 ///
 /// All coefficients are computed and none is assumed to be 0: the cost is small beside the solves, the basis stays
 /// orthonormal to rounding, and a restart equals a step.

@@ -7,7 +7,7 @@ use super::basis::Basis;
 use super::tall_matrix::{Random, add_product, inner};
 use crate::sparse::BlockSparse;
 
-/// Maximum new length of a dependent column, relative to its length.
+/// Maximum length that orthogonalization leaves of a dependent column, relative to its length.
 const DEPENDENCE_TOLERANCE: f64 = 1e-14;
 
 /// Maximum product of a unit column with the basis or a rigid motion.

@@ -30,8 +30,8 @@ struct Node {
 /// Elements that may move a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// The elements that contain the point, ascending; the nearest one alone if there are none. Elements count from 0,
-    /// tetrahedra first.
+    /// The elements that contain the point up to a tolerance, ascending; the nearest one alone if there are none.
+    /// Elements count from 0, tetrahedra first.
     pub elements: Vec<u32>,
     /// Distance of the point from the nearest element; 0 inside.
     pub distance: f64,

@@ -30,7 +30,8 @@ const BATCH: usize = 4096;
 /// Computes the weights of all vertices of the surface. Vertices without faces do not move.
 ///
 /// # Errors
-/// When a vertex is farther from the solid than a tenth of the longest side of the solid, or the work is cancelled.
+/// When a vertex is farther from the solid than a tenth of the longest side of the solid's AABB, or the work is
+/// cancelled.
 pub(crate) fn embed(
     solid: &Solid,
     surface: &TriMesh,

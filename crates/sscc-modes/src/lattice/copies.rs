@@ -14,9 +14,9 @@ use super::surface::Surface;
 use crate::cancel::check_cancelled;
 use crate::interpolation::OCTANTS;
 
-/// Minimum filled share of an octant. It gives every cube mass and stiffness, and bounds the ratio of stiffness by
-/// 1000, three of sixteen digits. The added volume is a thousandth of the outermost layer, less than the error of the
-/// sample lines.
+/// Minimum filled share of an octant. It gives every cube mass and stiffness, and bounds the ratio of the stiffness of
+/// two octants by 1000, which costs three of sixteen digits. The added volume is a thousandth of the outermost layer,
+/// less than the error of the sample lines.
 pub(super) const MIN_FILL: f64 = 1e-3;
 
 /// The copies of all cells, in the order of cells; within a cell in the order of their smallest elements.

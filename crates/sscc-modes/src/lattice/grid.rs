@@ -35,7 +35,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Creates a grid with this number of cells along the longest side of the surface.
+    /// Creates a grid with this number of cells along the longest side of the surface; None gives about
+    /// [`DEFAULT_CELLS`] cells that the solid touches.
     ///
     /// # Errors
     /// When the number is 0 or too large.

@@ -62,7 +62,8 @@ impl Lattice {
     ///
     /// # Errors
     /// When the surface is open, not consistently oriented, without volume, collides with itself or has several pieces;
-    /// when the resolution is 0 or needs too much memory; when cancelled.
+    /// when a part of it lies inside the solid or is inside out; when the resolution is 0 or needs too much memory;
+    /// when cancelled.
     pub fn around(mesh: &TriMesh, cells: Option<usize>, progress: &dyn Progress) -> Result<Self, ModesError> {
         let step = |done: usize| {
             progress.report(done, STEPS);

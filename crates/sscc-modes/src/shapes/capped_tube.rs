@@ -56,8 +56,8 @@ impl CappedTube {
         bands.chain(start_fan).chain(end_fan).collect()
     }
 
-    /// Returns parameter and share of the curve's length for each ring. Rings are evenly spaced in length along the surface
-    /// over thickness.
+    /// Returns parameter and share of the curve's length for each ring. Rings are evenly spaced in the integral of 1
+    /// over the thickness along the surface.
     fn places(self, curve: impl Fn(f64) -> DVec3, section: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let steps = self.rings * LENGTH_STEPS;
         let parameter = |i: usize| i as f64 / steps as f64;

@@ -82,8 +82,8 @@ fn outward_cosine(surface: &Surface, [moved, other]: [u32; 2], (point, normal): 
     })
 }
 
-/// Flips an edge if the opposite angles sum to more than 180 degrees, and the new faces are within about 45 degrees of the
-/// old ones.
+/// Flips an edge if the opposite angles sum to more than 180 degrees, the new normals are within 60 degrees of the mean
+/// of the old ones, and no vertex gets too many or too few neighbours.
 fn flip_if_better(surface: &mut Surface, [a, b]: [u32; 2]) {
     let (Some(c), Some(d)) = (surface.opposite(a, b), surface.opposite(b, a)) else { return };
     let valences = [a, b, c, d].map(|v| surface.valence(v));

@@ -30,7 +30,8 @@ impl Tube {
     /// triangles, is oriented outward and has genus 1.
     ///
     /// # Panics
-    /// When the curve gives a position that is not finite.
+    /// When there are fewer than 4 rings or an odd number, fewer than 3 vertices in each, or the curve gives a position
+    /// that is not finite.
     pub fn along(self, curve: impl Fn(f64) -> DVec3) -> TriMesh {
         assert!(self.rings >= 4 && self.rings.is_multiple_of(2) && self.around >= 3);
         let mut vertices = Vec::with_capacity(self.rings * self.around);

@@ -14,7 +14,7 @@ fn strip() -> TriMesh {
     TriMesh::new(positions, faces).unwrap()
 }
 
-/// Two orthonormal directions.
+/// Two directions, orthonormal over the used vertices.
 fn directions() -> [Vec<DVec3>; 2] {
     let used = (VERTICES - 1) as f64;
     [DVec3::Z, DVec3::Y].map(|axis| (0..VERTICES).map(|_| axis / used.sqrt()).collect())

@@ -11,7 +11,7 @@ const TUBE_RADIUS: f64 = 0.03;
 const AROUND: usize = 16;
 
 #[test]
-fn closed_oriented_and_connected() {
+fn the_spring_is_closed_oriented_and_connected() {
     let mesh = spring();
     assert_eq!(mesh.faces().len(), 16_000);
     assert_eq!(mesh.rest_positions().len(), 8_000);
@@ -45,7 +45,7 @@ fn closed_oriented_and_connected() {
 }
 
 #[test]
-fn outward_and_of_the_right_size() {
+fn the_spring_is_oriented_outward_and_has_the_right_size() {
     let mesh = spring();
     let p = mesh.rest_positions();
     let volume: f64 = corners(&mesh).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
@@ -89,7 +89,7 @@ fn neighbouring_coils_are_one_tube_radius_apart() {
 }
 
 #[test]
-fn no_self_intersection_at_rest() {
+fn the_spring_does_not_intersect_itself_at_rest() {
     let mesh = spring();
     let (tested, intersecting) = self_intersections(&mesh);
     assert_eq!(intersecting, 0);

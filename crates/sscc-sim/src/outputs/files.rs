@@ -68,7 +68,8 @@ impl Outputs {
     /// Returns the result of the simulation.
     ///
     /// # Errors
-    /// When the simulation ended early, or a file was not written. The error is that of the first such file.
+    /// When the simulation was cancelled or ended early; else when a file was not written: the error is that of the
+    /// first such file.
     pub fn finish(self, run: FinishedRun) -> Result<(), SimError> {
         let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place).map(|(_, error)| error);
         match (run.failure, unwritten) {

@@ -1,4 +1,4 @@
-//! The files of a simulation: summary, trajectories, costs, animation and sound.
+//! The files of a simulation: summary, trajectories, costs, animation, sound and report.
 
 mod animation;
 mod arrays;

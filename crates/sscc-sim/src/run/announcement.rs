@@ -63,7 +63,7 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
     Ok(lines)
 }
 
-/// Returns size, mass and first frequency of a model. They show wrong units.
+/// Returns size, mass and first frequency of a model, by which a user notices wrong units.
 fn facts(recipe: &Recipe, model: &PreparedModel) -> Result<String> {
     let side = longest_side(model.shape.model().mesh().rest_positions());
     let stiffness = model.shape.elasticity().stiffness();

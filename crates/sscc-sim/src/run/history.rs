@@ -18,7 +18,7 @@ pub struct StepRecord {
     pub seconds: [f64; STEP_PARTS.len()],
     /// Wall-clock time of the step (s).
     pub wall: f64,
-    /// Kinetic, elastic and potential energy; NaN if it was not computed.
+    /// Sum of kinetic, elastic and potential energy (J); NaN if it was not computed.
     pub energy: f64,
     /// Sample of the sound during the step; 0 without sound.
     pub sound: f64,
@@ -199,12 +199,12 @@ impl History {
         state == next || (a.position, a.orientation, a.q) != (b.position, b.orientation, b.q)
     }
 
-    /// Returns the number of colliding triangle pairs within bodies.
+    /// Returns the number of colliding triangle pairs within bodies in a state.
     pub fn self_pairs(&self, state: usize) -> usize {
         self.bodies(state).map(|body| body.pairs).sum()
     }
 
-    /// Returns the number of bodies that collide with themselves.
+    /// Returns the number of bodies that collide with themselves in a state.
     pub fn colliding_bodies(&self, state: usize) -> usize {
         self.bodies(state).filter(|body| body.pairs > 0).count()
     }

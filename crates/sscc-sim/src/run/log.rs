@@ -47,11 +47,12 @@ pub struct Checkpoint {
 }
 
 impl StateLog {
-    /// Opens the log of a folder. Returns it with the checkpoint, if the folder has one. `again` removes both files first.
-    /// `digest` is the digest of the simulation.
+    /// Opens the log of a folder. Returns it with the checkpoint, if the folder has one. `again` first removes the
+    /// checkpoint and empties the log. `digest` is the digest of the simulation.
     ///
     /// # Errors
-    /// When the folder cannot be written to, or holds another simulation.
+    /// When the folder cannot be written to, or holds another simulation; when another simulation is writing to the
+    /// log; when one of the files is damaged.
     pub(super) fn open(
         folder: &Path,
         digest: [u8; DIGEST],

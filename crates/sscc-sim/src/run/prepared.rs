@@ -44,7 +44,8 @@ impl PreparedScene {
     /// Reads the models from the cache, or computes them. `models` is the folder of real models.
     ///
     /// # Errors
-    /// When a model cannot be computed, steps are too long for it, all bodies need too much memory, or `watch` cancels.
+    /// When a model cannot be computed, steps are too long for it, all bodies or their sounds need too much memory, or
+    /// `watch` cancels.
     pub fn get(
         scene: &Scene,
         models: Option<&Path>,

@@ -29,9 +29,9 @@ const MAX_LOG_BYTES: f64 = 4e9;
 
 /// The result of the loop over the steps.
 pub struct RunOutcome {
-    /// All states.
+    /// All states, at most as many as steps were requested.
     pub history: History,
-    /// Processor time of this thread for all steps; None if another process made some of them.
+    /// Processor time of this thread for all steps; None if an earlier run made some of them.
     pub processor_seconds: Option<f64>,
     /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,
@@ -41,8 +41,10 @@ pub struct RunOutcome {
 /// receives the lines of the announcement before the first step.
 ///
 /// # Errors
-/// When bodies penetrate each other, themselves or the ground at the start, or the folder cannot be written to.
-/// Divergence and cancellation are not errors: [`RunOutcome::failure`] holds them, and the states are kept.
+/// When a body or the world of the scene is invalid, for example because bodies penetrate each other, themselves or the
+/// ground at the start; when the states would take more than 4 GB; when the folder cannot be written to, has damaged
+/// files, or belongs to another simulation. Divergence and cancellation are not errors: [`RunOutcome::failure`] holds
+/// them, and the states are kept.
 pub fn run(
     scene: &Scene,
     prepared: &PreparedScene,

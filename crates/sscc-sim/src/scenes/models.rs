@@ -22,7 +22,8 @@ const MAX_CELLS: usize = 2000;
 pub struct ModelSpec {
     /// Shape, material and modes.
     pub recipe: Recipe,
-    /// Whether the dynamics are linear, with the stiffness at rest. For a model file, its forces determine this.
+    /// Whether the dynamics are linear, with the stiffness at rest. Not used for a file with modes: see
+    /// [`ModelFiles::is_linear`].
     pub is_linear: bool,
     /// Damping of its modes.
     pub damping: Damping,

@@ -99,8 +99,8 @@ impl Scene {
         WorldOptions { step, gravity, ground, contact, response, ..WorldOptions::default() }
     }
 
-    /// Shortens the scene for a quick run: a fifth of a second, with the small spring in place of each model, and with a
-    /// stronger shake, so that it collides with itself.
+    /// Shortens the scene for a quick run: at most a fifth of a second, with the small spring in place of each model,
+    /// and with a stronger shake, so that it collides with itself.
     pub fn quicken(&mut self) {
         for model in &mut self.models {
             model.quicken();
@@ -112,8 +112,8 @@ impl Scene {
         self.digest += " quick";
     }
 
-    /// Sets contacts within bodies to penalties, as in the paper. The bodies then really collide with themselves, as benches
-    /// of queries require.
+    /// Replaces the response `contact` to self-collisions by `penalty`, as in the paper. The bodies then really collide
+    /// with themselves, as benches of queries require.
     pub fn penetrate(&mut self) {
         if self.response == Response::Contact {
             self.response = Response::Penalty;
@@ -124,8 +124,9 @@ impl Scene {
     /// Reads a scene. Names of files in it are relative to its own folder.
     ///
     /// # Errors
-    /// When the file cannot be read or is not TOML, or has an unknown key or a value out of range. The error names the
-    /// line, and for an unknown key the nearest known one.
+    /// When the file cannot be read, has more than 1 MiB or is not UTF-8; when it is not TOML, a key is missing or
+    /// unknown, or a value is out of range: the error then names the line, and for an unknown key the nearest known
+    /// one.
     pub fn read(path: &Path) -> Result<Self, SimError> {
         let bytes = read_whole(path)?;
         if bytes.len() > MAX_BYTES {

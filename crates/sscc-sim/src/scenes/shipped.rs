@@ -26,7 +26,8 @@ pub const OWN_AMPLITUDE_SCENES: [(&str, &str); 2] = [
 /// Reads a scene: a file, or by its name a scene that comes with the program.
 ///
 /// # Errors
-/// The errors of [`Scene::read`]. If a name is neither a file nor a scene, the error states the nearest name.
+/// The errors of [`Scene::read`]. If a name without an extension is neither a file nor a scene, the error states the
+/// nearest name.
 pub fn read_scene(path: &Path) -> Result<Scene, SimError> {
     let all = || SHIPPED.iter().chain(&OWN_AMPLITUDE_SCENES);
     let shipped = path.to_str().and_then(|name| all().find(|(known, _)| *known == name));

@@ -1,5 +1,5 @@
-//! The paths of the campaign, each with the minimum number of answers that a campaign compares. One configuration follows
-//! from one seed: it is a model, or some thousand pairs of triangles.
+//! The paths of the campaign, each with the minimum number of answers that a campaign compares. A seed determines a
+//! configuration, which is a model, or some thousand pairs of triangles.
 
 mod continuous;
 mod discrete;

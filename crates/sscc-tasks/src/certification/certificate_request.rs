@@ -11,8 +11,9 @@ use super::metric::metric;
 use crate::error::{At, Result};
 use crate::{GroupRules, TaskError, available_threads};
 
-/// Options of certificates. For new certificates, absent options have their defaults. Certificates from a file may have any
-/// value of an absent option.
+/// Options of certificates. For new certificates, absent options have their defaults. Certificates from a file may have
+/// any value of an absent option, except that an absent clearance excludes those with a clearance unless
+/// `any_clearance` is true.
 #[derive(Clone, Debug, Default)]
 pub struct CertificateRequest {
     /// File of the model.
@@ -29,8 +30,8 @@ pub struct CertificateRequest {
     pub neighbours: Option<Neighbours>,
     /// Whether to weld equal vertices (`--weld`). None means as the mesh requires it ([`ContactFilter::of`]).
     pub weld: Option<bool>,
-    /// Pairs within this number of rings of pairs that collide at rest never count (`--ignore-rest`). None means that all
-    /// pairs count.
+    /// Pairs within this number of rings of pairs that collide at rest never count (`--ignore-rest`). None ignores no
+    /// pair for that reason.
     pub ignore_rest: Option<u32>,
     /// Which pairs of groups of triangles count.
     pub groups: GroupRules,
@@ -65,7 +66,8 @@ impl CertificateRequest {
     /// Returns the options to compute certificates with.
     ///
     /// # Errors
-    /// When a file cannot be read or does not fit the model, or two options contradict each other.
+    /// When a file cannot be read or does not fit the model, the model has no metric of the given name, a name of a
+    /// group is unknown, the reach is out of range, or two options contradict each other.
     pub fn options(&self, model: &ReducedModel) -> Result<CertifyOptions> {
         Ok(CertifyOptions::default()
             .epsilon(self.epsilon.unwrap_or(DEFAULT_EPSILON))
@@ -84,7 +86,8 @@ impl CertificateRequest {
     /// Returns the scope of a query without certificates.
     ///
     /// # Errors
-    /// The errors are those of [`CertificateRequest::options`].
+    /// The errors are those of [`CertificateRequest::options`]; also when too many pairs collide at rest for
+    /// `ignore_rest`.
     pub fn scope(&self, model: &ReducedModel) -> Result<Scope> {
         let (metric, mut filter) = (self.metric(model)?, self.filter(model)?);
         // These calls refuse contradictions of other options.
@@ -132,7 +135,8 @@ impl CertificateRequest {
         }
     }
 
-    /// Returns the budget of local certificates; None if it is not given and the scheme is that of the paper, which has none.
+    /// Returns the budget of local certificates: 0 for the scheme of the paper, which has none; None if no budget is
+    /// given.
     pub(super) fn local_budget(&self) -> Result<Option<usize>> {
         match (self.scheme, self.local_budget) {
             (Some(Scheme::Paper), None) => Ok(Some(0)),

@@ -15,7 +15,7 @@ use crate::text::counted;
 /// End of the message on a contradiction.
 const REMEDY: &str = "; leave the flag out, or certify anew";
 
-/// Rings that a message can name.
+/// Maximum number of rings that are tried, so that a message can name those of the certificates.
 const MAX_RINGS: u32 = 8;
 
 fn of_rings(rings: u32) -> String {
@@ -29,7 +29,7 @@ impl CertificateRequest {
     /// Reads certificates. Refuses certificates of another model, and certificates that contradict an option.
     ///
     /// # Errors
-    /// When they are refused, or a file cannot be read.
+    /// When they are refused, an option is invalid, or a file cannot be read.
     pub fn read(&self, path: &Path, model: &ReducedModel) -> Result<Certificates> {
         let certificates = read_certificates(path)?;
         certificates.check_model(model).in_file(path)?;
@@ -54,7 +54,7 @@ impl CertificateRequest {
         check_filter(certificates, &typed).in_file(path)
     }
 
-    /// Returns the first other contradiction, which is the cause of the refusal.
+    /// Returns the first contradiction that `check_filter` does not find. It is the cause of the refusal.
     fn contradiction(&self, certificates: &Certificates, model: &ReducedModel) -> Result<Option<Message>> {
         if let Some(cause) = self.clearance_contradiction(certificates) {
             return Ok(Some(cause));

@@ -16,15 +16,15 @@ pub struct DetectionAnswer<'a> {
     pub file: &'a Path,
     /// The mesh, at rest.
     pub mesh: &'a TriMesh,
-    /// Number of the node, in an animation, or if several nodes show the mesh and there is another mesh.
+    /// Number of the node, in an animation or a scene, or if several nodes show the mesh and there is another mesh.
     pub node: Option<usize>,
-    /// Number of the node of the other mesh, if several nodes show it.
+    /// Number of the node of the other mesh, if two nodes are compared, or if several nodes show the other mesh.
     pub other_node: Option<usize>,
     /// Names of these nodes, in an animation or a scene.
     pub node_names: [Option<&'a str>; 2],
     /// Number of the q, frame or time, counted from 0; for continuous queries, of the one at the start.
     pub index: usize,
-    /// Time of the frame (s), in an animation.
+    /// Time of the frame, in an animation (s) or a `.pvd` collection.
     pub time: Option<f64>,
     /// Colliding pairs, sorted.
     pub pairs: &'a [Pair],
@@ -46,7 +46,7 @@ pub struct DetectionAnswer<'a> {
     /// Duration of the query on its thread, without reading files and evaluating animations. If several q of a model are
     /// answered together, it is the time of all of them divided by their number.
     pub microseconds: f64,
-    /// |z|, for a model.
+    /// |z|, for a model; for continuous queries the larger one of start and end.
     pub norm: Option<f64>,
     /// Whether the root's certificate held, for a model.
     pub root_certified: Option<bool>,
@@ -62,11 +62,11 @@ pub struct DetectionAnswer<'a> {
     pub box_tests: u64,
     /// Pairs of triangles that the query tested exactly.
     pub triangle_tests: u64,
-    /// Number of queries of the whole file.
+    /// Number of queries of the whole file, without those of different nodes against each other.
     pub queries: usize,
-    /// Number of frames of the motion; 1 at rest.
+    /// Number of frames of the motion; 1 at rest, and for a model the number of rows.
     pub frames: usize,
-    /// Times of all frames (s), in an animation.
+    /// Times of all frames, in an animation (s) or a `.pvd` collection.
     pub frame_times: Option<&'a [f64]>,
     /// The mesh at the frame; None without [`has_positions`](super::Detection::has_positions).
     pub shape: Option<ShapeInMotion<'a>>,

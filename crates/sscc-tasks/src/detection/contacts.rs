@@ -91,7 +91,7 @@ mod tests {
             penetration_triangle_triangle(&corners(i as usize), &corners(j as usize)).unwrap()
         });
         assert_eq!(penetrations, expected);
-        // The second triangle moves along the direction until both only touch.
+        // The second triangle leaves the first when it moves along the direction by slightly more than the depth.
         let Penetration { depth, direction } = penetrations[0];
         let moved: Vec<DVec3> = blade.iter().map(|x| *x + direction * depth * 1.000_001).collect();
         assert!(sscc::intersect_triangle_triangle(&[square[0], square[1], square[2]], &blade));

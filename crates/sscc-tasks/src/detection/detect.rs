@@ -25,13 +25,15 @@ use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 ///
 /// If a file cannot be answered, `take` receives the error. It returns the error to end the run, or continues with the next file.
 ///
-/// Frames from files are checked before the first answer. Memory holds one mesh and a few frames for each thread; meshes of a
-/// folder of frames are kept up to 1 GiB.
+/// Frames from files are checked before the first answer. Memory holds the mesh (all meshes of an animation or a scene)
+/// and the other mesh, and a few frames for each thread; meshes of a folder of frames are kept up to 1 GiB. Of several
+/// meshes at rest it holds a few for each thread.
 ///
 /// # Errors
-/// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when it
-/// cannot be read or does not fit its mesh; when a mesh would be compared with itself; when positions are not finite; when a
-/// query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
+/// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when
+/// it cannot be read or does not fit its mesh or the request; when a mesh would be compared with itself; when a
+/// position is not finite or is beyond [`sscc::limits::LARGEST`]; when a query has more than
+/// [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
 pub fn detect<E: From<TaskError>>(
     request: &Detection,
     watch: &dyn Watch,

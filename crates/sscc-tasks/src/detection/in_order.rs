@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-/// Number of results that a thread may compute in advance. It bounds memory.
+/// Maximum number of results of a thread that wait for `take`, beside one that the thread itself holds. It bounds
+/// memory.
 const AHEAD: usize = 2;
 
 /// Calls `work` for 0 to `count - 1` on threads, each with its own state, and `take` with each result in order, on the thread
@@ -77,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn results_come_in_order() {
+    fn results_come_in_order_until_take_breaks_or_fails() {
         for threads in [0, 1, 2, 3, 7, 50] {
             let (taken, result) = squares(20, threads, 100);
             assert_eq!(taken, (0..20).map(|item| item * item).collect::<Vec<_>>());

@@ -55,7 +55,7 @@ impl MeshSource {
         Ok(source)
     }
 
-    /// Warns if no node shows the mesh, and if skin weights break the standard.
+    /// Warns if no node shows the mesh, and if skin weights break the standard. Also sends the notes of the reader.
     fn warn(&self, watch: &dyn Watch) {
         let Content::Placed(placed) = &self.content else { return };
         let warn = |text: &str| watch.warn(&format!("{}: {text}", self.file.display()));

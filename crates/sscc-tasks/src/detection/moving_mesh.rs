@@ -61,7 +61,8 @@ impl<'w> MovingMesh<'w> {
         Self::with_motion(source, place, request, (watch, classes), |_, _| Ok(Motion::Rest))
     }
 
-    /// Returns a mesh with frames, and checks all frames. Nodes do not move frames, which have their own positions.
+    /// Returns a mesh with frames, and checks all frames. Transforms of nodes are not applied to the positions of
+    /// frames.
     pub fn with_frames(
         source: &MeshSource,
         frames: &Path,
@@ -224,7 +225,8 @@ impl<'w> MovingMesh<'w> {
         }
     }
 
-    /// Replaces `positions` by the positions at a frame. A mesh with one frame has it at all times.
+    /// Replaces `positions` by the positions at a frame. Beyond the last frame, these are the positions at the last
+    /// one.
     pub fn positions(&self, frame: usize, positions: &mut Vec<DVec3>) -> Result<()> {
         let frame = frame.min(self.frames() - 1);
         match &self.motion {

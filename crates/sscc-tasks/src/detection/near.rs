@@ -15,7 +15,8 @@ pub struct Near {
 }
 
 impl Near {
-    /// Returns the distances of some of these pairs, at least one of which is near.
+    /// Returns the distances of the near pairs at the places `kept` of `pairs`, and the nearest of these pairs; None if
+    /// `kept` is empty.
     pub(super) fn of_pairs(&self, pairs: &[Pair], kept: &[usize]) -> Self {
         let near = |i: &usize| NearPair { pair: pairs[*i], distance: self.distances[*i] };
         Self {

@@ -18,15 +18,17 @@ pub struct Detection {
     pub mesh_name: Option<String>,
     /// Motion of the meshes.
     pub motion: MeshMotion,
-    /// Another mesh: pairs are then (triangle of the mesh, triangle of the other), and every pair counts.
+    /// Another mesh: pairs are then (triangle of the mesh, triangle of the other), and every pair counts that `groups`
+    /// does not exclude.
     pub against: Option<OtherMesh>,
     /// Which triangles that share a vertex count.
     pub neighbours: Neighbours,
     /// Whether equal vertices are one vertex for adjacency: vertices of equal position at rest and in all frames; in
-    /// animations vertices of equal rest position, morph displacements and influences. None means as the mesh requires it
-    /// ([`sscc::ContactFilter::of`]), and true in animations.
+    /// animations and scenes vertices of equal rest position, morph displacements and influences. None means as the
+    /// mesh requires it ([`sscc::ContactFilter::of`]), and true in animations and scenes.
     pub weld: Option<bool>,
-    /// Whether pairs that collide at rest never count.
+    /// Pairs within this number of rings of pairs that collide at rest never count. None ignores no pair for that
+    /// reason.
     pub ignore_rest: Option<u32>,
     /// Whether the meshes of different nodes of an animation are also compared with each other. The nodes of a scene of
     /// several meshes at rest are always compared. If pairs at rest are ignored, so are the pairs of different nodes that
@@ -53,7 +55,7 @@ pub struct Detection {
 }
 
 impl Default for Detection {
-    /// Returns a request without meshes. All other values are those for a mesh at rest, with all pairs.
+    /// Returns a request without meshes. All other values are the defaults: meshes at rest, without a limit.
     fn default() -> Self {
         Self {
             meshes: Vec::new(),
@@ -79,11 +81,11 @@ impl Default for Detection {
 /// Motion of a mesh.
 #[derive(Clone, Debug)]
 pub enum MeshMotion {
-    /// The mesh as it is in its file; a glTF mesh at the first node that shows it. With another mesh, every node of both
-    /// meshes has an answer. A glTF file with several meshes, none of which is named, is a scene: every node with a mesh, and
-    /// every two nodes, have an answer.
+    /// The mesh as it is in its file; a glTF mesh at the first node that shows it. With another mesh, there is an
+    /// answer for every node of the mesh with every node of the other one. A glTF file with several meshes, none of
+    /// which is named, is a scene: there is an answer for every node with a mesh, and for every two nodes that collide.
     Rest,
-    /// Frames from a `.npy` file or a folder ([`sscc_io::FrameReader`]).
+    /// Frames from a file or a folder of meshes ([`sscc_io::FrameReader`] lists the formats).
     Frames(PathBuf),
     /// An animation of the glTF file.
     Animation(AnimationMotion),
@@ -92,7 +94,7 @@ pub enum MeshMotion {
 /// An animation of a glTF file, and the times of its queries.
 #[derive(Clone, Debug)]
 pub struct AnimationMotion {
-    /// Name of the animation, or its number. None means the scene as it is stored, at one time.
+    /// Name of the animation, or its number. None means the scene as it is stored, at each of the times.
     pub animation: Option<String>,
     /// Times of the queries.
     pub times: Times,
@@ -132,6 +134,7 @@ pub struct OtherMesh {
     pub mesh: PathBuf,
     /// Name of the mesh in a glTF file with several meshes.
     pub mesh_name: Option<String>,
-    /// Frames of the mesh, as many as those of the first mesh. None means that it does not move.
+    /// Frames of the mesh; if both meshes have several frames, as many as those of the first mesh. None means that it
+    /// does not move.
     pub frames: Option<PathBuf>,
 }

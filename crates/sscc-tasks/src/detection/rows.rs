@@ -37,8 +37,8 @@ pub struct RowQueries<'a> {
     pub contacts: ContactOptions,
 }
 
-/// Maximum number of q that are answered together. The first q is answered alone, and the number then doubles each time, so
-/// that the first answers come soon.
+/// Maximum number of q that are answered together. The first q is answered alone. The number then doubles each time, as
+/// long as queries take at least [`MIN_MICROSECONDS`]. So the first answers come soon.
 const MAX_BLOCK: usize = 256;
 
 /// Queries that take less time than this are answered one by one, because starting threads would take longer.
@@ -52,7 +52,8 @@ const MAX_BLOCK_PAIRS: usize = 1 << 24;
 /// answered together ([`Query::batch`]), with the same answers.
 ///
 /// # Errors
-/// When a row is not a configuration of the model, `progress` cancels, or `take` fails.
+/// When a row is not a configuration of the model, more than [`sscc::Detector::MAX_PAIRS`] pairs are nearer than a
+/// clearance, `progress` cancels, or `take` fails.
 pub fn check_rows<E: From<TaskError>>(
     query: &mut Query,
     requests: &RowQueries<'_>,
@@ -85,7 +86,7 @@ pub fn check_rows<E: From<TaskError>>(
         };
         let microseconds = start.elapsed().as_secs_f64() * 1e6 / (end - next) as f64;
         check_cancelled(progress)?;
-        // One row is not a configuration: the rows before it have answers.
+        // One of the rows is not a configuration. The rows before it are answered first, one by one.
         if answers.is_err() && end - next > 1 {
             single = end;
             continue;

@@ -217,7 +217,7 @@ fn side<'w>(
 }
 
 /// Whether a file is checked as a scene: it is glTF, has several meshes (or its nodes are compared), and the request names no
-/// mesh.
+/// mesh of it and no other mesh.
 pub(super) fn is_scene(file: &Path, request: &Detection) -> bool {
     let is_whole =
         request.against.is_none() && request.mesh_name.is_none() && split_mesh_name(file).1.is_none();
@@ -225,7 +225,8 @@ pub(super) fn is_scene(file: &Path, request: &Detection) -> bool {
     is_whole && is_gltf(file) && (request.between_nodes || count_meshes(file).is_ok_and(|count| count > 1))
 }
 
-/// Refuses a file without animations. The reader reports a missing file.
+/// Refuses a file of a format without animations, and a mesh of a glTF file (`FILE#NAME`). The reader reports a missing
+/// file.
 fn check_animated(file: &Path) -> Result<()> {
     if is_gltf(file) || !file.exists() && split_mesh_name(file).1.is_none() {
         return Ok(());

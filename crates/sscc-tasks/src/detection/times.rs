@@ -5,14 +5,15 @@ use super::request::Times;
 /// Maximum number of times. More indicate a mistake in the unit of the rate or of the animation.
 const MAX_TIMES: f64 = 1e7;
 
-/// A time that is closer to the last one than this share of a step equals the last one.
+/// A time that is closer to the last one than this share of a step counts as the last one.
 const SAME: f64 = 1e-6;
 
 impl Times {
     /// Returns the times of an animation that ends at `last_time` (s). There is at least one.
     ///
     /// # Errors
-    /// A text with the cause, when a time is not finite, or there are none or too many.
+    /// A text with the cause: when a list is empty or has a time that is not finite; when a rate is not positive and
+    /// finite, or gives too many times.
     pub fn of(&self, last_time: f64) -> Result<Vec<f64>, String> {
         let rate = match self {
             Self::List(times) => match times.iter().find(|time| !time.is_finite()) {

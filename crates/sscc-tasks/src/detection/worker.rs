@@ -47,7 +47,8 @@ pub(super) struct QueryResult {
 }
 
 impl QueryResult {
-    /// Returns the result without these pairs (sorted), and with at most `limit` of the others; for a motion, of the earliest.
+    /// Returns the result without these pairs (sorted), and with at most `limit` of the others; for a motion, the
+    /// earliest. The result stays as it is if `ignored` is empty: then the query has applied the limit.
     pub fn without(mut self, ignored: &[Pair], limit: Option<usize>) -> Self {
         if ignored.is_empty() {
             return self;
@@ -120,8 +121,8 @@ impl<'m, 'w> Worker<'m, 'w> {
 /// A mesh of a query, and the other mesh if there is one.
 pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
-/// Answers one query at the positions that the sides have read, with at most `limit` pairs. `is_last` states whether it is
-/// the last query of the run, the only one with contact curves.
+/// Answers one query at the positions that the sides have read, with at most `limit` pairs; a request with a clearance
+/// has no limit. `is_last` states whether it is the last query of the run, the only one with contact curves.
 pub(super) fn query(
     request: &Detection,
     limit: Option<usize>,

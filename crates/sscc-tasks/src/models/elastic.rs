@@ -30,7 +30,7 @@ pub enum ModesKind {
     Linear,
     /// A basis for large deformations, with its forces.
     Nonlinear,
-    /// The 24 quadratic polynomials of the rest position, with the forces of the solid.
+    /// The 24 quadratic polynomials of the rest position, fewer for small solids, with the forces of the solid.
     Polynomial,
 }
 
@@ -89,8 +89,9 @@ impl ElasticModes {
 /// nonlinear modes. `name` is the name of the source, for the provenance.
 ///
 /// # Errors
-/// When polynomial modes are requested with a rank or fixed vertices, the material is out of range, the solid has fewer
-/// modes, or `progress` cancels.
+/// When polynomial modes are requested with a rank or fixed vertices, a fixed vertex does not exist, all vertices are
+/// fixed, the solid has fewer modes, its parts share only edges or vertices, its stiffness is out of range, memory is
+/// short, or `progress` cancels.
 pub fn elastic_model(
     kind: ModesKind,
     rank: Option<usize>,
@@ -135,7 +136,7 @@ pub fn elastic_model(
 }
 
 /// Returns the first frequency (Hz) of a solid of linear tetrahedra with its tetrahedra in second order; None for other or
-/// large solids.
+/// large solids, or if the computation fails.
 fn first_of_second_order(
     solid: &Solid,
     fixed: &[u32],

@@ -54,7 +54,7 @@ impl Fix {
     }
 
     /// Returns the fixed vertices of the solid, sorted. For an embedded surface, a box also selects the vertices of the
-    /// solid that hold the selected vertices of the surface.
+    /// solid that move the surface's vertices in the box.
     ///
     /// # Errors
     /// When a vertex does not exist, or no vertex is selected.

@@ -1,4 +1,4 @@
-//! Models of elastic solids and of samples, made from files or meshes.
+//! Models of elastic solids, of surfaces and of frames, made from files or meshes.
 
 mod elastic;
 mod equal_vertices;

@@ -10,7 +10,7 @@ use sscc_io::ModelInfo;
 pub struct NewModel {
     /// The model. Its metric is the strain energy for a solid, else the displacement metric.
     pub model: ReducedModel,
-    /// Provenance, and for a solid the stiffness and the forces.
+    /// Provenance; for a solid also stiffness, forces and mass, for principal components the deviations of q.
     pub info: ModelInfo,
     /// Size, mass and frequencies of a solid.
     pub solid: Option<SolidFacts>,
@@ -41,6 +41,6 @@ pub struct Components {
     pub frames: usize,
     /// Share of the variance that all modes together explain.
     pub explained: f64,
-    /// The standard deviation of each mode.
+    /// The standard deviation of the frames along each mode (model unit).
     pub deviations: Vec<f64>,
 }

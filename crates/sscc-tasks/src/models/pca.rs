@@ -12,7 +12,8 @@ use crate::TaskError;
 /// has as many components as explain 99.9% of the variance. `name` describes the frames, for the provenance.
 ///
 /// # Errors
-/// When there are too few frames, all frames are equal, or `progress` cancels.
+/// When there are too few frames, one does not fit `mesh` or has a position out of range, all frames are equal, there
+/// are fewer independent components than the rank, or `progress` cancels.
 pub fn pca_model(
     mesh: &TriMesh,
     frames: &[Vec<DVec3>],

@@ -11,7 +11,7 @@ use crate::TaskError;
 /// surface, for the provenance.
 ///
 /// # Errors
-/// When the surface has no area, or is too far from the origin for its size.
+/// When the surface has no area, is too far from the origin for its size, or its modes are out of range.
 pub fn polynomial_model(mesh: TriMesh, name: &str) -> Result<NewModel, TaskError> {
     let modes = polynomial_modes(&mesh)?;
     Ok(NewModel {

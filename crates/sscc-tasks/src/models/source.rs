@@ -64,7 +64,8 @@ impl SolidSource {
     /// Builds a lattice around a surface, with `cells` cubes along its longest side. None means about 20,000 cubes in total.
     ///
     /// # Errors
-    /// When the surface is open or meets itself, the material is out of range, or `progress` cancels.
+    /// When the surface is open, not consistently oriented or meets itself, encloses no volume or has several pieces;
+    /// when the number of cubes is too large or the material is out of range; when `progress` cancels.
     pub fn around(
         mesh: TriMesh,
         cells: Option<usize>,
@@ -80,8 +81,8 @@ impl SolidSource {
     /// the nearest ones. Numbers of `material` override those of the solid.
     ///
     /// # Errors
-    /// When the solid is invalid, the material is out of range, the surface leaves the solid by more than a tenth of its
-    /// size, or `progress` cancels.
+    /// When the solid is invalid or has tetrahedra of second order, the material is out of range, a vertex of the
+    /// surface is farther from the solid than a tenth of the longest side of the solid, or `progress` cancels.
     pub fn embedded(
         mesh: TriMesh,
         solid: &VolumeMesh,
@@ -109,7 +110,8 @@ impl SolidSource {
     /// multiplied by `scale`.
     ///
     /// # Errors
-    /// When a file cannot be read or is of another kind; also the errors of [`SolidSource::embedded`].
+    /// When a file cannot be read or is of another kind, or a scaled coordinate is out of range; also the errors of
+    /// [`SolidSource::embedded`].
     pub fn read_within(
         surface: &Path,
         solid: &Path,
@@ -128,8 +130,8 @@ impl SolidSource {
     /// lengths of the file are multiplied by `scale`. Numbers of `material` override those of the file.
     ///
     /// # Errors
-    /// When the file cannot be read, a resolution is given for a solid, a surface is open or meets itself, the material
-    /// is out of range, or `progress` cancels.
+    /// When the file cannot be read, a scaled coordinate is out of range, or a resolution is given for a solid; also
+    /// the errors of [`SolidSource::around`] and [`SolidSource::whole`].
     pub fn read(
         path: &Path,
         resolution: Option<usize>,
@@ -234,7 +236,8 @@ impl SolidSource {
         }
     }
 
-    /// Returns the vertices of the solid that move a vertex of the file; for an embedded surface, a vertex of the solid's file.
+    /// Returns the vertices of the solid that move the vertex with this number: for a lattice, a vertex of the
+    /// surface's file; otherwise one of the solid's file.
     ///
     /// # Errors
     /// When the file has fewer vertices.

@@ -82,7 +82,7 @@ impl Cache {
     }
 }
 
-/// Returns the user's cache folder by the convention of this system.
+/// Returns the user's cache folder by the convention of this system, else the folder of temporary files.
 fn system_folder() -> PathBuf {
     let named = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let at_home = |folder: &str| env::home_dir().map(|home| home.join(folder));

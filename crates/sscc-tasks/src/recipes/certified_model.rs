@@ -27,7 +27,8 @@ pub struct CertifiedModel {
     pub mass: MassData,
     /// Certificates of the default budget.
     pub full: TimedCertificates,
-    /// Certificates as in the paper (one radius for each node), for benches that compare them.
+    /// Certificates as in the paper (a radius for each node, and for each pair of the root's children), for benches
+    /// that compare them.
     pub paper: Option<TimedCertificates>,
 }
 
@@ -35,7 +36,8 @@ impl CertifiedModel {
     /// Reads the model from the cache, or computes it.
     ///
     /// # Errors
-    /// When the modes or certificates cannot be computed or written, or `watch` cancels.
+    /// When the modes or certificates cannot be computed or written, the amplitudes of the recipe do not fit the modes,
+    /// or `watch` cancels.
     pub fn get(loaded: &LoadedRecipe<'_>, cache: &Cache, watch: &dyn Watch) -> Result<Self, TaskError> {
         let recipe @ Recipe { name, modes, .. } = loaded.recipe();
         let (model, elasticity, mass) = match loaded.given() {
@@ -65,11 +67,11 @@ impl CertifiedModel {
     }
 }
 
-/// Returns at most `count` vibrations of a shape with their eigenvalues (1/s^2), from the cache or computed; for a model
-/// file, the vibrations of its modes.
+/// Returns `count` vibrations of a shape with their eigenvalues (1/s^2), from the cache or computed; for a model file,
+/// at most `count` vibrations of its modes.
 ///
 /// # Errors
-/// When the modes cannot be computed or written, or `watch` cancels.
+/// When the shape has fewer vibrations, the modes cannot be computed or written, or `watch` cancels.
 pub fn vibrations(
     loaded: &LoadedRecipe<'_>,
     count: usize,

@@ -37,7 +37,7 @@ pub struct GivenModel {
     pub assumed: Option<String>,
 }
 
-/// Names of the unit of length in scenes.
+/// Names of the unit of length in scenes; a model that states no unit is in metres.
 const METRES: [&str; 6] = ["", "m", "metre", "metres", "meter", "meters"];
 
 /// Maximum displacement of a fixed vertex, relative to the largest displacement of all: zeros in single precision.
@@ -47,11 +47,13 @@ const STILL: f64 = 1e-9;
 const MIN_FIXED: usize = 3;
 
 impl GivenModel {
-    /// Loads the model. Files without mass take it from the density in `material` and the volume within the surface.
+    /// Loads the model. If the files state no mass, the mass is that of the volume within the surface at the density in
+    /// `material`. For a held body without a density it is at that of the default material.
     ///
     /// # Errors
-    /// When a file cannot be read, files do not fit each other, the model has no forces, is in other units than metres or
-    /// has no mass, or the material contradicts the files.
+    /// When a file cannot be read, or files do not fit each other; when the model has no forces, is in other units than
+    /// metres or has no mass; when the material contradicts the files; when nonlinear dynamics are requested for linear
+    /// forces; when the model cannot be scaled.
     pub fn load(files: &ModelFiles, material: &PartialMaterial, resize: Resize) -> Result<Self, TaskError> {
         let path = &files.path;
         let refused = |cause: String| Err(TaskError::refused(path.display(), cause));
@@ -114,7 +116,7 @@ impl GivenModel {
         let modes = Modes::new(model.rank(), modes)?;
         let mesh = scaled(model.mesh().clone(), factor)?;
         let old = model.metric();
-        // The strain energy at q is factor^-2 times that of the smaller body.
+        // The strain energy at q is factor^-2 times that of the body of the files.
         let model = if old.kind() == MetricKind::Energy && old.dense_factor().is_none() {
             let scales = old.scales().iter().map(|scale| scale / factor).collect();
             ReducedModel::with_metric(mesh, modes, Metric::from_scales(MetricKind::Energy, scales)?)?

@@ -31,7 +31,7 @@ impl Key {
         self
     }
 
-    /// Adds a model with all inputs of its certificates.
+    /// Adds a model with the default scope of its certificates. Callers add other options as text.
     pub fn model(self, model: &ReducedModel) -> Self {
         let digest = sscc::parts::Digest::of(model, &sscc::parts::Scope::of(model));
         self.text(&format!("{digest:?}"))

@@ -19,14 +19,15 @@ use crate::{Stage, TaskError, Watch};
 /// A recipe with its shape; modes are not computed yet.
 pub struct LoadedRecipe<'a> {
     recipe: &'a Recipe,
-    /// Material of elements whose file states none.
+    /// Material of elements whose file states none: that of the recipe, with defaults for absent numbers.
     material: Material,
     matter: Matter,
     /// Factor on the lengths of its files.
     factor: f64,
     /// Origin of the shape.
     pub source: String,
-    /// A note: the file that an embedded shape replaces, or the numbers of a file that the material overrides.
+    /// A note, such as the file that an embedded shape replaces, the numbers of a file that the material overrides, or
+    /// warnings about a file.
     pub note: Option<String>,
     /// Rotation from the axes of the file to those of an upright shape, z up.
     pub upright: DQuat,
@@ -39,8 +40,9 @@ impl<'a> LoadedRecipe<'a> {
     /// them.
     ///
     /// # Errors
-    /// When a file cannot be read, a resolution is given for a solid, the material is out of range, a surface leaves its
-    /// solid, a model has no forces, mass or other units, or `watch` cancels.
+    /// When a file cannot be read; when a resolution is given for a solid or a model; when the material or the size is
+    /// out of range; when a surface leaves its solid; when a model has no forces or no mass, or is in other units than
+    /// metres; when `watch` cancels.
     pub fn load(recipe: &'a Recipe, models: Option<&Path>, watch: &dyn Watch) -> Result<Self, TaskError> {
         watch.begin(Stage::Solid);
         let loaded = recipe.shape.load(models, &recipe.material, recipe.resize, watch)?;
@@ -52,7 +54,7 @@ impl<'a> LoadedRecipe<'a> {
             let cause = "resolution is for surfaces; the file of a solid has its own elements";
             return Err(TaskError::refused(source, cause));
         }
-        // The files have y up, embedded shapes z.
+        // The files of bunny and dragon have y up, embedded shapes have z up.
         let is_turned = models.is_some() && matches!(recipe.shape, Shape::Bunny | Shape::Dragon);
         let upright =
             if is_turned { DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2) } else { DQuat::IDENTITY };
@@ -144,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_depends_on_the_default_cells_of_a_shape() {
+    fn no_cells_and_the_default_cells_of_a_shape_have_the_same_key() {
         let key = |cells| {
             let recipe = Recipe { cells, ..Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6)) };
             LoadedRecipe::load(&recipe, None, &()).unwrap().key("model").to_string()

@@ -9,7 +9,7 @@ use crate::error::At;
 use crate::models::Fix;
 use crate::resize::Resize;
 
-/// An elastic body with modes.
+/// The recipe of an elastic body with modes.
 #[derive(Clone, Debug)]
 pub struct Recipe {
     /// The name of the model.
@@ -18,7 +18,8 @@ pub struct Recipe {
     pub shape: Shape,
     /// Its modes.
     pub modes: ModesSpec,
-    /// Overrides the materials in the file of a solid.
+    /// The material of a lattice around a surface, with defaults for absent numbers. Its numbers override those in the
+    /// file of a solid.
     pub material: PartialMaterial,
     /// Number of cubes along the longest side of the lattice around a surface. None means the default of the shape.
     pub cells: Option<usize>,
@@ -37,7 +38,7 @@ pub enum ModesSpec {
     Linear(usize),
     /// This number of modes for large deformations.
     Nonlinear(usize),
-    /// The 24 quadratic polynomials.
+    /// The 24 quadratic polynomials, fewer for small solids.
     Polynomial,
     /// The modes of a model file.
     Given,
@@ -54,7 +55,7 @@ impl ModesSpec {
     }
 }
 
-/// Cubes along the spring, as in the library's `elastic_spring`.
+/// Number of cubes along the longest side of the spring, as in `elastic_spring` of `sscc-modes`.
 const SPRING_CELLS: usize = 30;
 
 impl Recipe {

@@ -139,7 +139,7 @@ impl Shape {
 /// Returns the folder of real models: `wanted`, else the folder in the environment variable `SSCC_MODELS`, else None.
 ///
 /// # Errors
-/// When the folder does not exist.
+/// When that path is not a folder.
 pub fn models_folder(wanted: Option<&Path>) -> Result<Option<PathBuf>, TaskError> {
     let named = env::var_os("SSCC_MODELS").filter(|folder| !folder.is_empty()).map(PathBuf::from);
     let (folder, named_by) = match (wanted, named) {

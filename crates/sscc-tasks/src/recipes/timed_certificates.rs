@@ -36,9 +36,9 @@ pub struct CertificateCost {
 }
 
 impl TimedCertificates {
-    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle). Without
-    /// a budget they are those of the paper, without local certificates; else local certificates have the default budget.
-    /// They ignore pairs that collide at rest. `source` is the origin of the model in errors.
+    /// Reads certificates from the cache, or computes them with the metric and the budget (bytes for each triangle).
+    /// With a budget of 0 they are those of the paper, without local certificates; else local certificates have the
+    /// default budget. They ignore pairs that collide at rest. `source` is the origin of the model in errors.
     pub(crate) fn get(
         cache: &Cache,
         name: &str,

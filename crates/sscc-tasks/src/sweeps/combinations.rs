@@ -1,4 +1,4 @@
-//! Combinations of two modes that collide in pairs which neither weight causes alone.
+//! Combinations of two modes in which pairs of triangles collide that are free with each of the two weights alone.
 
 use serde::Serialize;
 use sscc::parts::largest_depth;
@@ -38,8 +38,8 @@ pub struct Combinations {
 /// Number of combinations that are answered together. It bounds the memory of their answers.
 const BLOCK: usize = 256;
 
-/// Finds the combinations of two modes in which pairs collide that collide with neither weight alone. Both modes are at the
-/// upper end of their ranges, and all others keep their weight at the start.
+/// Finds the combinations of two modes in which pairs collide that collide neither with one of the weights alone nor at
+/// the start. Both modes are at the upper end of their ranges, and all others keep their weight at the start.
 ///
 /// # Errors
 /// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, or `progress` cancels.

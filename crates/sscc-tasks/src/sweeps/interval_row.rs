@@ -15,7 +15,7 @@ pub struct IntervalRow {
     pub from: f64,
     /// The largest weight.
     pub to: f64,
-    /// The intervals outside of which the shape is proven free.
+    /// The intervals. Outside of them, up to `free_until` and from `free_from` on, the shape is proven free.
     pub intervals: Vec<Interval>,
     /// Weight, number of colliding pairs, and largest penetration depth of each sample.
     pub samples: Vec<(f64, usize, f64)>,
@@ -28,15 +28,15 @@ pub struct Interval {
     pub from: f64,
     /// The last weight of the interval.
     pub to: f64,
-    /// The shape is proven free up to this weight; null at the end of the range.
+    /// The shape is proven free up to this weight; null if the interval begins at the low end of the range.
     pub free_until: Option<f64>,
-    /// The shape is proven free from this weight; null at the end of the range.
+    /// The shape is proven free from this weight on; null if the interval ends at the high end of the range.
     pub free_from: Option<f64>,
-    /// Whether the shape collides at `from` and `to`.
+    /// Whether the shape collides at `from` and at `to`, within 1e-9 of the range from the free weights beside them.
     pub exact: bool,
-    /// The maximum number of colliding pairs.
+    /// The largest number of pairs that collide at a tested weight of the interval.
     pub pairs: usize,
-    /// The largest penetration depth of a pair (model unit).
+    /// The largest penetration depth of a pair at a tested weight (model unit).
     pub depth: f64,
     /// The weight of the largest depth.
     pub deepest: f64,

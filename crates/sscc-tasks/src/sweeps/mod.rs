@@ -1,5 +1,5 @@
 //! Sweeps of a model from files: the first weight of each mode at which its shape touches itself, or all intervals in which it
-//! collides.
+//! collides; combinations of two modes.
 
 mod combinations;
 mod interval_row;

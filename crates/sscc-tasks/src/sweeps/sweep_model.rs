@@ -12,14 +12,15 @@ use super::sweep_row::SweepRow;
 use crate::error::{At, Result};
 use crate::{make_folder, read_configuration};
 
-/// Options of [`sweep_model`].
+/// Options of [`sweep_model`], [`sweep_model_intervals`] and
+/// [`sweep_model_combinations`](super::sweep_model_combinations).
 #[derive(Clone, Debug, Default)]
 pub struct SweepRequest {
     /// The weights at which the sweeps begin (`--q`). None means the centre of the certificates.
     pub q: Option<String>,
     /// The range of all weights (`--range`), two numbers. None means [`SweepRange::of_model`].
     pub range: Option<String>,
-    /// The folder for the poses at the hits (`--pose`).
+    /// The folder for the poses at the hits (`--pose`); only [`sweep_model`] writes them.
     pub pose: Option<PathBuf>,
     /// Number of threads. None means all cores.
     pub threads: Option<usize>,
@@ -29,7 +30,7 @@ impl SweepRequest {
     /// Returns the range of the weights: that of `--range`, else the default of the model.
     ///
     /// # Errors
-    /// When the range is not two finite numbers in ascending order.
+    /// When the range is not two numbers with a finite difference, in ascending order.
     pub fn ranges(&self, loaded: &LoadedModel) -> Result<SweepRange> {
         self.range.as_deref().map_or_else(|| Ok(SweepRange::of_model(loaded)), SweepRange::parse)
     }
@@ -61,8 +62,8 @@ impl SweepRequest {
     }
 }
 
-/// Sweeps every mode up and down from its weight at the start, and writes the shape at each hit with its pairs marked. All
-/// files are written after the last sweep.
+/// Sweeps every mode up and down from its weight at the start. If the request has a folder for poses, the shape at each
+/// hit is written there with its pairs marked, after the last sweep.
 ///
 /// # Errors
 /// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, `progress` cancels, or a pose
@@ -91,7 +92,8 @@ pub fn sweep_model(
     Ok(rows)
 }
 
-/// Finds for every mode the intervals of its weight over which the shape collides, with this number of samples.
+/// Finds for every mode the intervals of its weight over which the shape collides, with this number of samples of each
+/// weight.
 ///
 /// # Errors
 /// The errors of [`SweepRequest::prepare`]; also when the certificates are of another model, there are too few or too many

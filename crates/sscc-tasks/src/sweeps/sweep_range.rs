@@ -29,7 +29,7 @@ impl SweepRange {
     /// Parses the range of `--range`: two numbers.
     ///
     /// # Errors
-    /// When there are not two finite numbers in ascending order.
+    /// When there are not two numbers with a finite difference, in ascending order.
     pub fn parse(typed: &str) -> Result<Self> {
         let refused = |cause: Message| Err(TaskError::refused(Setting::Range + " " + typed, cause));
         let numbers: std::result::Result<Vec<f64>, _> =
@@ -91,7 +91,8 @@ impl fmt::Display for SweepRange {
                 write!(f, "each weight from -{DEVIATIONS} to {DEVIATIONS} standard deviations, listed in units of q")
             }
             Self::HalfDiagonal => f.write_str(
-                "each weight as far as moves some vertex by half the diagonal of the AABB, listed in units of q",
+                "each weight up and down by the change that moves some vertex by half the diagonal of the AABB, \
+                 listed in units of q",
             ),
         }
     }

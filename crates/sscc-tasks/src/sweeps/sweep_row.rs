@@ -17,9 +17,10 @@ pub struct SweepRow {
     pub from: f64,
     /// The weight at the end.
     pub to: f64,
-    /// The shape is proven free from the start up to this weight.
+    /// The shape is proven free from the start up to this weight; null if it collides at the start.
     pub first_free: Option<f64>,
-    /// The first weight at which it collides.
+    /// The weight at which a collision was found, or a contact within the tolerance: see [`SweepOutcome`]. Null if none
+    /// was found.
     pub first_hit: Option<f64>,
     /// The pairs that collide at `first_hit`.
     pub pairs: Vec<Pair>,
@@ -77,7 +78,7 @@ impl SweepRow {
 pub(super) const MAX_NAME: usize = 40;
 
 /// Returns the rows as the lines of a table, and a summary. Sweeps whose start collides with the same pairs share one line;
-/// `remedy` is an advice on them.
+/// `remedy` names the flags that avoid these collisions.
 pub fn sweep_table(rows: &[SweepRow], remedy: &str) -> Vec<String> {
     let lines = listed(rows);
     let cells: Vec<[String; 3]> = lines.iter().map(|same| cells(same, rows.len())).collect();
@@ -138,7 +139,7 @@ fn cells(same: &[&SweepRow], all: usize) -> [String; 3] {
     }
 }
 
-/// Returns a weight with four digits, without zeros at the end.
+/// Returns a weight in the format of lengths, without zeros at the end of the decimals.
 pub(super) fn weight(w: f64) -> String {
     let text = length(w);
     match text.split_once('e') {
@@ -184,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_have_four_digits() {
+    fn weights_have_four_digits_or_all_digits_before_the_point() {
         let weights = [0.0, 1.0, -0.25, 5.658_984_5, 0.012_308_7, 1200.0, 123_456.7, 1e-9, -1.234_56e12];
         let texts = ["0", "1", "-0.25", "5.659", "0.01231", "1200", "123457", "1e-9", "-1.235e12"];
         assert_eq!(weights.map(weight), texts);

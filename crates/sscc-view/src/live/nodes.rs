@@ -65,7 +65,7 @@ pub(super) fn all(certificates: &Certificates) -> NodesAnswer {
     }
 }
 
-/// Returns the nodes that a query at this `|z|` opens. A traversal ends at buckets.
+/// Returns the nodes that a query at this `|z|` opens, and those that it culls. A traversal ends at buckets.
 pub(super) fn frontier(certificates: &Certificates, norm: f64) -> Frontier {
     let nodes = certificates.parts().hierarchy.nodes();
     let (mut opened, mut culled) = (Vec::new(), Vec::new());

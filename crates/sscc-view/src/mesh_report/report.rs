@@ -29,7 +29,7 @@ const MAX_ROWS: usize = 20;
 pub struct MeshReport {
     center: DVec3,
     bodies: Vec<RecordedBody>,
-    /// File of the first mesh, and file of the other mesh, if any.
+    /// The files of the meshes, each once; between two meshes, the files of both.
     files: Vec<String>,
     /// Time of each frame (s), for animations.
     times: Option<Vec<f64>>,
@@ -48,8 +48,8 @@ impl MeshReport {
     /// Adds an answer.
     ///
     /// # Errors
-    /// If the answer has no positions; if a coordinate exceeds the range of the page (1e30); if the report would exceed
-    /// [`MAX_REPORT_BYTES`].
+    /// If the answer has no positions; if the answer with index 0 has not been added; if a coordinate exceeds the range
+    /// of the page (1e30); if the report would exceed [`MAX_REPORT_BYTES`].
     pub fn add(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
         let shape = answer.shape.ok_or_else(|| ViewError::Request("the answers have no positions".into()))?;
         if answer.index == 0 {
@@ -88,7 +88,8 @@ impl MeshReport {
     /// Adds an answer about two nodes of a scene, whose own answers have been added.
     ///
     /// # Errors
-    /// The errors are those of [`MeshReport::add`].
+    /// If the answer has no positions; if no answer of one of the nodes has been added; if the report would exceed
+    /// [`MAX_REPORT_BYTES`].
     pub fn add_between_nodes(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
         let shapes = answer.shape.zip(answer.other);
         let (shape, other) =
@@ -193,7 +194,7 @@ fn surface(shape: ShapeInMotion<'_>) -> Surface<'_> {
     Surface { faces: shape.mesh.faces(), positions: shape.x_t0 }
 }
 
-/// Returns the size of the positions and faces of a body in a report (bytes).
+/// Returns the size of the positions, the faces and the text of the frames of a body in a report (bytes).
 fn planned_bytes(mesh: &TriMesh, frames: usize) -> u64 {
     let frame = 12 * mesh.rest_positions().len() as u64;
     // The first frame is stored twice.

@@ -14,8 +14,8 @@ impl<T: Copy> Raster<T> {
         Self { width, pixels: vec![(f64::NEG_INFINITY, background); width * height] }
     }
 
-    /// Fills the pixels with a centre in the triangle (x right, y down, z towards the viewer), unless a nearer surface
-    /// covers them. `color` receives the weights of the corners.
+    /// Fills the pixels with a centre in the triangle (x right, y down, z towards the viewer), unless a surface that is
+    /// as near or nearer covers them. `color` receives the weights of the corners.
     pub fn fill(&mut self, [a, b, c]: [DVec3; 3], color: impl Fn([f64; 3]) -> T) {
         let height = self.pixels.len() / self.width;
         // `as` converts coordinates beyond the picture to the nearest pixel, and NaN to the first.
@@ -25,7 +25,7 @@ impl<T: Copy> Raster<T> {
         let cross = |u: DVec3, v: DVec3| u.x * v.y - u.y * v.x;
         let area = cross(b - a, c - a);
         if area == 0.0 {
-            return; // parallel to the view
+            return; // no area in the picture
         }
         for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
             let p = DVec3::new(x as f64 + 0.5, y as f64 + 0.5, 0.0);
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_triangle_wins_in_any_order() {
+    fn pixels_show_the_nearest_triangle_in_any_order() {
         for order in [[1.0, 2.0], [2.0, 1.0]] {
             let mut raster = Raster::new([4, 2], 0.0);
             for z in order {

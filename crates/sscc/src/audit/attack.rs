@@ -1,5 +1,6 @@
 //! Attacks single claims. An attack on a radius tests a configuration inside the radius of a node or a node pair: a collision
-//! there of one of its triangle pairs refutes the radius. Half of the attacks are on local certificates, if there are any.
+//! there of one of its triangle pairs refutes the radius. If there are local certificates, half of the attacks are on
+//! them; all attacks are, if the radius of each node is 0.
 
 use super::claims::{Claim, Claims};
 use super::local_attack::{LocalAttack, LocalQueries};
@@ -16,7 +17,8 @@ const ROOT: usize = 25;
 /// One in this many attacks is on a node pair, if there is a pair tree: alternately an absent pair and an entry of the tree.
 const NODE_PAIR: usize = 3;
 
-/// Nodes of more triangles than this are attacked only as often as the root.
+/// Nodes of more triangles than this are not attacked, except the root; nor are node pairs of more triangles together,
+/// except those of the root's children.
 const LARGE: u32 = 2000;
 
 pub(super) struct Attack<'a> {
@@ -144,7 +146,7 @@ impl Attack<'_> {
                 return claim;
             }
         }
-        // Radii grow towards the leaves, and that of some leaf is positive: draw until one is found.
+        // Radii grow towards the leaves, and some leaf has a positive one: draw nodes until one has a positive radius.
         let mut n = random.below(nodes.len());
         for _ in 0..1000 {
             if self.claims.node(n as u32).radius > 0.0 {
@@ -158,8 +160,9 @@ impl Attack<'_> {
         self.claims.node(n as u32)
     }
 
-    /// Returns a q with `|z|` just below the radius: in the direction of a known collision, near one, or in a random one. For a
-    /// claim about two nodes it is mostly a q at which two of their triangles approach.
+    /// Returns a q with `|z|` below the radius, mostly just below it. Its direction is that of a known collision or a
+    /// similar one, that of one coordinate, or a random one; for a claim about two nodes mostly one in which two of
+    /// their triangles approach. None if no direction is found.
     fn draw_configuration(&self, claim: Claim, sample: usize, random: &mut Random) -> Option<Vec<f64>> {
         let Claim { nodes: (n, m), radius } = claim;
         let scope = &self.certificates.parts().scope;

@@ -1,5 +1,5 @@
-//! The claims of certificates. A claim names a node or a node pair and its radius: none of its triangle pairs collides
-//! below it, or is nearer than the clearance of the certificates.
+//! The claims of certificates. A claim names a node or a node pair and its radius: where `|z|` is below the radius,
+//! none of the triangle pairs collides, or is nearer than the clearance of the certificates if they have one.
 
 use std::fmt;
 
@@ -96,7 +96,8 @@ impl<'a> Claims<'a> {
         missing.map(|which| Claim { nodes: all[which], radius: tree.limit() }).collect()
     }
 
-    /// Returns a random claim of the pair tree, about an entry or an absent pair. None if the tree is empty.
+    /// Returns a random claim of the pair tree: about an absent pair if `is_absent` and one is found, else about an
+    /// entry. None if the tree has no entries.
     pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
         if self.entries.is_empty() {
             return None;
@@ -110,7 +111,8 @@ impl<'a> Claims<'a> {
         Some(self.stored(random.below(self.entries.len())))
     }
 
-    /// Returns the claim that this triangle pair refutes, if any. The pair counts and collides at a q of this norm.
+    /// Returns the claim that this triangle pair refutes, if any. The pair counts, and collides or is nearer than the
+    /// clearance at a q of this norm.
     fn refuted_by(&self, faces: Pair, norm: f64) -> Option<Claim> {
         let (hierarchy, tree) = (&self.parts.hierarchy, &self.parts.pair_tree);
         let nodes = hierarchy.nodes();
@@ -162,8 +164,8 @@ impl<'a> Claims<'a> {
         }
     }
 
-    /// Returns the violation by two triangles that count and collide at q, or are nearer than the clearance, if they refute a
-    /// claim.
+    /// Returns a violation if two triangles refute a claim. They count, and collide or are nearer than the clearance at
+    /// q.
     pub(super) fn violation(&self, faces: Pair, norm: f64, q: &[f64]) -> Option<String> {
         let claim = self.refuted_by(faces, norm)?;
         let found = self.parts.scope.clearance.map_or_else(

@@ -9,7 +9,7 @@ use crate::certificates::PairTree;
 use crate::{Certificates, Error, Impact, Method, Pair, Progress, Query, ReducedModel};
 
 /// Brute force is quadratic: it runs for every sample of models with at most this many triangles, and for three samples of larger
-/// ones.
+/// models.
 pub(super) const BRUTE_FORCE_TRIANGLES: usize = 2000;
 
 /// One comparison is made for this many samples.
@@ -40,8 +40,8 @@ struct Motion {
 }
 
 impl Comparison<'_> {
-    /// Returns a line for every q and every motion at which two methods differ, and for every claim that a collision found there
-    /// refutes.
+    /// Returns a line for each q or motion at which two methods differ, and for each q at which a collision refutes a
+    /// claim.
     pub(super) fn run(&self) -> Result<Vec<String>, Error> {
         let Self { model, certificates, claims, options, .. } = *self;
         let query = |method| Query::with_method(model, certificates, method);
@@ -84,8 +84,8 @@ impl Comparison<'_> {
                     let found = query.continuous(&motion.q_t0, &motion.q_t1)?;
                     violations.extend(self.missed(&expected, found, &motion).map(|missed| {
                         format!(
-                            "triangles {} and {} collide between q = {:?} and {:?}, but only one of the {methods} answers \
-                             lists them",
+                            "triangles {} and {} collide at an end of the motion from q = {:?} to {:?}, but only one of \
+                             the {methods} answers lists them",
                             missed.0, missed.1, motion.q_t0, motion.q_t1
                         )
                     }));
@@ -101,8 +101,8 @@ impl Comparison<'_> {
     }
 
     /// Returns a pair that only one answer lists although it collides at the start or the end of the motion. Methods may differ
-    /// in pairs that only come close; in between, rounding moves the computed shape off the straight line, so an exact test
-    /// proves nothing.
+    /// in pairs that only come close. Between start and end, rounding moves the computed shape off the straight line,
+    /// so an exact test there proves nothing.
     fn missed(&self, a: &[Impact], b: &[Impact], motion: &Motion) -> Option<Pair> {
         let lacks = |all: &[Impact], impact: &Impact| {
             all.binary_search_by_key(&impact.pair, |other| other.pair).is_err()
@@ -113,8 +113,9 @@ impl Comparison<'_> {
         missed.map(|impact| impact.pair)
     }
 
-    /// Returns a random q whose length lies between a fifth of the root's radius (or of the global one where that is 0) and
-    /// five times it; for every third sample up to the limit of the pair tree.
+    /// Returns a random q whose norm is between a fifth of a radius and five times this radius: that of the root, or a
+    /// 25th of the global radius if the root's is 0, or 1 if it is infinite. For every third sample the norm is at most
+    /// the limit of the pair tree, if that is positive and the radius finite.
     pub(super) fn draw_configuration(&self, random: &mut Random, sample: usize) -> Vec<f64> {
         let certificates = self.certificates;
         let z = draw_scaled(certificates.center().len(), random, sample);
@@ -130,7 +131,8 @@ impl Comparison<'_> {
         self.scale_to(&z, goal)
     }
 
-    /// Returns two random q: for every other sample both just inside one radius, else of any norm.
+    /// Returns two random q: for every other motion both just inside one radius, else those of
+    /// [`Self::draw_configuration`].
     fn draw_motion(&self, random: &mut Random, sample: usize) -> Motion {
         if sample.is_multiple_of(2 * CONTINUOUS) {
             let q_t0 = self.draw_configuration(random, sample);
@@ -157,7 +159,7 @@ impl Comparison<'_> {
     }
 }
 
-/// Returns a random z. The number of the sample decides how fast its entries decrease.
+/// Returns a random z. The number of the sample decides how fast the entries of z decrease with the mode.
 fn draw_scaled(rank: usize, random: &mut Random, sample: usize) -> Vec<f64> {
     let weight = |k: usize| (1.0 + k as f64).powi(sample as i32 % 3);
     random.normals(rank).iter().enumerate().map(|(k, z)| z / weight(k)).collect()

@@ -7,7 +7,8 @@ use crate::filter::Relation;
 use crate::{Certificates, Clearance, Error, Method, NearPair, Pair, Query, distance_triangle_triangle};
 
 impl Comparison<'_> {
-    /// Returns a line for every q at which two methods differ, and for every claim that a near pair found there refutes.
+    /// Returns a line for each q at which two methods differ, and for each q at which a near pair refutes a claim.
+    /// `certified` is the clearance of the certificates.
     pub(super) fn run_near(&self, certified: &Clearance) -> Result<Vec<String>, Error> {
         let Self { model, certificates, claims, options, minimum, .. } = *self;
         let query = |method| Query::with_method(model, certificates, method);

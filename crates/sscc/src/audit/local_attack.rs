@@ -12,7 +12,7 @@ const LARGE: u32 = 2000;
 /// One in this many samples attacks a node of any size.
 const LARGE_SHARE: usize = 25;
 
-/// One in this many attacks is on a motion.
+/// One in this many attacks is also on a motion.
 const MOTION: usize = 4;
 
 /// Maximum number of doublings of a scale, in search of one at which a certificate does not hold.
@@ -95,7 +95,8 @@ impl LocalAttack<'_> {
         Some((index, if is_own { (n, n) } else { (n, list[random.below(list.len())]) }))
     }
 
-    /// Returns the farthest q found along a ray from the centre at which a claim holds; for one ray in four a random q before it.
+    /// Returns the farthest q found along a ray from the centre at which a claim holds; for one ray in four a random q
+    /// before it at which the claim holds, too. None if the claim holds at no q that is tried.
     fn draw_edge(
         &self,
         index: usize,
@@ -133,8 +134,8 @@ impl LocalAttack<'_> {
         Some(at(low))
     }
 
-    /// Returns an offset from the centre: where two triangles of a claim approach, in the direction of a known collision, or a
-    /// random one.
+    /// Returns an offset from the centre: towards a q at which two triangles of a claim meet, towards a known
+    /// collision, or in a random direction.
     fn draw_ray(&self, (n, m): NodePair, random: &mut Random) -> Option<Vec<f64>> {
         let scope = &self.certificates.parts().scope;
         let hierarchy = self.certificates.hierarchy();

@@ -9,7 +9,7 @@ use crate::filter::{PairFilter, RingPairs, SimplexPair};
 use crate::model::ScaledModel;
 use crate::{Clearance, Pair, ReducedModel, distance_triangle_triangle};
 
-/// A configuration at which two points of two triangles meet, up to rounding.
+/// A configuration at which two points of two triangles meet, or with a clearance are as near as it, up to rounding.
 ///
 /// Triangles that approach each other along one surface touch at that q alone and miss each other beyond it, so the exact test
 /// may not confirm it. Its norm is an upper bound of the true radius all the same. Only a collision that the exact test confirms
@@ -62,9 +62,9 @@ struct Candidate {
 }
 
 impl MinimumSearch<'_> {
-    /// Searches the smallest `|z|` at which two triangles collide: over point pairs, whose smallest z is known in
-    /// closed form, on a grid and then by random steps; where modes cannot move points in all directions, along
-    /// rays.
+    /// Searches the smallest `|z|` at which two triangles collide, and returns the collision found. It minimizes over
+    /// point pairs, first on a grid, then by random steps, because [`PointPairs`] computes the smallest z of one point
+    /// pair. Where the modes cannot move points in all directions, it searches along rays.
     pub(super) fn search(&self, faces: Pair, random: &mut Random) -> Option<Collision> {
         let found = self
             .filter
@@ -73,8 +73,9 @@ impl MinimumSearch<'_> {
         found.reduce(|best, next| if next.norm < best.norm { next } else { best })
     }
 
-    /// Returns the offset from the centre of a q at which random points of two triangles meet. None if the triangles are
-    /// adjacent, or the modes cannot bring the points together.
+    /// Returns the offset from the centre of a q at which random points of two triangles meet. None if the triangles
+    /// never count by their relation, the modes cannot bring the points together, or the points are together at the
+    /// centre.
     pub(super) fn approach(&self, faces: Pair, random: &mut Random) -> Option<Vec<f64>> {
         let simplices = self.filter.simplex_pairs(faces.0, faces.1).next()?;
         let z = self.points(simplices).solution(Weights::random(random));

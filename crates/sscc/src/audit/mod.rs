@@ -32,9 +32,11 @@ pub use options::AuditOptions;
 pub struct AuditReport {
     /// Number of configurations tested. 0 if nothing is claimed: every radius is 0, and there are no local certificates.
     pub samples: usize,
-    /// The number of these configurations that attacked local certificates: about half, if there are any.
+    /// The number of these configurations that attacked local certificates: about half if there are any, all if every
+    /// radius is 0.
     pub local_samples: usize,
-    /// Every refuted claim, one line each. Empty for sound certificates.
+    /// A line for each configuration that refutes a claim, and for each difference between the answers of two methods.
+    /// Empty for sound certificates.
     pub violations: Vec<String>,
     /// The root's radius over the smallest `|z|` found at which the model collides. None if the radius is 0 or capped, or no
     /// collision was found.
@@ -66,7 +68,8 @@ pub struct AuditReport {
 /// ```
 ///
 /// # Errors
-/// If the certificates are of another model, or `progress` cancels.
+/// If the certificates are of another model, this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]),
+/// a comparison finds more pairs than an answer may have, or `progress` cancels.
 pub fn audit(
     model: &ReducedModel,
     certificates: &Certificates,

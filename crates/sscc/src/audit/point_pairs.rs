@@ -1,5 +1,5 @@
-//! Pairs of points of two triangles: the smallest `|z|` that brings them together, in closed form, or that brings them as near as
-//! a distance.
+//! Pairs of points of two triangles: the smallest `|z|` that brings the points together, in closed form, or as near as
+//! a given distance, by iteration.
 
 use glam::{DMat3, DVec3};
 
@@ -75,14 +75,15 @@ impl PointPairs<'_> {
         Relative { difference, modes: relative }
     }
 
-    /// Returns the smallest `|z|` that brings the two points together; infinite if the modes cannot.
+    /// Returns the smallest `|z|` that brings the two points together, or as near as the distance; infinite if the
+    /// modes cannot.
     pub(super) fn radius(&self, weights: Weights) -> f64 {
         let relative = self.relative(weights);
         let solved = relative.multiplier(self.distance);
         solved.map_or(f64::INFINITY, |(y, left)| left.dot(y).max(0.0).sqrt())
     }
 
-    /// Returns that z; 0 if the modes cannot bring the points together.
+    /// Returns the z of [`Self::radius`]; 0 if the modes cannot bring the points together.
     pub(super) fn solution(&self, weights: Weights) -> Vec<f64> {
         let relative = self.relative(weights);
         let (y, _) = relative.multiplier(self.distance).unwrap_or_default();
@@ -93,7 +94,8 @@ impl PointPairs<'_> {
 impl Relative {
     /// Returns `y = (B B')^-1 d` and d, if B has full rank. For a distance D, a vector of length D along y is first subtracted
     /// from d: then the points are D apart in that direction, and no smaller z brings them as near. A few fixed-point iterations
-    /// find the direction. The points come as near as D with any other direction, too.
+    /// find the direction. With another direction the points come as near as D, too, but by a larger z. Returns zeros
+    /// if the points are at most D apart at rest.
     fn multiplier(&self, distance: f64) -> Option<(DVec3, DVec3)> {
         let mut gram = DMat3::ZERO;
         for b in &self.modes {

@@ -11,16 +11,16 @@ use crate::certificates::{
 use crate::parallel::{map, map_with};
 use crate::{Certificates, Pair, Progress};
 
-/// Number of nodes measured beside the root and the pairs of its children.
+/// Maximum number of nodes measured beside the root and the pairs of its children.
 const NODES: usize = 200;
 
-/// Number of entries of the pair tree measured.
+/// Maximum number of entries of the pair tree measured.
 const STORED: usize = 100;
 
-/// Number of absent pairs measured: those with the smallest bounds.
+/// Maximum number of absent pairs measured: those with the smallest bounds.
 const ABSENT: usize = 50;
 
-/// Absent pairs are searched below this many nodes and pairs.
+/// Maximum number of nodes and pairs below which absent pairs are searched.
 const PARENTS: usize = 4096;
 
 /// The closest collisions found, and the quotients and violations that follow from them.
@@ -128,7 +128,7 @@ fn find_critical_pair(
     claim: &Claim,
 ) -> Option<Pair> {
     let parts = certificates.parts();
-    // The search goes beyond the radius: one that ended there could refute no claim.
+    // The search goes beyond the radius: a search that ended at the radius could refute no claim.
     let goal = SearchGoal::new(2.0 * claim.radius.max(parts.global_radius), Precision::Full);
     let (n, m) = claim.nodes;
     if n != m {

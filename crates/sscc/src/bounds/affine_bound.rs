@@ -62,7 +62,7 @@ impl AffineTerms {
         radius_down(delta - at_rest, ((rate * ROUND_UP + rate_rounding) * delta + slack) * ROUND_UP)
     }
 
-    /// Returns a rate with a sufficient bound, slightly smaller than the largest such rate.
+    /// Returns a rate with a sufficient bound, slightly smaller than the largest such rate. None if there is none.
     fn slower_than(&self, sufficient: f64) -> Option<f64> {
         let Self { delta, at_rest, slack, rate_rounding } = *self;
         let wanted = ((delta - at_rest) / sufficient - slack) / delta - rate_rounding;
@@ -75,7 +75,8 @@ impl AffineBound {
         Self { row_len, fit: AffineFit::new(row_len), gram: [[0.0; 6]; 6], rate: 0.0 }
     }
 
-    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide.
+    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide, or
+    /// a weight is not finite.
     pub(super) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let is_fitted = self.fit.fit(offsets, modes);
         if is_fitted {
@@ -174,8 +175,8 @@ impl AffineBound {
     }
 }
 
-/// Whether two triangles are so close that the affine bound is usually the larger one: their distance is less than half
-/// the distance of their farthest corners.
+/// Whether two triangles are so close that the affine bound is usually larger than that along a fixed direction: their
+/// distance is less than half the distance of their farthest corners.
 pub(super) fn is_near(differences: &[DVec3; 9], rest_distance: f64) -> bool {
     let farthest = differences.iter().map(|d| d.length_squared()).fold(0.0, f64::max);
     farthest > 4.0 * rest_distance * rest_distance

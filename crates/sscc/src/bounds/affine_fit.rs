@@ -36,7 +36,8 @@ impl AffineFit {
         }
     }
 
-    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide.
+    /// Fits points with these offsets from the first of them, and these modes. Returns false if all points coincide, or
+    /// a weight is not finite.
     pub(crate) fn fit<'m>(&mut self, offsets: &[DVec3], modes: impl Fn(usize) -> &'m [f64]) -> bool {
         let Some(plane) = fit_gradient(offsets, &mut self.weights) else { return false };
         self.instructions.run(FitModes { fit: self, plane, offsets, modes });
@@ -103,12 +104,11 @@ impl AffineFit {
         squared_distance(&self.residuals[i * width..][..width], &self.residuals[j * width..][..width])
     }
 
-    /// Returns an upper bound of `|E_j - E_i|`, given [`Self::squared_residual`]. The rounding bound of one of the two points
-    /// is not included; the affine bound adds that of both.
+    /// Returns an upper bound of `|E_j - E_i|`, given [`Self::squared_residual`], apart from the rounding of residuals
+    /// relative to the scaled modes: for that rounding the affine bound adds [`RoundingBound::per_norm`] a second time.
     ///
-    /// Rounding of the residuals is relative to the scaled modes (covered by that rounding bound) and to
-    /// `|G| |p_i - p_0|`; and corners of sub-triangles are themselves rounded, which moves both the offsets here and the
-    /// directions in the bound.
+    /// Rounding of the residuals is relative to the scaled modes and to `|G| |p_i - p_0|`. Corners of sub-triangles are
+    /// themselves rounded, which moves both the offsets here and the directions in the bound.
     pub(super) fn residual_up(&self, squared_residual: f64, rounding: &RoundingBound) -> f64 {
         let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
         norm_up(squared_residual, 3 * self.row_len)
@@ -143,7 +143,7 @@ struct Plane {
 }
 
 /// Computes the weights of a regularised least-squares fit of a gradient to values at points, `G = sum_i value_i weights_i'`.
-/// None if all points coincide.
+/// None if all points coincide, or a weight is not finite.
 fn fit_gradient(offsets: &[DVec3], weights: &mut Vec<DVec3>) -> Option<Plane> {
     let mean = offsets.iter().sum::<DVec3>() / offsets.len() as f64;
     let mut moment = DMat3::ZERO;

@@ -26,8 +26,9 @@ struct Cone {
     directions: [DVec3; 3],
 }
 
-/// Returns an upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted` or no
-/// refinement helps; infinite if the directions do not fit into a narrow cone.
+/// Returns an upper bound of `f(u)` over all directions of the hull of `d`, refined until it is at most `wanted`, no
+/// refinement helps, or [`MAX_CONES`] is reached; infinite if the directions do not fit into a narrow cone or the trace
+/// is not finite.
 pub(super) fn bound_rate_in_cone(
     d: &[DVec3; 9],
     gram: &StrainGram,

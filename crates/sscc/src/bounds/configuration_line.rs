@@ -2,8 +2,8 @@
 //! before two of its triangles can meet.
 //!
 //! Vertex i is at `x_i + t w_i`. Along a fixed direction dir two triangles are separated as long as all nine pairs of
-//! corners are: `dir.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates them at some t
-//! certifies them up to a later one; there a new direction is chosen, until that gains nothing.
+//! corners are: `dir.(d_ij + t (w_j - w_i)) > 0`, which is linear in t. So a direction that separates the triangles at
+//! some t proves them separated up to a later t. There a new direction is chosen, until a step gains too little.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ use crate::limits;
 use crate::model::rounding::quotient_down;
 use crate::model::scale_direction;
 
-/// A step that gains less than this share of t is the last one: t is then close to the contact.
+/// A step that gains at most this share of t is the last one: t is then close to the contact.
 const MIN_GAIN: f64 = 1e-4;
 
 /// Maximum number of steps. The t reached after them is certified, but may be smaller than the contact.
@@ -52,8 +52,8 @@ impl ConfigurationLine {
         }
     }
 
-    /// Returns the t until which a gap stays positive. At `t` the gap is at least `gap`, and its rate is at least `opening`.
-    /// Returns 0 if the gap is not positive at `t`.
+    /// Returns the t until which a gap certainly stays positive. At `t` the gap is at least `gap`, and its rate is at
+    /// least `opening`. Returns 0 if the gap is not certainly positive at `t`.
     #[inline]
     pub(crate) fn open_until(&self, t: f64, gap: f64, opening: f64) -> f64 {
         let gap = with_mutant!(gap - self.at_rest - t * self.per_step, LineExact, gap);

@@ -6,8 +6,8 @@
 //! program can check. The other files contain parts of the bounds.
 //!
 //! Every lower bound is certified: it is at most the exact minimum of `|z|` over all z at which the **computed** f64
-//! positions of the two parts meet. Directions, affine maps and mean modes are candidates: any heuristic in any
-//! precision may choose them, because only the final evaluation needs rounding bounds.
+//! positions of the two parts meet, or with a clearance are nearer than it. Directions, affine maps and mean modes are
+//! candidates: any heuristic in any precision may choose them, because only the final evaluation needs rounding bounds.
 //!
 //! `sufficient` is the lower bound at which the caller stops refining.
 

@@ -53,7 +53,8 @@ pub(crate) struct PairRefiner<'m> {
     pub(super) affine: AffineBound,
     /// Sub-triangles by their lower bound and, to break ties, a serial number.
     open: BinaryHeap<MinHeapEntry<u32, SubPair>>,
-    /// The direction that gave the largest bound of the last pair.
+    /// The first direction tried for the last pair, or the last one that made the pair's bound larger. None if the pair
+    /// touches.
     best_direction: Option<DVec3>,
 }
 
@@ -71,7 +72,8 @@ impl<'m> PairRefiner<'m> {
         }
     }
 
-    /// Returns the direction that gave the largest bound of the last pair.
+    /// Returns the first direction tried for the last pair, or the last one that made the pair's bound larger. None if
+    /// the pair touches.
     pub(crate) fn best_direction(&self) -> Option<DVec3> {
         self.best_direction
     }

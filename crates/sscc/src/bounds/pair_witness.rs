@@ -33,13 +33,14 @@ pub(crate) struct WitnessList {
     directions: Vec<DVec3>,
 }
 
-/// Number of directions of the list that are tried for a pair: the last ones.
+/// Number of directions of the list that are tried for a pair: the last ones among the first [`MAX_DIRECTIONS`].
 const DIRECTIONS_TRIED: usize = 6;
 /// Maximum number of directions to which witnesses refer by their numbers.
 const MAX_DIRECTIONS: usize = 251;
 
 impl PairRefiner<'_> {
-    /// Appends witnesses for two triangles (or simplices), given by their vertices. Returns false if there are none.
+    /// Appends witnesses for two triangles (or simplices), given by their vertices. Returns false if no witness is
+    /// found for some part; then the list ends with the witnesses of other parts, which prove nothing.
     pub(crate) fn prove(&mut self, a: [u32; 3], b: [u32; 3], radius: f64, list: &mut WitnessList) -> bool {
         let pair = PairCorners::of(self.model, a, b);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);

@@ -3,7 +3,7 @@
 use crate::model::mode_rows::LANES;
 
 /// Gram matrix of the 6 x r matrix whose column k holds the Mandel components of the symmetric part of mode
-/// k's gradient (scaled so that `|u u'|` has norm 1 for a unit vector u).
+/// k's gradient (scaled so that those of `u u'` have norm 1 for a unit vector u).
 pub(super) type StrainGram = [[f64; 6]; 6];
 
 /// Returns the Gram matrix of a gradient of nine rows: `G_cj` at `3 c + j`.

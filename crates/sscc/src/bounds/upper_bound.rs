@@ -1,6 +1,6 @@
-//! Upper bounds of the radius of a triangle pair: the norm of a z at which two of its points meet. They end refinement
-//! and are never part of a certified radius. [`RelativeModes`] also gives the Gram matrix by which lower bounds choose
-//! directions.
+//! Upper bounds of the radius of a triangle pair: the norm of a z at which two of its points meet, or with a clearance
+//! are as near as it. They end refinement and are never part of a certified radius. [`RelativeModes`] also gives the
+//! Gram matrix by which lower bounds choose directions.
 
 use glam::{DMat3, DVec3};
 
@@ -46,8 +46,9 @@ impl RelativeModes {
         gram(&self.rows)
     }
 
-    /// Returns the smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite if the modes
-    /// cannot move them in all directions (then [`Self::bound_along_ray`] may give an upper bound).
+    /// Returns the smallest `|z|` that brings the two points with the given weights together, `z = -B^+ d`. Infinite if
+    /// the points are together at rest, or the modes cannot move them in all directions (then [`Self::bound_along_ray`]
+    /// may give an upper bound).
     pub(super) fn bound_at(
         &mut self,
         pair: &PairCorners<'_>,
@@ -70,7 +71,8 @@ impl RelativeModes {
     }
 
     /// Returns the norm of a z along which the closest points of the sub-triangles approach and at which the triangles first
-    /// touch, or come as near as a distance: for rank 1 or 2, or modes that do not reach all directions.
+    /// touch, or come as near as a distance: for rank 1 or 2, or modes that do not reach all directions. None if no
+    /// such z is found up to `farthest`.
     pub(super) fn bound_along_ray(
         &mut self,
         pair: &PairCorners<'_>,

@@ -33,7 +33,7 @@ pub struct CertificateParts {
     pub epsilon: f64,
     /// The radius at which radii are capped: the paper's `R_global` (section 5.2), or the radius up to which the pair tree
     /// was built, if that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)); infinite if no mode moves a
-    /// vertex.
+    /// vertex, or all vertices are at one point at the centre.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. It is at most that of any child. A node inside a bucket
     /// ([`Node::fits_in_bucket`](crate::parts::Node::fits_in_bucket)) has the bucket's radius.
@@ -101,8 +101,8 @@ impl Certificates {
     }
 
     /// Returns the radius of the root: at any q with `|S (q - center)|` below it the whole model is free, except for the
-    /// exceptions. If the certificates have a [`clearance`](Self::clearance), no triangles that count are nearer than it, but
-    /// others may collide.
+    /// exceptions. If the certificates have a [`clearance`](Self::clearance), no triangles that count and are beyond its
+    /// rings are nearer than it, but triangles within the rings may collide.
     pub fn root_radius(&self) -> f64 {
         self.0.node_radii[0]
     }

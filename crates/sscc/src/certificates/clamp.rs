@@ -7,13 +7,13 @@ use crate::Error;
 const MAX_STEPS: usize = 4096;
 
 impl Certificates {
-    /// Returns q itself if it is inside the root's ellipsoid, else the last point inside it on the line from the centre to q. The
-    /// root's certificate proves the result free. None if the root's radius is 0, if there are exceptions, which no radius
-    /// covers, or if the certificates have a clearance, since triangles within its rings may collide.
+    /// Returns q itself if it is inside the root's ellipsoid, else the last point inside it, up to rounding, on the
+    /// line from the centre to q. The root's certificate proves the result free. None if the root's radius is 0, if
+    /// there are exceptions, which no radius covers, or if the certificates have a clearance, since triangles within
+    /// its rings may collide.
     ///
     /// # Errors
-    /// Those of [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates) for a model of this rank, which
-    /// checks the length and that entries are finite.
+    /// When the length of q is not the number of modes, or an entry is not finite.
     pub fn clamp(&self, q: &[f64]) -> Result<Option<Vec<f64>>, Error> {
         let center = self.center();
         if q.len() != center.len() {

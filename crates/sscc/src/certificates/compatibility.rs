@@ -7,8 +7,8 @@ impl Certificates {
     /// Refuses a model for which these certificates were not computed.
     ///
     /// # Errors
-    /// When faces, positions or modes differ in any bit from the certified ones, or when hierarchy, metric or pairs do not
-    /// fit the model.
+    /// When faces, positions or modes differ in any bit from the certified ones, or when hierarchy, metric, centre,
+    /// contact filter or exceptions do not fit the model.
     pub fn check_model(&self, model: &ReducedModel) -> Result<(), Error> {
         let (parts, scope) = (self.parts(), &self.parts().scope);
         let found = Digest::of(model, scope);

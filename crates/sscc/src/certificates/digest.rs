@@ -24,8 +24,8 @@ impl Digest {
             Some(factor) => sections.reals("factor", factor.len(), factor.iter().copied()),
             None => sections.reals("scales", scope.metric.rank(), scope.metric.scales().into_iter()),
         }
-        // Only what differs from the default scope is hashed from here on: files of format version 1, which had no other
-        // scope, keep their digests.
+        // From here on, apart from the rule for neighbours, only what differs from the default scope is hashed: files
+        // of format version 1, which had no other scope, keep their digests.
         sections.begin(
             match scope.filter.neighbours {
                 Neighbours::Exclude => "exclude-adjacent",

@@ -70,7 +70,8 @@ impl CertifyOptions {
         /// Certifies the radii at which two triangles come nearer than a clearance, in place of those at which they collide: for
         /// [`Query::within`](crate::Query::within) alone, up to that clearance and beyond as many rings. They prove nothing about
         /// collisions, because triangles within the rings may collide, so other queries do not use them. Exceptions are then the
-        /// pairs nearer than the clearance at the centre. There are no local certificates. None for radii of collisions.
+        /// pairs that are nearer than the clearance at the centre, or farther by less than a millionth of it. There are
+        /// no local certificates. None for radii of collisions.
         clearance: impl Into<Option<Clearance>>,
         /// Memory for the pair tree ([`PairTree`](crate::parts::PairTree)), in bytes for each triangle of the mesh; a node pair
         /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
@@ -83,9 +84,9 @@ impl CertifyOptions {
         /// Memory for local certificates ([`LocalCertificates`](crate::parts::LocalCertificates)), in bytes for each triangle of
         /// the mesh. Together with [`budget`](Self::budget) it also covers the hierarchy and its radii (10 to 14 bytes a
         /// triangle), so by default certificates take at most 128 bytes a triangle; memory that the pair tree does not need is
-        /// used here. Nodes that few modes move come first, and among them the largest. There are no local certificates if they
-        /// would cover less than 0.6 of all triangles. 0 for none; they take about as long as the radii, which suits certificates
-        /// that serve a few queries only. 64 by default.
+        /// used here. Nodes that few modes move come first, and at equal numbers of modes the largest. There are no
+        /// local certificates if they would cover less than 0.6 of all triangles. 0 for none, which suits certificates
+        /// that serve a few queries only, because local certificates take about as long as the radii. 64 by default.
         local_budget: usize,
         /// The farthest radius, in units of `R_global` (paper, section 5.2): finite, at least 1. The pair tree ends at that
         /// radius, or before it if its budget is used up; beyond `R_global` the rounds before the outer one may use an eighth of

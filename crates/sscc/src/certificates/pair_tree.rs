@@ -75,7 +75,8 @@ pub struct PairTree {
 }
 
 impl PairTree {
-    /// Returns the limit. Below it, a node pair that is not stored is certified, except within buckets. 0 if the tree is empty.
+    /// Returns the limit. Below it, a node pair that is not stored is certified, except within buckets. 0 if no tree
+    /// was built.
     pub fn limit(&self) -> f64 {
         self.limit
     }

@@ -1,7 +1,7 @@
 //! Validation of a pair tree that was read from a file, against its hierarchy.
 //!
-//! Every entry is visited once, in order: a list of siblings must start right after the one before. So no bytes can make
-//! the check loop, or take more than linear time.
+//! Every entry is visited once, in order: a list of siblings must start right after the one before. So the check of any
+//! bytes ends after linear time.
 
 use super::pair_tree::{MAX_ENTRIES, NO_PAIRS, PairTree, sibling_pairs};
 use crate::hierarchy::{Hierarchy, NodePair};

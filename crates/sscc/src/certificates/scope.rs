@@ -17,7 +17,8 @@ pub struct Scope {
     pub center: Vec<f64>,
     /// Which pairs of triangles count.
     pub filter: ContactFilter,
-    /// Pairs that collide at the centre, or are nearer than the clearance: no radius covers them, and every query tests them. Sorted.
+    /// Pairs that collide at the centre; with a clearance, pairs that are nearer than it at the centre, or hardly
+    /// farther. No radius covers them, and every query tests them. Sorted.
     pub exceptions: Vec<Pair>,
     /// The clearance that triangles keep below the radii, and beyond how many rings. None if the radii only prove that they do
     /// not collide.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::{Modes, ReducedModel, TriMesh};
 
-/// Returns a strip of 2 x `quads` triangles bent to an open ring, with smooth modes: its ends collide, and so does its middle.
+/// Returns a strip of 2 x `quads` triangles bent to an open ring, with smooth modes, under which its ends and its
+/// middle collide.
 pub(super) fn ring(quads: usize, rank: usize, seed: f64) -> ReducedModel {
     let angle = |i: usize| 5.6 * i as f64 / quads as f64;
     let positions: Vec<DVec3> = (0..=quads)

@@ -43,7 +43,7 @@ fn check_scope(parts: &CertificateParts) -> Result<(), &'static str> {
         return Err("a pair is an exception and ignored");
     }
     if scope.clearance.is_some() && !parts.local.nodes.is_empty() {
-        return Err("with a clearance there are no local certificates");
+        return Err("they have local certificates in addition to a clearance");
     }
     if let Some(groups) = scope.filter.groups() {
         if groups.of_triangles().len() != parts.hierarchy.order().len() {

@@ -59,11 +59,11 @@ pub struct CurvePoint {
 /// weld, or curves end at the seams. They end at degenerate triangles, too, and at pairs that are not given.
 ///
 /// The result depends on the input alone. Each pair costs about four microseconds and 300 bytes. The time is O(n log n) in the
-/// number n of pairs, and that of checking the mesh.
+/// number n of pairs, plus a check of all faces and positions of the mesh.
 ///
 /// # Errors
-/// If a pair names a triangle, or a face a vertex, that does not exist, or a position is not finite or beyond
-/// [`limits::LARGEST`](crate::limits::LARGEST).
+/// If a pair names a triangle, or a face a vertex, that does not exist, a position is not finite or beyond
+/// [`limits::LARGEST`](crate::limits::LARGEST), or there are more than `u32::MAX` pairs.
 ///
 /// ```
 /// use glam::DVec3;

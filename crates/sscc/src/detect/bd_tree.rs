@@ -32,8 +32,8 @@ pub(crate) struct BdTree {
     rest: Vec<(DVec3, DVec3)>,
     /// `(mean, growth)` for each mode of each box.
     rates: Vec<(DVec3, DVec3)>,
-    /// Quantized `rest` and `rates`: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; then two further entries.
-    /// Empty if the modes of boxes are listed.
+    /// Quantized `rest` and `rates`: `[(index * (rank + 1) + mode) * 6 + component]`, see [`Quantization`]; then two
+    /// further entries. Only these two if the modes of boxes are listed.
     quantized: Vec<i16>,
     instructions: InstructionSet,
 }
@@ -83,7 +83,8 @@ impl BdTree {
         (index < self.rest.len()).then(|| self.at_index(index, q, margin))
     }
 
-    /// Returns the box in single precision, in the frame of the search; `None` also if the modes of boxes are listed.
+    /// Returns the box in single precision, in the frame of the search; `None` if the node has no box, or the modes of
+    /// boxes are listed.
     #[inline]
     pub(crate) fn coarse<const E: usize>(&self, node: u32, motion: &CoarseMotion<E>) -> Option<AabbF32> {
         let index = self.indices[node as usize] as usize;

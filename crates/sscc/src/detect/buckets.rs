@@ -129,7 +129,8 @@ impl Buckets {
     #[inline]
     pub(crate) fn has_shared_vertex(&self, slots: [usize; 2]) -> bool {
         let ([a, b, c], other) = (self.classes[slots[0]], self.classes[slots[1]]);
-        // The fold has no branches, because most triangles whose boxes overlap share a vertex, but not always in the same place.
+        // The fold has no branches, because most triangles whose boxes overlap share a vertex, but not always by the
+        // same corners.
         other.into_iter().fold(false, |shared, x| shared | (x == a) | (x == b) | (x == c))
     }
 

@@ -10,8 +10,8 @@ pub(crate) struct Candidates {
     pub(super) slots: [[usize; 2]; LANES],
     /// The places of the corners of the first and of the second triangles in the positions of their volumes.
     pub(super) corners: [[[u32; 3]; LANES]; 2],
-    /// The two buckets share no vertex, so that all their triangle pairs count. Then neither masks nor vertex classes are read,
-    /// which are far apart in memory.
+    /// The two buckets share no vertex and no groups apply, so that none of their triangle pairs is adjacent. Then neither masks
+    /// nor vertex classes, which are far apart in memory, are read.
     pub(super) share_no_vertex: bool,
 }
 

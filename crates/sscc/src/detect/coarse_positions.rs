@@ -66,8 +66,8 @@ impl<const E: usize> CoarsePositions<E> {
         if self.is_used { layout.bd_tree.coarse(n, &self.motion) } else { None }
     }
 
-    /// Returns a bound of the distance of the vertices of a node from their coarse positions, without the error of these, in the frame,
-    /// rounded up.
+    /// Returns the slack of a node ([`VertexMotion::coarse_slack`]) in the frame, rounded up. The error of coarse
+    /// positions comes in addition.
     #[inline]
     pub(crate) fn slack<M: VertexMotion<E>>(n: u32, motion: &M, frame: &F32Frame) -> Vec4 {
         motion.coarse_slack(n).map_or(Vec4::ZERO, |slack| {

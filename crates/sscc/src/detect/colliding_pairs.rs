@@ -12,13 +12,14 @@ use crate::filter::{PairFilter, surroundings};
 use crate::hierarchy::Hierarchy;
 use crate::{ContactFilter, Error, Pair, Progress, ReducedModel};
 
-/// A mesh with more colliding pairs than this at rest (128 MiB of them) is refused.
+/// A shape with more colliding pairs than this (128 MiB of them) is refused.
 const MAX_PAIRS: usize = 1 << 24;
 
 /// Returns all colliding pairs at q, sorted.
 ///
 /// # Errors
-/// When q is not a configuration of the model, there are more than 2^24 pairs, or `progress` cancels.
+/// When q is not a configuration of the model, the filter's groups are of another mesh, there are more than 2^24 pairs,
+/// or `progress` cancels.
 pub(crate) fn colliding_pairs(
     model: &ReducedModel,
     hierarchy: &Arc<Hierarchy>,
@@ -49,7 +50,8 @@ impl ContactFilter {
     /// them.
     ///
     /// # Errors
-    /// When there are more than 2^24 pairs at rest or 2^22 with the rings, or when the filter's groups are of another mesh.
+    /// When there are more than 2^24 pairs at rest; when there are more than 2^22 with the rings, or more than 2^28
+    /// must be examined; when the filter's groups are of another mesh.
     pub fn ignoring_rest(self, model: &ReducedModel, rings: u32) -> Result<Self, Error> {
         let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;

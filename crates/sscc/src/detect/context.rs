@@ -1,4 +1,4 @@
-//! State shared by all searches of the detector on one mesh.
+//! State shared by all searches on one mesh, those of queries and those of a detector.
 
 use std::sync::Arc;
 

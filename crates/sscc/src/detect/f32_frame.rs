@@ -103,7 +103,7 @@ mod tests {
     /// them cover the positions of both triangles, and its own sums need 20 of the 28 units of the other two. Sweeps
     /// assume that the same two contain eight rounding bounds. Mapped points are within the bound of their exact images.
     #[test]
-    fn the_error_bound_is_what_its_users_count_on() {
+    fn the_error_bound_is_at_least_what_its_users_assume() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();
         let unit = 2.0_f64.powi(-24);
         for (i, half) in [1e-30, 1e-3, 1.0, 7.0, 1e9].into_iter().enumerate() {

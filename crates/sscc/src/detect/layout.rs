@@ -1,5 +1,5 @@
-//! All data of the detector that does not depend on q, in the order in which searches read it. Searches and their
-//! clones share the layout.
+//! All data of searches that does not depend on q, in the order in which they read it. Searches and their clones share
+//! the layout.
 
 use super::bd_tree::BdTree;
 use super::buckets::{Buckets, packet_order};
@@ -66,8 +66,8 @@ impl Layout {
         } else {
             NodeBoundaries::default()
         };
-        // The error of coarse positions grows with the factors of all modes. If few modes move each vertex, exact positions take no longer than
-        // coarse ones.
+        // The error of coarse positions grows with the factors of all modes. If few modes move each vertex, exact
+        // positions take no longer than coarse ones.
         let coarse = if needs.coarse && !vertices.moving_modes().are_listed() {
             CoarseVertices::new(&quantization, &buckets, &vertices)
         } else {

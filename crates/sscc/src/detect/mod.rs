@@ -1,9 +1,10 @@
 //! Collision detection without certificates: finds the colliding triangles of a deforming mesh.
 //!
-//! The broad phase ([`search`], [`traversal`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]), computed for the
-//! nodes that a traversal visits (the BD-tree, James and Pai 2004) or refitted all at once, down to buckets of at most 64
-//! triangles ([`buckets`]), whose boxes are compared eight at a time ([`aabb8`]). The narrow phase ([`narrow_phase`]) is exact.
-//! The source of vertex positions is a static parameter ([`vertex_motion`]).
+//! The broad phase ([`search`], [`traversal`]) descends pairs of nodes by their bounding volumes ([`node_volumes`]),
+//! down to buckets of at most 64 triangles ([`buckets`]), whose boxes are compared eight at a time ([`aabb8`]). Volumes
+//! are computed for the nodes that a traversal visits (the BD-tree, James and Pai 2004), or all are refitted at once.
+//! The discrete narrow phase ([`narrow_phase`]) is exact. The source of vertex positions is a static parameter
+//! ([`vertex_motion`]).
 //!
 //! The methods without certificates (traditional, BD-tree, normal cones, brute force) are here. The traversals that use
 //! certificates are in `query/`; they use the same tests of nodes and buckets.

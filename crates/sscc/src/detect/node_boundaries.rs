@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patches_with_a_single_boundary() {
+    fn only_oriented_manifolds_with_one_boundary_have_a_boundary() {
         let of = |faces: &[[u32; 3]]| single_boundary(faces.iter().copied());
         assert_eq!(of(&[[4, 7, 5]]), Some(vec![4, 7, 5]));
         assert_eq!(of(&[[0, 1, 2], [2, 1, 3]]), Some(vec![0, 1, 3, 2]));

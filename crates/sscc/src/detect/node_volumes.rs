@@ -4,7 +4,8 @@
 //! configurations each AABB is a swept AABB. Nodes down to buckets have BD-tree AABBs (paper, section 4; James and Pai
 //! 2004), computed when the traversal visits them. A bucket gets tight AABBs, from its vertices, when it is opened:
 //! BD-tree AABBs of smaller nodes cost as much as moving their vertices, and grow with every mode even if modes cancel.
-//! The traditional method refits all AABBs first, as certified searches do after many loose pairs; detectors refit nodes.
+//! The traditional method and detectors refit all AABBs first, as certified searches do after many loose pairs. For two
+//! meshes detectors refit the AABBs of nodes only.
 
 use std::sync::Arc;
 

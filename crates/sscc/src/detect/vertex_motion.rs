@@ -1,9 +1,10 @@
-//! The motion of vertices in one search: the source of positions and AABBs, over which the detector is generic.
+//! The motion of vertices in one search: the source of positions and AABBs, over which searches are generic.
 //!
-//! A search has `E` configurations: one, or the start and the end of a motion. There are four sources, dispatched statically:
-//! positions deformed by modes ([`DeformedMotion`]), all positions in a capsule of configurations
-//! ([`CapsuleMotion`](crate::query)), deformed positions in the world ([`PosedMotion`](crate::posed)), and
-//! given positions ([`Detector`](crate::Detector)).
+//! A search has `E` configurations: one, or the start and the end of a motion. There are five sources, dispatched
+//! statically: positions deformed by modes ([`DeformedMotion`]), the same with wider AABBs
+//! ([`WidenedMotion`](crate::query)), all positions in a capsule of configurations ([`CapsuleMotion`](crate::query)),
+//! deformed positions in the world ([`PosedMotion`](crate::posed)), and given positions
+//! ([`Detector`](crate::Detector)).
 
 use glam::{DMat3, DVec3};
 
@@ -16,16 +17,17 @@ pub(crate) trait VertexMotion<const E: usize> {
     /// precision. Then [`Self::overall_aabb`] must contain all positions.
     const HAS_ERROR_BOUND: bool;
 
-    /// Returns an upper bound, along each axis, of the rounding error of positions and of AABBs in double precision.
+    /// Returns an upper bound, along each axis, of the rounding error of positions and of AABBs in double precision,
+    /// plus [`Self::margin`] without [`Self::margin_beside_rounding`].
     fn rounding(&self) -> f64;
 
-    /// Returns the distance by which all AABBs are widened, to find near triangles. [`Self::rounding`] includes it.
+    /// Returns the distance by which all AABBs are widened, to find near triangles.
     fn margin(&self) -> f64 {
         0.0
     }
 
     /// Returns the part of [`Self::margin`] that [`Self::rounding`] does not include. It would exceed the allowed error of coarse
-    /// positions by far, so that [`Self::coarse_slack`] widens their AABBs.
+    /// positions by far, so [`Self::coarse_slack`] includes it and widens their AABBs.
     fn margin_beside_rounding(&self) -> f64 {
         0.0
     }
@@ -49,8 +51,8 @@ pub(crate) trait VertexMotion<const E: usize> {
         None
     }
 
-    /// Returns a bound, along each axis, of the distance of the vertices of a node from their positions at these
-    /// coordinates; `None` if the distance is 0.
+    /// Returns a bound, along each axis, of the distance of the vertices of a node from their positions at
+    /// [`Self::coarse_coordinates`], plus [`Self::margin_beside_rounding`]; `None` if the sum is 0.
     fn coarse_slack(&self, node: u32) -> Option<DVec3>;
 
     /// Returns the exact positions of a vertex, by its index in the layout.

@@ -92,7 +92,7 @@ impl PairFilter {
         self.groups.as_deref()
     }
 
-    /// Returns the groups of this mesh and of another one, if they hold between both.
+    /// Returns the groups of this mesh and of another one; `None` if they have no common table.
     pub(crate) fn groups_against<'f>(&'f self, other: &'f Self) -> Option<GroupsBetween<'f>> {
         let groups = GroupsBetween([self.groups()?, other.groups()?]);
         groups.0[0].is_common_with(groups.0[1]).then_some(groups)
@@ -114,7 +114,7 @@ impl PairFilter {
         self.classes[triangle as usize]
     }
 
-    /// Whether all pairs count but those that share a vertex class.
+    /// Whether all pairs count but those that share a vertex class, excluded pairs aside.
     #[inline]
     pub(crate) fn is_adjacency_alone(&self) -> bool {
         self.neighbours == Neighbours::Exclude && self.groups.is_none()
@@ -164,7 +164,7 @@ impl PairFilter {
                 .is_ok()
     }
 
-    /// Whether two triangles with these corners collide, exactly, and by their relation count. Callers check
+    /// Whether two triangles with these corners collide and count by their relation. The test is exact. Callers check
     /// [`Self::is_excluded`].
     pub(crate) fn collide(&self, pair: Pair, corners_a: &[DVec3; 3], corners_b: &[DVec3; 3]) -> bool {
         self.collide_as(self.relation(pair.0, pair.1), pair, corners_a, corners_b)
@@ -198,8 +198,8 @@ impl PairFilter {
         }
     }
 
-    /// Whether all corners of that class of two triangles are at one position. Vertices that are welded by rest positions
-    /// can move apart where positions are given.
+    /// Whether all corners of this class, of both triangles, are at one position. Vertices that are welded by rest
+    /// positions can move apart where positions are given.
     pub(super) fn is_vertex_shared(
         &self,
         class: u32,

@@ -3,8 +3,8 @@
 use super::pair_filter::PairFilter;
 use crate::Error;
 
-/// Finds the triangles that lie within a number of rings of another one. Triangles with a common vertex are one ring apart, those
-/// with a common neighbour of this kind are two rings apart, and so on; welded vertices count as one.
+/// Finds the triangles that lie within a number of rings of a triangle. Triangles with a common vertex are one ring
+/// apart, those with a common neighbour of this kind are two rings apart, and so on; welded vertices count as one.
 #[derive(Clone)]
 pub(crate) struct Rings {
     rings: u32,
@@ -102,7 +102,7 @@ impl Rings {
 
 /// The pairs of triangles within a number of rings of each other, for many threads to look up.
 pub(crate) struct RingPairs {
-    /// For each triangle where its entries in `later` start, and the end; empty where no pair is listed.
+    /// For each triangle the start of its entries in `later`, and the end; empty for [`RingPairs::NONE`].
     starts: Vec<usize>,
     /// The triangles of higher numbers within its rings, ascending.
     later: Vec<u32>,
@@ -118,7 +118,7 @@ impl RingPairs {
     /// Creates the pairs of a mesh.
     ///
     /// # Errors
-    /// If there are more than 2^26.
+    /// If there are more than 2^26 pairs.
     pub(crate) fn new(filter: &PairFilter, rings: u32) -> Result<Self, Error> {
         let mut search = Rings::new(filter, rings);
         let (mut starts, mut later) = (vec![0], Vec::new());

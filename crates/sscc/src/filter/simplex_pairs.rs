@@ -19,10 +19,10 @@ const TRIANGLE: [usize; 3] = [0, 1, 2];
 const TRIANGLES: [Option<SimplexPair<usize>>; 2] = [Some(SimplexPair { a: TRIANGLE, b: TRIANGLE }), None];
 
 impl PairFilter {
-    /// Returns the simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least one of its
-    /// simplex pairs meets. For a shared-vertex pair, these are the edge opposite to the vertex of one triangle, and the
-    /// other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first of the
-    /// two.
+    /// Returns the simplex pairs (by vertices) that replace a triangle pair in bounds: if the pair collides, at least
+    /// one of its simplex pairs meets. A shared-vertex pair has two: of each triangle the edge opposite to the vertex,
+    /// with the other triangle. Proof: follow the ray from the vertex through a common point until it leaves the first
+    /// of the two triangles.
     pub(crate) fn simplex_pairs(&self, a: u32, b: u32) -> impl Iterator<Item = SimplexPair<u32>> {
         let (face_a, face_b) = (self.faces[a as usize], self.faces[b as usize]);
         self.simplex_pairs_of_corners(a, b).map(move |corners| SimplexPair {

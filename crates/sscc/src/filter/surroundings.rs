@@ -12,13 +12,14 @@ const MAX_PAIRS: usize = 1 << 22;
 /// pairs are examined than found.
 const MAX_WORK: usize = 1 << 28;
 
-/// Returns all pairs of which one triangle lies within that many rings of the first triangle of one of `pairs`, and the other one
-/// within as many rings of its second triangle. Triangles with a common vertex are one ring apart: around a triangle whose
-/// vertices have six edges each there are 13 within one ring and 37 within two. With rings, pairs that never count are left out.
-/// Sorted.
+/// Returns all pairs of which one triangle lies within that many rings of the first triangle of one of `pairs`, and the
+/// other one within as many rings of its second triangle. Triangles with a common vertex are one ring apart: around a
+/// triangle whose vertices have six edges each there are 13 within one ring and 37 within two. With 0 rings these are
+/// `pairs` themselves; otherwise pairs that never count by their relation are left out. Sorted.
 ///
 /// # Errors
-/// If there are more than 2^22, or more than 2^28 must be examined; if the search is cancelled.
+/// If there are more than 2^22 pairs, or more than 2^24 around one pair or 2^28 in all must be examined (without a
+/// limit for 0 rings); if the search is cancelled.
 pub(crate) fn surroundings(
     filter: &PairFilter,
     pairs: &[Pair],
@@ -38,8 +39,11 @@ pub(crate) fn surroundings(
     })
 }
 
-/// Returns the surroundings of pairs between two meshes: (triangle of the first, triangle of the second). All of these pairs
-/// count.
+/// Returns the surroundings of pairs between two meshes: (triangle of the first, triangle of the second). No pair is
+/// left out, also if its groups do not count.
+///
+/// # Errors
+/// As [`surroundings`].
 pub(crate) fn surroundings_between(
     filters: [&PairFilter; 2],
     pairs: &[Pair],
@@ -52,7 +56,7 @@ pub(crate) fn surroundings_between(
     collect(pairs.iter().copied(), rings, cancel, around, Some)
 }
 
-/// Collects the pairs of the triangles around each pair that `kept` returns.
+/// Passes each pair of triangles around a pair to `kept`, and collects the pairs that it returns.
 fn collect(
     pairs: impl Iterator<Item = Pair>,
     rings: u32,

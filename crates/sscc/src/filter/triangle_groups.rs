@@ -38,7 +38,7 @@ pub struct GroupTable<'a> {
     pub of_triangles: &'a [u16],
     /// The number of groups: one more than the largest group of a triangle.
     pub count: usize,
-    /// Whether pairs of groups count that are not listed.
+    /// Whether pairs of groups that are not listed count.
     pub others_count: bool,
     /// The listed pairs of groups `a <= b`, sorted: those that do not count if the others do, else those that count.
     pub listed: Vec<[u16; 2]>,
@@ -180,7 +180,7 @@ impl TriangleGroups {
         self.starts.len() - 1
     }
 
-    /// Whether pairs of groups count that are not listed.
+    /// Whether pairs of groups that are not listed count.
     pub(crate) fn others_count(&self) -> bool {
         self.others_count
     }
@@ -240,8 +240,8 @@ impl TriangleGroups {
         self.with_table(others_count, listed)
     }
 
-    /// Returns the same groups with the table of these listed pairs. If they are more than half of all, the others are listed
-    /// instead.
+    /// Returns the same groups with the table of these listed pairs. The others are listed instead if the listed pairs
+    /// are more than half of all, or exactly half and the others do not count.
     fn with_table(self, others_count: bool, mut listed: Vec<(u16, u16)>) -> Self {
         let count = self.group_count();
         listed.sort_unstable();

@@ -7,8 +7,9 @@ use super::orientation::{orient2d, orient3d};
 /// Returns how the ray from a point towards +z crosses a triangle: 1 from the back to the front, -1 from the front to the back, 0
 /// not at all.
 ///
-/// The sum over a closed, consistently oriented surface that does not contain the point is the winding number of the surface about it:
-/// the ray is moved by less than any number, towards +x and by far less towards +y, so that it meets no edge and no vertical triangle.
+/// The sum over a closed, consistently oriented surface that does not contain the point is the winding number of the
+/// surface about it: the ray counts as moved by less than any positive number towards +x, and by far less towards +y,
+/// so that it meets no edge and no vertical triangle.
 pub(crate) fn crossing(point: DVec3, corners: &[DVec3; 3]) -> i32 {
     let p = point.xy();
     let mut turns = 0;

@@ -98,7 +98,7 @@ fn two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: (a - (hi - part)) + (b - part) }
 }
 
-/// Returns `a + b`, exactly if a has the larger exponent, or is 0.
+/// Returns `a + b`, exactly if the exponent of a is at least that of b, or a is 0.
 #[inline]
 fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;

@@ -1,8 +1,8 @@
 //! Geometry of boxes and triangles: AABBs, exact intersection tests, nearest points, continuous tests of moving triangles
 //! ([`ccd`]).
 //!
-//! Intersection tests are named `intersect_shape_shape`; their common points are `intersection_shape_shape`
-//! ([`intersection`]). Every shape is the closed convex hull of its corners, so touching
+//! Intersection tests are named `intersect_shape_shape`; functions that return the common points are named
+//! `intersection_shape_shape` ([`intersection`]). Every shape is the closed convex hull of its corners, so touching
 //! counts, and the answer is that of exact arithmetic on the given f64 coordinates. This holds for coordinates up to
 //! [`limits::LARGEST`](crate::limits::LARGEST), down to the smallest denormal number.
 //!

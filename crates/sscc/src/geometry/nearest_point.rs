@@ -17,7 +17,7 @@ pub(crate) fn nearest_to_origin<const N: usize>(d: &[DVec3; N]) -> Nearest<N> {
     nearest_within(d, 0.0)
 }
 
-/// Minimises like [`nearest_to_origin`], but may return any point of the hull whose norm is at most `enough`.
+/// Minimises like [`nearest_to_origin`], but may return any point of the hull whose norm is less than `enough`.
 pub(crate) fn nearest_within<const N: usize>(d: &[DVec3; N], enough: f64) -> Nearest<N> {
     let start = index_of_smallest(&d.map(|d| d.length_squared()));
     let mut corners = [start, 0, 0, 0];

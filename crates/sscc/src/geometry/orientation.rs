@@ -139,8 +139,8 @@ pub(super) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     Plane::through(&[a, b, c]).side(d)
 }
 
-/// Returns the exact sign of `det(b - a, c - a)`: 1 if a, b, c turn left, -1 if they turn right, 0 if collinear. Coordinates are
-/// at most [`limits::LARGEST`](crate::limits::LARGEST).
+/// Returns the exact sign of `det(b - a, c - a)`: 1 if a, b, c turn left, -1 if they turn right, 0 if collinear.
+/// Coordinates are at most [`limits::LARGEST`](crate::limits::LARGEST) in magnitude.
 #[inline]
 pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> i8 {
     let (q, r) = (b - a, c - a);

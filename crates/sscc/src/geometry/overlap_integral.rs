@@ -1,10 +1,11 @@
 //! The part of two triangles in the volume that two closed bodies share.
 //!
-//! A line along z meets a body between its surfaces, so the body is a sum of prisms: below each triangle, with the sign of the
-//! triangle's direction. The product of two such sums has the volume that both bodies share: the sum over pairs of triangles of
-//! `sign_a sign_b` times the integral of `min(z_a, z_b)` over the common part of their projections. Prisms below z = 0 cancel, because
-//! the bodies are closed. Each term depends continuously on the corners, so no case needs special care: a rounding error changes
-//! the sum by about as much.
+//! A line along z meets a body between its surfaces, so the body is a signed sum of prisms: one below each triangle,
+//! with the sign of the triangle's direction. The integral of the product of two such sums is the volume that both
+//! bodies share: the sum over pairs of triangles of `sign_a sign_b` times the integral of `min(z_a, z_b)` over the
+//! common part of their projections. The parts of prisms below z = 0 cancel, because the bodies are closed. Each term
+//! depends continuously on the corners, so no case needs special care: a rounding error changes the sum by about as
+//! much.
 
 use glam::{DVec2, DVec3};
 
@@ -77,11 +78,11 @@ struct Plane {
     slope: DVec2,
     /// Whether the slope was beyond the range of numbers, and is replaced by 0.
     is_vague: bool,
-    /// The lowest and the highest corner.
+    /// The heights of the lowest and of the highest corner.
     z: (f64, f64),
     /// Diameter of the projection.
     width: f64,
-    /// The largest coordinate.
+    /// The largest magnitude of a coordinate.
     reach: f64,
 }
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Returns the distance of a point from a triangle: that of a point of the triangle, so at least the smallest one up to rounding, and
-/// at most that of the nearest point of an edge.
+/// Returns the distance of a point from a triangle, rounded. It is that of some point of the triangle, so only rounding
+/// makes it too small. It is at most the computed distance of the nearest point of an edge.
 pub(crate) fn distance_point_triangle(point: DVec3, [a, b, c]: &[DVec3; 3]) -> f64 {
     let from_segment = |p: DVec3, q: DVec3| {
         let (along, offset) = (q - p, point - p);

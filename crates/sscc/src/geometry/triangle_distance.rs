@@ -18,8 +18,9 @@ use super::triangle_triangle::intersect_triangle_triangle;
 /// The error bound of [`distance_triangle_triangle`], as a share of the size of both triangles together.
 pub const DISTANCE_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// Returns the distance of two triangles: 0 exactly if they have a point in common, else within 2^-40 of the largest difference
-/// of two of their coordinates along an axis. Coordinates are within [`limits::LARGEST`](crate::limits::LARGEST).
+/// Returns the distance of two triangles: 0 exactly if they have a point in common, else with an error of at most 2^-40
+/// of the largest difference of two of their coordinates along an axis. Coordinates are within
+/// [`limits::LARGEST`](crate::limits::LARGEST).
 ///
 /// ```
 /// use glam::DVec3;

@@ -10,8 +10,8 @@ use crate::{Metric, ReducedModel};
 const LEAF_TRIANGLES: usize = 8;
 
 impl Hierarchy {
-    /// Clusters the triangles of a model, with modes scaled by `metric`. The same input results in the same tree on
-    /// every machine.
+    /// Clusters the triangles of a model, with modes scaled by `metric`. The same input results in the same hierarchy
+    /// on every machine.
     pub fn build(model: &ReducedModel, metric: &Metric) -> Self {
         let features = cluster_features(model, metric);
         let mut order: Vec<u32> = (0..features.len() as u32).collect();

@@ -19,8 +19,8 @@ pub(super) const FEATURES: usize = 3 + MODE_FEATURES;
 
 pub(super) type ClusterFeature = [f64; FEATURES];
 
-/// Returns one point for each triangle: its centroid in units of the mesh's AABB, and its mean scaled modes, projected, in
-/// units of their largest deviation from the mean.
+/// Returns one point for each triangle: its centroid, and its mean scaled modes, projected. Both are relative to their
+/// mean over all triangles, in units of their largest deviation from it along an axis.
 pub(super) fn cluster_features(model: &ReducedModel, metric: &Metric) -> Vec<ClusterFeature> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let p = mesh.rest_positions();

@@ -44,15 +44,15 @@ impl Hierarchy {
     }
 }
 
-/// A triangle and its centroid.
+/// A triangle, and three times its centroid in the scaled coordinates of [`sort_keys`].
 #[derive(Clone, Copy)]
 struct SortKey {
     centroid: Vec3,
     triangle: u32,
 }
 
-/// Returns the triangles with their centroids, in single precision relative to the box of all positions. The tree need not be
-/// more precise, because boxes are computed from exact positions.
+/// Returns the triangles with their centroids, in single precision relative to the AABB of all corners. The tree need
+/// not be more precise, because boxes are computed from exact positions.
 fn sort_keys(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<SortKey> {
     let corners = faces.iter().flatten().map(|v| positions[*v as usize]);
     let Aabb { lower, upper } = Aabb::of_points(corners);
@@ -75,8 +75,8 @@ fn cut_into_packets(triangles: &mut [SortKey]) {
     }
 }
 
-/// Reorders triangles so that the first half, a multiple of `unit`, lies before the second along the longest axis; returns the
-/// size of the first half, 0 for a single unit.
+/// Reorders triangles so that the first half, a multiple of `unit`, lies before the second along the longest axis;
+/// returns the size of the first half, 0 if there is at most one unit.
 fn split_in_half(triangles: &mut [SortKey], unit: usize) -> usize {
     let middle = triangles.len().div_ceil(unit) / 2 * unit;
     if middle > 0 {

@@ -15,7 +15,8 @@ impl Hierarchy {
     /// Creates a hierarchy from its parts, as read from a file.
     ///
     /// # Errors
-    /// When the parts are not a tree over exactly `triangles` triangles in the documented order.
+    /// When the parts are not a tree over exactly `triangles` triangles in the documented order, a leaf has more than
+    /// 64 triangles, or there are more than 256 levels.
     pub fn from_parts(nodes: Vec<Node>, order: Vec<u32>, triangles: usize) -> Result<Self, Error> {
         check_order(&order, triangles)?;
         check_tree(&nodes, triangles)?;

@@ -23,9 +23,9 @@ impl TriMesh {
     /// Creates a mesh from rest positions (model unit) and faces (indices into them).
     ///
     /// # Errors
-    /// When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]), there is no face, a face names a vertex that
-    /// does not exist, a coordinate is not finite or larger than [`limits::LARGEST`], or there are more than `u32::MAX` vertices or
-    /// faces.
+    /// When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]), there is no face, a face names a
+    /// vertex that does not exist, a coordinate is not finite or larger in magnitude than [`limits::LARGEST`], or there
+    /// are more than `u32::MAX` vertices or faces.
     pub fn new(rest_positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, Error> {
         check_arithmetic()?;
         if faces.is_empty() {
@@ -64,7 +64,8 @@ impl TriMesh {
     /// Returns the same mesh with other rest positions (model unit), one for each vertex.
     ///
     /// # Errors
-    /// When there are fewer or more positions than vertices, or one is not finite or beyond [`limits::LARGEST`].
+    /// When there are fewer or more positions than vertices, one is not finite or beyond [`limits::LARGEST`], or this
+    /// thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
     pub fn with_rest_positions(&self, rest_positions: Vec<DVec3>) -> Result<Self, Error> {
         let (found, vertices) = (rest_positions.len(), self.rest_positions.len());
         if found != vertices {
@@ -74,12 +75,12 @@ impl TriMesh {
         Ok(Self { has_split_vertices: self.has_split_vertices, ..mesh })
     }
 
-    /// Returns the rest positions, one for each vertex of the file, including unused ones (model unit).
+    /// Returns the rest positions, one for each vertex, including unused ones (model unit).
     pub fn rest_positions(&self) -> &[DVec3] {
         &self.rest_positions
     }
 
-    /// Returns the faces, three vertex indices each, in the order of the file.
+    /// Returns the faces, three vertex indices each, in the given order.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }

@@ -17,8 +17,8 @@ impl Modes {
     /// Creates modes from displacements in vertex-major order: `displacements[vertex * rank + mode]`.
     ///
     /// # Errors
-    /// When `rank` is 0, the number of displacements is not a multiple of it, or an entry is not finite or larger than
-    /// [`limits::LARGEST`].
+    /// When `rank` is 0, the number of displacements is not a multiple of it, or an entry is not finite or larger in
+    /// magnitude than [`limits::LARGEST`].
     pub fn new(rank: usize, displacements: Vec<DVec3>) -> Result<Self, Error> {
         if rank == 0 {
             return Err(Error::RankZero);

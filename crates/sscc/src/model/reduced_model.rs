@@ -76,7 +76,7 @@ impl ReducedModel {
     /// Returns all deformed positions at `q` (V, model unit).
     ///
     /// # Errors
-    /// When q has the wrong length, an entry is not finite, or a vertex would leave the range of [`limits`].
+    /// As [`ReducedModel::check_coordinates`].
     pub fn positions(&self, q: &[f64]) -> Result<Vec<DVec3>, Error> {
         self.check_coordinates(q)?;
         Ok((0..self.0.mesh.rest_positions().len() as u32).map(|i| self.position(i, q)).collect())

@@ -38,7 +38,7 @@ pub(crate) fn larger_or_nan<T: PartialOrd>(a: T, b: T) -> T {
     if a < b || is_nan { b } else { a }
 }
 
-/// Converts a radius to single precision, rounded down; 0 for NaN.
+/// Converts a radius to single precision, rounded down; 0 for NaN, and the largest finite number for infinity.
 pub(crate) fn to_f32_down(radius: f64) -> f32 {
     let rounded = radius as f32;
     let is_above = with_mutant!(f64::from(rounded) > radius, RadiusToNearest, false);
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nan_is_no_bound() {
+    fn quotients_and_radii_of_nan_are_0() {
         for (a, b) in [(0.0, f64::INFINITY), (f64::INFINITY, 0.0)] {
             // One of these quotients contains the product of infinity and zero.
             assert_eq!(quotient_down(a * b, 1.0), 0.0);

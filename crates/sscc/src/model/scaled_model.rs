@@ -62,8 +62,8 @@ impl ScaledModel {
         Self { positions, faces: mesh.faces().to_vec(), row_len, modes, rounding, required, mode_reach }
     }
 
-    /// Returns the same model, whose parts must keep a clearance. `error`: the error of computed distances, as a share of the size of two
-    /// triangles.
+    /// Returns the same model, whose parts must keep a clearance. `error`: the error of computed distances, as a share
+    /// of the size of two triangles together.
     pub(crate) fn keeping(mut self, clearance: f64, error: f64) -> Self {
         let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for i in self.faces.as_flattened() {

@@ -5,8 +5,9 @@ use glam::DVec3;
 use crate::ReducedModel;
 
 impl ReducedModel {
-    /// Returns for each mode the weight at which the vertex that it moves farthest has moved by half the diagonal of the AABB
-    /// at rest (paper, section 5.2); 1 for a mode that moves no vertex. Only vertices of faces count.
+    /// Returns for each mode the weight at which the vertex that it moves farthest has moved by half the diagonal of
+    /// the AABB at rest (paper, section 5.2); 1 for a mode that moves no vertex, or if the AABB is a point. Only
+    /// vertices of faces count.
     pub fn weight_limits(&self) -> Vec<f64> {
         let used = self.mesh().used_vertices();
         let rest = || used.iter().map(|&v| self.mesh().rest_positions()[v as usize]);

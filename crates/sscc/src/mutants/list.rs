@@ -95,7 +95,7 @@ mutants! {
     /// Triangles in crossing planes that touch do not collide.
     TouchingIsFree: CaughtBy("it intersect::edges_that_touch");
     /// The separating-axis test uses half of its error bound.
-    SeparatingAxisErrorHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded");
+    SeparatingAxisErrorHalved: CaughtBy("lib detect::narrow_phase::separating_axis::tests::touching_triangles_with_errors_of_the_whole_bound_are_not_separated");
     /// The contour test omits its rounding bound.
     ContourExact: CaughtBy("lib detect::contour_test::tests::rounding_separates_nothing_that_touches");
     /// The contour test omits the rounding error of coordinates.
@@ -164,7 +164,7 @@ mutants! {
     RegionNeverLeft: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
     /// A motion that begins in a region counts as ending there.
     MotionLeavesRegion: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
-    /// Motions within a region do not touch pairs that touch at rest.
+    /// Motions within a region do not test pairs that collide at the centre.
     KineticExceptionsForgotten: CaughtBy("lib query::kinetic::tests::capsules_are_left_sideways");
     /// The reach of a capsule is that of its start.
     RegionReachAtStart: CaughtBy("lib query::kinetic::region::tests::points_within_the_radius_are_contained_and_no_others");
@@ -176,7 +176,7 @@ mutants! {
     CapsuleInnerNodesStill: CaughtBy("lib query::capsule_motion::tests::node_volumes_contain_the_capsule");
     /// AABBs from coarse positions are those of the segment of a capsule.
     CoarseSlackForgotten: CaughtBy("lib query::capsule_motion::tests::node_volumes_contain_the_capsule");
-    /// A search that ends with open triangle pairs has their bounds, too.
+    /// The result of a search that ends with open triangle pairs omits their bounds.
     OpenTrianglesForgotten: CaughtBy("lib certificates::build::fine_radii::tests::radii_of_touching_buckets_are_fine");
     /// A refused outer round raises the limit.
     RefusedOuterRoundComplete: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
@@ -235,7 +235,7 @@ mutants! {
     /// The norm of an affine map is the root of the largest entry of F'F, not of the largest row sum.
     HullStretchLargestEntry: CaughtBy("lib query::hulls::moved_hulls::tests::no_vector_is_stretched_by_more_than_the_bound");
     /// A hull whose radius or map is NaN has the radius of other numbers.
-    HullNanIgnored: CaughtBy("lib query::hulls::moved_hulls::tests::hulls_that_are_no_numbers_prove_nothing");
+    HullNanIgnored: CaughtBy("lib query::hulls::moved_hulls::tests::hulls_with_infinite_or_nan_factors_prove_nothing");
     /// The remainder of residuals is that of vectors before they are rounded to single precision.
     HullVectorsUnrounded: Covered("the relative error of sums has room for one more rounding");
     /// Residuals of hulls have no rounding error.
@@ -254,14 +254,14 @@ mutants! {
     PosedAabbExact: CaughtBy("lib posed::posed_shape::tests::aabbs_contain_positions_that_the_world_rounds");
     /// Coarse positions in the world count as exact in axes of the model.
     FrameMapOfExactPositions: CaughtBy("lib posed::posed_motion::tests::coarse_positions_are_within_their_error_bound");
-    /// Vertices far above a plane by coarse positions alone are not below it.
+    /// Vertices whose coarse positions are above a plane count as not below it.
     HalfSpaceExact: CaughtBy("lib posed::half_space::tests::vertices_just_below_a_plane_are_found");
     /// All vertices of a node are displaced like their mean.
     DisplacementsOfMeans: CaughtBy("lib posed::posed_shape::tests::displacements_are_within_their_bound");
     /// The minimum of two numbers has the smaller one of their errors.
     SmallerErrorOfTwo: CaughtBy("lib geometry::ccd::number_tests::a_minimum_has_the_larger_error");
     /// The error bound of positions in single precision is a quarter of it.
-    FrameErrorQuartered: CaughtBy("lib detect::f32_frame::tests::the_error_bound_is_what_its_users_count_on");
+    FrameErrorQuartered: CaughtBy("lib detect::f32_frame::tests::the_error_bound_is_at_least_what_its_users_assume");
     /// A direction separates moving triangles by a quarter of their slack.
     CandidateSlackQuartered: CaughtBy("lib geometry::ccd::free_until::tests::corners_may_be_off_by_all_of_the_slack");
     /// The slack of sweeps is a quarter of it.
@@ -273,7 +273,7 @@ mutants! {
     /// Corners relative to one of them may be no larger than corners.
     RelativeCornersLimited: CaughtBy("it limits::corners_may_be_anywhere_in_the_range");
     /// A quotient that is NaN is a bound.
-    QuotientOfNan: CaughtBy("lib model::rounding::tests::nan_is_no_bound");
+    QuotientOfNan: CaughtBy("lib model::rounding::tests::quotients_and_radii_of_nan_are_0");
     /// The larger one of a number and NaN is the number.
     MaximumIgnoresNan: CaughtBy("lib model::rounding::tests::the_larger_one_of_nan_and_a_number_is_nan");
     /// Ratios of local certificates hold for each of three rows alone, not for the largest singular value.
@@ -380,7 +380,7 @@ mutants! {
     PartsFaceAnyWay: CaughtBy("it body_penetration::parts_face_one_way");
     /// With certificates triangles nearer than a clearance are separated as if there were no clearance.
     SeparatedWithoutClearance: CaughtBy("it certified_clearance::near_pairs_are_the_same_with_and_without_certificates");
-    /// Widened boxes are not rounded.
+    /// The rounding of widened boxes is not covered.
     MarginExact: CaughtBy("it clearance::small_clearances_survive_single_precision");
     /// The nearest points of two lines are computed independently.
     LinesUnprojected: CaughtBy("lib geometry::triangle_distance::tests::distances_of_nearly_parallel_edges_are_within_their_error");
@@ -431,11 +431,11 @@ mutants! {
     /// A certificate proves pairs of two nodes of its list.
     LocalRingWithRing: CaughtBy("lib query::local_proofs::tests::certificates_prove_their_node_and_its_pairs_with_their_list_alone");
     /// A thread that rounds upward, or ties away from zero, is accepted.
-    UpwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    UpwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_recognized_by_its_results");
     /// A thread that rounds downward or to zero is accepted.
-    DownwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    DownwardRoundingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_recognized_by_its_results");
     /// A thread that flushes small numbers to zero is accepted.
-    FlushingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_told_by_its_results");
+    FlushingAccepted: CaughtBy("lib arithmetic::tests::each_wrong_mode_is_recognized_by_its_results");
     /// The root's radius proves that no pair collides, also where pairs collide at the centre.
     ExceptionsProvenFree: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// The root's radius proves that no pair is near, also where pairs are near at the centre.
@@ -491,14 +491,14 @@ mutants! {
     /// A vertex that two triangles share at the start of a motion stays shared.
     MovingVertexSharedAtStart: CaughtBy("it detector::welded_vertices_can_move_apart");
     /// The time of impact of two triangles with a common vertex is that of the later one of their edges.
-    LaterOfTwoTimes: CaughtBy("lib detect::narrow_phase::swept::tests::the_earlier_edge_is_the_time_of_impact");
+    LaterOfTwoTimes: CaughtBy("lib detect::narrow_phase::swept::tests::the_time_of_impact_is_that_of_the_earlier_edge");
     /// Triangles whose distance equals a clearance are near.
     ClearanceReached: CaughtBy("it certified_clearance::near_pairs_are_found_up_to_their_own_distance");
     /// AABBs that touch are disjoint.
     TouchingBoxesDisjoint: CaughtBy("it continuous::times_of_simple_motions");
-    /// AABBs of pairs near at the centre are farther apart than a clearance by half of it.
+    /// AABBs of pairs near at the centre count as farther apart than a clearance beyond half of it.
     FartherByHalf: CaughtBy("it certified_clearance::near_pairs_of_the_centre_are_exceptions");
-    /// A direction separates moving triangles that are separated at the end.
+    /// A direction separates moving triangles that it separates at the end.
     SeparatedAtEnd: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
     /// Triangles whose error is not finite are tested for separating directions.
     InfiniteErrorTested: Covered("no gap is larger than a slack that is infinite or NaN");
@@ -589,11 +589,11 @@ mutants! {
     /// Rates whose squares underflow are as small as computed.
     RegionRatesUnderflow: CaughtBy("lib query::region_rates::tests::singular_values_are_bounded");
     /// A direction that turns separates moving triangles if it separates them at both ends.
-    TurningByEnds: CaughtBy("lib geometry::ccd::candidate_direction::tests::directions_that_turn_may_meet_between");
+    TurningByEnds: CaughtBy("lib geometry::ccd::candidate_direction::tests::turning_directions_are_tested_between_both_ends");
     /// A plane separates moving triangles that it separates at the end.
     PlanesAtEnd: CaughtBy("it continuous::times_of_simple_motions");
     /// A direction that separates two vertices separates them until the end.
     SeparatedForever: CaughtBy("it continuous::times_of_simple_motions");
     /// A direction along features separates moving triangles that it separates at the end of a step.
-    FeaturesByEnds: CaughtBy("lib geometry::ccd::feature_direction::tests::directions_that_turn_may_meet_between");
+    FeaturesByEnds: CaughtBy("lib geometry::ccd::feature_direction::tests::feature_directions_are_tested_in_the_whole_interval");
 }

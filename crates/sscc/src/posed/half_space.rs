@@ -6,7 +6,8 @@ use super::posed_shape::PosedShape;
 use crate::detect::aabb8::AabbF32;
 
 impl PosedShape {
-    /// Appends the used vertices x with `normal . x < height` in the world to `found`, ascending; all of them up to rounding.
+    /// Appends to `found` the used vertices x with `normal . x < height` in the world, ascending. Their heights are
+    /// rounded.
     pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
         let first = found.len();
         self.enter(self.whole);
@@ -19,8 +20,9 @@ impl PosedShape {
         let reach = normal.abs().element_sum();
         let error = reach * f64::from(self.volumes.corner_error()) * (1.0 + 1e-6);
         let limit = (height - normal.dot(frame.center())) * frame.scale();
-        // The error would do: it has more than 270 units of 2^-52 of the largest coordinate in the world, and 16 of 2^-24 of the frame.
-        // A limit so large that its own rounding is more has all vertices on one side.
+        // The error alone would be enough: it contains more than 270 units of 2^-52 of the largest coordinate in the
+        // world, and 16 of 2^-24 of the frame. If the limit is so large that its own rounding is larger, all vertices
+        // are on one side of it.
         let rounding =
             64.0 * f64::EPSILON * (reach * frame.center().abs().max_element() * frame.scale() + limit.abs());
         let limit = limit

@@ -42,7 +42,7 @@ impl Pose {
     /// shape are at most `own`, which [`ReducedModel::check_coordinates`](crate::ReducedModel::check_coordinates) returns.
     ///
     /// # Errors
-    /// When the pose is not finite, or the bound is beyond [`limits::LARGEST`].
+    /// When the pose is not finite, or 1.001 times the bound is beyond [`limits::LARGEST`].
     pub fn check_reach(&self, own: f64) -> Result<f64, Error> {
         let r = &self.rotation;
         let row = r.x_axis.abs() + r.y_axis.abs() + r.z_axis.abs();

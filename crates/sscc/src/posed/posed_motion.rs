@@ -46,7 +46,8 @@ impl<const E: usize> PosedMotion<E> {
     /// Sets q and pose of each configuration. Returns an AABB of the shape in the world at all of them.
     ///
     /// # Errors
-    /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
+    /// When q has the wrong length or an entry is not finite, the shape leaves the range of numbers, or this thread's
+    /// arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
     pub(super) fn place(
         &mut self,
         model: &ReducedModel,
@@ -95,8 +96,8 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
     /// Returns `None` in a search for near pairs, which become contacts and must be those of exact positions.
     #[inline]
     fn coarse_coordinates(&self) -> Option<[&[f64]; E]> {
-        // With a margin, coarse positions would be right, too, but imprecise: their error has more than four times [`Self::rounding`], of which
-        // the margin is a part, and widens boxes.
+        // With a margin, coarse positions would be right, too, but imprecise: their error is more than four times
+        // [`Self::rounding`], of which the margin is a part, and it widens boxes.
         with_mutant!(self.margin == 0.0, PosedCoarseWithMargin, true).then(|| self.q.each_ref().map(|q| &**q))
     }
 

@@ -17,9 +17,9 @@ use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, ContactFilter, Error, Pair, ReducedModel};
 
-/// A shape at some q and pose in the world, to be tested against others. All answers are exact for the f64 positions
-/// [`Pose::apply`] of [`deformed_position`](crate::deformed_position). It owns its memory, so that repeated calls
-/// allocate nothing; clones share the data that does not change.
+/// A shape at some q and pose in the world, to be tested against others. Colliding pairs are exact for the f64
+/// positions [`Pose::apply`] of [`deformed_position`](crate::deformed_position). It owns its memory, so that repeated
+/// calls allocate nothing; clones share the data that does not change.
 #[derive(Clone)]
 pub struct PosedShape {
     pub(super) model: ReducedModel,
@@ -36,7 +36,7 @@ pub struct PosedShape {
     hits: DiscreteHits,
 }
 
-/// Shows the last answer only.
+/// Shows the AABB of the shape only.
 impl fmt::Debug for PosedShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("PosedShape").field("whole", &self.whole).finish_non_exhaustive()
@@ -47,7 +47,7 @@ impl PosedShape {
     /// Creates a shape at q = 0 in its own axes. It uses only the hierarchy of the certificates.
     ///
     /// # Errors
-    /// When the certificates were computed for another model.
+    /// When the certificates were computed for another model; as [`PosedShape::without_certificates`].
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         certificates.check_model(model)?;
         Self::with_hierarchy(model, Arc::clone(&certificates.parts().hierarchy))
@@ -56,7 +56,8 @@ impl PosedShape {
     /// Creates a shape without certificates, which builds its own hierarchy. Its answers are the same.
     ///
     /// # Errors
-    /// When the model is beyond the range of numbers.
+    /// When the model is beyond the range of numbers, or this thread's arithmetic is not that of IEEE 754
+    /// ([`Error::Arithmetic`]).
     pub fn without_certificates(model: &ReducedModel) -> Result<Self, Error> {
         Self::with_hierarchy(model, Arc::new(Hierarchy::build(model, model.metric())))
     }
@@ -83,7 +84,8 @@ impl PosedShape {
     /// Deforms and moves the shape, and returns an AABB of it in the world, at a cost of O(r).
     ///
     /// # Errors
-    /// When q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
+    /// When q has the wrong length or an entry is not finite, the shape leaves the range of numbers, or this thread's
+    /// arithmetic is not that of IEEE 754.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
         let is_same_pose = with_mutant!(self.motion.pose[0] == *pose, PlacedByCoordinatesAlone, true);
         if self.motion.q[0] == q && is_same_pose {
@@ -347,7 +349,7 @@ mod tests {
         ReducedModel::new(TriMesh::new(positions, faces).unwrap(), Modes::new(2, modes).unwrap()).unwrap()
     }
 
-    /// A corner of a small shape at one of a large shape, whose coarse positions have a far larger error.
+    /// A corner of a small shape is at a corner of a large shape, whose coarse positions have a far larger error.
     #[test]
     fn each_shape_has_its_own_error() {
         let state = &mut 33;

@@ -32,7 +32,7 @@ pub struct SweptShape {
     near: NearHits,
 }
 
-/// Shows the last answer only.
+/// Shows the AABB of the motion only.
 impl fmt::Debug for SweptShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SweptShape").field("whole", &self.whole).finish_non_exhaustive()
@@ -62,7 +62,8 @@ impl SweptShape {
     /// O(r).
     ///
     /// # Errors
-    /// When a q has the wrong length or an entry is not finite, or the shape leaves the range of numbers.
+    /// When a q has the wrong length or an entry is not finite, the shape leaves the range of numbers, or this thread's
+    /// arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
     pub fn place(&mut self, q: [&[f64]; 2], pose: [&Pose; 2]) -> Result<Aabb, Error> {
         self.is_current = false;
         self.whole = self.motion.place(&self.model, &self.volumes.layout, q, pose)?;
@@ -89,8 +90,9 @@ impl SweptShape {
         found[first..].sort_unstable_by_key(|impact| impact.pair);
     }
 
-    /// Appends to `found` at most `limit` pairs (triangle of this shape, triangle of the other), sorted: all that come within
-    /// the distance `margin` of each other during the motion, and some others. `around` is that of [`SweptShape::impacts`].
+    /// Appends to `found` all pairs (triangle of this shape, triangle of the other) that come within the distance
+    /// `margin` of each other during the motion, and some others, sorted. If they are more than `limit`, only that many
+    /// are appended. `around` is that of [`SweptShape::impacts`].
     pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, limit: usize, found: &mut Vec<Pair>) {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };

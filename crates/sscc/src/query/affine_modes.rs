@@ -88,7 +88,8 @@ impl AffineFree {
 }
 
 impl AffineModes {
-    /// Returns the combinations of a model's modes that move it by affine maps; `None` if there are no such combinations.
+    /// Returns the combinations of a model's modes that move it by affine maps. `None` if there are no such
+    /// combinations, the model has more than [`MOST_MODES`] modes, or all positions are nearly in one plane.
     pub(super) fn new(model: &PatchModel<'_>) -> Option<Self> {
         let fits = (model.rank() <= MOST_MODES).then(|| Fits::new(model, MOST_FITTED))??;
         let mut units: Vec<Vec<f64>> = Vec::new();
@@ -170,7 +171,7 @@ struct Fits {
 }
 
 impl Fits {
-    /// Fits maps by at most `most` vertices. `None` if all positions are in one plane.
+    /// Fits maps by at most `most` vertices. `None` if all positions are nearly in one plane.
     fn new(model: &PatchModel<'_>, most: usize) -> Option<Self> {
         let rank = model.rank();
         let mut gram = vec![0.0; rank * rank];

@@ -10,7 +10,8 @@ use crate::detect::answer::{Answer, Statistics};
 use crate::parallel::{map, map_with, on_threads};
 use crate::{Error, Progress};
 
-/// Progress is reported once for this many q, so that reports do not slow down the cheapest queries.
+/// Progress of the q that the root's certificate proves free is reported about once for this many, so that reports do
+/// not slow down the cheapest queries.
 const REPORT_INTERVAL: usize = 64;
 
 impl Query {
@@ -86,7 +87,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
     /// Answers the q that have no answer yet.
     ///
     /// # Errors
-    /// When the batch was cancelled.
+    /// When the batch was cancelled, or a thread's arithmetic is not that of IEEE 754.
     fn answer_open(&self, query: &Query, answers: &mut [Option<Answer>]) -> Result<(), Error> {
         let open: Vec<_> = answers.iter_mut().zip(self.rows).filter(|(answer, _)| answer.is_none()).collect();
         self.done.fetch_max(self.rows.len() - open.len(), Ordering::Relaxed);
@@ -108,7 +109,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         map(open, answer).into_iter().collect()
     }
 
-    /// Adds `more` to the number of answers, and reports it.
+    /// Adds `more` to the number of answers, and reports the number before.
     fn report(&self, more: usize) {
         let before = self.done.fetch_add(more, Ordering::Relaxed);
         self.progress.report(before.min(self.rows.len()), self.rows.len());

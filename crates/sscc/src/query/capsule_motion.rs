@@ -14,7 +14,8 @@ use crate::model::rounding::norm_up;
 /// added.
 #[derive(Clone)]
 pub(crate) struct CapsuleRates {
-    /// The norms of the three rows of each vertex, by its index in the layout, rounded up.
+    /// The norms of the three rows of each vertex, by its index in the layout, rounded up, plus the rounding of
+    /// positions per unit of `|z|`.
     vertices: Vec<DVec3>,
     /// The largest norms of all vertices of each node that is a bucket or larger.
     nodes: Vec<DVec3>,

@@ -11,9 +11,9 @@ use crate::detect::narrow_phase::NarrowPhase;
 use crate::detect::search::Search;
 use crate::detect::vertex_motion::VertexMotion;
 
-/// All AABBs are refitted once this many pairs of buckets were tested without a hit for each bucket that is not open. Such a test
-/// takes about a tenth of the time in which a bucket is opened, so a search never loses much more than it can gain, and takes
-/// little longer than the traditional method (docs/notes/traversal.md#loose-aabbs).
+/// All AABBs are refitted once more than this many pairs of buckets were tested without a hit for each bucket that is
+/// not open. Such a test takes about a tenth of the time in which a bucket is opened, so a search never loses much more
+/// than it can gain, and takes little longer than the traditional method (docs/notes/traversal.md#loose-aabbs).
 pub(super) const LOOSE_PAIRS: usize = 2;
 
 /// Finds all hits except exceptions at a norm.
@@ -86,7 +86,8 @@ mod tests {
     use crate::test_models::{self, Random};
     use crate::{Certificates, CertifyOptions, Method, Modes, Query, ReducedModel};
 
-    /// Returns a square of 1800 triangles with two modes that cancel each other: AABBs of the BD-tree grow, the square does not move.
+    /// Returns a square of 1800 triangles with two modes that cancel each other: at equal coordinates AABBs of the
+    /// BD-tree grow, and the square does not move.
     fn square() -> ReducedModel {
         let (mesh, random) = (test_models::square(30), &mut Random(77));
         let modes = (0..mesh.rest_positions().len()).flat_map(|_| {

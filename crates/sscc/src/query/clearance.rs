@@ -8,11 +8,13 @@ use crate::{Clearance, Error, NearPair};
 impl Query {
     /// Returns all pairs that count and are nearer than a clearance at q, as [`Detector::within`] finds them at the positions.
     ///
-    /// Certificates with this clearance or a larger one, and as many rings or fewer, prove most pairs farther apart: below the root's
-    /// radius a query is one comparison ([`Statistics::proof`](crate::Statistics::proof)). The pairs are the same with any certificates.
+    /// Certificates with this clearance or a larger one, and as many rings or fewer, prove most pairs farther apart:
+    /// below the root's radius a query is one comparison if there are no exceptions
+    /// ([`Statistics::proof`](crate::Statistics::proof)). The pairs are the same with any certificates.
     ///
     /// # Errors
-    /// As [`Query::discrete`]; when there are more than [`Detector::MAX_PAIRS`].
+    /// As [`Query::discrete`]; when there are more than [`Detector::MAX_PAIRS`] near pairs, including those within the
+    /// rings.
     pub fn within(&mut self, q: &[f64], clearance: &Clearance) -> Result<&[NearPair], Error> {
         if self.near.as_ref().is_some_and(|near| near.is_for(clearance)) {
             return self.within_certified(q, clearance);

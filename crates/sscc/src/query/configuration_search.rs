@@ -34,8 +34,8 @@ impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
         &self.certified.broad.state.counters
     }
 
-    /// Finds at most `limit` hits, in no particular order; all of them where the search is complete. The caller has checked that
-    /// [`QueryContext::is_proven_free`] is false at this norm.
+    /// Finds at most `limit` hits, in no particular order. These are all hits if [`Statistics::complete`] is then true.
+    /// The caller has checked that [`QueryContext::is_proven_free`] is false at this norm.
     ///
     /// # Errors
     /// When this thread's floating-point arithmetic is not as the proofs assume, or the search was cancelled.
@@ -77,7 +77,7 @@ impl DiscreteSearch {
     /// Finds at most `limit` colliding pairs at q, sorted.
     ///
     /// # Errors
-    /// When the search was cancelled.
+    /// As [`Self::find`].
     #[inline(never)] // so that a query that needs no search saves no registers
     pub(super) fn find_pairs(
         &mut self,

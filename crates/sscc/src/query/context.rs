@@ -156,7 +156,8 @@ impl QueryContext {
     }
 }
 
-/// A search that opens a smaller share of all nodes ends before evaluating the root's local certificate would pay.
+/// In a search that opens a smaller share of all nodes, evaluating the root's local certificate costs more than it
+/// saves.
 const LOCAL_SHARE: f64 = 1.0 / 32.0;
 
 /// From this many times the root's radius on, local certificates are always evaluated: on a shape whose parts rotate, few radii of nodes

@@ -10,10 +10,11 @@ impl Query {
     /// `q_t1` (the computed ones, see [`deformed_position`](crate::deformed_position)), sorted by pair, each with its time
     /// of impact.
     ///
-    /// No pair is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with a
-    /// time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times the
-    /// size of the triangles. Only pairs that come that close without a contact can differ between methods. Triangles that
-    /// share exactly one vertex, where the contact filter includes them, are listed if in one of them the edge opposite to
+    /// No pair is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with
+    /// a time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times
+    /// the size of the triangles (if the test of a pair ends at its limit of about 10,000 steps, the time may be
+    /// earlier). Only pairs that come that close without a contact can differ between methods. Triangles that share
+    /// exactly one vertex, where the contact filter includes them, are listed if in one of them the edge opposite to
     /// this vertex meets the other triangle; otherwise they have no other point in common.
     ///
     /// A certificate holds during the motion if it holds at start and end: its region is convex, and a radius contains the
@@ -70,7 +71,8 @@ impl Query {
         Ok(impacts)
     }
 
-    /// Returns the earliest [`Impact::time`] of all pairs between two configurations: before this time the shape is free.
+    /// Returns the earliest [`Impact::time`] of all pairs between two configurations: before this time the shape is
+    /// free. None if no pair collides.
     ///
     /// # Errors
     /// As [`Query::continuous`].

@@ -36,8 +36,9 @@ impl Query {
         Ok(&narrow.0.list)
     }
 
-    /// Returns the pairs nearer than a clearance between the triangles of two nodes without common triangles, or within one node,
-    /// including exceptions and pairs within the rings. They are found without certificates.
+    /// Returns the pairs nearer than a clearance between the triangles of two nodes without common triangles, or within
+    /// one node, including exceptions and pairs within the rings. They are found without certificates. The search ends
+    /// after [`Detector::MAX_PAIRS`] pairs; then some may be missing.
     ///
     /// # Errors
     /// As [`Query::discrete`].

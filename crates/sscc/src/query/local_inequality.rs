@@ -108,7 +108,7 @@ impl<const E: usize> LocalInequality<E> {
         self.ends.iter().map(|end| end.sum).sum()
     }
 
-    /// Returns the bound of the ratios that a certificate allows: it allows those below this.
+    /// Returns the bound below which a certificate allows ratios.
     pub(super) fn allowed(&self, tables: &LocalTables, index: usize) -> f32 {
         let all = &*tables.certificates;
         let bounds = &all.bounds[index];

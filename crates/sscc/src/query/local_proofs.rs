@@ -1,8 +1,9 @@
 //! The local certificates that hold in one search.
 //!
-//! If the radii of some buckets are reached, a search evaluates the root's certificate first. If that does not hold, and the search
-//! has done some work, it evaluates the certificates of other nodes from the root down, and stops at the nodes whose certificate
-//! holds: these are *proven*. From then on the traversal skips proven nodes, and pairs of nodes that a certificate proves.
+//! If `|z|` is large enough (`QueryContext::local_norm`), a search evaluates the root's certificate first. If that does
+//! not hold, and the search has done some work, it evaluates the certificates of other nodes from the root down, and
+//! stops at the nodes whose certificate holds: these are *proven*. From then on the traversal skips proven nodes, and
+//! pairs of nodes that a certificate proves.
 
 use super::local_inequality::LocalInequality;
 use super::local_tables::LocalTables;
@@ -104,9 +105,9 @@ impl<const E: usize> LocalProofs<E> {
         self.open_buckets * MOST_OPEN > self.proven.len()
     }
 
-    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. If few of their buckets
-    /// are proven, the search evaluates no certificates of pairs: few pairs of the other buckets would be proven, and each evaluation
-    /// takes time.
+    /// Finds proven nodes from the root down, once in a search, among those whose radius is reached at a norm. If few
+    /// of the buckets that it reaches are proven, the search evaluates no certificates of pairs: few pairs of the other
+    /// buckets would be proven, and each evaluation takes time.
     pub(super) fn prove(
         &mut self,
         tables: &LocalTables,

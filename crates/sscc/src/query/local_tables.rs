@@ -90,7 +90,8 @@ impl LocalTables {
         (index != NONE).then_some(index as usize)
     }
 
-    /// Returns the ratio of the pairs of a certificate's node with another node.
+    /// Returns the ratio of the pairs of a certificate's node with another node; `None` if that node is not on its
+    /// list.
     #[inline]
     pub(super) fn ratio_with(&self, certificate: usize, node: u32) -> Option<f32> {
         if self.list_bits[certificate] & list_bit(node) == 0 {

@@ -5,8 +5,8 @@ use crate::detect::layout::Needs;
 /// The method by which a query finds the colliding pairs. All methods find the same pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Certificates of nodes and node pairs cull the traversal of a BD-tree (paper, Algorithm 1): BD-tree AABBs for nodes
-    /// down to about 64 triangles, tight ones below.
+    /// Certificates of nodes and node pairs cull the traversal of a BD-tree (paper, Algorithm 1): BD-tree AABBs for
+    /// nodes down to buckets of at most 64 triangles, tight ones below.
     Certified,
     /// The same BD-tree without certificates (James and Pai 2004).
     BdTree,

@@ -44,7 +44,8 @@ impl NearSearch {
         }
     }
 
-    /// Whether the certificates prove pairs farther apart than a clearance: their clearance is at least as large.
+    /// Whether the certificates prove pairs farther apart than a clearance: their clearance is at least as large, and
+    /// has no more rings.
     pub(super) fn is_for(&self, clearance: &Clearance) -> bool {
         self.context.certificates.as_ref().is_some_and(|certified| certified.is_within_clearance(clearance))
     }
@@ -57,7 +58,8 @@ impl NearSearch {
     /// Finds all near pairs at q, sorted. [`Self::is_for`] must be true for the clearance.
     ///
     /// # Errors
-    /// When q is not a configuration of the model, there are more than [`Detector::MAX_PAIRS`] pairs, or the token cancels.
+    /// When q is not a configuration of the model, this thread's arithmetic is not that of IEEE 754, there are more
+    /// than [`Detector::MAX_PAIRS`] pairs (including those within the rings), or the token cancels.
     pub(super) fn find(
         &mut self,
         q: &[f64],

@@ -24,7 +24,8 @@ pub(super) struct PairHulls {
 const WHOLE: f32 = 32767.0;
 
 impl PairHulls {
-    /// Computes hulls and directions about the centre of the certificates; `None` if the pair tree is empty or the shape too large.
+    /// Computes hulls and directions about the centre of the certificates; `None` if the pair tree is empty, or
+    /// [`NodeHulls::new`] returns none.
     pub(super) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,

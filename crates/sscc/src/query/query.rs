@@ -18,9 +18,9 @@ use crate::hierarchy::Hierarchy;
 use crate::model::check_scaled_modes;
 use crate::{CancelToken, Certificates, Detector, Error, Pair, ReducedModel};
 
-/// Answers self-collision queries for one model. It owns its memory, so that repeated queries allocate nothing (brute force
-/// and the rare exact signs of extreme numbers aside), and shares model and certificates. One query serves one thread; clone it
-/// for another, or use [`Query::batch`].
+/// Answers self-collision queries for one model. It owns its memory, so that repeated queries of collisions at q or
+/// between two q allocate nothing (brute force and the rare exact signs of extreme numbers aside), and shares model and
+/// certificates. One query serves one thread; clone it for another, or use [`Query::batch`].
 ///
 /// Two triangles are listed exactly when they count under the contact filter ([`ContactFilter`](crate::ContactFilter); by default
 /// when they share no vertex) and have a point in common at the positions given by
@@ -60,7 +60,7 @@ impl Query {
     /// time that the certificates took. Clones share the hulls.
     ///
     /// # Errors
-    /// When the certificates were computed for another model.
+    /// As [`Query::with_method`].
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         Self::with_method(model, certificates, Method::Certified)
     }
@@ -68,7 +68,8 @@ impl Query {
     /// Creates a query by the given method, with the hierarchy and the scope of the certificates.
     ///
     /// # Errors
-    /// When the certificates were computed for another model.
+    /// When the certificates were computed for another model ([`Certificates::check_model`]), or this thread's
+    /// arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
     pub fn with_method(
         model: &ReducedModel,
         certificates: &Certificates,
@@ -84,7 +85,9 @@ impl Query {
     /// [`Method::Certified`] is replaced by [`Method::BdTree`].
     ///
     /// # Errors
-    /// When the scope's metric or centre is of another rank than the model, or its groups are of another mesh.
+    /// When the scope's metric or centre is of another rank than the model or out of the range in which the proofs
+    /// hold, its groups are of another mesh, it includes folded neighbours ([`Error::FoldedNeighbours`]), or this
+    /// thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
     pub fn without_certificates(
         model: &ReducedModel,
         scope: impl Into<Arc<Scope>>,
@@ -158,11 +161,12 @@ impl Query {
         self
     }
 
-    /// Returns all colliding pairs at q, sorted: indices `i < j` of triangles in the order of the file.
+    /// Returns all colliding pairs at q, sorted: indices `i < j` of triangles in the order of the mesh.
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or q moves vertices beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when the query was cancelled.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when the query was cancelled; when this thread's arithmetic is not
+    /// that of IEEE 754 ([`Error::Arithmetic`]), which a query that the root's radius answers does not check.
     pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
         self.discrete_at_most(q, usize::MAX)
     }
@@ -211,7 +215,7 @@ impl Query {
     /// Finds at most `limit` colliding pairs at a configuration, after [`Self::forget`].
     ///
     /// # Errors
-    /// When the query was cancelled.
+    /// When the query was cancelled, or this thread's arithmetic is not that of IEEE 754.
     #[inline(always)]
     pub(super) fn find_pairs(&mut self, configuration: Configuration<'_>, limit: usize) -> Result<(), Error> {
         self.norm = configuration.norm;

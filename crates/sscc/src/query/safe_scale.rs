@@ -18,10 +18,11 @@ use crate::{Certificates, Error, Pair};
 
 impl Query {
     /// Returns a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]: for
-    /// certificates about q = 0, at every `t q`. It is at least the scale at which the root's radius is reached, close to the
-    /// largest possible one, and at most the scale at which radii are capped ([`Certificates::global_radius`]). Nodes and
-    /// node pairs are bounded by their certified radii, and triangle pairs beyond these by conservative advancement along
-    /// the line. The scale is 0 if the shape collides at the centre (ignored pairs apart), and infinite if no vertex moves.
+    /// certificates about q = 0, at every `t q`. If no pair collides at the centre, it is at least the scale at which
+    /// the root's radius is reached, rounded down. It is close to the largest possible one, and at most the scale at
+    /// which radii are capped ([`Certificates::global_radius`]). Nodes and node pairs are bounded by their certified
+    /// radii and local certificates, and triangle pairs beyond these by conservative advancement along the line. The
+    /// scale is 0 if the shape collides at the centre (ignored pairs apart), and infinite if no vertex moves.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///

@@ -10,9 +10,10 @@ pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
     smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
 }
 
-/// Returns a lower bound of the smallest eigenvalue of the symmetric part of a matrix, which is at most its smallest singular
-/// value. The eigenvalue is concave in the matrix, so a lower bound at two matrices holds between them. The matrix was
-/// multiplied by a rotation that is orthogonal up to rounding; the share of the norm covers this rounding.
+/// Returns a lower bound of the smallest eigenvalue of the symmetric part of a matrix. This eigenvalue is at most the
+/// smallest singular value of the matrix. The eigenvalue is concave in the matrix, so a lower bound at two matrices
+/// holds between them. Callers have multiplied the matrix by a rotation that is orthogonal up to rounding; the share of
+/// the norm covers this rounding.
 pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
     let least = smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12);
     // The symmetric part is rounded, too.

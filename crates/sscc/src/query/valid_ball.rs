@@ -7,7 +7,7 @@ use crate::limits;
 /// A ball about the centre in which every q is a configuration of the model.
 #[derive(Clone, Copy)]
 pub(super) struct ValidBall {
-    /// The radius of the ball, at most the root's radius; 0 if there is no such ball.
+    /// The radius of the ball, that of the root; 0 if there is no such ball.
     pub(super) radius: f64,
     /// An upper bound of the magnitude of every term of every position at any q in it.
     pub(super) reach: f64,

@@ -14,12 +14,14 @@ pub(super) struct WidenedMotion<'q> {
     margin: f64,
 }
 
-/// AABBs are widened by this share of the extent. Distances are computed within 2^-40 of the size of two triangles, and coordinates in
-/// the frame of a search are rounded to a few units of 2^-24 of the extent. Rounding to single precision moves AABBs by as much.
+/// AABBs are also widened by this share of the extent, for rounding. Distances are computed within 2^-40 of the size of
+/// two triangles, and coordinates in the frame of a search are rounded to a few units of 2^-24 of the extent. Rounding
+/// to single precision moves AABBs by as much.
 const ROUNDING_SHARE: f64 = 4.0 * f32::EPSILON as f64;
 
 impl<'q> WidenedMotion<'q> {
-    /// Widens each AABB by half of `distance`, but by no more than the extent, at which all AABBs overlap.
+    /// Widens each AABB by half of `distance`, but by no more than the extent, at which all AABBs overlap, and by
+    /// [`ROUNDING_SHARE`] of the extent.
     pub(super) fn new(motion: DeformedMotion<'q, 1>, layout: &Layout, distance: f64) -> Self {
         let whole = motion.overall_aabb(layout);
         let extent = (whole.upper - whole.lower).max_element();

@@ -9,8 +9,8 @@ use sscc_testing::{cases, threshold};
 use crate::common::pair_trees::{START, edited};
 use crate::common::{after, random_model, random_options};
 
-/// Right certificates of every scope have no violations. With radii 1.5 times as large violations are found wherever the
-/// right radii are tight.
+/// Right certificates of every scope have no violations. If radii are 1.5 times as large, audits find violations of
+/// nearly all models whose right radii are tight.
 #[test]
 fn wrong_radii_of_every_scope_are_found() {
     let (mut honest, mut lies, mut missed) = (0, 0, Vec::new());
@@ -38,7 +38,7 @@ fn wrong_radii_of_every_scope_are_found() {
     assert!(missed.len() * 20 <= lies, "{missed:?} of {lies}");
 }
 
-/// Exceptions are removed, added to the ignored pairs, or out of range.
+/// Exceptions are removed, added to the ignored pairs, or out of range, or the centre is NaN.
 #[test]
 fn forged_exceptions_are_refused_or_found() {
     let options = CertifyOptions::default().budget(16).epsilon(0.9).threads(1);
@@ -109,7 +109,7 @@ fn wrong_pair_trees_are_found() {
     }
 }
 
-/// The tree certifies all pairs up to its limit, in a model whose nodes have right radii.
+/// An empty tree certifies all pairs up to its limit. The radii of the nodes are right.
 #[test]
 fn an_empty_tree_that_claims_too_much_is_found() {
     let (mut lies, mut found) = (0, 0);

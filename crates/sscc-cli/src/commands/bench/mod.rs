@@ -48,7 +48,7 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Prints the names of all scenarios.
+/// Prints the name and a description of each scenario.
 fn list() -> anyhow::Result<Outcome> {
     let mut out = Output::new();
     for listed in Scenario::list()? {
@@ -58,7 +58,7 @@ fn list() -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Refuses flags that have no meaning for the scenario.
+/// Refuses flags that have no meaning for the scenario, and a plot that cannot be written.
 fn check_options(args: &Bench, scenario: Scenario) -> anyhow::Result<()> {
     let is_figure = matches!(scenario, Scenario::Figure(_));
     let has_steps = matches!(scenario, Scenario::Scenes { .. } | Scenario::Kinetic);

@@ -1,4 +1,4 @@
-//! Prints records as soon as they are measured, as JSON or as tables.
+//! Prints records as JSON or as tables.
 
 use anyhow::Result;
 use sscc_bench::{BenchPage, Record};

@@ -1,4 +1,4 @@
-//! Measures each scenario model by model, and prints each record.
+//! Measures each scenario, and prints its records as soon as they are complete; those of growth at the end.
 
 use anyhow::{Context, Result, ensure};
 use sscc_bench::{
@@ -91,7 +91,8 @@ fn kinetic(args: &Bench, setup: &Setup<'_>, printer: &mut Printer) -> Result<()>
     Ok(())
 }
 
-/// Measures scenes; then prints the rows of the paper's table beside ours.
+/// Measures scenes, and prints their records. As text, the rows of the paper's table (if there is one) follow beside
+/// ours.
 fn scenes_with_table(
     scenes: &[(&str, &str)],
     table: Option<PaperTable>,
@@ -120,7 +121,7 @@ fn scenes_with_table(
     }
 }
 
-/// Returns the models that `--only` selects; all without that flag.
+/// Returns the models that `--only` selects; all without that flag. No such model is an error.
 fn selected<'m, M>(args: &Bench, models: &'m [M], name: impl Fn(&M) -> &str) -> Result<Vec<&'m M>> {
     let only = args.only.as_deref();
     let selected: Vec<&M> =

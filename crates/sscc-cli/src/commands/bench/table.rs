@@ -15,7 +15,8 @@ pub struct Table<'a> {
     records: &'a [Record],
 }
 
-/// A row of the table: label, number of steps that collide or fail at the root, mean times.
+/// A row of the table: label, number of the steps that it describes, and the mean or median times of the methods in
+/// them.
 struct Row<'a> {
     label: String,
     steps: String,
@@ -124,7 +125,7 @@ fn block<'a>(title: &str, rows: impl Iterator<Item = Row<'a>>) -> Vec<String> {
     lines
 }
 
-/// Formats milliseconds with four digits.
+/// Formats milliseconds with four significant digits, or all digits before the point; with at most eight after it.
 fn shown(ms: Option<f64>) -> String {
     match ms {
         None => "-".into(),
@@ -148,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_and_ratios_have_four_digits() {
+    fn times_have_four_digits_and_ratios_two_decimals_below_100() {
         assert_eq!([123.456, 1.5, 0.000_05].map(|ms| shown(Some(ms))), ["123.5", "1.500", "0.00005000"]);
         assert_eq!([0.5, 99.0, 12_345.6].map(|x| times(Some(x))), ["0.50 x", "99.00 x", "12,346 x"]);
         assert_eq!((shown(None), times(None)), ("-".into(), "-".into()));

@@ -11,26 +11,26 @@ pub struct Answer<'a> {
     /// The mesh, if the run has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// The node, in an animation; with --against also if several nodes show the mesh.
+    /// The node, in an animation or a scene; with --against only if several nodes show the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node: Option<usize>,
-    /// The node of the other mesh, if several show it.
+    /// The node of the other mesh, in an answer about two nodes; with --against only if several nodes show that mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_node: Option<usize>,
     /// The name of the node, in a scene at rest and in an answer about two nodes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_name: Option<&'a str>,
-    /// The name of the other node, in the same cases.
+    /// The name of the other node, in an answer about two nodes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_node_name: Option<&'a str>,
     /// The names of both nodes, for the text.
     #[serde(skip)]
     pub names: [Option<&'a str>; 2],
-    /// The time (s), in an animation.
+    /// The time, in an animation (s) or a `.pvd` collection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     pub index: usize,
-    /// |z|; null without modes.
+    /// |z|, for continuous queries the larger one of start and end; null without modes.
     pub norm: Option<f64>,
     pub colliding: bool,
     pub count: usize,

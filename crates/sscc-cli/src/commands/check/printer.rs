@@ -84,8 +84,9 @@ impl Printer {
         if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Prints the summary of several answers, for a folder also with JSON. Returns whether any of them has a collision: the
-    /// exit code is that of the answers so far.
+    /// Prints the summary of several answers; of a folder and with `--only`, also of a single one. With JSON only a
+    /// folder has a summary, which is a note. Returns whether any answer so far is a finding, which decides the exit
+    /// code.
     pub fn finish(mut self) -> Result<bool> {
         let is_summarized =
             self.answers + self.summary.failures > 1 || self.only_colliding || self.has_folder;

@@ -6,8 +6,8 @@ use sscc_tasks::DetectionAnswer;
 
 use crate::output::{counted, grouped, note};
 
-/// Counts the listed pairs of triangles that have one or two corners at equal positions of different numbers. Triangles
-/// with three such corners are doubled, not neighbours.
+/// Counts the listed pairs of triangles that meet at one or two corners, which have equal positions, but different
+/// vertex numbers. Triangles with three such corners are doubled, not neighbours.
 #[derive(Default)]
 pub struct SoupHint {
     pairs: usize,

@@ -16,7 +16,8 @@ impl Answer<'_> {
         if self.complete { pairs } else { format!("at least {pairs}") }
     }
 
-    /// Returns the first pair: the earliest one with its time, or the first of the list, and the largest depth.
+    /// Returns the earliest pair with its time. Without times: the first pair of the list, with the largest depth of
+    /// all pairs.
     fn first(&self) -> Option<String> {
         let Some(times) = self.times else {
             let deepest = self.depths.iter().flatten().copied().reduce(f64::max);
@@ -58,7 +59,7 @@ impl Answer<'_> {
         format!("; shared volume {volume}, penetration depth {depth}")
     }
 
-    /// Returns the sentence about the mesh that has parts inside the other one.
+    /// Returns the clause about parts of a mesh inside the other one; empty if there are none.
     fn inside(&self) -> String {
         let Some(InsideAnswer { inside, components }) = &self.inside else { return String::new() };
         let part = |n: usize, [own, other]: [&str; 2]| match (inside[n], components[n]) {
@@ -112,7 +113,8 @@ fn named(node: Option<usize>, name: Option<&str>) -> Option<String> {
     node.map(|node| format!("node {node}{name}"))
 }
 
-/// Returns the word before the number of a query, which counts from 0. Files and nodes have names instead.
+/// Returns the word before the number of a query, which counts from 0. Files and comparisons of nodes have names
+/// instead.
 fn numbered(noun: &str) -> Option<&str> {
     match noun {
         "configuration" => Some("row"),
@@ -202,12 +204,12 @@ pub struct Summary {
     is_limited: bool,
     worst: Option<Worst>,
     microseconds: Vec<f64>,
-    /// The pairs that the free answers leave out, mesh by mesh.
+    /// The pairs that the answers leave out, added once for each mesh.
     left_out: LeftOut,
     last: Option<(Option<String>, Option<usize>)>,
 }
 
-/// The answer with the deepest pair, or the most pairs.
+/// The answer with the deepest pair, for a clearance with the nearest pair; among equal ones that with most pairs.
 struct Worst {
     /// The largest depth (0 without depths; for a clearance the negative smallest distance), and the number of pairs.
     size: (f64, usize),
@@ -252,7 +254,8 @@ impl Summary {
         }
     }
 
-    /// Returns an answer's place, its number of pairs and the largest depth.
+    /// Returns an answer's place, its number of pairs, and the largest depth or the smallest distance. `depth` is as in
+    /// [`Worst::size`].
     fn describe(&self, answer: &Answer<'_>, depth: f64) -> String {
         let number = numbered(self.noun).map(|label| format!("{label} {}", answer.index));
         let node = named(answer.node, answer.names[0]);

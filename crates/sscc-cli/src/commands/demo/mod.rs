@@ -72,7 +72,9 @@ pub fn run(args: &Demo) -> anyhow::Result<Outcome> {
         }
     } else if !args.json.json {
         out.line("")?;
-        out.line("Next: sscc demo --out DIR also writes these files, as input for the other commands.")?;
+        out.line(
+            "Next: sscc demo --out DIR also writes the spring's files, as input for the other commands.",
+        )?;
     }
     out.finish()?;
     ensure!(

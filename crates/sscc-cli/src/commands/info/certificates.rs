@@ -29,7 +29,7 @@ pub struct CertificatesInfo {
     /// The number of rings within which pairs do not count; absent without a clearance.
     #[serde(skip_serializing_if = "Option::is_none")]
     rings: Option<u32>,
-    /// 0 if all pairs of groups of triangles count.
+    /// Number of groups of triangles; 0 if all pairs of groups count.
     groups: usize,
     center: Vec<f64>,
     nodes: usize,
@@ -44,7 +44,7 @@ pub struct CertificatesInfo {
     levels: Vec<Level>,
 }
 
-/// The radii of one level of the hierarchy, the root's first.
+/// The radii of one level of the hierarchy. The levels are listed from the root.
 #[derive(Serialize)]
 struct Level {
     nodes: usize,

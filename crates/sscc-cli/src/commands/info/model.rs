@@ -39,7 +39,8 @@ pub struct Model {
     deviations: Option<Vec<f64>>,
     units: String,
     provenance: String,
-    /// The digest of certificates with default options.
+    /// The digest of certificates with default options, if no pairs collide at rest: such pairs are exceptions, and a
+    /// part of the digest.
     digest: String,
 }
 

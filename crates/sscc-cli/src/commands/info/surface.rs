@@ -14,7 +14,7 @@ pub struct Surface {
     used_vertices: usize,
     #[serde(flatten)]
     topology: Topology,
-    /// The mesh with one vertex for all at the same position; absent if all are at different positions.
+    /// The mesh with one vertex for all at the same position; absent if all used vertices are at different positions.
     #[serde(skip_serializing_if = "Option::is_none")]
     welded: Option<Welded>,
     /// Whether the format splits vertices, so that only the welded mesh has a meaningful topology.

@@ -15,7 +15,7 @@ use crate::load::in_file;
 use crate::output::{file_name, note, warn};
 use crate::progress::Bar;
 
-/// Makes the model. Errors name the source.
+/// Makes the model. Errors name the source, or the flags that the kind of modes excludes.
 pub fn make(args: &args::Modes) -> Result<NewModel> {
     let kind = match args.kind {
         args::ModesKind::Linear => ModesKind::Linear,
@@ -61,7 +61,7 @@ fn elastic(args: &args::Modes, kind: ModesKind) -> Result<NewModel> {
     Ok(elastic_model(kind, rank, source, &fixed, &name, &bar)?)
 }
 
-/// Whether polynomial modes need a solid, for its stiffness.
+/// Whether polynomial modes are those of a solid, which has a stiffness.
 fn needs_solid(args: &args::Modes) -> bool {
     args.solid.is_some() || args.resolution.is_some() || args.material.is_some() || is_solid(&args.source)
 }

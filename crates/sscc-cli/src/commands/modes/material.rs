@@ -12,7 +12,8 @@ const KEYS: [&str; 3] = ["youngs", "poisson", "density"];
 /// Parses the name of a material, or some of `youngs=1e6,poisson=0.4,density=1000`.
 ///
 /// # Errors
-/// When a name or a key is unknown (the error has the nearest one), a key is repeated, or a value is not a number.
+/// When a name or a key is unknown (the error suggests one that is near), a key has no number or is repeated, a value
+/// is not a number, or a name is not the only part.
 pub fn parse(typed: &str) -> Result<PartialMaterial> {
     if let Some(known) = MATERIALS.iter().find(|material| material.name == typed.trim()) {
         return Ok(known.elastic.into());
@@ -38,7 +39,8 @@ pub fn parse(typed: &str) -> Result<PartialMaterial> {
     Ok(material)
 }
 
-/// Returns the error for a key without a number, or for text that is neither a key nor the name of a material.
+/// Returns the error for a part without `=`: a key without a number, a name beside other parts, or text that is neither
+/// a key nor the name of a material.
 fn unknown_name(part: &str) -> Error {
     let part = part.trim();
     if KEYS.contains(&part) {
@@ -71,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn materials_have_names() {
+    fn materials_are_names_or_numbers_and_errors_list_both() {
         for known in MATERIALS {
             assert_eq!(parse(known.name).unwrap(), known.elastic.into());
         }

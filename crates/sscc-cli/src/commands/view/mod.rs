@@ -1,4 +1,4 @@
-//! `sscc view`: serves the page of a model, or the report in a folder.
+//! `sscc view`: serves the page of a model or writes it to a file, or serves the report in a folder.
 
 use std::fs;
 use std::path::Path;
@@ -159,7 +159,7 @@ fn bind(args: &View) -> Result<Server> {
     })
 }
 
-/// Prints the address of the page, and opens it in the browser.
+/// Prints the address of the page, and opens it in the browser unless `--no-open` is given.
 fn announce(args: &View, server: &Server) -> Result<()> {
     let address = server.address();
     let mut out = Output::new();

@@ -106,7 +106,7 @@ pub fn veg(solid: &Solid) -> String {
     text + "\n*MATERIAL soft\nENU, 1000, 1e8, 0.4\n\n*REGION\nallElements, soft\n"
 }
 
-/// Returns a solid of tetrahedra as Medit.
+/// Returns a solid of tetrahedra as a Medit file.
 pub fn medit(solid: &Solid) -> String {
     let mut text = format!("MeshVersionFormatted 1\nDimension 3\nVertices\n{}\n", solid.vertices().len());
     solid.vertices().iter().for_each(|p| writeln!(text, "{} {} {} 0", p.x, p.y, p.z).unwrap());

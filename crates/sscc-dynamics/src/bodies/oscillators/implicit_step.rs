@@ -14,14 +14,14 @@ use super::trial::Trial;
 /// Maximum number of iterations in one step.
 const MAX_ITERATIONS: usize = 60;
 
-/// An iteration that reduces the residual by a smaller factor converges slowly; the next iteration is Newton's, with the
-/// derivative at the trial.
+/// An iteration that leaves at least this share of the residual converges slowly. The next iteration is Newton's, with
+/// the derivative at the trial.
 const SLOW_CONVERGENCE: f64 = 0.5;
 
 /// After a step with more iterations, the derivative is computed again, at its q.
 const MAX_CHEAP_ITERATIONS: usize = 4;
 
-/// Minimum fraction of a Newton step in the line search.
+/// The line search halves a Newton step until its fraction is at most this.
 const MIN_STEP_SHARE: f64 = 1e-6;
 
 /// A step is solved when the residual is at most this share of the sum of its terms: far below the error of the method, which
@@ -88,7 +88,7 @@ impl ImplicitStep {
         solver
     }
 
-    /// Returns the q whose derivative was used last (r numbers).
+    /// Returns the q at which the derivative was computed last (r numbers).
     pub fn linearised_at(&self) -> &[f64] {
         &self.linearised_at
     }
@@ -158,8 +158,8 @@ impl ImplicitStep {
         next.residual_sum
     }
 
-    /// Chooses the first trial: the one with the smaller residual of a trial that keeps q, where the forces are known, and of
-    /// the trial that the given derivative yields from there.
+    /// Chooses the first trial: of two trials, the one with the smaller residual. One keeps q, where the forces are
+    /// known. The derivative yields the other one from it.
     fn begin(&self, start: Start<'_>, buffers: &mut NewmarkBuffers) {
         let NewmarkBuffers { evaluation, trial, next: still, acceleration, middle, broyden } = buffers;
         let h = self.linearised_for.1;
@@ -175,7 +175,7 @@ impl ImplicitStep {
         self.evaluate(trial, start, evaluation, middle);
         if trial.residual_sum > still.residual_sum {
             std::mem::swap(trial, still);
-            // The given acceleration may belong to another q.
+            // `start.undamped` may belong to another q.
             self.evaluate(trial, start, evaluation, middle);
         }
     }
@@ -197,7 +197,7 @@ impl ImplicitStep {
             self.energy.evaluate_forces(middle, evaluation);
             middle.copy_from_slice(evaluation.forces());
             self.energy.evaluate_forces(&trial.q, evaluation);
-            // Newmark's mean of the forces at both ends is Simpson's mean for this force at the end.
+            // With this force at the end, Newmark's mean of the forces at both ends is Simpson's mean.
             let known = start.g.iter().zip(start.undamped).map(|(g, e)| g - e);
             let forces = middle.iter().zip(evaluation.forces()).zip(known);
             trial.set_residual(forces.map(|((m, f), f0)| (4.0 * m + f - 2.0 * f0) / 3.0), start.g);

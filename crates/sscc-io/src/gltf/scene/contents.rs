@@ -96,7 +96,7 @@ pub struct AnimationContents {
 ///
 /// # Errors
 /// When the file cannot be read, is no glTF file of a supported version, or requires an extension that could change positions;
-/// when the node hierarchy is malformed.
+/// when the node hierarchy is malformed, or would take more than 64 MiB plus 100 times the size of the file.
 pub fn read_contents(path: &Path) -> Result<Contents, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, Some(folder)).map_err(|error| error.of(path))
@@ -105,7 +105,8 @@ pub fn read_contents(path: &Path) -> Result<Contents, IoError> {
 /// Returns the number of meshes of a glTF file, with or without triangles. Reads no geometry.
 ///
 /// # Errors
-/// When the file cannot be read, or is no glTF file of a supported version.
+/// When the file cannot be read, is no glTF file of a supported version, or requires an extension that could change
+/// positions.
 pub fn count_meshes(path: &Path) -> Result<usize, IoError> {
     let bytes = read_whole(path)?;
     let root = glb::split(&bytes).and_then(|chunks| Root::parse(chunks.json));

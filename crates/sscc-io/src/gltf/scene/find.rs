@@ -12,7 +12,8 @@ impl AnimatedScene {
     /// Returns the number of the animation of that name, else of that number (counted from 0).
     ///
     /// # Errors
-    /// When there is no such animation, several have that name, or it has no key frames; the message lists the animations.
+    /// When there is no such animation, or several have that name: the message lists the animations. When the animation
+    /// has no key frames or is malformed.
     pub fn find_animation(&self, name: &str) -> Result<usize, FormatError> {
         let named = |info: &&super::AnimationInfo| info.name.as_deref() == Some(name);
         let found = match self.infos.iter().filter(named).count() {

@@ -6,7 +6,7 @@ use super::influences::Influences;
 use super::skin::Skin;
 use crate::FormatError;
 
-/// Weights of joints that do not sum to 1, an error by the standard that files contain nevertheless.
+/// Use of weights of joints that do not sum to 1. The standard forbids them, but some files have them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SkinWeights {
     /// Divide the weights of each vertex by their sum, as three.js does. A vertex whose weights are all 0 follows its
@@ -70,7 +70,7 @@ fn skinned(
     let sum: f64 = influences.iter().map(|(_, weight)| weight).sum();
     let share = |weight: f64| match reading {
         SkinWeights::AsStored => weight,
-        // The only influence of a vertex without weights.
+        // A vertex whose weights are all 0 has one influence.
         SkinWeights::Normalized if sum == 0.0 => 1.0,
         SkinWeights::Normalized => weight / sum,
     };
@@ -108,7 +108,8 @@ pub(super) fn check_joints(
 pub(super) fn check_positions(positions: &[DVec3], place: &str) -> Result<(), FormatError> {
     match positions.iter().position(|x| !sscc::limits::contains(*x)) {
         Some(vertex) => {
-            let cause = format!("the position of vertex {vertex} (counted from 0) is not finite");
+            let cause =
+                format!("the position of vertex {vertex} (counted from 0) is not finite, or beyond 2^200");
             Err(FormatError::part(place, cause))
         }
         None => Ok(()),

@@ -46,9 +46,9 @@ pub struct PlacedMesh {
 /// lines are left out.
 ///
 /// # Errors
-/// When the file cannot be read or is malformed (as [`read`](crate::gltf::read)); when several meshes have triangles and
-/// none is named, or the named one has none; when the node hierarchy or the skin is malformed (as
-/// [`read_scene`](super::read_scene)).
+/// When the file cannot be read or is malformed (as [`read`](crate::gltf::read)); when no mesh has triangles, or
+/// several have and none is named; when the name fits no mesh or node, several, or a mesh without triangles; when the
+/// node hierarchy or the skin is malformed (as [`read_scene`](super::read_scene)).
 pub fn read_placed_mesh(path: &Path, name: Option<&str>) -> Result<PlacedMesh, IoError> {
     read_in(path, |root, placed| choose_shown(root, placed, name))
 }

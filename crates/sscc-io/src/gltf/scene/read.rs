@@ -23,16 +23,16 @@ use crate::gltf::select::has_triangles;
 use crate::gltf::triangles::{morph_targets, with_triangles};
 use crate::{FormatError, IoError, read_whole};
 
-/// Reads all nodes with a mesh, skins and animations of a `.gltf` or `.glb` file. Buffers may be in the file, or in files
-/// in its folder or below; symbolic links are followed.
+/// Reads the nodes with a mesh, the skins and the animations of a glTF file. Buffers may be in the file, or in files in
+/// its folder or below; symbolic links are followed.
 ///
 /// # Errors
 /// When the file cannot be read or is malformed, has a version other than 2.x, geometry that exists only compressed, or
 /// requires an extension that could change positions; when a buffer is outside of the folder; when the node hierarchy has
 /// a cycle or a node with two parents; when joints, nodes, skins or meshes do not exist; when weights are negative; when a
-/// number is not finite; when the numbers would take more than 100 times the files' size and 64 MiB. An animation that is
-/// malformed (no key frames, key frames out of order, another number of values, nodes or samplers that do not exist) is an
-/// error when it is evaluated.
+/// number is not finite or beyond 2^200; when the numbers would take more than 64 MiB plus 100 times the size of the
+/// files. An animation that is malformed (no key frames, key frames out of order, another number of values, nodes or
+/// samplers that do not exist) is an error when it is evaluated.
 pub fn read_scene(path: &Path) -> Result<AnimatedScene, IoError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_in(&read_whole(path)?, Some(folder)).map_err(|error| error.of(path))

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_and_lines() {
+    fn steps_hold_the_last_key_frame_and_lines_interpolate() {
         let step = sampler(Interpolation::Step, &[1.0, 2.0, 4.0], 1, &[10.0, 20.0, 40.0]);
         let line = sampler(Interpolation::Linear, &[1.0, 2.0, 4.0], 1, &[10.0, 20.0, 40.0]);
         for (time, held, between) in [

@@ -56,11 +56,14 @@ impl Shape {
         let JoinedPrimitives { positions: rest, faces, displacements, .. } = joined;
         let refused = |cause: String| FormatError::part(format!("meshes[{number}]"), cause);
         if let Some(vertex) = rest.iter().position(|p| !limits::contains(*p)) {
-            return Err(refused(format!("the position of vertex {vertex} (counted from 0) is not finite")));
+            let cause =
+                format!("the position of vertex {vertex} (counted from 0) is not finite, or beyond 2^200");
+            return Err(refused(cause));
         }
         if let Some(entry) = displacements.iter().position(|p| !limits::contains(*p)) {
+            let (target, vertex) = (entry % rank, entry / rank);
             let cause =
-                format!("target {} of vertex {} (counted from 0) is not finite", entry % rank, entry / rank);
+                format!("target {target} of vertex {vertex} (counted from 0) is not finite, or beyond 2^200");
             return Err(refused(cause));
         }
         if let Some(influences) = &mut influences {

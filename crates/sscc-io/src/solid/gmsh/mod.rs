@@ -1,4 +1,4 @@
-//! Reader for gmsh's `.msh` files, versions 2.2 and 4.1, text and binary.
+//! Reader for gmsh's `.msh` files, versions 2.0 to 2.2 and 4.1, text and binary.
 //!
 //! The module has its own parser: the crate `mshio` panics on a count of 0, reads version 4.1 only, has no parametric
 //! nodes and no names of groups, and gives no places of errors.
@@ -43,7 +43,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
 /// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.
 ///
 /// # Errors
-/// As [`parse`]; when such a file has faces of higher order.
+/// As [`parse`]; when such a file has faces of higher order other than triangles of 6 nodes.
 pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
     let mut words = Words::new(bytes, false)?;
     let (version, mut numbers) = header(&mut words)?;

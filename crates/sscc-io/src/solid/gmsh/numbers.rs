@@ -28,7 +28,7 @@ impl Numbers<'_> {
         Ok(bytes)
     }
 
-    /// Reads an integer of 32 bits.
+    /// Reads an integer, of 32 bits in a binary file.
     pub fn integer(&mut self, what: &str) -> Result<i64, FormatError> {
         if self.words.binary {
             return Ok(i32::from_le_bytes(self.bytes(what)?).into());

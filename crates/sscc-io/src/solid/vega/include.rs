@@ -36,8 +36,8 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
 /// Reads a `.veg` file and the files that it includes.
 ///
 /// # Errors
-/// As [`parse`]; also when an included file cannot be read, is not in the folder of the file or below, is included twice,
-/// or there are too many. Errors in an included file name both files.
+/// As [`parse`], except for `*INCLUDE`; also when an included file cannot be read, is not in the folder of the file or
+/// below, is included twice, or there are too many. Errors in an included file name both files.
 pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let mut reader = Reader { main: path, seen: Vec::new(), parser: Parser::default() };
     reader.feed(&read_whole(path)?, None, 0)?;

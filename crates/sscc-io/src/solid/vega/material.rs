@@ -25,16 +25,16 @@ pub(super) fn parse_material(name: String, text: &str) -> Result<NamedMaterial, 
     if let Some((e, nu)) = stiffness
         && !(e > 0.0 && e.is_finite() && nu > -1.0 && nu < 0.5)
     {
-        return Err(format!("E = {e}, nu = {nu}: E must be above 0, nu above -1 and below 0.5"));
+        return Err(format!("E = {e}, nu = {nu}: E must be above 0 and finite, nu above -1 and below 0.5"));
     }
     let (youngs_modulus, poisson_ratio) = stiffness.unzip();
     let stated = PartialMaterial { density: Some(density), youngs_modulus, poisson_ratio };
     Ok(NamedMaterial { name, stated, unsupported: stiffness.is_none().then(|| cut(kind, 40)) })
 }
 
-/// Returns Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is `mu01 (I2' - 3) + mu10 (I1' -
-/// 3) + v1 (J - 1)^2` with the invariants I' of a volume-preserving part, so that its shear modulus is
-/// `2 (mu01 + mu10)` and its bulk modulus `2 v1`.
+/// Returns Young's modulus and Poisson's ratio of a Mooney-Rivlin material at rest. Its energy is
+/// `mu01 (I2' - 3) + mu10 (I1' - 3) + v1 (J - 1)^2` with the invariants I' of a volume-preserving part, so that its
+/// shear modulus is `2 (mu01 + mu10)` and its bulk modulus `2 v1`.
 fn at_rest(mu01: f64, mu10: f64, v1: f64) -> Result<(f64, f64), String> {
     let (shear, bulk) = (2.0 * (mu01 + mu10), 2.0 * v1);
     if shear <= 0.0 || bulk <= 0.0 {
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn all_types() {
+    fn materials_of_all_types_are_read() {
         let material = parse_material("a".into(), "ENU, 1000, 1e9 ,0.45").unwrap();
         let stated =
             PartialMaterial { density: Some(1000.0), youngs_modulus: Some(1e9), poisson_ratio: Some(0.45) };

@@ -26,7 +26,7 @@ struct Region {
     place: Place,
 }
 
-/// Removes blanks from a name.
+/// Removes all white space from a name.
 pub(super) fn compact(name: &str) -> String {
     name.chars().filter(|c| !c.is_ascii_whitespace()).collect()
 }

@@ -87,7 +87,7 @@ fn errors_name_the_line() {
     assert_eq!(with("2 2,3,4,5", "2 2 3 4"), "line 14: an element has 4 corners, this one has 3");
     assert_eq!(
         with("0.45", "0.5"),
-        "line 16: E = 1000000, nu = 0.5: E must be above 0, nu above -1 and below 0.5"
+        "line 16: E = 1000000, nu = 0.5: E must be above 0 and finite, nu above -1 and below 0.5"
     );
     assert_eq!(with("L hard", "L soft rubber"), "line 17: the material 'softrubber' is repeated");
     assert_eq!(with("\n2,\n", "\n3\n"), "line 20: there is no element 3");

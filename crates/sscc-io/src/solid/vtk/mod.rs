@@ -39,8 +39,8 @@ pub fn is_vtk_name(path: &Path) -> bool {
 /// Parses a grid at rest: its points as they are, without a displacement.
 ///
 /// # Errors
-/// When the file is malformed, its arrays do not have the lengths that it states, a cell is neither a face nor a tetrahedron of
-/// 4 or 10 nodes nor a hexahedron of 8; else as [`read_volume_mesh`](super::read_volume_mesh).
+/// When the file is malformed, its arrays do not have the lengths that it states, a solid cell is neither a tetrahedron
+/// of 4 or 10 nodes nor a hexahedron of 8; else as [`read_volume_mesh`](super::read_volume_mesh).
 pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
     parse_any(bytes)?.into_volume()
 }
@@ -48,7 +48,7 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
 /// As [`parse`], but for a file without tetrahedra and hexahedra returns the surface of its faces.
 ///
 /// # Errors
-/// As [`parse`].
+/// As [`parse`], but such a file needs no elements; when it has faces of higher order other than triangles of 6 nodes.
 pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
     parse_grid(bytes, &Displacement::None)?.into_volume_or_surface()
 }

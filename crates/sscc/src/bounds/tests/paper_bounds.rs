@@ -32,8 +32,8 @@ impl OraclePair {
     /// `Q` over all vertex-face and edge-edge pairs (Eqs. 7 to 9).
     ///
     /// A small multiple of the identity is added to the Gram matrix of Eq. 9: modes that do not reach all
-    /// directions give a very large value, never more than the true one. 0 does **not** follow for triangles
-    /// that pierce each other at rest: contacts of features alone do not show it.
+    /// directions give a very large value, never more than the true one. The result is **not** always 0 for triangles
+    /// that pierce each other at rest: contacts of features alone do not show this.
     pub(super) fn constant_mode_minimum(&self) -> f64 {
         let g = gram(&difference(&self.mean(1), &self.mean(0)));
         let trace = trace(&g);
@@ -150,8 +150,8 @@ fn enclosing_ball(p: [DVec3; 3]) -> (DVec3, f64) {
     (best, radius(best) * (1.0 + 1e-14))
 }
 
-/// A BD-tree box (James and Pai 2004): its rest interval and, for each mode, the rates at which its centre moves and its half
-/// extents grow.
+/// A BD-tree AABB (James and Pai 2004): its rest interval and, for each mode, the rates at which its centre moves and
+/// its half extents grow.
 struct MovingBox {
     center: DVec3,
     half: DVec3,
@@ -169,7 +169,7 @@ fn moving_box(p: &[DVec3], a: &[&[DVec3]]) -> MovingBox {
     MovingBox { center, half, rates }
 }
 
-/// Returns for each axis the gap of two BD-tree boxes and the rate at which each mode can close it.
+/// Returns for each axis the gap of two BD-tree AABBs and the rate at which each mode can close it.
 fn box_gaps(x: &MovingBox, y: &MovingBox) -> [(f64, Vec<f64>); 3] {
     std::array::from_fn(|c| {
         let gap = (y.center - x.center)[c].abs() - x.half[c] - y.half[c];

@@ -30,7 +30,7 @@ pub(super) fn difference(a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// Returns the singular values of a 3 x r matrix given by columns, greatest first: always three (Jacobi rotations of
-/// its rows, which keep small values exact to their own size).
+/// its rows, which keep the relative precision of small values).
 pub(super) fn singular_values(b: &[DVec3]) -> [f64; 3] {
     let mut rows: [Vec<f64>; 3] = std::array::from_fn(|c| b.iter().map(|b| b[c]).collect());
     for _ in 0..30 {
@@ -78,8 +78,8 @@ impl OraclePair {
         intersect_triangle_triangle(&[0, 1, 2].map(at), &[3, 4, 5].map(at))
     }
 
-    /// Searches the smallest `|z|` at which the two triangles meet. The result is an upper bound: at that z two points
-    /// coincide up to rounding, or the exact test finds a collision.
+    /// Searches for the smallest `|z|` at which the two triangles meet. The result is an upper bound: at that z two
+    /// points coincide up to rounding, or the exact test finds a collision.
     pub(super) fn true_minimum(&self, effort: usize, random: &mut Random) -> Option<f64> {
         let zero = vec![0.0; self.rank()];
         if self.collides(&zero) {

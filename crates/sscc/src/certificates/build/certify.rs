@@ -15,10 +15,15 @@ use crate::{Error, Progress, ReducedModel};
 
 impl Certificates {
     /// Computes the hierarchy and all certificates of a model: every `R_n`, `R_nm` for the children of the root (paper,
-    /// section 5.2), and the pair tree within [`CertifyOptions::budget`].
+    /// section 5.2), the pair tree within [`CertifyOptions::budget`], and local certificates within
+    /// [`CertifyOptions::local_budget`].
     ///
     /// # Errors
-    /// When an option is out of range, the metric does not fit the model, or `progress` cancels.
+    /// - When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
+    /// - When an option is out of range, or metric, centre or contact filter do not fit the model.
+    /// - When too many pairs collide at rest, or collide or are nearer than the clearance at the centre, when too many
+    ///   are to be ignored, or when too many are within the rings of the clearance.
+    /// - When `progress` cancels.
     pub fn compute(
         model: &ReducedModel,
         options: &CertifyOptions,

@@ -29,7 +29,7 @@ pub(crate) trait Executor {
     /// Returns the results of a stage, in the order of its tasks. None if they would add too many node pairs.
     ///
     /// # Errors
-    /// When cancelled, or when other processes fail.
+    /// When cancelled; when a callback that runs jobs fails, or a result does not belong to its job.
     fn run(&mut self, stage: &Stage<'_>) -> Result<Option<Vec<TaskResult>>, Error>;
 }
 

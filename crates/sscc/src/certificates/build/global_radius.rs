@@ -15,8 +15,8 @@ pub fn is_within_reach(certificates: &Certificates, model: &ReducedModel, reach:
     certificates.global_radius() <= farthest_radius(global_radius, reach)
 }
 
-/// Returns the `|z|` along the first mode that moves any vertex at which some vertex has moved by half the diagonal of the AABB
-/// at the centre; infinite if no mode moves a vertex. Only vertices of faces count.
+/// Returns the `|z|` at which the first mode that moves any vertex has moved some vertex by half the diagonal of the
+/// AABB at the centre; infinite if no mode moves a vertex, or the diagonal is 0. Only vertices of faces count.
 ///
 /// It is rounded down to single precision, if it is in that range, so that the pair tree can store every radius up to it.
 pub(super) fn global_radius(model: &ReducedModel, metric: &Metric, center: &[f64]) -> f64 {

@@ -72,8 +72,8 @@ impl<'a> LeafBounds<'a> {
         }
     }
 
-    /// Refines the pair with the smallest bound until the smallest bound belongs to a refined pair. Lowers
-    /// `target.upper`, and returns the triangle pair that lowered it last, if any.
+    /// Refines the pair with the smallest bound until the smallest bound belongs to a refined pair or is sufficient.
+    /// Lowers `target.upper`, and returns the triangle pair that lowered it last, if any.
     pub(super) fn refine(
         &mut self,
         refiner: &mut PairRefiner<'_>,

@@ -111,7 +111,7 @@ impl LimitSchedule {
     }
 
     /// Estimates the limit that just uses up the budget if the number of pairs grows as a power of the limit. None if the budget
-    /// is used up.
+    /// is used up, or the last limit was the largest one to try.
     fn estimate(&self, count_below: impl Fn(f64) -> usize) -> Option<f64> {
         let count_below = |radius: f64| count_below(radius).max(1) as f64;
         let (stored, at_half) = (count_below(self.complete_below), count_below(self.complete_below / 2.0));

@@ -1,9 +1,10 @@
 //! Builds the pair tree: chooses its node pairs and computes their radii (beyond the paper's section 5.2).
 //!
 //! The BVTT is built in rounds with increasing limits. A pair with a lower bound below the limit is split; a pair of
-//! buckets gets a radius, without subdivision. The result for a pair depends on the model alone, not on the order of
-//! threads, as it would with one shared priority queue. The rounds end when the budget is used up. All pairs below the
-//! last limit are known. Some of their radii are then searched again (`fine_radii.rs`).
+//! buckets gets a radius, without subdivision. The result for a pair depends on the model and the options alone; with
+//! one shared priority queue it would depend on the order of threads. The rounds end when the budget is used up, or at
+//! the farthest radius. All pairs below the last limit are known. Some of their radii are then searched again
+//! (`fine_radii.rs`).
 //!
 //! The outer round adds the pairs beyond the last limit, up to a larger one, with bounds that take less time and may be
 //! smaller. Without them queries beyond the last limit would open every two buckets whose AABBs overlap

@@ -40,7 +40,7 @@ impl Preparation {
     /// Prepares a model on the threads of the current pool.
     ///
     /// # Errors
-    /// When an option is out of range, metric, centre or groups do not fit the model, or `progress` cancels.
+    /// Those of [`Certificates::compute`](crate::Certificates::compute).
     pub(crate) fn new(
         model: &ReducedModel,
         options: &CertifyOptions,
@@ -140,8 +140,8 @@ impl Preparation {
     }
 }
 
-/// Pairs farther apart than the clearance by less than this share of it are exceptions, too. Parts are often designed exactly as
-/// far apart as required, and their radius would be 0.
+/// Pairs nearer than this many times the clearance are exceptions, too. Parts are often designed exactly as far apart
+/// as required, and their radius would be 0.
 const NEARLY: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// Returns the pairs that are nearer than a clearance at the centre, or only slightly farther apart, sorted.
@@ -153,7 +153,7 @@ fn near_at_center(
     progress: &dyn Progress,
 ) -> Result<Vec<Pair>, Error> {
     let distance = clearance.distance() * NEARLY;
-    // If that is not finite, no two triangles are that far apart.
+    // If this distance is not finite, the clearance is used: no two triangles are so far apart.
     let nearly = Clearance::new(distance).unwrap_or(*clearance).beyond_rings(clearance.rings());
     near_pairs_of_model(model, filter, center, &nearly, progress)
 }

@@ -101,7 +101,8 @@ impl<'a> RadiusSearch<'a> {
     }
 
     /// Searches the radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is that of
-    /// the pair tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`]. None if cancelled.
+    /// the pair tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`], or that of the options if it
+    /// is larger. None if cancelled.
     pub(crate) fn between_without_subdivision(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::new(cap, Precision::Full));
         self.target =
@@ -151,7 +152,8 @@ impl<'a> RadiusSearch<'a> {
         self.closest = None;
     }
 
-    /// Refines the candidate with the smallest lower bound until none can lower the result by more than epsilon.
+    /// Refines the candidate with the smallest lower bound until none can lower the result by more than epsilon, or the
+    /// candidate is a triangle pair and no more of these may be subdivided. None if cancelled.
     fn run(&mut self) -> Option<RadiusBound> {
         let radius = loop {
             let Some(MinHeapEntry { key: lower, order: candidate, .. }) = self.queue.pop() else {

@@ -8,12 +8,13 @@
 /// The precision with which a radius is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Precision {
-    /// Searches to [`COARSE_EPSILON`], as far as [`COARSE_SUBDIVISIONS`] suffice.
+    /// Searches to [`COARSE_EPSILON`], or the tolerance of the options if that is larger, as far as
+    /// [`COARSE_SUBDIVISIONS`] suffice.
     Coarse,
     /// Searches to [`FINE_EPSILON`], or the tolerance of the options if that is smaller, as far as [`FINE_SUBDIVISIONS`] and
     /// [`FINE_TRIANGLE_PAIRS`] suffice.
     Fine,
-    /// Searches to the tolerance of the options.
+    /// Searches to the tolerance of the options, as far as [`FULL_SUBDIVISIONS`] suffice.
     Full,
 }
 
@@ -30,7 +31,7 @@ pub(super) const FINE_EPSILON: f64 = 0.03;
 pub(super) const FINE_SUBDIVISIONS: usize = 8;
 
 /// The maximum number of triangle pairs that a fine search subdivides. In a search within a bucket the maximum holds for each
-/// node below it. Without it one search in twenty takes most of the time.
+/// node below it. Without this maximum one search in twenty takes most of the time.
 pub(super) const FINE_TRIANGLE_PAIRS: usize = 32;
 
 /// The maximum number of subdivisions of one triangle pair in full searches. When they are used up the search takes the
@@ -41,10 +42,10 @@ pub(super) const FULL_SUBDIVISIONS: usize = 500;
 /// little.
 pub(super) const PAIR_TREE_EPSILON: f64 = 0.25;
 
-/// Returns the radius up to which coarse searches go: `R_global`, lowered by the error that they may have anyway. Most nodes
-/// hardly ever collide, and a proof of this up to `R_global` itself gains nothing.
-pub(crate) fn coarse_cap(global_radius: f64, epsilon: f64) -> f64 {
-    global_radius * (1.0 - COARSE_EPSILON.max(epsilon))
+/// Returns the radius up to which coarse searches go: the cap of radii, lowered by the error that these searches may
+/// have anyway. Most nodes hardly ever collide, and a proof of this up to the cap itself gains nothing.
+pub(crate) fn coarse_cap(cap: f64, epsilon: f64) -> f64 {
+    cap * (1.0 - COARSE_EPSILON.max(epsilon))
 }
 
 /// The cap and the precision of a search for a radius.

@@ -64,7 +64,8 @@ pub(super) fn split(
             None => {
                 let cap = (BUCKET_LOOKAHEAD * limit).min(preparation.farthest_in_round(limit));
                 let radius = search.between_without_subdivision(nodes, cap)?.radius;
-                // A pair whose search ends at the global radius is searched again in rounds beyond it.
+                // A pair whose search ends at a smaller cap than the farthest radius is searched again in a later
+                // round.
                 if radius < cap || cap == preparation.farthest {
                     pair.set_state(PairState::Bounded);
                 }

@@ -20,7 +20,8 @@ use glam::DVec3;
 /// Maximum number of vertices to which the ellipsoid is fitted.
 const VERTEX_BLOCKS: usize = 16;
 
-/// Maximum number of parts of the node to whose tightest pairs the ellipsoid is fitted.
+/// Maximum number of parts into which the list of tight pairs is cut. The ellipsoid is fitted to the pair of the
+/// largest ratio in each part, and to half as many pairs of the largest ratios in all.
 const TIGHT_BLOCKS: usize = 48;
 
 /// Certificates with numbers of at least this prove nothing.
@@ -43,8 +44,9 @@ struct LocalCertificate {
 }
 
 /// Computes the certificates of nodes down to buckets about the centre, on the threads of the current pool. Those of fewest modes
-/// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes` is 0, the
-/// shape has no size, or pairs that share an edge count.
+/// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes`
+/// is 0, [`PatchModel::new`] returns None, pairs that share an edge count, or the certificates kept would cover too few
+/// triangles ([`LEAST_PROVEN_SHARE`]).
 pub(crate) fn compute_local_certificates(
     model: &ReducedModel,
     hierarchy: &Hierarchy,
@@ -146,7 +148,8 @@ impl Scratch {
 }
 
 impl Builder<'_> {
-    /// Computes the certificate of a node. None if it would prove nothing.
+    /// Computes the certificate of a node. None if more than [`MOST_MODES`] modes move its patch, or the certificate
+    /// would prove nothing.
     fn certify(&self, n: u32, scratch: &mut Scratch) -> Option<LocalCertificate> {
         let Scratch { instructions, patch, search, images } = scratch;
         let around = self.touching.around(n);
@@ -200,8 +203,8 @@ impl Builder<'_> {
         })
     }
 
-    /// Returns a direction across a patch that is nearly flat, and the largest height of one corner above another along it,
-    /// divided by their gap. Returns zero and infinity for other patches.
+    /// Returns a direction across a patch that is nearly flat, and the largest quotient of the height of one corner
+    /// above another along this direction and of their gap. Returns zero and infinity for other patches.
     fn flatness(&self, search: &mut StrainSearch, patch: &Patch, parts: &[u32]) -> (DVec3, f32) {
         let Some(across) = patch.across() else { return (DVec3::ZERO, f32::INFINITY) };
         let highest = patch.heights(across, &mut search.images);
@@ -212,8 +215,8 @@ impl Builder<'_> {
         (across, infinite_for_nan(others.fold(within, larger)))
     }
 
-    /// Adds the ratios of the patch's node with a part and the nodes below it that share a vertex with that node, down to buckets.
-    /// Returns that of the part.
+    /// Adds the ratios of the patch's node with a part and with the nodes below the part, down to buckets, as far as
+    /// they share a vertex with the patch's node. Returns the ratio with the part.
     fn list(
         &self,
         search: &mut StrainSearch,

@@ -12,13 +12,14 @@ use glam::DVec3;
 /// Leaves have a table if the gap of their spheres is at most this share of the sum of the radii.
 const NEAR: f64 = 0.3;
 
-/// A direction is accepted without a search for a better one if its gap is this share of the distance of the centroids.
+/// The direction between the centroids is accepted without a search for a better one if its smallest gap is more than
+/// this share of the distance of the centroids.
 const WIDE: f64 = 0.6;
 
 /// Covers the rounding of gaps in the unit of half the shape's size: coordinates are at most about 1.
 const GAP_ROUNDING: f64 = 1e-14;
 
-/// A smaller gap proves nothing.
+/// A gap of at most this proves nothing.
 const SMALLEST: f64 = 1e-9;
 
 /// The smallest gaps between the vertices of two near leaves.

@@ -38,7 +38,7 @@
 //! with it. It proves nothing about two other nodes of the patch. Pairs that do not count and exceptions are in none of the
 //! sets.
 
-/// Local certificates of the nodes of a hierarchy, as far as their memory goes.
+/// Local certificates of the nodes of a hierarchy, as many as their budget allows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LocalCertificates {
     /// The node of each certificate, ascending.
@@ -70,7 +70,7 @@ pub struct LocalBounds {
     pub ratio: f64,
     /// `rho`: the error of residuals and of their images.
     pub per_factor: f64,
-    /// `1 / s`
+    /// `1 / s`, where s counts as at most 1, rounded up.
     pub per_error: f64,
     /// The largest Frobenius norm of a mode's gradient, rounded up: the error of F in single precision is within a multiple of
     /// it.
@@ -98,7 +98,7 @@ impl Default for LocalBounds {
     }
 }
 
-/// A patch that more modes than this move has no certificate.
+/// A patch has no certificate if more modes than this move it.
 pub(crate) const MOST_MODES: usize = 200;
 
 /// Certificates that cover less than this share of a shape take more time than they save (docs/notes/local-certificates.md).

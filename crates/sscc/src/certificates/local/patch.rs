@@ -19,7 +19,7 @@ const INVERSE_STEPS: usize = 8;
 /// The vertices of a patch, the affine map of their modes, and its residuals. Owns its memory.
 pub(super) struct Patch {
     instructions: InstructionSet,
-    /// For each vertex of the mesh its number in the patch.
+    /// For each vertex of the mesh its number in the patch; `u32::MAX` for the others.
     pub(super) numbers: Vec<u32>,
     pub(super) vertices: Vec<u32>,
     pub(super) modes: Vec<u32>,
@@ -115,7 +115,7 @@ impl Patch {
         self.offsets.iter().map(|d| d.length()).fold(0.0, larger_or_nan)
     }
 
-    /// Returns a unit vector across the patch, if it is nearly flat.
+    /// Returns a unit vector across the patch. None if the patch is not nearly flat.
     pub(super) fn across(&self) -> Option<DVec3> {
         let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
         let mean = self.offsets.iter().sum::<DVec3>() / self.offsets.len() as f64;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::ReducedModel;
 use crate::geometry::Aabb;
 
-/// Positions in the unit of half the shape's size, about its centre, and the sizes of modes.
+/// Positions in the unit of half the shape's size, about the middle of the shape's AABB, and the sizes of modes.
 pub(crate) struct PatchModel<'m> {
     model: &'m ReducedModel,
     pub(super) positions: Vec<DVec3>,
@@ -25,8 +25,9 @@ pub(crate) struct FactorScales {
 }
 
 impl FactorScales {
-    /// Computes the scales. None if a number is out of the range of the inequality: the shape has no size, or a size is not a
-    /// normal number.
+    /// Computes the scales. None if a number is out of the range of the inequality: the centre is no configuration of
+    /// the model, the shape has no size, the scale or its inverse is not a normal number, or the size of a mode is
+    /// neither 0 nor normal.
     pub(crate) fn new(model: &ReducedModel, center: &[f64]) -> Option<Self> {
         Self::with_middle(model, center).map(|(scales, _)| scales)
     }

@@ -109,7 +109,8 @@ impl StrainSearch {
         largest
     }
 
-    /// Returns the ratio of all pairs within a part, or infinity if none was found; not below `floor`.
+    /// Returns an upper bound of the ratio of all pairs within a part, not below `floor`; infinite or NaN if none was
+    /// found.
     pub(super) fn within(&mut self, gaps: &CornerGaps<'_>, part: u32, floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: (part, part), floor })
@@ -144,7 +145,7 @@ impl StrainSearch {
         &self.vertices[start..end]
     }
 
-    /// Compares the ratio of two vertices with the largest one.
+    /// Raises `largest` to the ratio of two vertices, if that is larger. `x` is the image of the first one.
     #[inline(always)]
     fn compare(&self, x: &[f32], j: u32, gap: f32, largest: &mut f32) {
         let y = self.image(j);

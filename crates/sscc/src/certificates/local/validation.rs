@@ -1,7 +1,7 @@
 //! Validation of local certificates that were read from a file, against their hierarchy.
 //!
-//! This checks every index that a query takes from them, and that each number is one that a computation can have. It does not
-//! check whether the numbers are proofs: the file's hash shows that no byte was changed.
+//! This checks every index that a query takes from them, and that each number is in the range of computed ones. It does
+//! not check whether the numbers are proofs: the file's hash shows that no byte was changed.
 
 use std::ops::Range;
 
@@ -68,7 +68,7 @@ impl LocalCertificates {
             let is_direction = across.iter().map(|x| x * x).sum::<f64>() <= 1.0 + 1e-12;
             let are_ratios = [ratio, flatness].iter().all(|x| **x >= 0.0);
             if !(are_ratios && is_finite && is_direction) {
-                return Err("a bound is negative or not a number");
+                return Err("a bound is out of range");
             }
         }
         if self.list_ratios.iter().any(|ratio| ratio.is_nan() || *ratio < 0.0) {

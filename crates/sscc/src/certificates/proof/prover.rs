@@ -1,7 +1,7 @@
 //! Finds the witnesses of certificates.
 //!
-//! The prover computes the bounds that gave a radius again: nodes are split, and triangles subdivided, until each part has a
-//! bound of at least the radius. The direction or the affine map of that bound is the witness.
+//! The prover repeats the computation of the bounds behind a radius: it splits nodes and subdivides triangles until
+//! each part has a bound of at least the radius. The direction or the affine map of that bound is the witness.
 
 use super::encoding::{
     DIRECTION, Header, NOTHING_COUNTS, SPLIT_FIRST, SPLIT_SECOND, TRIANGLES, put_header, put_map, put_vector,
@@ -19,8 +19,8 @@ use crate::{Error, Progress, ReducedModel, parallel};
 /// The number of entries that a thread takes at once.
 const GRAIN: usize = 4;
 
-/// Proves certificates: finds witnesses that each entry (a node pair and the radius below which queries skip it) is free. The
-/// entries together contain all pairs of triangles.
+/// Proves certificates: finds witnesses that each entry (a node pair, or a leaf with itself, and the radius below which
+/// queries skip it) is free. The entries together contain all pairs of triangles.
 pub struct Prover {
     certificates: Certificates,
     scaled: ScaledModel,
@@ -87,7 +87,8 @@ impl Prover {
     /// Finds the witnesses of some entries, given by their ascending numbers, and returns the bytes.
     ///
     /// # Errors
-    /// If no witness is found for an entry, there is no entry of a number, or `progress` cancels.
+    /// If no witness is found for an entry, its witnesses take 2^32 bytes or more, there is no entry of a number, or
+    /// `progress` cancels.
     pub fn prove(
         &self,
         numbers: &[usize],

@@ -1,6 +1,7 @@
 //! Reads numbers from untrusted bytes.
 
-/// Reads little-endian numbers one after the other. Each method returns None if the bytes end, or the number is out of range.
+/// Reads little-endian numbers one after the other. Each method that reads a number returns None if the bytes end, or
+/// the number is out of range.
 pub(super) struct ByteReader<'a>(&'a [u8]);
 
 impl<'a> ByteReader<'a> {

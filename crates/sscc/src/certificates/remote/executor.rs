@@ -17,7 +17,8 @@ pub type RunJobs<'a> = dyn FnMut(Vec<Vec<u8>>) -> Result<Vec<Vec<u8>>, Error> + 
 /// the end.
 ///
 /// # Errors
-/// Those of `compute` and of `run`; [`Error::Shard`] for a result that does not belong to its job.
+/// Those of `compute` and of `run`; [`Error::Option`] if `shards` is 0; [`Error::Shard`] if a result is damaged or does
+/// not belong to its job, or `run` returns another number of results than of jobs.
 pub fn compute_in_shards(
     model: &ReducedModel,
     options: &CertifyOptions,

@@ -1,8 +1,8 @@
 //! Seals of jobs and results: bytes that were damaged on their way, or belong to another model, other options or another
 //! build, are refused.
 //!
-//! A seal is the key of the computation before the bytes and a hash of everything behind them. It protects from mistakes,
-//! not from a worker that lies: workers are trusted as this process is.
+//! A seal is the key of the computation, before the bytes, and a hash of key and bytes, after them. It protects from
+//! mistakes, not from a malicious worker: workers are trusted as this process is.
 
 use crate::Error;
 use crate::certificates::build::Preparation;
@@ -19,8 +19,8 @@ pub const BUILD: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("SSCC_SOURC
 pub(super) struct Key([u8; HASH]);
 
 impl Key {
-    /// Computes the key of a computation from build, digest (model and scope), epsilon, global radius, and the hierarchy, whose
-    /// nodes jobs name.
+    /// Computes the key of a computation from build, digest (model and scope), epsilon, global radius, farthest radius,
+    /// and the hierarchy, whose nodes jobs name.
     pub(super) fn of(preparation: &Preparation) -> Self {
         let mut hasher = blake3::Hasher::new_derive_key("sscc shards 2026-11-22");
         hasher.update(&(BUILD.len() as u64).to_le_bytes()).update(BUILD.as_bytes());
@@ -64,7 +64,7 @@ impl Key {
         if *key != self.0 {
             return Err(Error::Shard(format!(
                 "{what} belongs to another model, other options or another build of sscc (this process has {BUILD}): \
-                 install the same version on all machines"
+                 use the same model, options and version on all machines"
             )));
         }
         Ok(body)

@@ -31,7 +31,7 @@ fn jobs(model: &ReducedModel, options: &CertifyOptions, shards: usize) -> Vec<(V
     all
 }
 
-/// Would fail if a result depended on the tasks before it in the same job, or came in another order.
+/// This test fails if a result depends on the tasks before it in the same job, or comes in another order.
 #[test]
 fn any_number_of_shards_gives_the_same_certificates() {
     let center = Some(vec![0.01, -0.02, 0.0, 0.01]);
@@ -56,7 +56,7 @@ fn any_number_of_shards_gives_the_same_certificates() {
     }
 }
 
-/// Models of a few triangles, whose root is a leaf or a bucket.
+/// Models of a few triangles, whose root is a leaf, fits in a bucket, or is slightly larger.
 #[test]
 fn small_models_can_be_sharded() {
     for quads in [2, 4, 9, 40] {
@@ -100,8 +100,8 @@ fn results_of_other_models_options_and_jobs_are_refused() {
     assert_eq!(error.to_string(), "shards is 0: it must be at least 1");
 }
 
-/// Every flipped byte and every truncation of jobs and results is refused, and so are bytes under a valid seal that make no
-/// sense.
+/// Jobs and results with a flipped bit in any byte, and all their truncations, are refused. Bytes under a valid seal
+/// that are no job or result are refused, too.
 #[test]
 fn damaged_bytes_are_answered_with_an_error() {
     let model = ring(100, 3, 0.9);
@@ -125,7 +125,7 @@ fn damaged_bytes_are_answered_with_an_error() {
         for at in (0..body.len()).step_by(1 + body.len() / 97) {
             let mut changed = body.to_vec();
             changed[at] ^= 0x80;
-            // It may be another job; nothing may panic.
+            // The changed bytes may be another job; reading them must not panic.
             refused += usize::from(Job::read(hierarchy, &changed).is_none());
             let _ = Job::read(hierarchy, &body[..at]);
         }

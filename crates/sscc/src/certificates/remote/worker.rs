@@ -17,7 +17,7 @@ pub struct ShardWorker {
 
 impl ShardWorker {
     /// Prepares the input of all jobs. Model and options are those given to [`compute_in_shards`](super::compute_in_shards);
-    /// budget and number of threads may differ.
+    /// budgets and number of threads may differ.
     ///
     /// # Errors
     /// Those of [`Certificates::compute`](crate::Certificates::compute).
@@ -34,12 +34,13 @@ impl ShardWorker {
     /// Runs a job on the calling thread, and returns the bytes of its result.
     ///
     /// # Errors
-    /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; when `progress` cancels.
+    /// [`Error::Shard`] for bytes that are no job of this model, these options and this build; [`Error::Arithmetic`] if
+    /// this thread's arithmetic is not that of IEEE 754; when `progress` cancels.
     pub fn run(&self, job: &[u8], progress: &dyn Progress) -> Result<Vec<u8>, Error> {
         check_arithmetic()?;
         let name = Key::name(job);
         let job = Job::read(&self.preparation.hierarchy, self.key.open("a job", job)?)
-            .ok_or_else(|| Error::Shard("a job is not of this hierarchy".to_owned()))?;
+            .ok_or_else(|| Error::Shard("a job does not fit the hierarchy of the model".to_owned()))?;
         let result = self.run_tasks(job, progress).filter(|_| !progress.is_cancelled());
         let mut body = name.to_vec();
         body.extend(result.ok_or(Error::Cancelled)?.to_bytes());

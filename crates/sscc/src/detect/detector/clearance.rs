@@ -20,7 +20,7 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// Returns the clearance for pairs nearer than this distance (model unit), except triangles with a common vertex.
+    /// Returns the clearance of this distance (model unit). Triangles with a common vertex need not keep it.
     ///
     /// # Errors
     /// When the distance is not positive and finite.
@@ -92,7 +92,7 @@ impl Detector {
     /// ```
     ///
     /// # Errors
-    /// As [`Detector::discrete`].
+    /// As [`Detector::discrete`]; the maximum number of pairs includes those within the rings, which are not listed.
     pub fn within(&mut self, positions: &[DVec3], clearance: &Clearance) -> Result<&[NearPair], Error> {
         self.within_at_most(positions, clearance, Self::MAX_PAIRS)?;
         Ok(self.near_pairs())

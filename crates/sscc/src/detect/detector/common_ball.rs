@@ -18,7 +18,8 @@ use crate::geometry::{Aabb, distance_point_triangle};
 /// The largest accepted difference between the bounds of the radius, as a share of the radius.
 const TOLERANCE: f64 = 1e-3;
 
-/// Radii below this share of the size of the meshes count as 0: touching bodies share no ball.
+/// The search also ends when the bounds differ by at most this share of the size of the meshes: touching bodies share
+/// no ball.
 const SMALLEST: f64 = 1e-9;
 
 /// Number of boxes after which the search ends with the bounds that it has: about a second of work.

@@ -74,7 +74,7 @@ impl fmt::Debug for Detector {
 impl Detector {
     /// Creates a detector for a mesh, with its default contact filter ([`ContactFilter::of`]): pairs count that share no vertex;
     /// equal vertices are welded if the file format splits vertices. Apart from that, the rest positions determine only the
-    /// hierarchy. It takes about as long as two answers.
+    /// hierarchy. Building it takes about as long as two answers.
     pub fn new(mesh: &TriMesh) -> Self {
         Self::welded(mesh, &ContactFilter::of(mesh))
     }
@@ -134,8 +134,8 @@ impl Detector {
     ///
     /// # Errors
     /// When there are not as many positions as vertices, or one is not finite or beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when there are more than [`Detector::MAX_PAIRS`] pairs; when the search
-    /// was cancelled.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when this thread's arithmetic is not that of IEEE 754
+    /// ([`Error::Arithmetic`]); when there are more than [`Detector::MAX_PAIRS`] pairs; when the search was cancelled.
     pub fn discrete(&mut self, positions: &[DVec3]) -> Result<&[Pair], Error> {
         self.discrete_at_most(positions, Self::MAX_PAIRS)?;
         self.check_complete()?;
@@ -146,7 +146,7 @@ impl Detector {
     /// [`Statistics::complete`] is false: there may be more.
     ///
     /// # Errors
-    /// As [`Detector::discrete`].
+    /// As [`Detector::discrete`], but not because of the number of pairs.
     pub fn discrete_at_most(&mut self, positions: &[DVec3], limit: usize) -> Result<&[Pair], Error> {
         let motion = self.check([positions])?;
         self.mask_adjacent();
@@ -161,7 +161,7 @@ impl Detector {
     /// Returns one colliding pair, if there is any; which one is not fixed.
     ///
     /// # Errors
-    /// As [`Detector::discrete`].
+    /// As [`Detector::discrete_at_most`].
     pub fn first(&mut self, positions: &[DVec3]) -> Result<Option<Pair>, Error> {
         Ok(self.discrete_at_most(positions, 1)?.first().copied())
     }
@@ -197,10 +197,10 @@ impl Detector {
         self.statistics
     }
 
-    /// Clears the last answer and checks positions.
+    /// Clears the statistics of the last answer, and checks the arithmetic and the positions.
     ///
     /// # Errors
-    /// As [`Detector::discrete`].
+    /// Those of [`Detector::discrete`] that concern the arithmetic and the positions.
     pub(super) fn check<'x, const E: usize>(
         &mut self,
         positions: [&'x [DVec3]; E],

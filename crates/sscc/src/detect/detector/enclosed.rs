@@ -25,11 +25,12 @@ impl Detector {
     /// positions at which [`Detector::against`] finds no pair: then each component is inside or outside as a whole.
     ///
     /// Only closed components have an inside: those whose triangles run along every edge as often in one direction as in the other. A
-    /// component, closed or not, is inside if the winding number of the closed components of the other mesh about it is not 0, which is
-    /// computed exactly. Vertices that the contact filter welds are one vertex if they are all at one position.
+    /// component, closed or not, is inside if the winding number of the closed components of the other mesh about it is
+    /// not 0. The winding number is computed exactly. Vertices that the contact filter welds are one vertex, unless the
+    /// vertices of any weld have different positions: then no vertices of that mesh are welded.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for the positions of both meshes.
+    /// As [`Detector::discrete_at_most`], for the positions of both meshes.
     pub fn enclosed(
         &mut self,
         positions: &[DVec3],
@@ -52,7 +53,7 @@ impl Detector {
         Ok([two.enclose(&one)?, one.enclose(&two)?])
     }
 
-    /// Returns the connected components. If welded vertices have different positions, no vertices are welded.
+    /// Returns the connected components. If the vertices of any weld have different positions, no vertices are welded.
     pub(super) fn components_at(&mut self, positions: &[DVec3]) -> Arc<Components> {
         let filter = &self.context.filter;
         let triangles = 0..filter.faces().len() as u32;

@@ -49,7 +49,7 @@ impl<'x, const E: usize> GivenMotion<'x, E> {
 impl<const E: usize> VertexMotion<E> for GivenMotion<'_, E> {
     const HAS_ERROR_BOUND: bool = true;
 
-    /// Returns 0, because given positions are exact.
+    /// Returns the margin. Given positions are exact, so it is 0 unless boxes are widened.
     #[inline]
     fn rounding(&self) -> f64 {
         with_mutant!(self.margin, ClearanceOfBoxesAlone, 0.0)

@@ -29,7 +29,7 @@ impl Detector {
     /// counts.
     ///
     /// # Errors
-    /// As [`Detector::discrete`].
+    /// As [`Detector::discrete_at_most`].
     pub fn nearest(&mut self, positions: &[DVec3], rings: u32) -> Result<Option<NearPair>, Error> {
         self.check([positions])?;
         let filter = &self.context.filter;
@@ -46,11 +46,11 @@ impl Detector {
         found
     }
 
-    /// Returns the nearest two triangles (triangle of this mesh at `positions`, triangle of the other at `other_positions`) that count as
-    /// for [`Detector::against`].
+    /// Returns the nearest two triangles (triangle of this mesh at `positions`, triangle of the other at
+    /// `other_positions`) that count as for [`Detector::against`], with their distance. `None` if no pair counts.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for the positions of both meshes.
+    /// As [`Detector::discrete_at_most`], for the positions of both meshes.
     pub fn nearest_against(
         &mut self,
         positions: &[DVec3],

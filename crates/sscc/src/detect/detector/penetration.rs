@@ -18,8 +18,9 @@ pub struct BodyPenetration {
     pub volume: f64,
     /// Bound of the rounding error of the volume.
     pub volume_error: f64,
-    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 if there is no ball. For two
-    /// overlapping plates or balls, it is the distance by which one must move to separate them.
+    /// The diameter of a ball that is inside of both meshes and meets no triangle, nearly the largest one; 0 if there
+    /// is no ball, or the volume is not larger than its error. For two overlapping plates or balls, it is the distance
+    /// by which one must move to separate them.
     pub depth: f64,
     /// No such ball has a larger diameter than `depth + depth_error`, up to 1e-9 of the size of the meshes. The error is at most a
     /// thousandth of the depth, unless the shared volume is thinner, across all axes, than about a hundredth of its width.
@@ -31,8 +32,8 @@ pub struct BodyPenetration {
 /// The token of the first detector cancels it.
 ///
 /// # Errors
-/// As [`Detector::discrete`], for the positions of both meshes; when a mesh is open, or has parts that face inward and are not within
-/// others, so that it has no inside.
+/// As [`Detector::discrete_at_most`], for the positions of both meshes; when a mesh is open, or has parts that face
+/// inward and are not within others, so that it has no inside.
 pub fn body_penetration(
     [one, two]: [&mut Detector; 2],
     [positions, other_positions]: [&[DVec3]; 2],

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::geometry::{Aabb, overlap_integral};
 use crate::{CancelToken, Error};
 
-/// Pairs between two checks whether the search was cancelled.
+/// Number of pairs between two checks whether the search was cancelled.
 const PAIRS: usize = 1 << 12;
 
 /// Returns the volume that two closed meshes share, and a bound of its rounding error. `sign`: -1 if exactly one of them faces inward,

@@ -5,13 +5,14 @@ use crate::filter::{surroundings, surroundings_between};
 use crate::{Error, Pair};
 
 impl Detector {
-    /// Returns these pairs of triangles and all pairs that count within `rings` rings of them, sorted: one triangle is within the
-    /// rings around the first triangle of a pair, the other one within those around the second. Triangles with a common vertex are
-    /// one ring apart. Pass them to [`ContactFilter::ignoring`](crate::ContactFilter::ignoring) to ignore parts that touch at rest.
+    /// Returns these pairs of triangles and all pairs within `rings` rings of them, sorted: one triangle is within the
+    /// rings around the first triangle of a pair, the other one within those around the second. Triangles with a common
+    /// vertex are one ring apart. Unless `rings` is 0, pairs that never count are left out. Pass the result to
+    /// [`ContactFilter::ignoring`](crate::ContactFilter::ignoring) to ignore parts that touch at rest.
     ///
     /// # Errors
-    /// When a pair names a triangle that the mesh does not have; when the result has more than 2^22 pairs; when the
-    /// search was cancelled.
+    /// When a pair names a triangle that the mesh does not have; unless `rings` is 0, when the result has more than
+    /// 2^22 pairs, more than 2^28 pairs must be examined (or 2^24 around one pair), or the search was cancelled.
     pub fn surroundings(&self, pairs: &[Pair], rings: u32) -> Result<Vec<Pair>, Error> {
         let larger = pairs.iter().map(|(a, b)| *a.max(b));
         check_triangles(larger, self.context.filter.faces().len())?;
@@ -23,7 +24,7 @@ impl Detector {
 /// [`Detector::surroundings`]. All pairs between two meshes count.
 ///
 /// # Errors
-/// As [`Detector::surroundings`]; when the first detector was cancelled.
+/// As [`Detector::surroundings`]; the token of the first detector cancels.
 pub fn surroundings_between_meshes(
     detectors: [&Detector; 2],
     pairs: &[Pair],

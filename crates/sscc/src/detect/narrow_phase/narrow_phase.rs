@@ -8,7 +8,7 @@ use crate::filter::{PairFilter, Relation};
 
 /// Tests two triangles, and collects the hits. `DiscreteHits` is exact, `SweptHits` up to the tolerance of continuous
 /// queries, and `ClearanceHits` up to the error of distances; `AabbHits` compares AABBs, and `NearHits` keeps every pair. All
-/// methods of queries share these tests, so that all have the same answers.
+/// methods of queries share these tests, so that all have the same answers, up to the tolerance of continuous queries.
 pub(crate) trait NarrowPhase<const E: usize> {
     /// The entry of a colliding pair in the answer.
     type Hit: Copy;

@@ -23,7 +23,7 @@ impl<const E: usize> TrianglePairs<'_, E> {
     /// direction separates them at both ends. Bit i is for pair i.
     #[inline]
     pub(crate) fn separated(self, instructions: InstructionSet) -> u32 {
-        // Only the time depends on this: an error that is infinite or NaN makes the slack so, too, and no gap is larger.
+        // This check only saves time: an error that is infinite or NaN makes the slack infinite or NaN, too, and no gap is larger.
         if with_mutant!(!self.error.is_finite(), InfiniteErrorTested, false) {
             return 0;
         }

@@ -61,7 +61,7 @@ mod tests {
 
     /// Of two triangles with a common vertex either edge opposite to it may be the first to meet the other triangle.
     #[test]
-    fn the_earlier_edge_is_the_time_of_impact() {
+    fn the_time_of_impact_is_that_of_the_earlier_edge() {
         let random = &mut Random(4);
         let filter = ContactFilter::new(Neighbours::IncludeOneVertex);
         let filter = PairFilter::with_classes(&[[0, 1, 2], [0, 3, 4]], None, &filter);

@@ -15,9 +15,9 @@ pub(super) struct BoundedFloat {
 const U: f64 = f64::EPSILON / 2.0;
 
 impl BoundedFloat {
-    /// Returns a `value` that was rounded once, with the error `error` from its operands. That sum of positive terms was itself
-    /// rounded at most four times, each time by at most `u` of it; `8 u` covers these roundings and those of this function.
-    /// Underflow adds less than 2^-1070 in all.
+    /// Returns a `value` that was rounded once. `error`: the error from its operands, a sum of positive terms that was
+    /// itself rounded at most four times, each time by at most `u` of it. `8 u` covers these roundings and those of
+    /// this function. Underflow adds less than 2^-1070 in all.
     #[inline]
     fn rounded(value: f64, error: f64) -> Self {
         let rounding = with_mutant!(U, BoundedExact, 0.0) * value.abs();

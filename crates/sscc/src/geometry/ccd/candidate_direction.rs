@@ -31,7 +31,8 @@ pub(super) struct MovingPair {
     b: MovingTriangle,
     /// For each axis the largest magnitude of a corner.
     reach: DVec3,
-    /// The largest difference, along each axis, of the distance of two corners from that of corners that move linearly.
+    /// An upper bound, along each axis, of the amount by which the distance of two corners differs from that of corners
+    /// that move linearly.
     slack: f64,
 }
 
@@ -40,7 +41,7 @@ pub(super) struct MovingPair {
 pub(super) struct CandidateDirection {
     a: [[f64; 3]; 2],
     b: [[f64; 3]; 2],
-    /// The rounding bound: gaps separate when they exceed it.
+    /// The rounding bound and the change by the slack: gaps separate when they exceed this sum.
     rounding: f64,
 }
 
@@ -62,13 +63,15 @@ impl MovingPair {
         Self { a, b, reach, slack }
     }
 
-    /// Returns the largest coordinate of a corner relative to the first corner of a: the unit of tolerances.
+    /// Returns the largest magnitude of a coordinate of a corner relative to the first corner of a: the unit of
+    /// tolerances.
     #[inline]
     pub(super) fn size(&self) -> f64 {
         self.reach.max_element()
     }
 
-    /// Returns the largest difference, along each axis, of the distance of two corners from the given one.
+    /// Returns the upper bound, along each axis, of the amount by which the distance of two corners may differ from the
+    /// given one.
     pub(super) fn slack(&self) -> f64 {
         self.slack
     }
@@ -79,7 +82,7 @@ impl MovingPair {
         TwoTriangles { a: self.a.at(t), b: self.b.at(t) }
     }
 
-    /// Projects on a direction. None for 0 and vectors that are not finite.
+    /// Projects the corners on a direction. None for 0 and vectors that are not finite.
     #[inline]
     pub(super) fn along(&self, dir: DVec3) -> Option<CandidateDirection> {
         let dir = dir / dir.abs().max_element();
@@ -90,7 +93,7 @@ impl MovingPair {
         Some(CandidateDirection { a: project(&self.a), b: project(&self.b), rounding: self.rounding(dir) })
     }
 
-    /// Returns the rounding bound of gaps along a direction.
+    /// Returns the sum of the rounding bound of gaps along a direction and of their change by the slack.
     #[inline]
     pub(super) fn rounding(&self, dir: DVec3) -> f64 {
         let slack = self.slack * dir.abs().element_sum();
@@ -107,7 +110,7 @@ impl CandidateDirection {
         Self { a: negate(self.a), b: negate(self.b), rounding: self.rounding }
     }
 
-    /// Returns a lower bound of the distance by which a is below b along this direction at a time. If it is positive, they are
+    /// Returns a lower bound of the gap along this direction at a time, with a below b. If it is positive, they are
     /// disjoint.
     #[inline]
     pub(super) fn gap(&self, t: f64) -> f64 {
@@ -179,9 +182,10 @@ fn largest([p, q, r]: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A point that goes through another one, or past it: a direction that turns with it separates both ends.
+    /// A point passes through another one, or close by it. The direction to it separates the two at both ends of the
+    /// motion.
     #[test]
-    fn directions_that_turn_may_meet_between() {
+    fn turning_directions_are_tested_between_both_ends() {
         let rests = MovingTriangle::vertex(DVec3::ZERO, DVec3::ZERO);
         for (from, to, separates) in [
             (DVec3::X, DVec3::NEG_X, false),

@@ -47,12 +47,13 @@ impl ClosestPoints {
     }
 }
 
-/// The direction between the closest points is accepted if its gap is this share of the distance.
+/// The direction between the closest points is accepted if its gap is more than this share of the distance.
 const WIDE: f64 = 0.75;
 
-/// Returns the direction with the widest gap among all in which features of two triangles can be closest: two vertices, a vertex
-/// and an edge, two edges, a vertex and a face. They are computed from edges, which are long, so that they are as precise for
-/// narrow gaps as for wide ones.
+/// Returns the direction with the widest gap among all in which features of two triangles can be closest: two vertices,
+/// a vertex and an edge, two edges, a vertex and a face. None if none of them separates the triangles. The directions
+/// of two edges and of a face are computed from edges, which are long, so that they are as precise for narrow gaps as
+/// for wide ones.
 #[cold]
 fn find_widest_gap(pair: &MovingPair, t: f64, corners: &TwoTriangles) -> Option<CandidateDirection> {
     let TwoTriangles { a, b } = corners;

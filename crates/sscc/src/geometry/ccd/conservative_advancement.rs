@@ -19,8 +19,8 @@ const MAX_STEPS: usize = 128;
 /// Maximum number of steps along features in one continuous test.
 const MAX_FEATURE_STEPS: usize = 10_000;
 
-/// Smaller tolerances (2^-44, about 6e-14) count as this one: gaps along rounded directions have a rounding bound of up to
-/// 1.5e-14 of the size.
+/// Smaller tolerances count as this one, 2^-44 (about 6e-14): gaps along rounded directions have a rounding bound of up
+/// to 1.5e-14 of the size.
 const MIN_TOLERANCE: f64 = f64::from_bits((1023 - 44) << 52);
 
 /// The shortest step: shorter ones cannot be represented near t = 1.
@@ -43,8 +43,9 @@ pub(super) enum Advance {
     Unknown(f64),
 }
 
-/// Returns the time from which the distance of two triangles that do not meet at t = 0 is within `tolerance` times their size: it
-/// is never later than their first contact. None if they provably never meet.
+/// Returns a time that is never later than the first contact of two triangles that do not meet at t = 0. Their distance
+/// at this time is within `tolerance` times their size, unless the limit of steps ended the advancement. None if they
+/// provably do not meet until t = 1.
 pub(super) fn advance(
     a: &MovingTriangle,
     b: &MovingTriangle,
@@ -111,7 +112,8 @@ pub(super) fn advance_by_rounded_directions(pair: &MovingPair, tolerance: f64) -
     Advance::Unknown(t)
 }
 
-/// Advances from `t` by directions that follow the closest features. The tolerance is a length.
+/// Advances from `t` by directions that follow the closest features. The tolerance is a length. Returns the time
+/// reached; None if there is no contact until t = 1.
 ///
 /// Follows one feature direction with doubling steps until it fails, then determines the closest features again. If
 /// even the shortest step fails, the fixed direction still advances by the time in which the fastest vertices could

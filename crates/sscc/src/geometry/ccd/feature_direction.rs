@@ -48,7 +48,7 @@ enum FeaturePair {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FeatureDirection {
     features: FeaturePair,
-    /// Whether the direction is that from b to a.
+    /// Whether the direction is opposite to that of [`Corners::direction`].
     is_reversed: bool,
     /// The direction at one time, rounded.
     pub(super) vector: DVec3,
@@ -72,9 +72,9 @@ impl FeaturePair {
 }
 
 impl FeatureDirection {
-    /// Whether the direction provably separates both triangles from `t` to `s`, for all corners whose distances along each
-    /// axis are within `slack` of those of the given ones: by the signs of coefficients, which exact numbers decide where
-    /// rounded ones do not.
+    /// Whether the direction provably separates both triangles from `t` to `s`, for all corners whose distances along
+    /// each axis are within `slack` of those of the given ones. The signs of coefficients prove it; exact numbers
+    /// decide those that rounded ones do not.
     pub(super) fn separates(&self, [a, b]: [&MovingTriangle; 2], slack: f64, [t, s]: [f64; 2]) -> bool {
         let rounded = Corners::<BoundedFloat>::between(a, b, t, s).is_separated_along(self, slack);
         rounded.unwrap_or_else(|| {
@@ -83,9 +83,10 @@ impl FeatureDirection {
     }
 }
 
-/// Returns a direction between two features along which the gap of the two triangles at time `t` exceeds `tolerance`: the one
-/// with the widest gap of those for which rounded numbers prove this, else the one that exact numbers find. None if their
-/// distance is at most `tolerance`, up to 1e-14 of it: the distance is the widest gap of all pairs of features.
+/// Returns a direction between two features along which the gap of the two triangles at time `t` exceeds `tolerance`.
+/// Of the directions for which rounded numbers prove this, it is the one with the widest gap; if there are none, exact
+/// numbers search among the undecided ones. None if the distance of the triangles, which is the widest gap of all pairs
+/// of features, is at most `tolerance`, up to 1e-14 of it.
 pub(super) fn find_gap_above(
     tolerance: f64,
     a: &MovingTriangle,
@@ -223,9 +224,10 @@ fn interpolate<T: Number>(from: &T, to: &T, t: f64) -> T {
 mod tests {
     use super::*;
 
-    /// The direction from one point to another one separates them at both ends of a way through it, and not between.
+    /// A point passes through another one. The direction between them separates them up to the contact, but not in an
+    /// interval that contains it.
     #[test]
-    fn directions_that_turn_may_meet_between() {
+    fn feature_directions_are_tested_in_the_whole_interval() {
         let rests = MovingTriangle { t0: [DVec3::ZERO; 3], t1: [DVec3::ZERO; 3] };
         let moves = MovingTriangle { t0: [DVec3::X; 3], t1: [DVec3::NEG_X; 3] };
         let direction = find_gap_above(0.5, &rests, &moves, 0.0).unwrap();

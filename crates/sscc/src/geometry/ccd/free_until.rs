@@ -13,10 +13,10 @@ const FEATURE_GAP: f64 = 32.0;
 /// axis are within `slack` of those of the given ones. Infinite if they have none until t = 1; 0 if nothing is proven, not even
 /// at t = 0. Near a contact it is close to the largest such time.
 ///
-/// Every step is proven by a direction that separates the triangles by more than the slack and the rounding bound. Unlike
-/// [`impact_triangle_triangle`](super::impact_triangle_triangle), it does not decide pairs that are closer than that. Directions
-/// along features are far slower than rounded ones: `steps` is the number of them left for this and other pairs. If none is left,
-/// the time may be far from the largest one.
+/// Every step is proven by a direction that separates the triangles by more than the slack and the rounding bound.
+/// Unlike [`impact_triangle_triangle`](super::impact_triangle_triangle), this function does not decide pairs that are
+/// closer than that. Directions along features are far slower than rounded ones: `steps` is the number of them left for
+/// this and other pairs. If none is left, the time may be far from the largest one.
 pub(crate) fn free_until(a: &MovingTriangle, b: &MovingTriangle, slack: f64, steps: &mut usize) -> f64 {
     let pair = MovingPair::with_slack(a, b, slack);
     if is_separated_by_planes(&pair) {

@@ -12,14 +12,15 @@ use crate::limits;
 /// Returns the time of impact of two triangles whose corners move linearly. None proves that they have no point in common at any
 /// t in [0, 1]. Otherwise the result is a time t with two guarantees:
 /// - t is never later than the true time of impact.
-/// - At t, their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding. Tolerances
-///   below 6e-14 count as 6e-14. The size is the largest difference, at either end and in any coordinate, of a
-///   corner from the first one of a.
+/// - At t, their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding, unless the
+///   limit of steps (below) ended the search. Tolerances below 6e-14 count as 6e-14. The size is the largest
+///   difference, at either end and in any coordinate, of a corner from the first one of a.
 ///
-/// Triangles are closed hulls of their corners, in any order, degenerate ones included. Touching counts as contact, and so
-/// do contacts at t = 0 and t = 1. Both promises hold for every size of triangles, down to the smallest denormal numbers.
-/// Memory and time are bounded: conservative advancement ends after at most about 10,000 steps (usually one or two) and
-/// then returns the time reached, which is not later than the first contact.
+/// Triangles are closed hulls of their corners, in any order, degenerate ones included. Touching counts as contact, and
+/// so do contacts at t = 0 and t = 1. Both guarantees hold for every size of triangles, down to the smallest denormal
+/// numbers. Memory and time are bounded: conservative advancement ends after at most about 10,000 steps (usually one or
+/// two). If it reaches this limit, it returns the time reached, which is not later than the first contact, but at which
+/// the distance may exceed the tolerance.
 ///
 /// Coordinates must be finite and at most [`limits::LARGEST`] in magnitude (checked in debug builds only;
 /// beyond, the answer may be wrong).
@@ -59,8 +60,8 @@ pub fn impact_triangle_triangle(a: &MovingTriangle, b: &MovingTriangle, toleranc
 /// lengths must not underflow.
 const MIN_SIZE: f64 = f64::from_bits((1023 - 100) << 52);
 
-/// Returns the power of two that scales a small size to about 1. It is at most 2^800: if all corners share a large coordinate (up
-/// to 2^200), that must not overflow.
+/// Returns the power of two that scales a small size to about 1. It is at most 2^800, because all corners may share a
+/// large coordinate (up to 2^200), which must not overflow.
 fn enlargement(size: f64) -> f64 {
     let exponent = (size.to_bits() >> 52) as i64 - 1023;
     power_of_two((-exponent).min(800))

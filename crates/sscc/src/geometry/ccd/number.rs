@@ -33,9 +33,9 @@ pub(super) trait Number: Clone {
     /// Whether the number is above 0. None if the error bound does not decide it.
     fn is_positive(&self) -> Option<bool>;
 
-    /// Returns bounds of `self / sqrt(square)`. They differ by the error bounds of both numbers and a few units in the last
-    /// place. The lower bound of a number that is not provably positive is 0; if the square may be 0, the bounds are 0 and
-    /// infinity.
+    /// Returns bounds of `self / sqrt(square)`. They differ by the error bounds of both numbers and a few units in the
+    /// last place. The lower bound of a number that is not provably positive is 0. If a rounded square may be 0, the
+    /// upper bound is infinity; if an exact square is 0, both bounds are 0.
     fn over_root(&self, square: &Self) -> Bounds;
 
     /// Returns a vector of the same direction, rounded.

@@ -12,8 +12,8 @@
 //! `(1.5 u + u / 8 + u) |q - p|` before, and `u |x|` in, the last sum: less than `u |x| + 3 u |q - p|` in all, with the
 //! same coordinate of `q - p`.
 //!
-//! The result depends on the two point sets alone, not on the order of corners or of the two: so all pairs of triangles
-//! that share the edge get the same position, bit for bit.
+//! The result depends on the two point sets alone, not on the order of corners or of two edges. So all pairs of
+//! triangles that share both features get the same position, bit for bit.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -54,7 +54,7 @@ pub(super) fn cross_edge_edge(e: [DVec3; 2], f: [DVec3; 2]) -> DVec3 {
         length(e) < length(f) || length(e) == length(f) && e.map(|p| p.to_array()) < f.map(|p| p.to_array());
     let (e, f) = if is_e_first { (e, f) } else { (f, e) };
     let points = [f[0], e[0], e[1], f[1], f[1]];
-    // In a projection that keeps the two lines apart, the lines cross where they do in space.
+    // In a projection in which the two lines differ, they cross at the projection of their crossing in space.
     let axes = || [0, 1, 2].into_iter().map(Some);
     let weights = axes()
         .find_map(|axis| weights(points, axis))
@@ -82,8 +82,8 @@ fn weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {
         .then(|| [d_p, d_q].map(|d| d.to_f64() / sum))
 }
 
-/// Returns the numbers of [`weights`] from integers, with an absolute error of 2^-64 and rounding. None if the axis is in the
-/// plane.
+/// Returns the numbers of [`weights`] from integers, with an absolute error of 2^-64 and rounding. None if both
+/// distances are 0: then the axis is parallel to the plane of the two edges.
 #[cold]
 #[inline(never)]
 fn exact_weights(points: [DVec3; 5], axis: Option<usize>) -> Option<[f64; 2]> {

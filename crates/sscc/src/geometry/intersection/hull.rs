@@ -80,7 +80,7 @@ impl<'a> Hull<'a> {
         if p == start || p == end {
             return Some(Feature::Vertex(if p == start { i } else { (i + 1) % 3 } as u8));
         }
-        // Points of a line are in lexicographic order.
+        // The lexicographic order of points on a line is that along the line.
         let is_between = lexicographic(start, p) == lexicographic(p, end);
         let is_collinear = || {
             AXES.into_iter()
@@ -112,7 +112,7 @@ pub(super) fn lexicographic(p: DVec3, q: DVec3) -> bool {
 
 /// Returns the edge that contains three collinear corners. None if all are equal.
 ///
-/// Points of a line are in lexicographic order, so the edge joins the first and the last.
+/// The lexicographic order of points on a line is that along the line, so the edge joins the first and the last.
 fn longest_edge(corners: &[DVec3; 3]) -> Option<usize> {
     (0..3).find(|&i| {
         let [p, q, r] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];

@@ -58,7 +58,8 @@ pub(super) fn cross(e: &Vector, f: &Vector) -> Option<(f64, Vector)> {
     Some((size, normalize(&normal)?))
 }
 
-/// Returns the normal of a triangle, normalized. It is computed from the two edges with the largest angle between them.
+/// Returns the normal of a triangle, normalized. It is computed from the two edges whose cross product is largest. None
+/// if [`cross`] returns none for all of them.
 pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
     let mut best: Option<(f64, Vector)> = None;
     for i in 0..3 {
@@ -72,7 +73,8 @@ pub(super) fn normal(edges: &[Option<Vector>; 3]) -> Option<Vector> {
     best.map(|(_, normal)| normal)
 }
 
-/// Returns the unit normal of a triangle, from whose side its corners turn counterclockwise; 0 if it is degenerate.
+/// Returns the unit normal of a triangle, on the side from which its corners turn counterclockwise; 0 if it is
+/// degenerate.
 pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
     if !hull.is_triangle() {
         return DVec3::ZERO;
@@ -81,7 +83,7 @@ pub(super) fn unit_normal(hull: &Hull<'_>) -> DVec3 {
     rounded.unwrap_or_else(|| exact_normal(hull.corners)).normalize()
 }
 
-/// Returns a multiple of the normal of a triangle with angles below about 2^-95, from integers.
+/// Returns a multiple of the normal of a triangle whose edges are parallel up to about 2^-95, from integers.
 #[cold]
 #[inline(never)]
 fn exact_normal(corners: &[DVec3; 3]) -> DVec3 {

@@ -163,7 +163,7 @@ fn smallest_support(a: &[DVec3; 3], b: &[DVec3; 3]) -> Penetration {
     Penetration { depth: times_power_of_two(best.depth.max(0.0), exponent), ..best }
 }
 
-/// Returns a direction across the longest edge.
+/// Returns a unit vector perpendicular to the longest edge of both triangles. None if all edges are 0.
 #[cold]
 fn across(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<Vector> {
     let all = [a, b].map(|t| [0, 1, 2].map(|i| difference(t[(i + 1) % 3], t[i])));

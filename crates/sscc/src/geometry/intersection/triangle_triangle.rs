@@ -51,7 +51,7 @@ pub fn intersection_triangle_triangle(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<
     TrianglePair::of(a, b)?.intersection()
 }
 
-/// Two triangles that neither's plane separates.
+/// Two triangles, neither of which is strictly on one side of the other's plane.
 pub(super) struct TrianglePair<'a> {
     pub(super) a: Hull<'a>,
     pub(super) b: Hull<'a>,

@@ -42,7 +42,7 @@ impl Metric {
     }
 }
 
-/// Returns for each vertex a third of the area of its faces (unit squared); 0 for unused vertices.
+/// Returns for each vertex a third of the area of its faces (model unit squared); 0 for unused vertices.
 pub fn vertex_areas(mesh: &TriMesh) -> Vec<f64> {
     let p = mesh.rest_positions();
     let mut areas = vec![0.0; p.len()];

@@ -9,7 +9,7 @@ pub enum MetricKind {
     Displacement,
     /// Each mode is scaled by the root of `sum_i area_i |U_i|^2`, which measures the surface that it moves (paper, section 6).
     Mass,
-    /// Each mode is scaled by the strain energy of its unit displacement (paper, section 6).
+    /// Each mode is scaled by the root of the strain energy of its unit displacement (paper, section 6).
     Energy,
     /// Weights or a matrix are given by the caller.
     Given,

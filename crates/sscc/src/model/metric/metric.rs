@@ -33,7 +33,7 @@ impl Metric {
     /// Creates a metric with the given factor: `scales[k]` is the root of the weight of mode k.
     ///
     /// # Errors
-    /// When a scale is not positive and finite.
+    /// When there are no scales, or a scale is not positive and finite.
     pub fn from_scales(kind: MetricKind, scales: Vec<f64>) -> Result<Self, Error> {
         if scales.is_empty() {
             return Err(Error::RankZero);
@@ -47,7 +47,7 @@ impl Metric {
     /// Creates a metric with the given weights, the diagonal of `M` (paper, section 4).
     ///
     /// # Errors
-    /// When a weight is not positive and finite.
+    /// When there are no weights, or a weight is not positive and finite.
     pub fn from_weights(kind: MetricKind, weights: &[f64]) -> Result<Self, Error> {
         if let Some(index) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
             return Err(Error::MetricWeight { index, value: weights[index] });
@@ -68,7 +68,7 @@ impl Metric {
     /// Creates a metric with the given upper triangular factor `S` (r x r, by rows, zeros below the diagonal).
     ///
     /// # Errors
-    /// When there are more than 1024 modes, the factor is not square or not upper triangular, an entry is beyond
+    /// When there are no modes or more than 1024, the factor is not square or not upper triangular, an entry is beyond
     /// 2^200, a diagonal entry is not positive or below 2^-200, or the factor is nearly singular (condition beyond
     /// about 1e13; about 1e26 for M).
     pub fn from_factor(kind: MetricKind, rank: usize, factor: Vec<f64>) -> Result<Self, Error> {

@@ -78,7 +78,7 @@ fn diagonal_norm(scales: &[f64], q: &[f64]) -> f64 {
     norm_by_largest(scales.iter().zip(q).map(scaled), q.len())
 }
 
-/// Returns the norm of non-negative numbers. `numbers` may be called twice.
+/// Returns the norm of non-negative numbers, rounded up. `numbers` may be called twice.
 fn norm_of<I: Iterator<Item = f64> + Clone>(numbers: impl Fn() -> I, count: usize) -> f64 {
     let (sum, largest) = numbers().fold((0.0, 0.0_f64), |(sum, l), z| (sum + z * z, l.max(z)));
     if SAFE_TO_SQUARE.contains(&largest) { sum.sqrt() * up(count) } else { norm_by_largest(numbers(), count) }
@@ -103,7 +103,7 @@ mod tests {
     use crate::MetricKind;
 
     #[test]
-    fn norm_is_never_short() {
+    fn norms_of_known_vectors_are_rounded_up() {
         let metric = Metric::from_scales(MetricKind::Given, vec![1e6, 1.0, 1e-6]).unwrap();
         // 1e6 * 3e-6 = 3, 4, 0
         let exact = 5.0;

@@ -8,7 +8,8 @@ use crate::{Error, Modes, TriMesh, limits};
 /// Checks that the rounding bounds hold for modes in a metric.
 ///
 /// # Errors
-/// When the metric is of another rank, or the modes divided by its factor leave the range in which the proofs hold.
+/// When the modes are for another number of vertices, the metric is of another rank, or the modes divided by its factor
+/// leave the range in which the proofs hold.
 pub fn check_metric(metric: &Metric, mesh: &TriMesh, modes: &Modes) -> Result<(), Error> {
     check_scaled_modes(mesh, modes, metric).map(|_| ())
 }
@@ -17,7 +18,8 @@ pub fn check_metric(metric: &Metric, mesh: &TriMesh, modes: &Modes) -> Result<()
 /// or between [`limits::SMALLEST`] and [`limits::LARGEST`].
 ///
 /// # Errors
-/// When the metric has another rank, or the scaled modes are out of range.
+/// When the modes are for another number of vertices, the metric has another rank, or the scaled modes are out of
+/// range.
 pub(crate) fn check_scaled_modes(mesh: &TriMesh, modes: &Modes, metric: &Metric) -> Result<f64, Error> {
     modes.check_mesh(mesh)?;
     if metric.rank() != modes.rank() {

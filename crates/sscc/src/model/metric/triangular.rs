@@ -8,8 +8,9 @@ use crate::{Error, limits};
 /// The largest number of modes. The factor of more modes takes gigabytes and minutes; reduced models have far fewer.
 const MAX_MODES: usize = 1024;
 
-/// A matrix counts as symmetric if no entry differs by more than this from its mirror image, in units of the diagonal. The
-/// tolerance is far above the rounding of a matrix that was computed in another order, and far below the error of a wrong matrix.
+/// A matrix counts as symmetric if no entry differs by more than this from its mirror image, in units of the geometric
+/// mean of the two diagonal entries of its row and column. The tolerance is far above the rounding of a matrix that was
+/// computed in another order, and far below the error of a wrong matrix.
 const ASYMMETRY: f64 = 1e-9;
 
 /// An upper triangular factor S with a positive diagonal.

@@ -15,7 +15,8 @@ const DIAGONAL: f64 = 1.7321;
 /// The factors of one search, in the coordinates of its frame.
 #[derive(Clone)]
 pub(super) struct HullMotion<const E: usize> {
-    /// The factor of the rest, then of each mode, at each configuration: its magnitude, and three times itself.
+    /// The factor of the rest, then of each mode, at each configuration: its magnitude, and three copies
+    /// of itself.
     pub(super) factors: Vec<[Vec4; E]>,
     /// The centre of the shape.
     pub(super) shift: [f32; 3],

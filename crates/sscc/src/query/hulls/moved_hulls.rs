@@ -10,7 +10,8 @@ use crate::detect::vertex_motion::VertexMotion;
 use crate::model::rounding::larger_or_nan;
 use crate::vectors::InstructionSet;
 
-/// Pairs whose gap at the centre is less than this many radii are not tested: such gaps seldom stay open.
+/// Pairs whose gap at the centre is at most this many times the sum of both radii are not tested: such gaps seldom stay
+/// open.
 const MIN_GAP: f32 = 2.0;
 
 /// The hulls of one search. Each entry contains the number of the search for which it is current.
@@ -244,7 +245,7 @@ mod tests {
 
     /// Where a number is infinite or NaN at either end of a motion, no plane separates the hull from any other one.
     #[test]
-    fn hulls_that_are_no_numbers_prove_nothing() {
+    fn hulls_with_infinite_or_nan_factors_prove_nothing() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();

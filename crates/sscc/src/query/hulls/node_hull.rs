@@ -18,7 +18,7 @@ pub(super) struct Vertices<'t> {
 /// bounds of the residual.
 pub(super) type FrameRate = [Vec4; 4];
 
-/// The hull of a node. Its numbers are exact; the bounds cover all deviations from them.
+/// The hull of a node. Its numbers count as exact; the bounds cover all deviations from them.
 pub(super) struct NodeHull {
     /// The part of the frame at rest, then the part for each mode.
     pub(super) frame: Vec<FrameRate>,
@@ -46,7 +46,7 @@ const REGULARIZATION: f64 = 1e-4;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl NodeHull {
-    /// Fits these vertices, at least one.
+    /// Fits a hull to these vertices, at least one. `residuals` is scratch.
     pub(super) fn fit(vertices: &Vertices<'_>, indices: &[u32], residuals: &mut Vec<DVec3>) -> Self {
         let (rank, count) = (vertices.rank, indices.len() as f64);
         let position = |i: &u32| vertices.positions[*i as usize];

@@ -25,7 +25,7 @@ pub(crate) struct NodeHulls {
     pub(super) center: DVec3,
     /// Half the size of the shape at this configuration.
     pub(super) half: f64,
-    /// The largest displacement by each mode.
+    /// The largest magnitude of an entry of each mode.
     pub(super) sizes: Vec<f64>,
     /// For the shape at rest and each mode an upper bound of the coefficient of its factor in a coordinate of any core point of any hull.
     pub(super) weights: Vec<f64>,
@@ -34,8 +34,8 @@ pub(crate) struct NodeHulls {
 const NONE: u32 = u32::MAX;
 
 impl NodeHulls {
-    /// Computes the hulls of all nodes in these pairs that are small enough for one, about a configuration; `None` if the shape
-    /// leaves the range of numbers.
+    /// Computes the hulls of the nodes of those pairs of which both nodes are small enough, about a configuration.
+    /// `None` if the shape leaves the range of numbers, or is a point.
     pub(crate) fn new(
         model: &ReducedModel,
         hierarchy: &Hierarchy,

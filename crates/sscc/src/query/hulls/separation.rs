@@ -82,8 +82,10 @@ const _: () = assert!(CORE_POINTS.is_multiple_of(LANES));
 /// The range of squared lengths of normals: others are not tested.
 const SQUARES: Range<f32> = 1e-6..1e18;
 
-/// Steps of a search, and the share of the distance at which it ends.
+/// The largest number of steps of a search.
 const STEPS: usize = 32;
+
+/// A search ends if the distance exceeds the gap by at most this share of the distance.
 const TOLERANCE: f32 = 1e-3;
 
 /// Tests whether a plane separates two sets of points by more than a distance, with the first set below the plane.
@@ -116,7 +118,8 @@ impl<const E: usize> Kernel for PlaneTest<'_, E> {
     }
 }
 
-/// Returns the unit normal of the plane with the widest gap between two sets of points, and the gap; `None` if the gap is 0.
+/// Returns the unit normal of the plane with nearly the widest gap between two sets of points, and the gap; `None` if
+/// no plane with a gap was found.
 pub(super) fn widest_gap(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> Option<(Vec3, f32)> {
     let middle = |points: &MovedPoints<'_, 1>| (0..CORE_POINTS).map(|i| points.point(i)).sum::<Vec3>();
     let mut normal = unit(middle(b) - middle(a)).unwrap_or(Vec3::X);

@@ -21,7 +21,7 @@ use crate::query::configuration_search::{SweptSearch, motion};
 use crate::query::query::Query;
 use crate::{CancelToken, Certificates, Error, Impact, Pair, ReducedModel};
 
-/// Safe distances of at least this many steps are worth storing; triangles with less are tested in every step.
+/// Safe distances of at least this many steps are worth storing; pairs with smaller ones are tested in every step.
 const STEPS_WORTH_STORING: f64 = 8.0;
 
 /// Steps between two attempts to find safe distances of the pairs that are tested in every step.
@@ -111,7 +111,7 @@ impl KineticQuery {
     /// Creates a query without a region.
     ///
     /// # Errors
-    /// When the certificates were computed for another model, or their metric does not fit it.
+    /// As [`Query::new`]; when their metric does not fit the model.
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         let mut query = Query::new(model, certificates)?;
         let scope = &certificates.parts().scope;
@@ -162,10 +162,10 @@ impl KineticQuery {
     }
 
     /// Returns all pairs that collide between two configurations, as [`Query::continuous`]. Only the active pairs are
-    /// tested if `q_t0` is the q of the last discrete query that the root's certificate did not answer, the region around
-    /// it proves all pairs free until `q_t1`, and there are no exceptions; otherwise this is a plain continuous query.
-    /// Only pairs that come as close as [`Impact::TOLERANCE`] without a contact can make a difference. Answers of
-    /// [`KineticQuery::discrete`] do not depend on this query.
+    /// tested if `q_t0` is the q of the last discrete query that the root's certificate did not answer, the region
+    /// around it proves all other pairs free until `q_t1`, and there are no exceptions. In all other cases, and if an
+    /// active pair collides, this is a plain continuous query. Only pairs that come as close as [`Impact::TOLERANCE`]
+    /// without a contact can make a difference. Answers of [`KineticQuery::discrete`] do not depend on this query.
     ///
     /// # Errors
     /// As [`Query::discrete`], for start and end.

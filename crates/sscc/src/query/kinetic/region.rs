@@ -67,7 +67,7 @@ impl Region {
         MAX_DETOUR * self.length + self.radius
     }
 
-    /// Whether the z of a configuration is in the region.
+    /// Whether the z of a configuration is in the region, and its norm and reach are at most those of the region.
     ///
     /// The distance from any point of the segment is an upper bound of the distance from the segment. The point's rounding
     /// moves vertices by less than the rounding bound of positions, which

@@ -9,7 +9,8 @@ use crate::Pair;
 use crate::min_heap::MinHeapEntry;
 use crate::model::rounding::ROUND_DOWN;
 
-/// The number of safe distances that are kept from one region to the next, for each pair that a search finds.
+/// Maximum number of safe distances, beside 1024, that are kept from one region to the next, for each pair that a
+/// search finds.
 const MAX_REMEMBERED: usize = 8;
 
 /// A pair that stays free until z has travelled as far as its key. Pairs are ordered by their keys, the smallest first, then by

@@ -74,7 +74,9 @@ impl StepHistory {
         if bend.is_finite() { steps.min(MAX_BEND / bend).min(MAX_STEPS).floor() } else { 0.0 }
     }
 
-    /// Predicts the q after `steps` steps. Returns the expected largest distance of z from the straight line to it.
+    /// Predicts the q after `steps` steps. Returns the radius of a capsule around the straight line to it:
+    /// [`RADIUS_FACTOR`] times the expected largest distance of z from this line, and [`ADDED_RADIUS`] of the length of
+    /// the steps.
     pub(super) fn predict(&self, metric: &Metric, steps: f64, end: &mut [f64]) -> f64 {
         let weight = 0.5 * steps * (steps + 1.0);
         for (((end, q), step), change) in end.iter_mut().zip(&self.last_q).zip(&self.step).zip(&self.change) {

@@ -47,8 +47,9 @@ impl Query {
     }
 
     /// Returns free configurations from the draws of any distribution. Free draws are not changed. Colliding draws are
-    /// resolved if `resolve` is given; then every draw has a sample, but samples are denser near contact. Otherwise they
-    /// are rejected: the samples have the given distribution under the condition that the shape is free.
+    /// resolved if `resolve` is given. Then every draw has a sample, unless the centre collides and no start is given,
+    /// but samples are denser near contact. Otherwise they are rejected: the samples have the given distribution under
+    /// the condition that the shape is free.
     ///
     /// # Errors
     /// As [`Query::resolve_batch`].

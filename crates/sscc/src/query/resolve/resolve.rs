@@ -17,14 +17,14 @@ use crate::query::query::Query;
 /// The search begins at this share of the way to the first contact, where near pairs have gaps that determine directions.
 const START: f64 = 0.99;
 
-/// The gaps that pairs keep, as shares of the displacement from the first contact to q: a larger one at first, because
-/// directions change less where gaps are larger.
+/// The gaps that pairs keep, as shares of the displacement from where the search begins to q: a larger one at first,
+/// because directions change less where gaps are larger.
 const MARGINS: [f64; 2] = [1e-3, 1e-5];
 
 /// The largest number of steps for each of [`MARGINS`].
 const MAX_STEPS: usize = 32;
 
-/// The search ends when a step comes nearer to q by less than this share.
+/// The steps with one of [`MARGINS`] end when a step reduces the distance to q by at most this share.
 const MIN_GAIN: f64 = 1e-3;
 
 impl Query {

@@ -17,7 +17,7 @@ use crate::query::context::QueryContext;
 /// Corners of the two simplices of a pair: three of each.
 const CORNERS: usize = 6;
 
-/// Memory for the half-spaces of all pairs (bytes).
+/// Once the half-spaces of all pairs take this much memory (bytes), no more pairs are added.
 const MAX_BYTES: usize = 1 << 26;
 /// The largest number of simplex pairs.
 const MAX_SEPARATIONS: usize = 1 << 14;

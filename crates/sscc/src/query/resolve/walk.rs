@@ -175,7 +175,8 @@ impl<'w> Walk<'w> {
         self.q.iter().zip(there).map(|(q, t)| q + share * (t - q)).collect()
     }
 
-    /// Moves a part of a straight line that is free before this time, or less if rounding makes the end collide.
+    /// Moves along a straight line, which is free before this time, up to this time, or less if rounding makes the end
+    /// collide.
     fn go_part(&mut self, there: &[f64], mut time: f64) -> Result<(), Error> {
         let mut back = f64::EPSILON;
         for _ in 0..MAX_HALVINGS {

@@ -8,7 +8,8 @@ use crate::detect::Impact;
 use crate::geometry::nearest_to_origin;
 use crate::{Error, Pair};
 
-/// Exact tests beyond a weight from which on a pair is not proven free, at distances that are halved.
+/// The number of exact tests at distances that are halved, beyond a weight from which on a pair is not proven free. The
+/// next f64 and the simplest weight are tested as well.
 const EXACT_TESTS: i32 = 24;
 
 /// A sweep that can prove no further weights free tests twice this many weights for a collision.

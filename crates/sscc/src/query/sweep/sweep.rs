@@ -17,7 +17,8 @@ pub struct Sweep {
     pub first_free: Option<f64>,
     /// A weight at which the shape collides, see [`SweepOutcome`]; `None` if no collision was found up to `to`.
     pub first_hit: Option<f64>,
-    /// The pairs that collide at `first_hit`, sorted.
+    /// The pairs that collide at `first_hit`, sorted; for [`SweepOutcome::WithinTolerance`] those that come within the
+    /// tolerance.
     pub pairs: Vec<Pair>,
     /// The kind of result, which determines the meaning of `first_free` and `first_hit`.
     pub outcome: SweepOutcome,

@@ -110,7 +110,7 @@ impl Query {
         let mut line = Line { query: self, q, mode: range.mode };
         let sample = |i: usize| {
             let sample = line.sample(weight(i))?;
-            // The samples, of any number, are all steps except the last one.
+            // All steps of a mode but the last one belong to the samples, whatever their number.
             let reached = |i: usize| i * (STEPS - 1) / samples;
             steps.add(reached(i + 1) - reached(i));
             Ok(sample)
@@ -162,7 +162,8 @@ impl Query {
     }
 }
 
-/// Steps of progress of each mode: few enough calls, and enough for a progress bar of a single mode.
+/// Steps of progress of each mode: enough for the progress bar of a single mode, and few enough that reports take no
+/// time.
 const STEPS: usize = 64;
 
 /// Counts the steps of all modes; the last one of a mode is reported at its end.

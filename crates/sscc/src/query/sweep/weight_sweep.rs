@@ -23,7 +23,7 @@ use crate::{Error, Pair};
 /// `first_free` and `first_hit` are at most this share of the range apart (1e-9, less the rounding of weights).
 const BRACKET: f64 = 0.999e-9;
 
-/// Intervals that a pair blocks before it counts as one that cannot be passed.
+/// After this many blocked intervals, the pair that blocks the next one counts as one that cannot be passed.
 const MAX_BLOCKED: usize = 32;
 
 /// Intervals grow by this factor, so that a few of them suffice after a pair was passed.

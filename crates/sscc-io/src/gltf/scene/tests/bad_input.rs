@@ -85,9 +85,12 @@ fn bad_nodes_and_skins_are_rejected() {
         }
     }
     let message = with_bytes(4, &f32::NAN.to_le_bytes());
-    assert_eq!(message, "meshes[0]: the position of vertex 0 (counted from 0) is not finite");
+    assert_eq!(
+        message,
+        "meshes[0]: the position of vertex 0 (counted from 0) is not finite, or beyond 2^200"
+    );
     let message = with_bytes(48 + 12, &f32::NAN.to_le_bytes());
-    assert_eq!(message, "meshes[0]: target 0 of vertex 1 (counted from 0) is not finite");
+    assert_eq!(message, "meshes[0]: target 0 of vertex 1 (counted from 0) is not finite, or beyond 2^200");
     // A joint that does not exist has no effect with weight 0.
     let mut unused = binary();
     unused[97] = 200;
@@ -190,5 +193,5 @@ fn bad_requests_are_rejected() {
     let wide = super::file::scene(&[(r#""scale":[1,2,1]"#, r#""scale":[1e300,2,1]"#)]);
     let mut found = Vec::new();
     let refused = wide.positions(3, None, 0.0, SkinWeights::Normalized, &mut found).unwrap_err().to_string();
-    assert_eq!(refused, "nodes[3]: the position of vertex 2 (counted from 0) is not finite");
+    assert_eq!(refused, "nodes[3]: the position of vertex 2 (counted from 0) is not finite, or beyond 2^200");
 }

@@ -15,7 +15,7 @@ fn every_truncation_is_rejected() {
     }
 }
 
-/// Evaluates everything that a file has. Errors have one line.
+/// Evaluates everything that a file has. Asserts that errors have one line.
 fn evaluate(bytes: &[u8]) {
     let one_line = |error: crate::FormatError| {
         let error = error.to_string();
@@ -66,7 +66,7 @@ fn evaluate(bytes: &[u8]) {
 
 proptest! {
     #[test]
-    fn damaged_files(
+    fn damaged_files_give_a_scene_or_an_error_of_one_line(
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
         in_binary: bool,
     ) {
@@ -81,7 +81,7 @@ proptest! {
 
     /// The JSON stays valid when numbers are exchanged.
     #[test]
-    fn exchanged_numbers(
+    fn files_with_exchanged_numbers_give_a_scene_or_an_error_of_one_line(
         changes in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..12), 1..4),
     ) {
         const NUMBERS: [&str; 12] =

@@ -117,7 +117,7 @@ fn each_inconsistent_part_is_refused() {
             &[&|local| _ = local.bounds.pop(), &|local| local.bounds.push(LocalBounds::default())],
         ),
         (
-            "a bound is negative or not a number",
+            "a bound is out of range",
             &[
                 &|local| local.bounds[0].ratio = f64::NAN,
                 &|local| local.bounds[1].ratio = -1.0,
