@@ -18,8 +18,8 @@
  *
  * CALLBACKS. They must return normally, without exceptions or longjmp. sscc.hpp catches exceptions and throws them again.
  *
- * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing, except sscc_query_safe_scale and
- * detectors that rebuild their hierarchy because its cost has grown.
+ * MEMORY. Repeated answers of one query, kinetic query, detector or shape allocate nothing, except sscc_query_safe_scale,
+ * detectors that rebuild their hierarchy because its cost has grown, and the rare exact signs of extreme numbers.
  *
  * STABILITY. Within one SSCC_ABI_VERSION functions, constants and structs do not change; later versions of the library
  * add functions and constants, and fields at the end of structs that begin with their size. Programs need not be compiled again.

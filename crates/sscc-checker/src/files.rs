@@ -39,7 +39,12 @@ type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 fn parse_obj(text: &str) -> Result<Mesh, Refusal> {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
-        let wrong = || Refusal::Input(format!("line {}: a vertex or a triangle is malformed", number + 1));
+        let wrong = || {
+            Refusal::Input(format!(
+                "line {}: a vertex of three numbers or a triangle was expected (other polygons are not read)",
+                number + 1
+            ))
+        };
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => {

@@ -57,8 +57,8 @@ impl Confirmed {
 /// Checks a proof, on this number of threads (at least 1). `certificates`, `proof`: the bytes of the files.
 ///
 /// # Errors
-/// [`Refusal::Input`] if the certificates are damaged, of another model, or of a kind that is not checked, or the proof
-/// is of other certificates; [`Refusal::Proof`] if the hierarchy, the pair tree or an exception of the certificates is
+/// [`Refusal::Input`] if the certificates are damaged, of another model, or of a kind that is not checked, or the file of the
+/// proof is no proof or of other certificates; [`Refusal::Proof`] if the hierarchy, the pair tree or an exception of the certificates is
 /// invalid, or the proof is damaged or does not hold.
 pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");

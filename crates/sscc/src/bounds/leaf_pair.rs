@@ -96,9 +96,8 @@ impl<'m> LeafPair<'m> {
         bounds.into_iter().fold(f64::INFINITY, smaller)
     }
 
-    /// Returns the bound of two triangles by one affine map of all vertices. For triangles so close that a fixed
-    /// direction is weak, the rate is bounded over a cone of directions, which costs more; for others over all
-    /// directions.
+    /// Returns the bound of two triangles by one affine map of all vertices. The rate is bounded over all directions; if that does
+    /// not suffice for triangles so close that a fixed direction is weak, also over a cone of directions, which costs more.
     pub(crate) fn bound_by_affine_map(&mut self, a: [u32; 3], b: [u32; 3], sufficient: f64) -> f64 {
         let at = |i: u32| self.model.positions[i as usize];
         let differences: [DVec3; 9] = std::array::from_fn(|ij| at(b[ij % 3]) - at(a[ij / 3]));

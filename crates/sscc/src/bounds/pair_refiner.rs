@@ -54,7 +54,7 @@ pub(crate) struct PairRefiner<'m> {
     /// Sub-triangles by their lower bound and, to break ties, a serial number.
     open: BinaryHeap<MinHeapEntry<u32, SubPair>>,
     /// The first direction tried for the last pair, or the last one that made the pair's bound larger. None if the pair
-    /// touches.
+    /// touches or, with a clearance, is not proven farther apart than it at rest.
     best_direction: Option<DVec3>,
 }
 
@@ -73,7 +73,7 @@ impl<'m> PairRefiner<'m> {
     }
 
     /// Returns the first direction tried for the last pair, or the last one that made the pair's bound larger. None if
-    /// the pair touches.
+    /// the pair touches or, with a clearance, is not proven farther apart than it at rest.
     pub(crate) fn best_direction(&self) -> Option<DVec3> {
         self.best_direction
     }

@@ -13,7 +13,8 @@ const MAX_VERTEX_TRIANGLES: usize = 24;
 pub(crate) struct AdjacencyMasks {
     /// For each packet the start of its masks, then the end of the last packet's.
     starts: Vec<u32>,
-    /// For each packet itself and the later packets with triangles adjacent to its own, ascending, each with its mask.
+    /// For each packet itself and the later packets with triangles adjacent to its own at a vertex of few triangles, ascending,
+    /// each with its mask.
     masks: Vec<PacketMask>,
     /// For each bucket the start of its neighbours, then the end of the last bucket's.
     neighbour_starts: Vec<u32>,

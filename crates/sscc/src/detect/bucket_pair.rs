@@ -28,7 +28,8 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
         let masked =
             with_mutant!(NOT_LATER, PacketNotTestedAgainstItself, NOT_LATER << 1 | 0x0101_0101_0101_0101);
         let pair = PacketPair { first: packets, second: packets, rows: (1 << count) - 1, masked };
-        self.state.candidates.share_no_vertex = false;
+        self.state.candidates.share_no_vertex =
+            with_mutant!(false, SharedVerticesOfLastBuckets, self.state.candidates.share_no_vertex);
         for (i, j) in PairsOfLanes(pair.overlaps(volumes.instructions).pairs) {
             let [first, second] = [i, j].map(|lane| BucketLane { bucket, lane });
             self.test_packet_pair(first, second);
@@ -81,7 +82,9 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
             let second = BucketLane { bucket: m, lane: j };
             self.test_packet_pair(first, second);
         }
-        self.test_candidates();
+        if with_mutant!(true, LastCandidatesForgotten, false) {
+            self.test_candidates();
+        }
     }
 
     /// Tests two packets whose boxes overlap (with one side, the second is not before the first), or one packet against itself.
@@ -119,22 +122,20 @@ impl<const SIDES: usize, const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> 
 
     /// Tests all candidates, and removes them.
     fn test_candidates(&mut self) {
-        let candidates = &mut self.state.candidates;
-        if candidates.count == 0 {
+        if self.state.candidates.count == 0 {
             return;
         }
         let [first, last] = [&*self.sides[0].volumes, &*self.sides[Self::LAST].volumes];
         let errors = [first.corner_error(), last.corner_error()];
-        let error = with_mutant!(errors[0].max(errors[1]), ErrorOfFirstShape, errors[0]);
+        let candidates = &mut self.state.candidates;
+        let count = candidates.take();
         let pairs = TrianglePairs {
             positions: [first.mapped_positions(), last.mapped_positions()],
             corners: &candidates.corners,
-            count: candidates.count,
-            error,
+            count,
+            error: with_mutant!(errors[0].max(errors[1]), ErrorOfFirstShape, errors[0]),
         };
-        let separated = pairs.separated(first.instructions);
-        let open = Lanes(!separated & ((1 << candidates.count) - 1));
-        candidates.count = 0;
+        let open = Lanes(!pairs.separated(first.instructions) & ((1 << count) - 1));
         for lane in open {
             let slots = candidates.slots[lane as usize];
             first.prefetch_corners(first.layout.buckets.corners()[slots[0]]);

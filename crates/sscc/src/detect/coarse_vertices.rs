@@ -49,6 +49,11 @@ impl CoarseVertices {
             }
             starts.push(starts[bucket as usize] + own.len().div_ceil(LANES) as u32);
         }
+        // Places are numbers of 32 bits.
+        let places = starts.last().map_or(0, |end| u64::from(*end) * LANES as u64);
+        if places > u64::from(u32::MAX) {
+            return Self::default();
+        }
         Self { starts, quantized, corners, instructions: InstructionSet::default() }
     }
 

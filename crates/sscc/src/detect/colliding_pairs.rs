@@ -18,8 +18,8 @@ const MAX_PAIRS: usize = 1 << 24;
 /// Returns all colliding pairs at q, sorted.
 ///
 /// # Errors
-/// When q is not a configuration of the model, the filter's groups are of another mesh, there are more than 2^24 pairs,
-/// or `progress` cancels.
+/// When q is not a configuration of the model, the filter's groups are of another mesh or it includes folded neighbours,
+/// there are more than 2^24 pairs, or `progress` cancels.
 pub(crate) fn colliding_pairs(
     model: &ReducedModel,
     hierarchy: &Arc<Hierarchy>,
@@ -50,8 +50,9 @@ impl ContactFilter {
     /// them.
     ///
     /// # Errors
-    /// When there are more than 2^24 pairs at rest; when there are more than 2^22 with the rings, or more than 2^28
-    /// must be examined; when the filter's groups are of another mesh.
+    /// When there are more than 2^24 pairs at rest; unless `rings` is 0, when there are more than 2^22 with the rings, or
+    /// more than 2^28 must be examined (or 2^24 around one pair); when the filter's groups are of another mesh, or it
+    /// includes folded neighbours.
     pub fn ignoring_rest(self, model: &ReducedModel, rings: u32) -> Result<Self, Error> {
         let hierarchy = Arc::new(Hierarchy::build(model, model.metric()));
         let pairs = colliding_pairs(model, &hierarchy, &self, &vec![0.0; model.rank()], &())?;

@@ -110,6 +110,8 @@ impl SearchState {
     pub(super) fn begin(&mut self) {
         self.is_cancelled = false;
         self.loose_pairs = 0;
+        // Pairs remain if the last search panicked.
+        self.candidates.count = with_mutant!(0, CandidatesOfLastSearch, self.candidates.count);
         self.counters = Counters::default();
     }
 
@@ -300,4 +302,17 @@ impl<const E: usize, M: VertexMotion<E>, N: NarrowPhase<E>> Search<'_, 1, E, M, 
 pub(crate) struct TriangleVertices {
     pub(crate) triangle: u32,
     pub(crate) vertices: [u32; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_begins_without_the_pairs_that_a_panic_left() {
+        let mut state = SearchState::default();
+        state.candidates.push([1, 2], [[3, 4, 5], [6, 7, 8]]);
+        state.begin();
+        assert_eq!(state.candidates.take(), 0);
+    }
 }

@@ -502,6 +502,14 @@ mutants! {
     SeparatedAtEnd: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
     /// Triangles whose error is not finite are tested for separating directions.
     InfiniteErrorTested: Covered("no gap is larger than a slack that is infinite or NaN");
+    /// Unused lanes of the separating-axis test keep the corners of an earlier search.
+    UnusedLanesKept: CaughtBy("it detector::one_mesh_is_tested_against_meshes_of_other_sizes");
+    /// A search begins with the pairs that a panic has left.
+    CandidatesOfLastSearch: CaughtBy("lib detect::search::tests::a_search_begins_without_the_pairs_that_a_panic_left");
+    /// The last pairs of two buckets, fewer than eight, are not tested.
+    LastCandidatesForgotten: CaughtBy("it detector::one_mesh_is_tested_against_meshes_of_other_sizes");
+    /// A bucket shares no vertex with itself if the two buckets before shared none.
+    SharedVerticesOfLastBuckets: CaughtBy("it detector::pairs_are_those_of_brute_force");
     /// The error of the second of two shapes is that of the first one.
     ErrorOfFirstShape: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
     /// Sides of normals have no rounding error.

@@ -12,8 +12,8 @@ impl Query {
     ///
     /// No pair is missed: every pair with a point in common at any time from 0 to 1, 0 and 1 included, is listed, with
     /// a time that is never later than the true one, and at which the distance is at most [`Impact::TOLERANCE`] times
-    /// the size of the triangles (if the test of a pair ends at its limit of about 10,000 steps, the time may be
-    /// earlier). Only pairs that come that close without a contact can differ between methods. Triangles that share
+    /// the size of the triangles (unless the test of a pair ends at its limit of about 10,000 steps: then the distance at
+    /// the listed time may be larger). Only pairs that come that close without a contact can differ between methods. Triangles that share
     /// exactly one vertex, where the contact filter includes them, are listed if in one of them the edge opposite to
     /// this vertex meets the other triangle; otherwise they have no other point in common.
     ///

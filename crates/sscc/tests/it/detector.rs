@@ -138,6 +138,42 @@ fn answers_are_those_of_queries() {
     assert!(colliding > 100 && impacts > 200, "{colliding} {impacts}");
 }
 
+/// The separating-axis test reads eight pairs: those that an earlier search has left must not matter.
+#[test]
+fn one_mesh_is_tested_against_meshes_of_other_sizes() {
+    let random = &mut Random::new(31);
+    let sizes = [1, 2, 5, 9, 40, 300];
+    let meshes = sizes.map(|triangles| {
+        let (rest, faces) = soup(random, triangles, 1.0);
+        TriMesh::new(rest, faces).unwrap()
+    });
+    let mut detectors = meshes.each_ref().map(Detector::new);
+    let corners = |mesh: &TriMesh| -> Vec<[DVec3; 3]> {
+        mesh.faces().iter().map(|face| face.map(|v| mesh.rest_positions()[v as usize])).collect()
+    };
+    let all = meshes.each_ref().map(corners);
+    let mut found = 0;
+    for case in 0..cases(400) {
+        let [i, j] = [(); 2].map(|()| (random.signed().abs() * sizes.len() as f64) as usize);
+        if i == j {
+            continue;
+        }
+        let [one, other] = detectors.get_disjoint_mut([i, j]).unwrap();
+        let [x, y] = [i, j].map(|i| meshes[i].rest_positions());
+        let pairs = one.against(x, other, y).unwrap();
+        let mut expected = Vec::new();
+        for (a, s) in all[i].iter().enumerate() {
+            let met = all[j].iter().enumerate().filter(|(_, t)| meet(s, t));
+            expected.extend(met.map(|(b, _)| (a as u32, b as u32)));
+        }
+        assert_eq!(pairs, expected, "case {case}: {i} {j}");
+        found += usize::from(!expected.is_empty());
+        let impacts = one.continuous_against([x, x], other, [y, y]).unwrap();
+        assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), expected, "case {case}");
+    }
+    assert!(found > cases(400) / 4, "{found}");
+}
+
 #[test]
 fn pairs_of_two_meshes_are_those_of_brute_force() {
     let random = &mut Random::new(12);

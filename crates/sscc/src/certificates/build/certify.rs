@@ -15,8 +15,8 @@ use crate::{Error, Progress, ReducedModel};
 
 impl Certificates {
     /// Computes the hierarchy and all certificates of a model: every `R_n`, `R_nm` for the children of the root (paper,
-    /// section 5.2), the pair tree within [`CertifyOptions::budget`], and local certificates within
-    /// [`CertifyOptions::local_budget`].
+    /// section 5.2), the pair tree within [`CertifyOptions::budget`], and, without a clearance, local certificates in the memory
+    /// that both budgets leave ([`CertifyOptions::local_budget`]).
     ///
     /// # Errors
     /// - When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).

@@ -2,8 +2,8 @@
 //! error ([`Precision::Fine`]).
 //!
 //! The smallest radii are chosen, because queries reach them first: a number of single buckets, of pairs of buckets
-//! that touch at the centre, and of other pairs. No AABB and no plane separates the triangles of a bucket, or of two
-//! that touch, at any q: wherever such a radius is reached, all of these triangles are moved and compared. Their
+//! that touch at the centre, and of other pairs. Hardly any AABB or plane separates the triangles of a bucket, or of
+//! two that touch: wherever such a radius is reached, all of these triangles are moved and compared. Their
 //! closest triangles are two rings apart on the surface, where a radius without subdivision is too small by a fifth in
 //! the median. A fine search takes up to milliseconds, so the number of searches is limited
 //! (docs/notes/bounds.md#fine-radii).

@@ -100,9 +100,8 @@ impl<'a> RadiusSearch<'a> {
         self.run()
     }
 
-    /// Searches the radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is that of
-    /// the pair tree ([`PAIR_TREE_EPSILON`]), which is not that of [`Precision::Coarse`], or that of the options if it
-    /// is larger. None if cancelled.
+    /// Searches the radius, at most `cap`, of all triangle pairs between two nodes, without subdivision. Its tolerance is
+    /// [`PAIR_TREE_EPSILON`], or that of the options if that is larger; it is not that of [`Precision::Coarse`]. None if cancelled.
     pub(crate) fn between_without_subdivision(&mut self, nodes: NodePair, cap: f64) -> Option<RadiusBound> {
         self.start(SearchGoal::new(cap, Precision::Full));
         self.target =

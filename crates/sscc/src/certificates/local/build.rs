@@ -148,8 +148,8 @@ impl Scratch {
 }
 
 impl Builder<'_> {
-    /// Computes the certificate of a node. None if more than [`MOST_MODES`] modes move its patch, or the certificate
-    /// would prove nothing.
+    /// Computes the certificate of a node. None if more than [`MOST_MODES`] modes move its patch, numbers of the ellipsoid are
+    /// out of range, or the certificate would prove nothing.
     fn certify(&self, n: u32, scratch: &mut Scratch) -> Option<LocalCertificate> {
         let Scratch { instructions, patch, search, images } = scratch;
         let around = self.touching.around(n);

@@ -46,7 +46,7 @@ impl Detector {
     /// search, [`Statistics::complete`](crate::Statistics::complete) is false.
     ///
     /// # Errors
-    /// As [`Detector::discrete`], for the positions of both meshes, but not for the number of pairs.
+    /// As [`Detector::discrete_at_most`], for the positions of both meshes.
     pub fn against_at_most(
         &mut self,
         positions: &[DVec3],

@@ -10,7 +10,7 @@ pub(crate) struct TrianglePairs<'p, const E: usize> {
     /// The positions of the vertices of the first and of the second triangles, at each configuration; their fourth components
     /// are unused.
     pub(crate) positions: [&'p [[Vec4; E]]; 2],
-    /// The places of the corners of the first and of the second triangles in these.
+    /// The places of the corners of the first and of the second triangles in these. Those of unused lanes are read, too.
     pub(crate) corners: &'p [[[u32; 3]; LANES]; 2],
     /// The number of pairs.
     pub(crate) count: usize,
@@ -281,7 +281,7 @@ mod tests {
     /// The triangles have a common corner. Each is moved away from the other by the whole error bound, along the normal
     /// that makes the error largest; sums are rounded as well.
     #[test]
-    fn positions_may_be_wrong_by_all_of_the_margin_and_sums_are_rounded() {
+    fn touching_triangles_with_errors_of_the_whole_bound_are_not_separated() {
         let random = &mut Random(9);
         // The positions, the margins and the moved positions are exact in single precision.
         let grid = |x: DVec3| (x * 2.0_f64.powi(20)).round() / 2.0_f64.powi(20);
@@ -333,8 +333,7 @@ mod tests {
         assert!(apart > 3000 && met > 3000, "{apart} {met}");
     }
 
-    /// The oracle: tests one pair, four directions side by side. Whether two triangles certainly have no point in common at either end, nor on the straight lines between: one direction
-    /// separates them at both ends. Coordinates are within [-2, 2], up to `error`, the bound of their error along each axis.
+    /// The oracle: tests one pair, four directions side by side.
     fn oracle<const E: usize>(x: &[[Vec4; E]; 3], y: &[[Vec4; E]; 3], error: f32) -> bool {
         if !error.is_finite() {
             return false;

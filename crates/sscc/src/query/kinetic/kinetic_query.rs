@@ -111,7 +111,7 @@ impl KineticQuery {
     /// Creates a query without a region.
     ///
     /// # Errors
-    /// As [`Query::new`]; when their metric does not fit the model.
+    /// As [`Query::new`]; when the metric of the certificates does not fit the model.
     pub fn new(model: &ReducedModel, certificates: &Certificates) -> Result<Self, Error> {
         let mut query = Query::new(model, certificates)?;
         let scope = &certificates.parts().scope;
