@@ -85,10 +85,12 @@ class view {
   std::size_t size_ = 0;
 };
 
-// Returns numbers without gaps, row by row, as a matrix with that many columns.
+// Returns numbers without gaps, row by row, as a matrix with that many columns. The library refuses the matrix if the last row
+// is not complete, and if there are no columns.
 inline matrix rows(view<const double> numbers, std::size_t columns) noexcept {
   if (columns == 0 || numbers.size() % columns != 0) {
-    return {numbers.data(), 1, numbers.size(), 0, 0};  // which the library refuses
+    // One row, fewer than modes have, of other than the three columns that positions have.
+    return {numbers.data(), 1, columns == 3 ? numbers.size() : columns, 0, 0};
   }
   return {numbers.data(), numbers.size() / columns, columns, 0, 0};
 }

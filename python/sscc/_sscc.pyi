@@ -216,8 +216,8 @@ class Certificates:
     ) -> list[Intervals]:
         """Finds for each mode all intervals of its weight over which the shape collides, with numbers of pairs and depths.
 
-        samples: samples of each weight, from 2 to 2^20. None means 101. Their pairs and depths are exact, and every weight
-            outside of the intervals is proven free.
+        samples: samples of each weight, from 2 to 2^20. None means 101. Their pairs are exact, and depths are rounded. Outside
+            of the intervals, up to their ``free_until`` and from their ``free_from`` on, the shape is proven free.
         range, q, modes, threads, progress: as in ``sweep``.
         """
     def resolve(self, q: ArrayLike, start: ArrayLike | None = None, *, all: bool | None = None) -> Resolved:
@@ -237,11 +237,12 @@ class Certificates:
         ``resolve``. With ``resolve=False`` they are rejected, even if only exceptions collide."""
     def clamp(self, q: ArrayLike) -> _F64 | None:
         """Returns q, or the last point on the line from the centre to q that the root's certificate proves free. Returns None if
-        its radius is 0 or there are exceptions."""
+        its radius is 0, there are exceptions, or the certificates have a ``clearance``."""
     def norm(self, q: ArrayLike) -> float:
         """Returns ``|S (q - center)|``, rounded up."""
     def radius(self, node: SupportsIndex) -> float:
-        """Returns the norm below which no two triangles of the node collide, apart from exceptions."""
+        """Returns the norm below which no two triangles of the node collide (with a ``clearance``: come nearer than it), apart
+        from exceptions."""
     def kinetic(self) -> KineticQuery:
         """Returns a query for a sequence of q with small steps."""
     @property
@@ -272,7 +273,8 @@ class Certificates:
         """Pairs that never count, (n, 2)."""
     @property
     def exceptions(self) -> _U32:
-        """Pairs that collide at the centre, (n, 2): no radius covers them, and every query tests them."""
+        """Pairs that collide at the centre, (n, 2): no radius covers them, and every query tests them. With a ``clearance``,
+        pairs that are nearer than it there, or hardly farther apart."""
     @property
     def clearance(self) -> float | None:
         """The clearance that triangles keep below the radii; None if radii are about collisions."""
@@ -290,7 +292,8 @@ class Certificates:
         """Number of node pairs with a stored radius."""
     @property
     def pair_limit(self) -> float:
-        """The norm below which the pair tree has every node pair that can collide; 0 without a pair tree."""
+        """The norm below which the pair tree has every node pair that can collide (with a ``clearance``: come nearer than it);
+        0 without a pair tree."""
     @property
     def local_certificates(self) -> int:
         """Number of nodes with a local certificate."""

@@ -45,8 +45,7 @@ export class CollisionsPanel {
     next(step: number): void {
         const pairs = this.current()?.pairs ?? [];
         if (pairs.length === 0) return;
-        this.at = (this.at + step + pairs.length) % pairs.length;
-        this.go(pairs[this.at]);
+        this.go((this.at + step + pairs.length) % pairs.length);
     }
 
     private current(): Answer | null {
@@ -73,8 +72,11 @@ export class CollisionsPanel {
         this.answered();
     }
 
-    private go(pair: [number, number]): void {
+    private go(at: number): void {
         const { app } = this;
+        const pair = this.current()?.pairs[at];
+        if (!pair) return;
+        this.at = at;
         app.chosen = pair;
         const { shape, pose } = app;
         const surface = { positions: shape.deformed(pose.q), faces: shape.faces, own: pair };
@@ -124,14 +126,14 @@ export class CollisionsPanel {
                 : "No pair collides"
             : "Pairs";
         const pairs = answer?.pairs ?? [];
-        const rows: HTMLElement[] = pairs.slice(0, this.rows).map((pair) => {
+        const rows: HTMLElement[] = pairs.slice(0, this.rows).map((pair, i) => {
             const chosen = this.app.chosen?.[0] === pair[0] && this.app.chosen[1] === pair[1];
             return h(
                 "li",
                 {},
                 h(
                     "button",
-                    { type: "button", class: "pair", "aria-pressed": String(chosen), onclick: () => this.go(pair) },
+                    { type: "button", class: "pair", "aria-pressed": String(chosen), onclick: () => this.go(i) },
                     `${pair[0]} – ${pair[1]}`,
                 ),
             );

@@ -81,8 +81,10 @@ function marks(app: App, mode: number, found: Intervals, base: Float64Array): HT
     if (found.intervals.length === 0)
         return h("span", { class: "free-marks", title: `${name}: proven free from ${low} to ${high}` }, picture);
     const buttons = found.intervals.map(({ from, to, pairs, depth, deepest, exact }) => {
-        const where = `collides from ${digits(from)} to ${digits(to)}: up to ${count(pairs, "pair")}, depth ${digits(depth)} at ${digits(deepest)}`;
-        const text = exact ? where : `${where}; not decided closely inside its ends`;
+        const range = `from ${digits(from)} to ${digits(to)}`;
+        const where = `collides ${range}: up to ${count(pairs, "pair")}, depth ${digits(depth)} at ${digits(deepest)}`;
+        const maybe = exact ? "" : "; near an end it may be free";
+        const text = pairs === 0 ? `nothing is proven ${range}, no sample collides` : where + maybe;
         const at = (100 * (x(from) + x(to))) / 2 / WIDTH;
         const width = Math.max(1, (100 * (x(to) - x(from))) / WIDTH);
         const show = (): void => {

@@ -9,13 +9,13 @@ import { readNpy } from "./npy";
  */
 export function parseRows(text: string, rank: number): number[][] {
     const lines = text
-        .split(/[\n\r]+/)
-        .map((line) => line.replace(/[[\]();,]/g, " ").trim())
-        .filter((line) => line !== "" && !line.startsWith("#"));
-    const rows = lines.map((line, i) =>
-        line.split(/\s+/).map((word) => {
+        .split(/\r\n|\n|\r/)
+        .map((line, i) => ({ number: i + 1, words: line.replace(/[[\]();,]/g, " ").trim() }))
+        .filter(({ words }) => words !== "" && !words.startsWith("#"));
+    const rows = lines.map(({ number, words }) =>
+        words.split(/\s+/).map((word) => {
             const value = Number(word);
-            if (!Number.isFinite(value)) throw new Error(`line ${i + 1}: '${word.slice(0, 20)}' is not a number`);
+            if (!Number.isFinite(value)) throw new Error(`line ${number}: '${word.slice(0, 20)}' is not a number`);
             return value;
         }),
     );

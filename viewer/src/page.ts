@@ -115,14 +115,16 @@ export async function page(source: Source, layout: Layout): Promise<void> {
     layout.button("PNG", "save a picture of the view (P)", actions.png);
     layout.button("GLB", "save the motion as GLB (G)", actions.glb);
     layout.button("◐", "light or dark (T)", actions.theme);
-    const keys = (): void => help(modes !== null);
+    const pairs = collisions ?? contacts;
+    const has = { modes: modes !== null, server: source.live && modes !== null, pairs: pairs !== null };
+    const keys = (): void => help(has);
     layout.button("?", "help (?)", keys);
     keyboard({
         " ": () => (player.timeline ? player.timeline.toggle() : modes?.vibrate(modes.focused() ?? 0)),
         ",": () => player.step(-1),
         ".": () => player.step(1),
-        n: () => (collisions ?? contacts)?.next(1),
-        N: () => (collisions ?? contacts)?.next(-1),
+        n: () => pairs?.next(1),
+        N: () => pairs?.next(-1),
         f: () => stage?.flyHome(),
         h: () => stage?.toggleCut(),
         u: () => player.turnUp(),

@@ -169,6 +169,18 @@ describe("live", () => {
                     .project(stage.camera);
                 return Math.hypot(point.x, point.y) < 0.02;
             });
+            // N continues from the pair that was clicked.
+            await page.keyboard.press("n");
+            const chosen = await page.locator('.pair[aria-pressed="true"]').allInnerTexts();
+            assert.deepEqual(chosen, [listed[1 % listed.length]]);
+            await page.keyboard.press("?");
+            const keys = await page.locator(".keys kbd").allInnerTexts();
+            assert.ok(
+                ["C", "K", "B", "N, Shift+N"].every((key) => keys.includes(key)),
+                `${keys}`,
+            );
+            await page.keyboard.press("Escape");
+            await page.locator("dialog").waitFor({ state: "detached" });
             await page.keyboard.press("r");
             await answered(page);
             assert.deepEqual(await page.evaluate(() => globalThis.sscc.body.markedTriangles(0)), []);

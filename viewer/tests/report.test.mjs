@@ -131,6 +131,10 @@ describe("the shape", () => {
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2 x");
             await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.match(await page.locator(".dialog .wrong").innerText(), /line 1: 'x' is not a number/);
+            // Empty lines and comments count.
+            await page.getByRole("textbox", { name: "numbers" }).fill("# weights\n\n1 2\n3 y");
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            assert.match(await page.locator(".dialog .wrong").innerText(), /line 4: 'y' is not a number/);
             await page.getByRole("textbox", { name: "numbers" }).fill("1 2");
             await page.getByRole("button", { name: "Show", exact: true }).click();
             assert.match(await page.locator(".dialog .wrong").innerText(), /2 numbers, the model has 4 modes/);
@@ -517,6 +521,13 @@ describe("the page", () => {
         look({}, async (page) => {
             await page.keyboard.press("?");
             await page.getByRole("dialog", { name: "help" }).waitFor();
+            // A report without checks has no pairs, and no server.
+            const keys = await page.locator(".keys kbd").allInnerTexts();
+            assert.ok(keys.includes("V") && keys.includes("?"), `${keys}`);
+            assert.deepEqual(
+                keys.filter((key) => ["C", "K", "B", "N, Shift+N", "H"].includes(key)),
+                [],
+            );
             await page.keyboard.press("Escape");
             await page.locator("dialog").waitFor({ state: "detached" });
             await page.getByRole("tab", { name: "Modes" }).focus();

@@ -93,7 +93,10 @@ impl<T: Copy> Matrix<T> {
         };
         let sides = [[rows, row_stride], [columns, column_stride]];
         if !is_nested(sides[0], sides[1], column) && !is_nested(sides[1], sides[0], row) {
-            let message = format!("{name}: elements overlap by the strides {row_stride} and {column_stride}");
+            let message = format!(
+                "{name}: elements overlap or are interleaved by the strides {row_stride} and {column_stride}: each row, or each \
+                 column, must end before the next one begins"
+            );
             return Err(Failure::new(sscc_status::Overlap, message));
         }
         pointers::check(data, length, name)?;

@@ -15,8 +15,8 @@ use crate::{
 };
 
 /// Endings of the files that have a mesh.
-const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk; glTF: .glb, .gltf, .vrm; models: \
-                         .npz, .model.safetensors";
+const SUPPORTED: &str = ".obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk, .pvd; \
+                         glTF: .glb, .gltf, .vrm; models: .npz, .model.safetensors";
 
 /// Options for loading a model.
 #[derive(Clone, Debug, Default)]
@@ -168,7 +168,7 @@ pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<L
     let (file, mesh_name) = named_file(path, mesh_name)?;
     let path = file.as_path();
     let format = ending(path);
-    if is_vtk_name(path) || is_collection(path) {
+    if is_grid_name(path) {
         return load_grid(path, &Displacement::of_name(mesh_name.as_deref()));
     }
     if mesh_name.is_some() && !gltf::is_gltf(path) {
@@ -202,9 +202,17 @@ fn load_grid(path: &Path, displacement: &Displacement) -> Result<LoadedMesh, IoE
     Ok(LoadedMesh { mesh, warnings })
 }
 
-/// As [`load_mesh_with_warnings`], but a grid of VTK is at rest, without its displacements.
+/// As [`load_mesh_with_warnings`], but a grid of VTK, or the first one of a collection, is at rest, without its displacements.
 fn load_rest_mesh(path: &Path) -> Result<LoadedMesh, IoError> {
-    if is_vtk_name(path) { load_grid(path, &Displacement::None) } else { load_mesh_with_warnings(path, None) }
+    match is_grid_name(path) {
+        true => load_grid(path, &Displacement::None),
+        false => load_mesh_with_warnings(path, None),
+    }
+}
+
+/// Whether the ending is that of a grid of VTK or of a collection of grids.
+fn is_grid_name(path: &Path) -> bool {
+    is_vtk_name(path) || is_collection(path)
 }
 
 /// Returns the error for a named mesh of a file that has only one.
@@ -355,6 +363,26 @@ mod tests {
         }
         let named = load_mesh(&path("a.obj"), Some("x")).unwrap_err().to_string();
         assert!(named.ends_with("leave out mesh_name"), "{named}");
+    }
+
+    #[test]
+    fn grids_and_collections_of_grids_are_at_rest_in_a_model() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        let grid = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+                    0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\n\
+                    VECTORS u double\n0 0 0 0 0 0 0 0 0 0 0 2\n";
+        std::fs::write(path("a.vtk"), grid).unwrap();
+        let collection = "<VTKFile type='Collection'><Collection>\n<DataSet timestep='1' file='a.vtk'/>\n\
+                          </Collection></VTKFile>";
+        std::fs::write(path("a.pvd"), collection).unwrap();
+        write_npy(&path("a.npy"), &[12, 1], &[0.5; 12]).unwrap();
+        for name in ["a.vtk", "a.pvd"] {
+            let mesh = load_mesh(&path(name), None).unwrap();
+            assert_eq!(mesh.rest_positions()[3].z, 3.0, "{name}");
+            let (model, _) = load_model(&path(name), Some(&path("a.npy"))).unwrap();
+            assert_eq!(model.mesh().rest_positions()[3].z, 1.0, "{name}");
+        }
     }
 
     #[test]

@@ -22,11 +22,13 @@ pub enum ZeroRadius {
         /// Number of rings beyond which pairs count.
         rings: u32,
     },
-    /// Only exceptions collide at the centre (with a clearance: are nearer than it), but two of these triangles are too
-    /// close for a bound above 0.
+    /// Only exceptions collide at the centre, but two of these triangles are too close for a bound above 0. With a
+    /// clearance only exceptions are nearer than it, but two of the triangles are hardly farther apart.
     TooClose {
         /// Triangles of the smallest part with radius 0, sorted.
         triangles: Vec<u32>,
+        /// Whether the certificates have a clearance.
+        has_clearance: bool,
     },
 }
 
@@ -55,14 +57,15 @@ impl ZeroRadius {
             let default = default_exceptions(model.mesh().faces().len());
             let max_exceptions = request.max_exceptions.unwrap_or(default);
             return Ok(Some(match others {
-                0 => Self::TooClose { triangles: smallest_zero_node(certificates) },
+                0 => Self::TooClose { triangles: smallest_zero_node(certificates), has_clearance: true },
                 _ => Self::Near { max_exceptions, rings: clearance.rings() },
             }));
         }
         let mut others = query.discrete(center)?.to_vec();
         others.retain(|pair| certificates.exceptions().binary_search(pair).is_err());
         if others.is_empty() {
-            return Ok(Some(Self::TooClose { triangles: smallest_zero_node(certificates) }));
+            let triangles = smallest_zero_node(certificates);
+            return Ok(Some(Self::TooClose { triangles, has_clearance: false }));
         }
         let default = default_exceptions(model.mesh().faces().len());
         let max_exceptions = request.max_exceptions.unwrap_or(default);

@@ -36,7 +36,7 @@ pub enum Error {
         /// Its position.
         position: [f64; 3],
     },
-    /// Positions of another mesh, or vertex classes of another mesh.
+    /// Positions of another mesh.
     #[error("there are {found} positions, but the mesh has {vertices} vertices: are they of another mesh?")]
     PositionCount {
         /// Positions given.
@@ -159,7 +159,10 @@ pub enum Error {
     },
     /// A q, or a pose of a shape, at which positions leave the range in which predicates are exact; a pose that is not
     /// finite.
-    #[error("q moves vertices beyond 2^200 (about 1.6e60): scale the model or q down")]
+    #[error(
+        "q (or a pose) moves vertices beyond 2^200 (about 1.6e60), or is not finite: scale the model or q down, or move the pose \
+         nearer to the origin"
+    )]
     CoordinatesRange,
     /// A mode that does not exist.
     #[error("there is no mode {mode}: the model has {rank} modes, counted from 0")]

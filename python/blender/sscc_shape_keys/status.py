@@ -22,4 +22,6 @@ def colliding(pairs: np.ndarray, polygons: np.ndarray, positions: np.ndarray, fa
     triangles = np.unique(pairs)
     found = np.unique(polygons[triangles])
     corners = positions[faces[triangles].reshape(-1)]
-    return Status("colliding", f"{len(found)} faces collide ({len(pairs)} pairs of triangles)", found, corners)
+    collide = "1 face collides" if len(found) == 1 else f"{len(found):,} faces collide"
+    of_triangles = "1 pair" if len(pairs) == 1 else f"{len(pairs):,} pairs"
+    return Status("colliding", f"{collide} ({of_triangles} of triangles)", found, corners)

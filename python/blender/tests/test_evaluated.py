@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import sscc  # noqa: E402
 import sscc_shape_keys  # noqa: E402
 from sscc_shape_keys import evaluated, panel  # noqa: E402
-from sscc_shape_keys.status import Status  # noqa: E402
+from sscc_shape_keys.status import Status, colliding  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
@@ -136,6 +136,17 @@ def test_meshes_without_shape_keys_are_checked() -> None:
     found = status(obj)
     assert found is not None and found.polygons.tolist() == [0, 1]
     assert found.text.startswith("evaluated mesh: 2 faces collide (")
+
+
+def test_counts_have_the_right_number() -> None:
+    positions, faces = np.zeros((9, 3)), np.arange(9).reshape(3, 3)
+
+    def text(pairs: list[list[int]], polygons: list[int]) -> str:
+        return colliding(np.array(pairs), np.array(polygons), positions, faces).text
+
+    assert text([[0, 1]], [0, 0, 0]) == "1 face collides (1 pair of triangles)"
+    assert text([[0, 1]], [0, 1, 2]) == "2 faces collide (1 pair of triangles)"
+    assert text([[0, 1], [0, 2]], [0, 1, 2]) == "3 faces collide (2 pairs of triangles)"
 
 
 def test_the_panel_shows_both_answers() -> None:

@@ -180,9 +180,12 @@ fn matrices() {
     check(x, f, matrix(&MODE[..17], 1), Argument, "modes has 17 rows: it must have 3 for each of the 6");
     check(sscc_matrix { rows: usize::MAX, ..x }, f, u, Argument, "positions is larger than memory");
     check(sscc_matrix { rows: usize::MAX / 8, ..x }, f, u, Argument, "positions has length");
-    for (row_stride, column_stride) in [(2, 1), (1, 5), (3, 0), (0, 1), (1, 1), (2, 2)] {
+    // By the strides 2 and 9 rows and columns are interleaved without overlap.
+    for (row_stride, column_stride) in [(2, 1), (1, 5), (3, 0), (0, 1), (1, 1), (2, 2), (2, 9)] {
         let x = sscc_matrix { row_stride, column_stride, ..x };
-        check(x, f, u, Overlap, "positions: elements overlap by the strides");
+        let strides = format!("{row_stride} and {column_stride}");
+        let text = format!("positions: elements overlap or are interleaved by the strides {strides}: each");
+        check(x, f, u, Overlap, &text);
     }
     let mut far = FACES;
     far[4] = 6;

@@ -122,6 +122,14 @@ int main() {
   CHECK(refused([&] { sscc::certificates::load("no such file.safetensors"); }) == SSCC_STATUS_FILE);
   const std::vector<double> seven(7);
   CHECK(refused([&] { sscc::detector::make(sscc::positions(seven), sscc::faces(faces)); }) == SSCC_STATUS_ARGUMENT);
+  const std::vector<double> three(3);
+  const std::array<std::uint32_t, 3> one_face = {0, 0, 0};
+  for (const std::size_t columns : {std::size_t{0}, std::size_t{2}, std::size_t{4}}) {
+    const auto incomplete = sscc::rows(three, columns);
+    CHECK(refused([&] { sscc::detector::make(incomplete, sscc::faces(one_face)); }) == SSCC_STATUS_ARGUMENT);
+    CHECK(refused([&] { sscc::model::make(sscc::positions(rest), sscc::faces(faces), incomplete); }) ==
+          SSCC_STATUS_ARGUMENT);
+  }
   const sscc::query moved = std::move(query);
   CHECK(refused([&] { query.discrete(q0); }) == SSCC_STATUS_NULL);
   auto kinetic = sscc::kinetic::make(model, certificates);

@@ -75,7 +75,7 @@ impl Modes {
 /// Parses a factor on lengths.
 fn scale(typed: &str) -> Result<f64, String> {
     let factor = typed.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
-    factor.ok_or_else(|| "a number above 0 was expected".into())
+    factor.ok_or_else(|| "a finite number above 0 was expected".into())
 }
 
 /// Kinds of modes that `sscc modes` makes.

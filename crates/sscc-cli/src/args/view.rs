@@ -36,8 +36,9 @@ pub struct View {
     /// Print the address only, and open no browser
     #[arg(long)]
     pub no_open: bool,
-    /// Models with a stiffness: also plot the largest deformation that the root certifies under the energy and the
-    /// displacement metric, over the number of modes; certificates for each number are computed first
+    /// Models whose own metric is a diagonal energy metric (sscc modes --kind linear or nonlinear): also plot the largest
+    /// deformation that the root certifies under the energy and the displacement metric, over the number of modes;
+    /// certificates for each number are computed first
     #[arg(long)]
     pub compare_metrics: bool,
     /// Write the page to this file (.html), and start no server

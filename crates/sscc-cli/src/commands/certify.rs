@@ -203,10 +203,18 @@ fn near_promise(
     zero_radius: Option<&ZeroRadius>,
 ) -> String {
     let distance = length(clearance.distance());
-    if zero_radius.is_some() {
-        return format!(
-            "triangles are nearer than {distance} at the centre; the parts without them are certified"
-        );
+    match zero_radius {
+        None => {}
+        Some(ZeroRadius::TooClose { .. }) => {
+            return format!(
+                "two triangles are hardly farther apart than {distance} at the centre; the parts without both are certified"
+            );
+        }
+        Some(ZeroRadius::Near { .. } | ZeroRadius::Colliding { .. }) => {
+            return format!(
+                "triangles are nearer than {distance} at the centre; the parts without them are certified"
+            );
+        }
     }
     let exceptions = if certificates.exceptions().is_empty() { "" } else { ", apart from exceptions" };
     let rings = counted(u64::from(clearance.rings().max(1)), "ring");

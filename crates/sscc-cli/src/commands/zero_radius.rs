@@ -24,7 +24,13 @@ pub fn note(reason: &ZeroRadius) -> String {
              --max-exceptions",
             rings + 1
         ),
-        ZeroRadius::TooClose { triangles } => format!(
+        ZeroRadius::TooClose { triangles, has_clearance: true } => format!(
+            "no other pair is nearer than the clearance at the centre, but two of the triangles {} (counted from 0) are so \
+             little farther apart that no radius above 0 could be proven: parts that contain both have radius 0; move them \
+             apart, or choose a smaller --clearance or another --center",
+            listed(triangles)
+        ),
+        ZeroRadius::TooClose { triangles, has_clearance: false } => format!(
             "no other pair collides at the centre, but two of the triangles {} (counted from 0) are so close that no \
              radius above 0 could be proven: parts that contain both have radius 0; move them apart, or choose \
              another --center",

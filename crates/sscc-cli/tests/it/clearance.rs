@@ -215,6 +215,29 @@ fn certificates_with_a_clearance_serve_near_pairs_alone() {
     assert!(close.stderr.contains("leave out more of the surface with --rings 2"), "{close:?}");
 }
 
+/// Two triangles whose distance is exactly the clearance are not nearer than it, and the radius is 0.
+#[test]
+fn triangles_hardly_farther_apart_than_the_clearance_are_not_reported_as_nearer() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let face = |z: f64| format!("v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\n");
+    fs::write(folder.join("plates.obj"), format!("{}{}f 1 2 3\nf 4 5 6\n", face(0.0), face(0.5))).unwrap();
+    let mode: Vec<f64> = (0..18).map(|row| if row >= 9 && row % 3 == 2 { 1.0 } else { 0.0 }).collect();
+    sscc_io::write_npy(&folder.join("plates.npy"), &[18, 1], &mode).unwrap();
+    let args = ["plates.obj", "--modes=plates.npy", "--clearance=0.5", "--max-exceptions=0"];
+    let run = sscc(folder, &[&["certify"], &args[..], &["-o", "x.sscc.safetensors"]].concat());
+    let line = run.stdout.lines().find(|line| line.starts_with("root radius")).unwrap();
+    assert!(
+        line.ends_with(
+            "0: two triangles are hardly farther apart than 0.5000 at the centre; the parts without both are certified"
+        ),
+        "{run:?}"
+    );
+    let start =
+        "note: no other pair is nearer than the clearance at the centre, but two of the triangles 0, 1 ";
+    assert!(run.stderr.starts_with(start), "{run:?}");
+}
+
 /// The commands of `docs/command.md`.
 #[test]
 fn the_guide_certifies_a_clearance() {

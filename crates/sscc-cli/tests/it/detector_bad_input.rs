@@ -79,7 +79,7 @@ fn invalid_frames_and_animations_are_refused() {
         ),
         (&["--animation=still"], "animations[1]: it has no key frames"),
         (&["--animation=0", "--node=0"], "node 0 shows no mesh with triangles; these nodes do: 1, 2 'moved'"),
-        (&["--animation=0", "--fps=0"], "0 frames per second: a number above 0 was expected"),
+        (&["--animation=0", "--fps=0"], "0 frames per second: a finite number above 0 was expected"),
         (&["--animation=0", "--fps=1e9"], "1e9 frames in 1 s: at most 1e7 are allowed"),
         (&["--animation=0", "--times=0,nan"], "the time NaN is not finite"),
         (&["--animation=0", "--times=0", "--continuous"], "there is one frame; a motion needs at least two"),

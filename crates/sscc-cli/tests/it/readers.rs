@@ -270,7 +270,7 @@ fn messages_state_causes_and_remedies() {
         (
             "a.fbx",
             b"x",
-            "a.fbx: unknown kind of mesh file; supported: .obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk; glTF: .glb, .gltf",
+            "a.fbx: unknown kind of mesh file; supported: .obj, .off, .ply, .stl; solids: .mesh, .veg, .msh, .node, .ele, .vtu, .vtk, .pvd; glTF: .glb, .gltf",
         ),
         (
             "a.msh",

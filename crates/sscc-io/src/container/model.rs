@@ -77,8 +77,8 @@ impl ModelInfo {
 /// Writes a model. Reading returns the same numbers, bit for bit.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, elastic forces, mass data or deviations are of another rank, or the file cannot be
-/// written.
+/// When the texts are beyond 1 MiB, elastic forces, mass data or deviations are of another rank, a deviation is negative or
+/// not finite, or the file cannot be written.
 pub fn write_model(path: &Path, model: &ReducedModel, info: &ModelInfo) -> Result<(), IoError> {
     write_whole(path, &model_to_bytes(model, info).map_err(|error| error.of(path))?)
 }
@@ -94,7 +94,8 @@ pub fn read_model(path: &Path) -> Result<(ReducedModel, ModelInfo), IoError> {
 /// Returns the bytes of a model file.
 ///
 /// # Errors
-/// When the texts are beyond 1 MiB, or elastic forces, mass data or deviations are of another rank.
+/// When the texts are beyond 1 MiB, elastic forces, mass data or deviations are of another rank, or a deviation is negative
+/// or not finite.
 pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>, FormatError> {
     let (mesh, modes) = (model.mesh(), model.modes());
     let (vertices, rank) = (modes.vertices(), modes.rank());
@@ -122,6 +123,7 @@ pub fn model_to_bytes(model: &ReducedModel, info: &ModelInfo) -> Result<Vec<u8>,
             let cause = format!("it has {} numbers, but the model has {rank} modes", deviations.len());
             return Err(FormatError::new(Place::Tensor(DEVIATIONS.into()), cause));
         }
+        check_deviations(deviations)?;
         writer.f64(DEVIATIONS, &[rank], deviations);
     }
     writer
@@ -176,8 +178,14 @@ fn read_deviations(file: &Container<'_>, rank: usize) -> Result<Option<Vec<f64>>
         return Ok(None);
     }
     let deviations = file.f64(DEVIATIONS)?.shaped(&[rank])?.values;
+    check_deviations(&deviations)?;
+    Ok(Some(deviations))
+}
+
+/// Returns an error if a standard deviation is negative or not finite.
+fn check_deviations(deviations: &[f64]) -> Result<(), FormatError> {
     match deviations.iter().find(|deviation| !(deviation.is_finite() && **deviation >= 0.0)) {
-        None => Ok(Some(deviations)),
+        None => Ok(()),
         Some(wrong) => {
             let cause = format!("a number is {wrong}: finite numbers of at least 0 were expected");
             Err(FormatError::new(Place::Tensor(DEVIATIONS.into()), cause))

@@ -60,11 +60,13 @@ pub fn write_animation(
 
 /// Returns the indices of the key frames for about `rate` frames per second: the step nearest to the time of each
 /// frame, the first and the last of `steps`. No two have the same time in single precision. `step` is the time step
-/// (s).
+/// (s). With a rate that is not positive (also NaN), only the first and the last step remain.
 pub fn key_frames(steps: usize, step: f64, rate: f64) -> Vec<usize> {
     let Some(last) = steps.checked_sub(1) else { return Vec::new() };
-    let stride = (1.0 / (rate * step)).max(1.0);
-    // With a rate of 0 or below one frame, only the first and the last step remain; with a rate that is NaN, all steps.
+    // Key frames for each step. NaN must fail the comparison, too.
+    let per_step = rate * step;
+    let stride = if per_step > 0.0 { (1.0 / per_step).max(1.0) } else { f64::INFINITY };
+    // With a rate that is not positive or below one frame, only the first and the last step remain.
     let count = if stride.is_finite() { (last as f64 / stride) as usize } else { 0 };
     let mut frames: Vec<usize> =
         (0..=count).map(|frame| ((frame as f64 * stride).round() as usize).min(last)).collect();

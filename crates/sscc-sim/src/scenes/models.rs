@@ -177,7 +177,7 @@ fn modes(model: &Section<'_>) -> Result<(ModesSpec, bool)> {
         "linear" => Ok((ModesSpec::Linear(rank.unwrap_or(20)), true)),
         "nonlinear" => Ok((ModesSpec::Nonlinear(rank.unwrap_or(30)), false)),
         _ if rank.is_some_and(|rank| rank != 24) => {
-            Err(model.refused("rank", "polynomial modes are always 24: leave rank out"))
+            Err(model.refused("rank", "there are at most 24 polynomial modes: leave rank out"))
         }
         _ => Ok((ModesSpec::Polynomial, true)),
     }

@@ -24,7 +24,7 @@ impl Times {
             Self::PerSecond(rate) => *rate,
         };
         if !(rate > 0.0 && rate.is_finite()) {
-            return Err(format!("{rate} frames per second: a number above 0 was expected"));
+            return Err(format!("{rate} frames per second: a finite number above 0 was expected"));
         }
         let last = last_time.max(0.0);
         let steps = (last * rate - SAME).ceil().max(0.0);
@@ -57,7 +57,7 @@ mod tests {
     fn bad_times_are_refused() {
         let message = |times: Times| times.of(10.0).unwrap_err();
         for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(message(Times::PerSecond(rate)).ends_with("a number above 0 was expected"));
+            assert!(message(Times::PerSecond(rate)).ends_with("a finite number above 0 was expected"));
         }
         assert_eq!(message(Times::PerSecond(1e9)), "1e10 frames in 10 s: at most 1e7 are allowed");
         assert_eq!(message(Times::List(vec![0.0, f64::NAN])), "the time NaN is not finite");

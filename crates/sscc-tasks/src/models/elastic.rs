@@ -21,7 +21,7 @@ const MAX_COMPARED: usize = 5000;
 
 /// Cause of the error if polynomial modes are requested with a rank or with fixed vertices.
 pub const POLYNOMIAL_MODES_ERROR: &str =
-    "polynomial modes are always 24 and have no fixed vertices: leave these flags out";
+    "there are at most 24 polynomial modes, without fixed vertices: leave these flags out";
 
 /// Kinds of modes of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -45,12 +45,12 @@ pub enum ModesSpec {
 }
 
 impl ModesSpec {
-    /// Returns the number of modes r; None if it is in a file that is not yet read.
+    /// Returns the number of modes r; None if it is known only with the model: for a file with modes, and for polynomial modes, of
+    /// which there are at most 24.
     pub fn rank(self) -> Option<usize> {
         match self {
             Self::Linear(rank) | Self::Nonlinear(rank) => Some(rank),
-            Self::Polynomial => Some(24),
-            Self::Given => None,
+            Self::Polynomial | Self::Given => None,
         }
     }
 }

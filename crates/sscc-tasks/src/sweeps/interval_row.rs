@@ -77,7 +77,7 @@ impl Interval {
                 counted(*pairs as u64, "pair"),
                 length(*depth),
                 weight(*deepest),
-                if exact { "" } else { "; not decided closely inside its ends" }
+                if exact { "" } else { "; near an end it may be free" }
             ),
         }
     }
@@ -157,7 +157,7 @@ mod tests {
                 "mode       from    to  collides from",
                 "smile         0     1  free",
                 "jaw\\nOpen     0     1  0.25 to 0.5: up to 2 pairs, depth 0.1250 at 0.5",
-                "                       0.6 to 0.7: up to 1 pair, depth 0.1250 at 0.7; not decided closely inside its ends",
+                "                       0.6 to 0.7: up to 1 pair, depth 0.1250 at 0.7; near an end it may be free",
                 "                       0.8 to 0.8: nothing is proven, no sample collides",
                 "2 modes: 1 free, 1 not; every weight outside of the intervals is proven free, up to 1e-9 of the range; pairs and depths of 2 samples of each weight",
             ]

@@ -35,7 +35,12 @@ impl SweepRange {
         let numbers: std::result::Result<Vec<f64>, _> =
             typed.split(',').map(|text| text.trim().parse()).collect();
         match numbers.as_deref() {
-            Ok([low, high]) if !(high - low).is_finite() => refused("both ends must be finite".into()),
+            Ok([low, high]) if !(low.is_finite() && high.is_finite()) => {
+                refused("both ends must be finite".into())
+            }
+            Ok([low, high]) if !(high - low).is_finite() => {
+                refused("the range is too wide: the difference of both ends must be finite".into())
+            }
             Ok([low, high]) if low >= high => {
                 refused("the range is empty: the first number must be the smaller one".into())
             }
@@ -122,8 +127,11 @@ mod tests {
         for typed in ["", "1", "1,2,3", "a,b"] {
             assert!(message(typed).ends_with("two numbers were expected, as in range=-1,1"), "{typed}");
         }
-        for typed in ["nan,1", "0,inf", "-1e308,1e308"] {
-            assert!(message(typed).ends_with("both ends must be finite"), "{typed}");
+        for typed in ["nan,1", "0,inf", "inf,inf"] {
+            assert!(message(typed).ends_with(": both ends must be finite"), "{typed}");
+        }
+        for typed in ["-1e308,1e308", "1e308,-1e308"] {
+            assert!(message(typed).ends_with(": the difference of both ends must be finite"), "{typed}");
         }
     }
 

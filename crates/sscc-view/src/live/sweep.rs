@@ -25,9 +25,10 @@ pub struct SweepAnswer {
     to: f64,
     /// The shape is proven free from `from` up to this weight; `None` if it collides at `from`.
     first_free: Option<f64>,
-    /// The first weight at which the shape collides; `None` if it collides nowhere in the range.
+    /// A weight at which the shape collides, or comes within the tolerance (a grazing contact); `None` if none was found up to
+    /// `to`. It need not be the first one if `note` states that nothing is proven beyond `first_free`: see [`SweepOutcome`].
     first_hit: Option<f64>,
-    /// The first of the pairs that collide there, sorted.
+    /// The first of the pairs that collide there, or come within the tolerance, sorted.
     pairs: Vec<Pair>,
     /// The number of these pairs.
     count: usize,

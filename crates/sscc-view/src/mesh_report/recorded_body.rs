@@ -49,6 +49,11 @@ impl<T, const N: usize> FrameLists<T, N> {
         self.values.len()
     }
 
+    /// Returns the number of frames whose lists have ended.
+    pub fn frames(&self) -> usize {
+        self.ends.len()
+    }
+
     /// Returns the range of a frame in the list of all frames; empty beyond the last frame.
     pub fn range(&self, frame: usize) -> std::ops::Range<usize> {
         let end = |frame: usize| self.ends.get(frame).copied().unwrap_or(self.values.len());

@@ -48,8 +48,8 @@ impl MeshReport {
     /// Adds an answer.
     ///
     /// # Errors
-    /// If the answer has no positions; if the answer with index 0 has not been added; if a coordinate exceeds the range
-    /// of the page (1e30); if the report would exceed [`MAX_REPORT_BYTES`].
+    /// If the answer has no positions; if it is not the next answer of its mesh, in the order of the indices from 0; if a
+    /// coordinate exceeds the range of the page (1e30); if the report would exceed [`MAX_REPORT_BYTES`].
     pub fn add(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
         let shape = answer.shape.ok_or_else(|| ViewError::Request("the answers have no positions".into()))?;
         if answer.index == 0 {
@@ -57,6 +57,11 @@ impl MeshReport {
         }
         let first = self.bodies.len().checked_sub(1 + usize::from(answer.other.is_some()));
         let first = first.ok_or_else(|| ViewError::Request("the first answer is missing".into()))?;
+        let next = self.bodies[first].pairs.frames();
+        if answer.index != next {
+            let cause = format!("the answer with index {} was added where {next} is next", answer.index);
+            return Err(ViewError::Request(cause));
+        }
         let is_last_step = answer.times.is_some() && answer.index + 2 == answer.frames;
         for (body, shape) in self.bodies[first..].iter_mut().zip([shape].into_iter().chain(answer.other)) {
             body.push_positions(shape.x_t0, self.center)?;
@@ -78,9 +83,8 @@ impl MeshReport {
             self.check_size(0)?;
         }
         self.bodies[first].segments.end_frame();
-        if answer.index == self.microseconds.len() {
-            self.microseconds.push(0.0);
-        }
+        let frames = self.microseconds.len().max(answer.index + 1);
+        self.microseconds.resize(frames, 0.0);
         self.microseconds[answer.index] += answer.microseconds;
         Ok(())
     }
@@ -88,14 +92,15 @@ impl MeshReport {
     /// Adds an answer about two nodes of a scene, whose own answers have been added.
     ///
     /// # Errors
-    /// If the answer has no positions; if no answer of one of the nodes has been added; if the report would exceed
-    /// [`MAX_REPORT_BYTES`].
+    /// If the answer has no positions; if no answer of one of the nodes, or of this frame, has been added; if the report would
+    /// exceed [`MAX_REPORT_BYTES`].
     pub fn add_between_nodes(&mut self, answer: &DetectionAnswer<'_>) -> Result<(), ViewError> {
         let shapes = answer.shape.zip(answer.other);
         let (shape, other) =
             shapes.ok_or_else(|| ViewError::Request("the answers have no positions".into()))?;
         let body = |node: Option<usize>| self.bodies.iter().position(|body| body.node == node);
         let bodies = body(answer.node).zip(body(answer.other_node));
+        let bodies = bodies.filter(|_| answer.index < self.microseconds.len());
         let (a, b) = bodies.ok_or_else(|| ViewError::Request("the answer of a node is missing".into()))?;
         self.check_size(12 * answer.pairs.len())?;
         let mut segments = Vec::new();

@@ -228,3 +228,23 @@ fn numbers_and_sizes_beyond_the_limits_of_the_page_are_refused() {
     let error = MeshReport::default().add(&answer(&mesh, 1, 2, &[], [&x, &[]])).unwrap_err();
     assert_eq!(error.to_string(), "the first answer is missing");
 }
+
+#[test]
+fn answers_out_of_order_are_refused() {
+    let (mesh, x) = (mesh(), positions(1.0));
+    let at = |index| answer(&mesh, index, 4, &[], [&x, &[]]);
+    let mut report = MeshReport::default();
+    report.add(&at(0)).unwrap();
+    let error = report.add(&at(2)).unwrap_err();
+    assert_eq!(error.to_string(), "the answer with index 2 was added where 1 is next");
+    report.add(&at(1)).unwrap();
+    let node = |node, index| DetectionAnswer { node: Some(node), ..at(index) };
+    let mut report = MeshReport::default();
+    report.add(&node(0, 0)).unwrap();
+    report.add(&node(1, 0)).unwrap();
+    for (index, is_known) in [(0, true), (1, false)] {
+        let other = ShapeInMotion { file: Path::new("folder/mesh.obj"), mesh: &mesh, x_t0: &x, x_t1: &[] };
+        let between = DetectionAnswer { other: Some(other), other_node: Some(1), ..node(0, index) };
+        assert_eq!(report.add_between_nodes(&between).is_ok(), is_known);
+    }
+}

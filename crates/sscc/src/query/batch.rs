@@ -10,8 +10,8 @@ use crate::detect::answer::{Answer, Statistics};
 use crate::parallel::{map, map_with, on_threads};
 use crate::{Error, Progress};
 
-/// Progress of the q that the root's certificate proves free is reported about once for this many, so that reports do
-/// not slow down the cheapest queries.
+/// A thread reports the q that the root's certificate proves free once for this many, so that reports do not slow down the
+/// cheapest queries.
 const REPORT_INTERVAL: usize = 64;
 
 impl Query {
@@ -46,7 +46,9 @@ impl Query {
             batch.answer_open(self, &mut answers)?;
             answers.into_iter().map(|answer| answer.ok_or(Error::Cancelled)).collect()
         });
-        progress.report(batch.rows.len(), batch.rows.len());
+        if answers.is_ok() {
+            progress.report(batch.rows.len(), batch.rows.len());
+        }
         answers
     }
 }
@@ -66,21 +68,22 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
     /// # Errors
     /// The error of the first q that has one; when the batch was cancelled.
     fn answer_by_root(&self, query: &Query) -> Result<Vec<Option<Answer>>, Error> {
-        let answer = |check: &mut ConfigurationCheck, (index, q): (usize, &Q)| {
+        let answer = |(check, unreported): &mut (ConfigurationCheck, usize), q: &Q| {
             if self.progress.is_cancelled() {
                 return Err(Error::Cancelled);
             }
             let Configuration { norm, .. } = check.measure(&query.context, q.as_ref())?;
             let is_free = query.context.is_proven_free(norm);
-            if is_free && index.is_multiple_of(REPORT_INTERVAL) {
-                self.report(REPORT_INTERVAL);
+            *unreported += usize::from(is_free);
+            if *unreported == REPORT_INTERVAL {
+                self.report(std::mem::take(unreported));
             }
             let free =
                 || Answer { pairs: Vec::new(), statistics: Statistics { norm, ..Statistics::PROVEN_FREE } };
             Ok(is_free.then(free))
         };
         let answers: Vec<Result<Option<Answer>, Error>> =
-            map_with(self.rows.iter().enumerate(), usize::MAX, || query.check.clone(), answer);
+            map_with(self.rows, usize::MAX, || (query.check.clone(), 0), answer);
         answers.into_iter().collect()
     }
 
@@ -109,10 +112,10 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         map(open, answer).into_iter().collect()
     }
 
-    /// Adds `more` to the number of answers, and reports the number before.
+    /// Adds `more` to the number of answers, and reports it.
     fn report(&self, more: usize) {
-        let before = self.done.fetch_add(more, Ordering::Relaxed);
-        self.progress.report(before.min(self.rows.len()), self.rows.len());
+        let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
+        self.progress.report(done, self.rows.len());
     }
 }
 

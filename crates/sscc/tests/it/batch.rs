@@ -143,3 +143,33 @@ fn the_first_error_is_reported() {
     let none: [&[f64]; 0] = [];
     assert_eq!(query.batch(&none, None, &()), Ok(vec![]));
 }
+
+/// Every report has the number of answers so far, and the last one is that of the end.
+#[test]
+fn batches_report_the_number_of_answers() {
+    struct Reports(std::sync::Mutex<Vec<(usize, usize)>>);
+    impl sscc::Progress for Reports {
+        fn report(&self, done: usize, total: usize) {
+            self.0.lock().unwrap().push((done, total));
+        }
+    }
+    // A triangle one unit above another one, which the mode lifts.
+    let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    let modes = (0..6).map(|v| if v < 3 { DVec3::ZERO } else { DVec3::Z }).collect();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+    let certificates = Certificates::compute(&model, &sscc::CertifyOptions::default(), &()).unwrap();
+    let query = Query::new(&model, &certificates).unwrap();
+    // The root's certificate proves all free but the last three.
+    let batch: Vec<[f64; 1]> = (0..133).map(|i| if i < 130 { [0.0] } else { [-1.0] }).collect();
+    let reports = Reports(std::sync::Mutex::default());
+    let answers = query.batch(&batch, Some(1), &reports).unwrap();
+    assert!(answers[129].statistics.root_certified && answers[130].pairs == [(0, 1)]);
+    let reports = reports.0.into_inner().unwrap();
+    assert!(reports.is_sorted() && reports.ends_with(&[(131, 133), (132, 133), (133, 133), (133, 133)]));
+    assert!(reports.iter().rev().skip(4).all(|(done, _)| *done <= 130), "{reports:?}");
+    // A batch that fails does not report its end.
+    let reports = Reports(std::sync::Mutex::default());
+    assert!(query.batch(&[[0.0], [f64::NAN]], Some(1), &reports).is_err());
+    assert!(reports.0.into_inner().unwrap().is_empty());
+}

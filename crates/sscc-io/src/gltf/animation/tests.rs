@@ -163,7 +163,10 @@ fn key_frames_follow_the_rate() {
     assert_eq!(key_frames(10, 0.01, 30.0), [0, 3, 7, 9]);
     assert_eq!(key_frames(4, 0.1, 60.0), [0, 1, 2, 3]);
     assert_eq!(key_frames(88_200, 1.0 / 44_100.0, 60.0).len(), 121);
-    assert_eq!(key_frames(5, 0.01, 0.0), [0, 4]);
+    for no_rate in [0.0, -0.0, -60.0, f64::NEG_INFINITY, f64::NAN] {
+        assert_eq!(key_frames(5, 0.01, no_rate), [0, 4], "{no_rate}");
+    }
+    assert_eq!(key_frames(3, 0.01, f64::INFINITY), [0, 1, 2]);
     // Single precision cannot distinguish these times.
     let (steps, step) = (20_000_001, 1.0 / 44_100.0);
     let frames = key_frames(steps, step, 44_100.0);

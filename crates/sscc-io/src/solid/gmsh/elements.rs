@@ -89,7 +89,10 @@ impl Reader<'_, '_> {
         let kind = self.kind()?;
         let count = if self.numbers.words.binary { self.numbers.tag(LAST_ELEMENT)? } else { 1 };
         let tags = self.numbers.tag(LAST_ELEMENT)?;
-        if count == 0 || count > left {
+        if count == 0 {
+            return self.numbers.refused("a block has 0 elements: it must have at least one");
+        }
+        if count > left {
             return self
                 .numbers
                 .refused(format!("a block has {count} elements, but only {left} of the section remain"));

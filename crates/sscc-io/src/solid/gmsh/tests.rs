@@ -81,6 +81,22 @@ fn all_dialects_give_the_same_mesh() {
 }
 
 #[test]
+fn blocks_have_at_least_one_element_and_at_most_those_of_the_section() {
+    let mut file = binary(Version::V2, false);
+    let start = b"$Elements\n4\n";
+    let at = file.windows(start.len()).position(|window| window == start).unwrap() + start.len();
+    // The count comes after the kind of the block.
+    for (count, cause) in [
+        (0_i32, "a block has 0 elements: it must have at least one"),
+        (5, "a block has 5 elements, but only 4 of the section remain"),
+    ] {
+        file[at + 4..at + 8].copy_from_slice(&count.to_le_bytes());
+        let message = parse(&file).unwrap_err().to_string();
+        assert!(message.ends_with(cause), "{message}");
+    }
+}
+
+#[test]
 fn parametric_nodes_of_version_2() {
     let nodes = "$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n7 1 1 1\n$EndNodes\n";
     assert!(V2.contains(nodes));

@@ -55,8 +55,9 @@ const MAX_PAIRS_OF_MODEL: usize = 1 << 24;
 /// Returns all pairs of a model that count and are nearer than a clearance at q, sorted.
 ///
 /// # Errors
-/// When q is not a configuration of the model, there are more than 2^24 such pairs (including those within the rings), or
-/// `progress` cancels.
+/// When q is not a configuration of the model, the filter's groups are of another mesh, this thread's arithmetic is not that of
+/// IEEE 754 ([`Error::Arithmetic`]), there are more than 2^24 such pairs (including those within the rings), or `progress`
+/// cancels.
 pub(crate) fn near_pairs_of_model(
     model: &ReducedModel,
     filter: &ContactFilter,

@@ -274,7 +274,10 @@ pub fn detector_with_weld_classes(
     classes: &[u32],
     filter: &ContactFilter,
 ) -> Result<Detector, Error> {
-    check_count(classes.len(), mesh.rest_positions().len())?;
+    if classes.len() != mesh.rest_positions().len() {
+        let (name, wanted) = ("the number of weld classes", "the number of vertices of the mesh");
+        return Err(Error::Option { name, value: classes.len() as f64, wanted });
+    }
     filter.check_groups(mesh.faces().len())?;
     // Classes are numbered by vertices, which bounds the memory of tables by class.
     let mut first = HashMap::new();
