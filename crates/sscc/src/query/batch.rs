@@ -41,7 +41,7 @@ impl Query {
         progress: &dyn Progress,
     ) -> Result<Vec<Answer>, Error> {
         let batch = Batch { rows: batch, limit, progress, done: AtomicUsize::new(0) };
-        let answers = on_threads(threads, || {
+        let answers: Result<Vec<Answer>, Error> = on_threads(threads, || {
             let mut answers = batch.answer_by_root(self)?;
             batch.answer_open(self, &mut answers)?;
             answers.into_iter().map(|answer| answer.ok_or(Error::Cancelled)).collect()
