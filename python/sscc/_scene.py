@@ -133,7 +133,7 @@ class Scene:
         threads: int | None = None,
         progress: bool | Callable[[float], object] | None = None,
     ) -> list[SceneAnswer]:
-        """Checks every mesh with itself and with the others, as ``sscc check`` does.
+        """Checks every mesh with itself and with the others, as ``sscc check --between-nodes`` does.
 
         animation: its name or number. None means the scene as it is stored.
         times, fps: the times at which the animation is checked (s), or their rate (times per second). None means 30 per second.

@@ -12,7 +12,7 @@ import sscc
 from shapes import samples, torus, two_triangles
 
 
-def test_the_first_example() -> None:
+def test_the_first_example_gives_the_expected_answers() -> None:
     model = sscc.Model(*two_triangles())
     certs = model.certify()
     free = certs.check([0.5])

@@ -31,12 +31,14 @@ pub fn read_reduced_forces(path: &Path) -> Result<ReducedForces, IoError> {
 ///
 /// # Errors
 /// As [`read_reduced_forces`].
-#[expect(clippy::unreachable, reason = "16 bytes are four of 4")]
+#[expect(clippy::unreachable, reason = "16 bytes are four chunks of 4 bytes")]
 pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         return Err(FormatError::new(Place::Byte(bytes.len()), "the file ends within the header"));
     };
-    let [rank, sizes @ ..] = header.as_chunks::<4>().0 else { unreachable!("16 bytes are four of 4") };
+    let [rank, sizes @ ..] = header.as_chunks::<4>().0 else {
+        unreachable!("16 bytes are four chunks of 4 bytes")
+    };
     let rank = usize::try_from(i32::from_le_bytes(*rank)).unwrap_or_default();
     if rank == 0 {
         return Err(FormatError::new(Place::Byte(0), "the rank is 0 or less: is this a .cub file?"));
@@ -52,7 +54,10 @@ pub fn parse_reduced_forces(bytes: &[u8]) -> Result<ReducedForces, FormatError> 
     // Each number of monomials is below 2^31, so the rank is below 2^16.
     let all = expected.iter().map(|size| 8 * rank as u64 * *size as u64).sum::<u64>();
     if body.len() as u64 != all {
-        let cause = format!("rank {rank} needs {all} bytes, but {} follow: is the file cut off?", body.len());
+        let cause = format!(
+            "rank {rank} needs {all} bytes of coefficients, but {} bytes follow the header: is the file cut off?",
+            body.len()
+        );
         return Err(FormatError::new(Place::Byte(HEADER), cause));
     }
     let mut values: Vec<f64> =

@@ -220,7 +220,7 @@ fn dropped_pairs_are_refused() {
             bytes[16 * node + 8..][..4].copy_from_slice(&first_child.to_le_bytes());
             bytes[16 * node + 12..][..4].copy_from_slice(&children.to_le_bytes());
         });
-        assert!(refusal(check(&model, &wrong, &proof), true).contains("other children"));
+        assert!(refusal(check(&model, &wrong, &proof), true).contains("are not the next"));
     }
 }
 

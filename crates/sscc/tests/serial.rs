@@ -1,4 +1,4 @@
-//! Calls all functions that may use threads on a small model. `cargo xtask serial` runs this program without the feature
+//! Calls the functions of certificates, queries and audits that may use threads, on a small model. `cargo xtask serial` runs this program without the feature
 //! `parallel`, and `cargo test` with it: the expected bits are the same.
 #![allow(clippy::expect_used, clippy::panic, clippy::unreachable, clippy::unwrap_used)]
 
@@ -11,11 +11,12 @@ use sscc::{
 /// Squares along each side of a sheet.
 const SIDE: u32 = 6;
 
-/// The expected digest of the root's radius, of all pairs and of all times, with the feature `parallel` and without it.
+/// The expected digest of the root's radius, all pairs, all times, the ends of the sweep and the resolved q, with the feature
+/// `parallel` and without it.
 const EXPECTED: u64 = 0x777c_5166_4806_4a47;
 
-/// Returns two sheets at a distance of 1. The modes bend, lower and tilt the upper one. All numbers are sums and products, which
-/// are the same on every machine.
+/// Returns two sheets at a distance of 1. The modes bend, lower and tilt the upper one. All numbers are sums, products and
+/// quotients, which are the same on every machine.
 fn sheets() -> ReducedModel {
     let (mut positions, mut faces, mut displacements) = (Vec::new(), Vec::new(), Vec::new());
     for z in [0.0, 1.0] {

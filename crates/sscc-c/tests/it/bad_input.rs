@@ -15,7 +15,7 @@ fn misaligned<T>(array: &[T]) -> *const T {
 }
 
 #[test]
-fn null_handles() {
+fn null_handles_are_refused() {
     let all = Handles::new();
     let x = matrix(&TWO, 3);
     let mut count = 9;
@@ -97,7 +97,7 @@ fn null_handles() {
 }
 
 #[test]
-fn null_outputs_and_callbacks() {
+fn null_outputs_paths_and_callbacks_are_refused() {
     let all = Handles::new();
     let (x, f, q) = (matrix(&TWO, 3), faces(&FACES), &0.5);
     unsafe {
@@ -151,7 +151,7 @@ fn null_outputs_and_callbacks() {
 }
 
 #[test]
-fn matrices() {
+fn invalid_matrices_are_refused() {
     let (x, f, u) = (matrix(&TWO, 3), faces(&FACES), matrix(&MODE, 1));
     let mut model = null_mut();
     let out = &raw mut model;
@@ -203,7 +203,7 @@ fn matrices() {
 }
 
 #[test]
-fn arrays_of_queries() {
+fn queries_refuse_invalid_arrays() {
     let all = Handles::new();
     let numbers = [0.5; 4];
     let (mut count, q) = (9, numbers.as_ptr());
@@ -253,7 +253,7 @@ fn arrays_of_queries() {
 static NOT_A_NUMBER: f64 = f64::NAN;
 
 #[test]
-fn arrays_of_detectors_and_shapes() {
+fn detectors_and_shapes_refuse_invalid_arrays() {
     let all = Handles::new();
     let x = matrix(&TWO, 3);
     let (mut count, mut other, mut copy) = (9, null_mut(), null_mut());
@@ -308,7 +308,7 @@ fn arrays_of_detectors_and_shapes() {
 }
 
 #[test]
-fn arrays_for_answers() {
+fn invalid_arrays_for_answers_are_refused() {
     let all = Handles::new();
     let mut count = 0;
     let (mut pairs, mut impacts) =
@@ -363,7 +363,7 @@ fn arrays_for_answers() {
 }
 
 #[test]
-fn arrays_of_a_model() {
+fn functions_of_a_model_refuse_invalid_arrays() {
     let all = Handles::new();
     let mut vertices = [0; 6];
     let mut memory = [0.5; 19];
@@ -389,7 +389,7 @@ fn arrays_of_a_model() {
 }
 
 #[test]
-fn options() {
+fn invalid_options_are_refused() {
     let all = Handles::new();
     let mut default: sscc_certify_options = unsafe { std::mem::zeroed() };
     default.size = size_of_val(&default);
@@ -476,7 +476,7 @@ fn options() {
 }
 
 #[test]
-fn structs_of_other_versions() {
+fn structs_of_other_versions_are_accepted_unless_an_unknown_field_is_set() {
     #[repr(C)]
     struct Longer {
         filter: sscc_filter,
@@ -508,7 +508,7 @@ fn structs_of_other_versions() {
 }
 
 #[test]
-fn certificates_of_another_model() {
+fn certificates_of_another_model_are_refused() {
     let all = Handles::new();
     let mut mode = MODE;
     mode[0] = 0.25;

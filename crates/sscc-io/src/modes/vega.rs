@@ -35,15 +35,15 @@ const HEADER: usize = 8;
 /// # Errors
 /// When the size of the file does not agree with its header and the precision, the modes belong to a mesh with
 /// another number of vertices, there are none, or [`Modes::new`] rejects an entry.
-#[expect(clippy::unreachable, reason = "8 bytes are two of 4")]
+#[expect(clippy::unreachable, reason = "8 bytes are two chunks of 4 bytes")]
 pub fn parse(bytes: &[u8], precision: Precision, vertices: usize) -> Result<Modes, FormatError> {
     let Some((header, body)) = bytes.split_first_chunk::<HEADER>() else {
         return Err(FormatError::new(Place::Byte(bytes.len()), "the file ends within the header"));
     };
-    let [rows, rank] = header.as_chunks::<4>().0 else { unreachable!("8 bytes are two of 4") };
-    let [rows, rank] = [("rows", *rows), ("columns", *rank)].map(|(what, bytes)| {
+    let [rows, rank] = header.as_chunks::<4>().0 else { unreachable!("8 bytes are two chunks of 4 bytes") };
+    let [rows, rank] = [("rows", 0, *rows), ("columns", 4, *rank)].map(|(what, at, bytes)| {
         u32::try_from(i32::from_le_bytes(bytes)).map_err(|_| {
-            FormatError::new(Place::Byte(0), format!("a negative number of {what}: is this a modal matrix?"))
+            FormatError::new(Place::Byte(at), format!("a negative number of {what}: is this a modal matrix?"))
         })
     });
     let (rows, rank) = (rows?, rank?);

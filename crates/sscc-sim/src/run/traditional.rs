@@ -12,7 +12,7 @@ use crate::scenes::Scene;
 /// Maximum number of measured states, evenly spread.
 const MAX_STATES: usize = 100;
 
-/// Maximum number of bodies over all measured states.
+/// Maximum product of the numbers of measured states and bodies; at least one state is measured.
 const MAX_BODY_STATES: usize = 2000;
 
 /// The processor time of the traditional method at one state, on one thread.

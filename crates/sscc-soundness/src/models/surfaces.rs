@@ -11,9 +11,9 @@ pub struct Surface {
     pub name: String,
     pub points: Vec<Point>,
     pub faces: Vec<[u32; 3]>,
-    /// The part of each vertex: a layer or a triangle, or 0.
+    /// The number of each vertex's part: its layer, or its triangle in a soup; 0 on surfaces of one part.
     pub parts: Vec<usize>,
-    /// Approximate distance between parts. Noise usually stays below it.
+    /// A length that scales the noise, such as the distance of layers. Noise usually stays below it.
     pub gap: f64,
 }
 
@@ -129,7 +129,7 @@ fn flexible(random: &mut Random) -> Surface {
     Surface { name: format!("{kind:?}"), parts: vec![0; points.len()], points, faces, gap: 1e-3 }
 }
 
-/// Returns a random surface of about `least` triangles or more.
+/// Returns a random surface of about `least` triangles or more; flexible shapes have their own number of triangles.
 pub fn random(random: &mut Random, least: usize) -> Surface {
     let mut surface = match random.below(16) {
         0..4 => layers(random, least),

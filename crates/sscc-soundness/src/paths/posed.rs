@@ -1,4 +1,5 @@
-//! Queries of two posed shapes in the world, discrete and continuous, and of two meshes by the detector.
+//! Queries of two posed shapes in the world, discrete and continuous, and of two meshes by the detector. One shape meets partners
+//! of two sizes by turns, so that what an earlier search has left is of another one.
 
 use sscc::glam::{DMat3, DVec3};
 use sscc::parts::{Pose, PosedShape, SweptShape};
@@ -57,22 +58,27 @@ fn triangles(setup: &Setup, q: &[f64], place: &Place) -> Vec<Triangle> {
     setup.model.faces.iter().map(|face| face.map(|v| points[v as usize])).collect()
 }
 
-/// Runs two shapes at some poses.
+/// Runs a shape and two partners at some poses.
 pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
     let wanted = Wanted { triangles: 130, extremes: Extremes::Shape, has_center: false, is_dense: false };
-    let (Ok(x), Ok(y)) = (Setup::random(random, &wanted), Setup::random(random, &wanted)) else {
+    let smaller = Wanted { triangles: 12, ..wanted };
+    let setups = [wanted, wanted, smaller].map(|wanted| Setup::random(random, &wanted));
+    let [Ok(x), Ok(y), Ok(z)] = setups else {
         tally.reach("refused models");
         return;
     };
-    let shapes = [&x, &y].map(|setup| PosedShape::new(&setup.reduced, &setup.certificates).ok());
-    let [Some(mut a), Some(mut b)] = shapes else {
-        tally.wrong(|| format!("{} or {}: its own certificates are refused", x.model.name, y.model.name));
+    let shapes = [&x, &y, &z].map(|setup| PosedShape::new(&setup.reduced, &setup.certificates).ok());
+    let [Some(mut a), Some(b), Some(c)] = shapes else {
+        let names = [&x, &y, &z].map(|setup| &setup.model.name);
+        tally.wrong(|| format!("{names:?}: one of these refuses its own certificates"));
         return;
     };
+    let mut partners = [(&y, b), (&z, c)];
     for _ in 0..some(100, share) {
         if work::is_spent() {
             break;
         }
+        let (y, b) = &mut partners[usize::from(random.one_in(3))];
         let q = [x.draw(random), y.draw(random)];
         let places = [Place::random(random, x.size), Place::random(random, x.size)];
         let (box_a, box_b) = match (a.place(&q[0], &places[0].pose()), b.place(&q[1], &places[1].pose())) {
@@ -88,16 +94,16 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         };
         let around = if random.one_in(2) { box_a.union(&box_b) } else { box_a };
         let mut found = Vec::new();
-        a.colliding(&mut b, around, &mut found);
-        let exact = pairs_between(&triangles(&x, &q[0], &places[0]), &triangles(&y, &q[1], &places[1]));
+        a.colliding(b, around, &mut found);
+        let exact = pairs_between(&triangles(&x, &q[0], &places[0]), &triangles(y, &q[1], &places[1]));
         tally.compare(&found, &exact, || {
             format!("{} and {}: q={q:?} at {places:?}", x.model.name, y.model.name)
         });
         if random.one_in(4) {
-            swept(random, tally, [&x, &y], [&a, &b], &q, &places, &exact);
+            swept(random, tally, [&x, y], [&a, b], &q, &places, &exact);
         }
     }
-    two_meshes(random, tally, [&x, &y], some(40, share));
+    two_meshes(random, tally, &x, [&y, &z], some(40, share));
 }
 
 /// Moves one shape to another pose. Pairs that collide at either end must be listed.
@@ -146,18 +152,21 @@ fn swept(
 }
 
 /// Runs the same meshes with the detector.
-fn two_meshes(random: &mut Random, tally: &mut Tally, [x, y]: [&Setup; 2], count: usize) {
-    let (Ok(mesh_x), Ok(mesh_y)) = (mesh_of(&x.model), mesh_of(&y.model)) else { return };
-    let (mut a, mut b) = (Detector::new(&mesh_x), Detector::new(&mesh_y));
+fn two_meshes(random: &mut Random, tally: &mut Tally, x: &Setup, partners: [&Setup; 2], count: usize) {
+    let Ok(mesh_x) = mesh_of(&x.model) else { return };
+    let [Ok(mesh_y), Ok(mesh_z)] = partners.map(|setup| mesh_of(&setup.model)) else { return };
+    let (mut a, mut others) = (Detector::new(&mesh_x), [&mesh_y, &mesh_z].map(Detector::new));
     for _ in 0..count {
         if work::is_spent() {
             break;
         }
+        let partner = usize::from(random.one_in(3));
+        let (y, b) = (partners[partner], &mut others[partner]);
         let q = [x.draw(random), y.draw(random)];
         let points = [x.model.positions(&q[0]), y.model.positions(&q[1])];
         let [p, r] =
             [&points[0], &points[1]].map(|p| p.iter().map(|p| DVec3::from_array(*p)).collect::<Vec<_>>());
-        let found = match a.against(&p, &mut b, &r) {
+        let found = match a.against(&p, b, &r) {
             Ok(found) => found,
             Err(error) => {
                 tally.reach("refused frames");

@@ -67,16 +67,17 @@ impl CertifyOptions {
         /// contains one is 0. None for half the number of the triangles, because testing more in every query costs as much as
         /// radii can save.
         max_exceptions: impl Into<Option<usize>>,
-        /// Certifies the radii at which two triangles come nearer than a clearance, in place of those at which they collide: for
-        /// [`Query::within`](crate::Query::within) alone, up to that clearance and beyond as many rings. They prove nothing about
+        /// Certifies the radii at which two triangles come nearer than a clearance, in place of those at which they collide. Only
+        /// [`Query::within`](crate::Query::within) uses them, with at most this clearance and at least as many rings. They prove nothing about
         /// collisions, because triangles within the rings may collide, so other queries do not use them. Exceptions are then the
         /// pairs that are nearer than the clearance at the centre, or farther by less than a millionth of it. There are
         /// no local certificates. None for radii of collisions.
         clearance: impl Into<Option<Clearance>>,
         /// Memory for the pair tree ([`PairTree`](crate::parts::PairTree)), in bytes for each triangle of the mesh; a node pair
         /// takes 8. The tree stores the node pairs with the smallest radii, so the budget decides its limit
-        /// ([`PairTree::limit`](crate::parts::PairTree::limit)): queries with `|z|` below that do not open two nodes only because
-        /// their AABBs touch, unless the tree has nearly all pairs and all are reached. The rounds before the outer one may use a
+        /// ([`PairTree::limit`](crate::parts::PairTree::limit)). Below the limit a query opens two nodes only if it has reached the
+        /// radius of their pair, even if their AABBs touch; if the tree has nearly all pairs and all are reached, queries do not use
+        /// it. The rounds before the outer one may use a
         /// quarter of the budget, and search the radii of their pairs. Pairs of the outer round mostly have the bound of the two
         /// nodes alone. 0 for no tree, which is the paper's scheme of one radius for each node and each pair of the root's
         /// children; this suits certificates that serve a few queries only, since the tree takes most of the time. 64 by default.

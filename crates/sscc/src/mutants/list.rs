@@ -285,9 +285,9 @@ mutants! {
     /// The larger one of a ratio and NaN is the ratio.
     LocalNanIgnored: CaughtBy("lib certificates::local::strain_search::tests::nan_is_the_largest_ratio");
     /// The gap of two corners is that of the centroids of their triangles.
-    LocalGapOfCentroids: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
+    LocalGapOfCentroids: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_do_not_exceed_exact_distances");
     /// Gaps of corners are not rounded down.
-    LocalGapsExact: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_are_at_most_exact");
+    LocalGapsExact: CaughtBy("lib certificates::local::corner_gaps::tests::gaps_do_not_exceed_exact_distances");
     /// A node with pairs that collide at the centre has no proof.
     LocalExceptionsKept: CaughtBy("it local_certificates::exceptions_do_not_spoil_the_root");
     /// The modes of a patch are those that move its first vertex.

@@ -108,7 +108,8 @@ impl<const E: usize> LocalInequality<E> {
         self.ends.iter().map(|end| end.sum).sum()
     }
 
-    /// Returns the bound below which a certificate allows ratios.
+    /// Returns a bound of the ratio `kappa`: pairs of this certificate with a smaller ratio are proven free at all
+    /// configurations. NaN if no ratio is proven.
     pub(super) fn allowed(&self, tables: &LocalTables, index: usize) -> f32 {
         let all = &*tables.certificates;
         let bounds = &all.bounds[index];

@@ -13,10 +13,10 @@ use crate::hierarchy::{Hierarchy, NodePair};
 use crate::parallel;
 use glam::Vec3;
 
-/// The hulls of nodes, and a direction for each entry of the pair tree.
+/// The hulls of nodes, and a direction for each node pair stored in the pair tree.
 pub(super) struct PairHulls {
     pub(super) nodes: NodeHulls,
-    /// The components of the directions in units of 1 / [`WHOLE`]; all 0 if an entry has no direction.
+    /// The components of the directions in units of 1 / [`WHOLE`]; all 0 if a node pair has no separating direction.
     directions: Vec<[i16; 3]>,
 }
 
@@ -56,7 +56,7 @@ impl PairHulls {
     }
 }
 
-/// Returns the node pair of each entry, by its index.
+/// Returns the stored node pairs, in the order of their indices in the pair tree.
 fn node_pairs(hierarchy: &Hierarchy, tree: &PairTree) -> Vec<NodePair> {
     let mut pairs = vec![(0, 0); tree.len()];
     let mut stack = Vec::new();

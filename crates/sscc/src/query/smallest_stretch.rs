@@ -38,7 +38,7 @@ fn smallest_eigenvalue_of(matrix: &DMat3, error: f64) -> f64 {
     } else {
         mean
     };
-    // The rounding error of the closed form may be as large as the root of that of its numbers.
+    // The relative error of the closed form may be as large as the square root of the relative rounding error of its input.
     for slack in [2e-7, 2e-6] {
         let shift = candidate - slack * size;
         if with_mutant!(has_cholesky_factor(matrix, shift + error * size), LocalEigenvalueUnproven, true) {

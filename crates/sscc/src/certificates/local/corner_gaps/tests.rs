@@ -10,7 +10,7 @@ fn exact(x: f64) -> Dyadic {
 
 /// No gap along a unit direction is longer than the difference itself, and triangles are at least as far apart as the smallest gap.
 #[test]
-fn gaps_are_at_most_exact() {
+fn gaps_do_not_exceed_exact_distances() {
     let random = &mut Numbers(5);
     let (mut found, mut equal) = (0, 0);
     for case in 0..4000 {
