@@ -100,7 +100,7 @@ mod tests {
         assert!(message(&file([-2, 2, 3, 4], 18)).contains("the rank is 0 or less"));
         assert_eq!(message(&file([2, 2, 4, 4], 18)), "byte 8: 4 monomials of degree 2: rank 2 has 3");
         assert!(message(&file([i32::MAX; 4], 18)).starts_with("byte 8: 2147483647 monomials of degree 2"));
-        assert!(message(&file([1000, 1000, 500_500, 167_167_000], 18)).contains("but 144 follow"));
+        assert!(message(&file([1000, 1000, 500_500, 167_167_000], 18)).contains("but 144 bytes follow"));
         let mut nan = file([2, 2, 3, 4], 18);
         nan[24..32].copy_from_slice(&f64::NAN.to_le_bytes());
         let finite = "not a finite number, or beyond 2^200";
