@@ -509,7 +509,7 @@ mutants! {
     /// The last pairs of two buckets, fewer than eight, are not tested.
     LastCandidatesForgotten: CaughtBy("it detector::one_mesh_is_tested_against_meshes_of_other_sizes");
     /// A bucket shares no vertex with itself if the two buckets before shared none.
-    SharedVerticesOfLastBuckets: CaughtBy("it detector::pairs_are_those_of_brute_force");
+    SharedVerticesOfLastBuckets: CaughtBy("it pair_tree_traversal::traversal_agrees_with_brute_force");
     /// The error of the second of two shapes is that of the first one.
     ErrorOfFirstShape: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
     /// Sides of normals have no rounding error.
