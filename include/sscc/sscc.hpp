@@ -89,8 +89,8 @@ class view {
 // is not complete, and if there are no columns.
 inline matrix rows(view<const double> numbers, std::size_t columns) noexcept {
   if (columns == 0 || numbers.size() % columns != 0) {
-    // One row, fewer than modes have, of other than the three columns that positions have.
-    return {numbers.data(), 1, columns == 3 ? numbers.size() : columns, 0, 0};
+    // Every function refuses a matrix larger than memory before it reads a number.
+    return {numbers.data(), SIZE_MAX, SIZE_MAX, 0, 0};
   }
   return {numbers.data(), numbers.size() / columns, columns, 0, 0};
 }

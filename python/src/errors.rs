@@ -26,13 +26,9 @@ pub fn kind(message: impl Into<String>) -> PyErr {
 pub fn refused(error: &Error, name: &str) -> PyErr {
     let message = error.to_string();
     match error {
-        Error::CoordinatesLength { .. } | Error::CoordinatesValue { .. } => {
+        Error::CoordinatesLength { .. } | Error::CoordinatesValue { .. } | Error::CoordinatesRange => {
             value(format!("{name}{}", message.strip_prefix('q').unwrap_or(&message)))
         }
-        // No argument is a pose, which the message of the core names, too.
-        Error::CoordinatesRange => value(format!(
-            "{name} moves vertices beyond 2^200 (about 1.6e60): scale the model or {name} down"
-        )),
         // The caller raises the cause of a cancellation instead.
         Error::Cancelled => PyRuntimeError::new_err(message),
         _ if name.is_empty() => value(message),

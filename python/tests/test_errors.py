@@ -80,7 +80,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"epsilon": "x"}, TypeError, "epsilon is a str: a number was expected"),
     ({"center": [0, 0]}, ValueError, "center has 2 entries, the model has 3 modes"),
     ({"center": [0, np.nan, 0]}, ValueError, "center[1] is NaN: every entry must be finite"),
-    ({"center": [0, 1e200, 0]}, ValueError, "center moves vertices beyond 2^200 (about 1.6e60): scale the model or center down"),
+    ({"center": [0, 1e200, 0]}, ValueError, "center moves vertices beyond 2^200 (about 1.6e60): scale it or the model down"),
     ({"center": [[0, 0, 0]]}, ValueError, "center has shape [1, 3]: one configuration was expected"),
     ({"scheme": "best"}, ValueError, "scheme is 'best': 'full' or 'paper' was expected"),
     ({"scheme": 1}, TypeError, "scheme is a int: 'full' or 'paper' was expected"),

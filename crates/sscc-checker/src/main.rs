@@ -12,8 +12,8 @@ const USAGE: &str = "usage: sscc-checker [--sample] MODEL.model.safetensors CERT
        sscc-checker [--sample] MESH.obj MODES.npy CERTIFICATES PROOF
 
 --sample: a proof of some of the entries suffices.
-Exit codes: 0 confirmed, 1 not confirmed (also a damaged proof), 2 a file cannot be read, the model or the certificates are damaged, or a
-file is of another model";
+Exit codes: 0 confirmed, 1 not confirmed (also a damaged proof), 2 a file cannot be read or is of another model, or the
+model or the certificates are damaged";
 
 fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
     let (mesh, modes, certificates, proof): (&Path, Option<&Path>, _, _) = match paths {

@@ -157,12 +157,8 @@ pub enum Error {
         /// The entry.
         value: f64,
     },
-    /// A q, or a pose of a shape, at which positions leave the range in which predicates are exact; a pose that is not
-    /// finite.
-    #[error(
-        "q (or a pose) moves vertices beyond 2^200 (about 1.6e60), or is not finite: scale the model or q down, or move the pose \
-         nearer to the origin"
-    )]
+    /// A q at which positions leave the range in which predicates are exact.
+    #[error("q moves vertices beyond 2^200 (about 1.6e60): scale it or the model down")]
     CoordinatesRange,
     /// A mode that does not exist.
     #[error("there is no mode {mode}: the model has {rank} modes, counted from 0")]

@@ -207,7 +207,8 @@ fn near_promise(
         None => {}
         Some(ZeroRadius::TooClose { .. }) => {
             return format!(
-                "two triangles are hardly farther apart than {distance} at the centre; the parts without both are certified"
+                "two triangles are so little farther apart than {distance} at the centre that no radius above 0 is proven; the \
+                 parts without both are certified"
             );
         }
         Some(ZeroRadius::Near { .. } | ZeroRadius::Colliding { .. }) => {

@@ -191,7 +191,7 @@ fn coordinates_that_do_not_fit_are_refused() {
         ("--q=1,2,3", "--q: q has 3 entries, the model has 2 modes"),
         ("--q=0,nan", "--q: q[1] is NaN: every entry must be finite"),
         ("--q=-inf,0", "--q: q[0] is -inf: every entry must be finite"),
-        ("--q=1e300,0", "--q: q (or a pose) moves vertices beyond 2^200"),
+        ("--q=1e300,0", "--q: q moves vertices beyond 2^200"),
     ] {
         refused(folder, &[&check[..], &[q]].concat(), &[named]);
     }

@@ -217,7 +217,7 @@ fn certificates_with_a_clearance_serve_near_pairs_alone() {
 
 /// Two triangles whose distance is exactly the clearance are not nearer than it, and the radius is 0.
 #[test]
-fn triangles_hardly_farther_apart_than_the_clearance_are_not_reported_as_nearer() {
+fn triangles_exactly_as_far_apart_as_the_clearance_are_not_reported_as_nearer() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path();
     let face = |z: f64| format!("v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\n");
@@ -229,7 +229,8 @@ fn triangles_hardly_farther_apart_than_the_clearance_are_not_reported_as_nearer(
     let line = run.stdout.lines().find(|line| line.starts_with("root radius")).unwrap();
     assert!(
         line.ends_with(
-            "0: two triangles are hardly farther apart than 0.5000 at the centre; the parts without both are certified"
+            "0: two triangles are so little farther apart than 0.5000 at the centre that no radius above 0 is proven; the \
+             parts without both are certified"
         ),
         "{run:?}"
     );

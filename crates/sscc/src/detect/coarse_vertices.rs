@@ -49,9 +49,7 @@ impl CoarseVertices {
             }
             starts.push(starts[bucket as usize] + own.len().div_ceil(LANES) as u32);
         }
-        // Places are numbers of 32 bits.
-        let places = starts.last().map_or(0, |end| u64::from(*end) * LANES as u64);
-        if places > u64::from(u32::MAX) {
+        if starts.last().is_some_and(|groups| !have_places(*groups)) {
             return Self::default();
         }
         Self { starts, quantized, corners, instructions: InstructionSet::default() }
@@ -104,6 +102,11 @@ impl CoarseVertices {
         let [a, b, c] = self.corners[slot];
         [first + u32::from(a), first + u32::from(b), first + u32::from(c)]
     }
+}
+
+/// Whether the places of the vertices of this many groups are numbers of 32 bits.
+fn have_places(groups: u32) -> bool {
+    with_mutant!(groups.checked_mul(LANES as u32).is_some(), CoarsePlacesWrap, true)
 }
 
 /// The motion of all groups of a bucket.
@@ -162,6 +165,12 @@ mod tests {
     use crate::hierarchy::Hierarchy;
     use crate::test_models::Random;
     use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
+
+    #[test]
+    fn places_are_numbers_of_32_bits() {
+        assert!(have_places(0) && have_places((1 << 29) - 1));
+        assert!(!have_places(1 << 29) && !have_places(u32::MAX));
+    }
 
     /// The bound holds also if modes have very different sizes, cancel each other, or move no vertex, and far from the
     /// origin. The test also asserts that the bound is not much too large.

@@ -502,6 +502,10 @@ mutants! {
     SeparatedAtEnd: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
     /// Triangles whose error is not finite are tested for separating directions.
     InfiniteErrorTested: Covered("no gap is larger than a slack that is infinite or NaN");
+    /// A direction separates moving triangles of which each is on one side at the start and on the other side at the end.
+    SidesOfEndsDiffer: CaughtBy("lib detect::narrow_phase::separating_axis::tests::only_triangles_that_stay_separated_are_reported");
+    /// Coarse places that exceed 32 bits are used.
+    CoarsePlacesWrap: CaughtBy("lib detect::coarse_vertices::tests::places_are_numbers_of_32_bits");
     /// Unused lanes of the separating-axis test keep the corners of an earlier search.
     UnusedLanesKept: CaughtBy("it detector::one_mesh_is_tested_against_meshes_of_other_sizes");
     /// A search begins with the pairs that a panic has left.

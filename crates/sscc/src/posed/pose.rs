@@ -49,6 +49,11 @@ impl Pose {
         let reach = row.max_element() * own + self.translation.abs().max_element();
         // Rounding may move a position a little beyond the exact reach. A maximum ignores NaN, which is therefore checked first.
         let is_finite = self.rotation.is_finite() && self.translation.is_finite();
-        if is_finite && reach * 1.001 <= limits::LARGEST { Ok(reach) } else { Err(Error::CoordinatesRange) }
+        if is_finite && reach * 1.001 <= limits::LARGEST {
+            return Ok(reach);
+        }
+        let (name, wanted) =
+            ("the largest coordinate of the posed shape", "finite and at most 2^200 (about 1.6e60)");
+        Err(Error::Option { name, value: if is_finite { reach } else { f64::NAN }, wanted })
     }
 }

@@ -329,14 +329,19 @@ mod tests {
         let model = model(20, &mut 3);
         let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
         let mut shape = PosedShape::new(&model, &certificates).unwrap();
+        let is_refused = |placed: Result<Aabb, Error>| {
+            placed.is_err_and(|error| {
+                error.to_string().starts_with("the largest coordinate of the posed shape is ")
+            })
+        };
         for wrong in [f64::NAN, f64::INFINITY, 1e61] {
             for axis in 0..3 {
                 let mut moved = Pose::default();
                 moved.translation[axis] = wrong;
-                assert_eq!(shape.place(&[0.0; 2], &moved), Err(Error::CoordinatesRange));
+                assert!(is_refused(shape.place(&[0.0; 2], &moved)), "{wrong}");
             }
             let turned = Pose { rotation: DMat3::IDENTITY * wrong, ..Pose::default() };
-            assert_eq!(shape.place(&[0.0; 2], &turned), Err(Error::CoordinatesRange));
+            assert!(is_refused(shape.place(&[0.0; 2], &turned)), "{wrong}");
         }
         assert!(matches!(shape.place(&[0.0], &Pose::default()), Err(Error::CoordinatesLength { .. })));
     }

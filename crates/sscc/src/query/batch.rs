@@ -112,7 +112,7 @@ impl<Q: AsRef<[f64]> + Sync> Batch<'_, Q> {
         map(open, answer).into_iter().collect()
     }
 
-    /// Adds `more` to the number of answers, and reports it.
+    /// Adds `more` to the number of answers, and reports the new number.
     fn report(&self, more: usize) {
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
         self.progress.report(done, self.rows.len());

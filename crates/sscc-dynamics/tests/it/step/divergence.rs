@@ -35,7 +35,7 @@ fn a_body_that_leaves_the_range_of_numbers_is_refused_in_that_step() {
         }
         assert!(world.bodies()[0].rigid().position.y > 1.59e60);
         let error = world.advance(&mut ()).unwrap_err();
-        assert_eq!(error, DynamicsError::Core(sscc::Error::CoordinatesRange));
+        assert!(matches!(error, DynamicsError::Core(sscc::Error::Option { value, .. }) if value > 1.6e60));
         assert_eq!(world.steps(), 16);
     }
 }

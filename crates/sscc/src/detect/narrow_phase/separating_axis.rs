@@ -141,8 +141,10 @@ impl<V: Vectors, const E: usize> RelativePairs<V, E> {
             let (mut below, mut above) = (u32::MAX, u32::MAX);
             for end in with_mutant!(0, SeparatedAtEnd, E - 1)..E {
                 let (a, b) = (self.a[end].interval(v, dir), self.b[end].interval(v, dir));
-                below &= v.bits(v.greater(v.subtract(b[0], a[1]), slack));
-                above &= v.bits(v.greater(v.subtract(a[0], b[1]), slack));
+                let is_below = v.bits(v.greater(v.subtract(b[0], a[1]), slack));
+                let is_above = v.bits(v.greater(v.subtract(a[0], b[1]), slack));
+                below &= with_mutant!(is_below, SidesOfEndsDiffer, is_below | is_above);
+                above &= is_above;
             }
             separated |= below | above;
         }
