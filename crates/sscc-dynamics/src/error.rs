@@ -63,7 +63,7 @@ pub enum DynamicsError {
     #[error("position, orientation, velocity and spin of a body must be finite, and its orientation not 0")]
     Start,
     /// An option of the world, its contacts or its ground is outside its range.
-    #[error("{what} is {value}: it must be {range}")]
+    #[error("{what} is {value:?}: it must be {range}")]
     Option {
         /// Name of the option.
         what: &'static str,

@@ -120,7 +120,7 @@ pub enum Error {
         rank: usize,
     },
     /// A weight that is not positive and finite.
-    #[error("metric weight {index} (counted from 0) is {value}: weights must be positive and finite")]
+    #[error("metric weight {index} (counted from 0) is {}: weights must be positive and finite", number(*value))]
     MetricWeight {
         /// The mode, from 0.
         index: usize,
@@ -229,7 +229,7 @@ pub enum Error {
         rings: u32,
     },
     /// An option out of range.
-    #[error("{name} is {value}: it must be {wanted}")]
+    #[error("{name} is {}: it must be {wanted}", number(*value))]
     Option {
         /// Name of the option.
         name: &'static str,
@@ -277,4 +277,23 @@ pub enum Error {
     /// The caller cancelled.
     #[error("interrupted")]
     Cancelled,
+}
+
+/// Returns the number as people write it: huge and tiny ones with an exponent (`{}` alone prints 1e300 as 301 digits), whole
+/// ones without a fraction.
+fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_have_few_digits() {
+        let values = [0.0, -1.0, 5.0, 0.25, 1048577.0, 1e300, -2.5e-300, f64::NAN, f64::INFINITY];
+        let texts = ["0", "-1", "5", "0.25", "1048577", "1e300", "-2.5e-300", "NaN", "inf"];
+        assert_eq!(values.map(number), texts);
+    }
 }
