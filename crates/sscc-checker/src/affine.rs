@@ -15,6 +15,8 @@
 //! three directions `|u'G u| / |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric
 //! part of `u_i'G u_j`. If that is more than g, the cone is halved.
 
+use std::cmp::Ordering;
+
 use crate::corners::{Triangle, differences};
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
 use crate::inequality::stays_open;
@@ -25,7 +27,8 @@ const MAX_CONES: usize = 1024;
 /// The largest number of times that a cone is halved, because each halving makes numbers longer.
 const MAX_DEPTH: usize = 64;
 
-/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts.
+/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts: those of a part and itself,
+/// and twice those of a part and a later one.
 pub(crate) struct AffineMap {
     gradient: Vec<Dyadic>,
     products: [[Dyadic; 6]; 6],
@@ -49,7 +52,13 @@ impl AffineMap {
                 row(c, j).iter().zip(row(j, c)).map(|(a, b)| a + b).collect()
             }
         });
-        let products = std::array::from_fn(|i| std::array::from_fn(|j| dot(&parts[i], &parts[j])));
+        let products = std::array::from_fn(|i| {
+            std::array::from_fn(|j| match j.cmp(&i) {
+                Ordering::Less => Dyadic::default(),
+                Ordering::Equal => squared_norm(&parts[i]),
+                Ordering::Greater => dot(&parts[i], &parts[j]).times_power(1),
+            })
+        });
         Self { gradient, products }
     }
 
@@ -134,7 +143,7 @@ impl AffineMap {
                 (&(&u[c] * &v[j]) + &(&u[j] * &v[c])).times_power(-1)
             }
         });
-        self.products.iter().zip(&parts).map(|(row, part)| part * &dot(row, &parts)).sum()
+        (0..6).map(|i| &parts[i] * &dot(&self.products[i][i..], &parts[i..])).sum()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 use std::iter::Sum;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, AddAssign, Mul, Sub};
 
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -124,7 +124,28 @@ impl Mul for &Dyadic {
 
 impl Sum for Dyadic {
     fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
-        numbers.fold(Self::default(), |sum, x| &sum + &x)
+        numbers.fold(Self::default(), |mut sum, x| {
+            sum += x;
+            sum
+        })
+    }
+}
+
+impl AddAssign for Dyadic {
+    /// Adds a number like `+`, but reuses the memory of both.
+    fn add_assign(&mut self, other: Self) {
+        if self.is_zero() {
+            *self = other;
+        } else if !other.is_zero() {
+            let shift = other.exponent - self.exponent;
+            if shift >= 0 {
+                self.mantissa += other.mantissa << shift as usize;
+            } else {
+                self.mantissa <<= shift.unsigned_abs() as usize;
+                self.mantissa += other.mantissa;
+                self.exponent = other.exponent;
+            }
+        }
     }
 }
 
@@ -191,6 +212,7 @@ mod tests {
                 let (a, b) = (Dyadic::of(x), Dyadic::of(y));
                 assert_eq!(a.partial_cmp(&b), x.partial_cmp(&y), "{x} {y}");
                 assert_eq!(&(&a + &b) - &b, a);
+                assert_eq!([a.clone(), b.clone()].into_iter().sum::<Dyadic>(), &a + &b);
                 assert_eq!(&(&a + &b).square() - &(&a - &b).square(), (&a * &b).times_power(2));
             }
         }
