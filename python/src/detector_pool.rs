@@ -40,7 +40,7 @@ impl DetectorPool {
         Self { mesh, built: Mutex::default(), idle: Mutex::default() }
     }
 
-    /// Returns the hierarchy; `None` if it is not built.
+    /// Returns the hierarchy; `None` if it is not built. Waits while another thread builds it.
     pub fn known(&self) -> Option<Arc<Built>> {
         lock(&self.built).clone()
     }

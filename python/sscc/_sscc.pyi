@@ -90,7 +90,8 @@ class Model:
         weld: whether vertices of equal position and modes are one, for adjacency. None means only for STL and glTF files.
         ignore_rest: True: pairs that collide at rest never count. A number: in addition, pairs within this number of rings of
             them never count.
-        max_exceptions: largest number of pairs that collide at the centre and are tested in every query. None means F / 2.
+        max_exceptions: largest number of pairs that collide at the centre and are tested in every query. None means F / 2,
+            rounded up.
         clearance: for ``within``. Radii are then those at which triangles come nearer than this, instead of those at which they
             collide; other queries are answered without certificates. ``rings``: triangles within this number of rings of each
             other on the surface do not count. None means 1.
@@ -112,7 +113,7 @@ class Model:
     def fit(self, positions: ArrayLike) -> tuple[_F64, float]:
         """Returns the q (r,) whose shape is nearest to positions (V, 3), and the share of the displacements that remains.
 
-        Where modes depend on each other, returns the q with the smallest norm.
+        Where modes depend on each other, returns the q with the smallest norm, in which each q_k counts times the norm of mode k.
         """
     @property
     def vertices(self) -> _F64:

@@ -86,7 +86,8 @@ def polynomial(
     threads: int | None = None,
     progress: Report | bool | None = None,
 ) -> Model:
-    """Returns a model with the 24 quadratic polynomials of the rest position without rigid motions.
+    """Returns a model with the 24 quadratic polynomials of the rest position without rigid motions; special shapes, such as a
+    sphere, have fewer.
 
     For a surface the modes need no volume, and the metric is the displacement metric. With ``solid=True``, a ``resolution`` or a
     material, and for solids in files, the model has the stiffness and the forces of the body, and the metric is the body's

@@ -6,7 +6,7 @@ pub enum Outcome {
     /// The command is done, and has no finding.
     Done,
     /// `check` found a collision (or a pair nearer than the clearance), `sweep` a weight or a combination that is not
-    /// free, `audit` a violation, or `resolve` no free q for some row.
+    /// free, `audit` a violation (with `--exact`, a proof that does not hold), or `resolve` no free q for some row.
     Finding,
 }
 

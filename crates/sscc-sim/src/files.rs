@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{InSystem, Result};
 
-/// Files that a simulation writes into its folder, in this order.
+/// Files that a simulation writes into its folder, in the order in which they are listed and their errors are reported.
 pub const OUTPUT_FILES: [&str; 7] = [
     "summary.json",
     "report.html",

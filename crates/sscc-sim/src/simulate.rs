@@ -34,7 +34,8 @@ pub struct Request {
 ///
 /// # Errors
 /// When the scene or a model cannot be read or computed; when the simulation cannot begin or continue ([`run`]), for
-/// example because bodies penetrate at the start or the folder belongs to another simulation; when no step was made.
+/// example because bodies penetrate at the start or the folder belongs to another simulation; when `watch` cancels the
+/// preparation; when no step was made.
 pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, SimError> {
     let scene = read_scene(&request.scene)?;
     let models = models_folder(request.models.as_deref())?;

@@ -23,7 +23,7 @@ pub struct FinishedRun {
     pub summary: Summary,
     /// Costs of the traditional method at some states.
     pub traditional: Vec<TraditionalCost>,
-    /// Error that ended the simulation early, if any.
+    /// Error that ended the simulation or the measurement of the traditional method early, if any.
     pub failure: Option<SimError>,
 }
 

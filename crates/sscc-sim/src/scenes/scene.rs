@@ -69,7 +69,7 @@ pub struct Scene {
 /// The sound of all bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sound {
-    /// Number of modes of the sound. It is larger than that of the motion.
+    /// Number of modes of the sound. It does not depend on that of the motion.
     pub modes: usize,
     /// Damping of these modes. None means the damping of the body.
     pub damping: Option<Damping>,

@@ -32,7 +32,8 @@ pub struct DetectionAnswer<'a> {
     pub times: Option<&'a [f64]>,
     /// Depth and direction of the smallest translation of the second triangle that separates each pair, on request.
     pub penetrations: Option<&'a [Penetration]>,
-    /// Contact curves of the last answer, on request.
+    /// Contact curves of the last answer, on request. Answers about two nodes of a scene have none, so that the last answer
+    /// before them has the curves.
     pub curves: Option<&'a ContactCurves>,
     /// The clearance, and the distances that were found; `pairs` are then the pairs nearer than the clearance.
     pub near: Option<(Clearance, &'a Near)>,

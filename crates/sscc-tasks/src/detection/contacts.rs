@@ -11,7 +11,8 @@ use sscc::{Error, Pair};
 pub struct ContactOptions {
     /// Depth and direction of each pair.
     pub depths: bool,
-    /// Contact curves of the last answer. Vertices at equal positions count as one, so that curves do not end at seams.
+    /// Contact curves of the last answer; answers about two nodes of a scene have none. Vertices at equal positions count as one,
+    /// so that curves do not end at seams.
     pub curves: bool,
 }
 

@@ -26,8 +26,8 @@ use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 /// If a file cannot be answered, `take` receives the error. It returns the error to end the run, or continues with the next file.
 ///
 /// Frames from files are checked before the first answer. Memory holds the mesh (all meshes of an animation or a scene)
-/// and the other mesh, and a few frames for each thread; meshes of a folder of frames are kept up to 1 GiB. Of several
-/// meshes at rest it holds a few for each thread.
+/// and the other mesh, and for each thread their detectors and a few frames; meshes of a folder of frames are kept up to
+/// 1 GiB. Of several meshes at rest it holds a few for each thread.
 ///
 /// # Errors
 /// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when

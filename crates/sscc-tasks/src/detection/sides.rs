@@ -22,7 +22,7 @@ const MAX_PLACES: usize = 10_000;
 pub(super) type MeshPair<'w> = (Arc<MovingMesh<'w>>, Option<Arc<MovingMesh<'w>>>);
 
 /// The meshes of one file, each with each place of the other mesh. At most two meshes with their detectors are in memory,
-/// except for those of an animation.
+/// except for those of an animation; each thread has copies of the detectors that it uses.
 pub(super) struct Sides<'r, 'w> {
     request: &'r Detection,
     watch: &'w dyn Watch,

@@ -18,7 +18,7 @@ pub(super) struct Worker<'m, 'w> {
     request: &'m Detection,
     side: Side<'m, 'w>,
     other: Option<Side<'m, 'w>>,
-    /// The frame of the last answer of the run; None if another mesh has it.
+    /// The frame of the last answer of the run, before those about two nodes of a scene; None if another mesh has it.
     last: Option<usize>,
 }
 
@@ -122,7 +122,8 @@ impl<'m, 'w> Worker<'m, 'w> {
 pub(super) type Sides<'s, 'm, 'w> = (&'s mut Side<'m, 'w>, Option<&'s mut Side<'m, 'w>>);
 
 /// Answers one query at the positions that the sides have read, with at most `limit` pairs; a request with a clearance
-/// has no limit. `is_last` states whether it is the last query of the run, the only one with contact curves.
+/// has no limit. `is_last` states whether it is the last query of the run, before those of two nodes of a scene. Only this query
+/// has contact curves.
 pub(super) fn query(
     request: &Detection,
     limit: Option<usize>,

@@ -34,9 +34,10 @@ pub struct Interval {
     pub free_from: Option<f64>,
     /// Whether the shape collides at `from` and at `to`, within 1e-9 of the range from the free weights beside them.
     pub exact: bool,
-    /// The largest number of pairs that collide at a tested weight of the interval.
+    /// The largest number of pairs that collide at a tested weight: a sample inside, an end, or a collision found beyond an end
+    /// that is not exact.
     pub pairs: usize,
-    /// The largest penetration depth of a pair at a tested weight (model unit).
+    /// The largest penetration depth of a pair at one of these weights (model unit).
     pub depth: f64,
     /// The weight of the largest depth.
     pub deepest: f64,
