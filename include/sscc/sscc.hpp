@@ -679,6 +679,7 @@ class shape : public detail::answering<detail::shape_api> {
   returns<box> place(view<const double> q, const pose& at) {
     box bounds{};
     const status s = sscc_shape_place(get(), q.data(), q.size(), &at, &bounds);
+    pairs_.clear();
     return detail::finish(s, bounds);
   }
 

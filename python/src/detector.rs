@@ -178,7 +178,7 @@ impl Detector {
     ) -> PyResult<DetectorBatch> {
         let limit = count(limit, "limit", 1..=usize::MAX)?.unwrap_or(usize::MAX);
         let threads = pool::threads(threads)?;
-        let frames = Frames::of(frames, self.pool.known().map(|built| built.rest.len()))?;
+        let frames = Frames::of(frames, self.pool.known(py).map(|built| built.rest.len()))?;
         let slices = frames.slices()?;
         let Some(first) = slices.first() else { return Ok(DetectorBatch::of(Vec::new())) };
         let answers = run_borrowing(py, progress, "checking", |progress| {
@@ -344,7 +344,7 @@ impl Detector {
 
     #[getter]
     fn rest<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let built = self.pool.known().filter(|_| self.has_rest);
+        let built = self.pool.known(py).filter(|_| self.has_rest);
         built.map(|built| coordinates(py, &built.rest)).transpose()
     }
 
@@ -390,9 +390,9 @@ impl Detector {
         Ok((py.import("sscc._sscc")?.getattr("_detector")?, arguments))
     }
 
-    fn __repr__(&self) -> String {
+    fn __repr__(&self, py: Python<'_>) -> String {
         let triangles = counted(self.pool.mesh.faces.len() as u64, "triangle");
-        match self.pool.known() {
+        match self.pool.known(py) {
             Some(built) => {
                 format!("<sscc.Detector: {triangles}, {} vertices>", grouped(built.rest.len() as u64))
             }

@@ -40,9 +40,9 @@ impl DetectorPool {
         Self { mesh, built: Mutex::default(), idle: Mutex::default() }
     }
 
-    /// Returns the hierarchy; `None` if it is not built. Waits while another thread builds it.
-    pub fn known(&self) -> Option<Arc<Built>> {
-        lock(&self.built).clone()
+    /// Returns the hierarchy; `None` if it is not built. Waits without the GIL while another thread builds it.
+    pub fn known(&self, py: Python<'_>) -> Option<Arc<Built>> {
+        py.detach(|| lock(&self.built).clone())
     }
 
     /// Returns the hierarchy. Builds it from these positions if it is not built; `name` is the name of their argument. Call

@@ -154,11 +154,11 @@ pub fn run<T: Send + 'static>(
         let monitor = Arc::new(Monitor::default());
         let (finished, waiting) = channel();
         let of_worker = Arc::clone(&monitor);
-        let worker = thread::spawn(move || {
+        let worker = thread::Builder::new().spawn(move || {
             let result = work(&*of_worker);
             // The receiver is gone if the work was detached.
             let _ = finished.send(result);
-        });
+        })?;
         match reporter.wait(&waiting, &monitor, MAX_WAIT)? {
             Some(result) => Ok(result),
             None => match worker.join() {
@@ -183,9 +183,9 @@ pub fn run_borrowing<T: Send>(
         thread::scope(|scope| {
             let (finished, waiting) = channel();
             let monitor = &monitor;
-            let worker = scope.spawn(move || {
+            let worker = thread::Builder::new().spawn_scoped(scope, move || {
                 let _ = finished.send(work(monitor));
-            });
+            })?;
             match reporter.wait(&waiting, monitor, MAX_WAIT)? {
                 Some(result) => Ok(result),
                 None => match worker.join() {

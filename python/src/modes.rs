@@ -92,9 +92,7 @@ pub fn _elastic(
         resolution: count(resolution, "resolution", 1..=2000)?,
         ..BodyOptions::default()
     };
-    if let Some(fix) = fix {
-        options.fixed = vertex_numbers(fix)?;
-    }
+    options.fixed = fix.map(vertex_numbers).transpose()?;
     if let Some(corners) = fix_box {
         options.fixed_box = Some(two_corners(corners)?);
     }
@@ -141,7 +139,7 @@ struct BodyOptions {
     rank: Option<usize>,
     material: PartialMaterial,
     /// Fixed vertices.
-    fixed: Vec<u32>,
+    fixed: Option<Vec<u32>>,
     /// A box in which all vertices are fixed, too, as two corners.
     fixed_box: Option<[DVec3; 2]>,
     resolution: Option<usize>,
@@ -160,8 +158,16 @@ fn elastic(
         Source::Surface(mesh) => SolidSource::around(mesh.clone(), resolution, &material, progress)?,
     };
     let mut held = Vec::new();
-    for number in fixed {
-        held.extend(solid.holding(number).map_err(|error| error.at("fix"))?);
+    if let Some(numbers) = fixed {
+        for number in numbers {
+            held.extend(solid.holding(number).map_err(|error| error.at("fix"))?);
+        }
+        if held.is_empty() {
+            return Err(TaskError::refused(
+                "fix",
+                "it selects no vertex: name vertices of elements, or leave it out",
+            ));
+        }
     }
     if let Some([a, b]) = fixed_box {
         let within = solid.within(a.min(b), a.max(b));

@@ -38,13 +38,17 @@ impl Callbacks {
     }
 
     fn is_cancelled(&self) -> bool {
-        if let (Some(cancel), false) = (self.cancel, self.is_cancelled.load(Ordering::Relaxed)) {
+        let has_ended = || self.is_cancelled.load(Ordering::Relaxed);
+        if let (Some(cancel), false) = (self.cancel, has_ended()) {
             // While another thread is in a callback, this thread continues its work.
             if let Ok(_lock) = self.lock.try_lock() {
-                self.set(cancel(self.user()));
+                // Another thread may have cancelled just before.
+                if !has_ended() {
+                    self.set(cancel(self.user()));
+                }
             }
         }
-        self.is_cancelled.load(Ordering::Relaxed)
+        has_ended()
     }
 }
 

@@ -155,7 +155,7 @@ pub unsafe extern "C" fn sscc_shape_against(
         let bounds = bounds.map_or(Ok(Aabb::EMPTY), rust_box)?;
         answer.forget();
         found.clear();
-        shape.colliding(other, bounds, found);
+        shape.colliding(other, bounds, found)?;
         out.write(answer.set_pairs(found));
         Ok(())
     })

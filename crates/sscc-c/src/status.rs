@@ -133,7 +133,7 @@ fn store_panic(payload: Box<dyn Any + Send>) -> sscc_status {
 #[cold]
 #[inline(never)]
 fn store(failure: Failure) -> sscc_status {
-    let text = failure.message.replace('\0', " ");
+    let text = failure.message.replace(['\0', '\n', '\r'], " ");
     // While a thread ends, its message no longer exists.
     let _ = MESSAGE.try_with(|message| message.replace(CString::new(text).ok()));
     failure.status

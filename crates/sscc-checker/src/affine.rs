@@ -27,8 +27,8 @@ const MAX_CONES: usize = 1024;
 /// The largest number of times that a cone is halved, because each halving makes numbers longer.
 const MAX_DEPTH: usize = 64;
 
-/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts: those of a part and itself,
-/// and twice those of a part and a later one.
+/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts. `products[i][j]` is the product
+/// of the parts i and j: once for j = i, twice for j > i, and 0 for j < i.
 pub(crate) struct AffineMap {
     gradient: Vec<Dyadic>,
     products: [[Dyadic; 6]; 6],
@@ -156,4 +156,37 @@ fn is_inside(pyramid: &[Vector; 4], vectors: &[Vector]) -> bool {
     let planes = [cross(u0, u1), cross(u1, u2), cross(u2, u3), cross(u3, u0)];
     let is_inner = |v: &Vector| planes.iter().all(|plane| dot(plane, v) >= Dyadic::default());
     turns(u0, u1, u2) && turns(u0, u2, u3) && vectors.iter().all(is_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns whole numbers from -4 to 4.
+    fn numbers<const N: usize>(state: &mut u64) -> [Dyadic; N] {
+        std::array::from_fn(|_| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            Dyadic::new((*state >> 40) as i64 % 9 - 4, 0)
+        })
+    }
+
+    /// The form is the squared norm, over the modes, of the symmetric parts of `u'G v`.
+    #[test]
+    fn forms_are_those_of_the_nine_rows() {
+        let state = &mut 5;
+        for rank in [1, 2, 7] {
+            for _ in 0..50 {
+                let gradient: Vec<Dyadic> = (0..9 * rank).flat_map(|_| numbers::<1>(state)).collect();
+                let [u, v]: [Vector; 2] = [numbers(state), numbers(state)];
+                let twice = |k: usize| -> Dyadic {
+                    let entry = |c: usize, j: usize| &gradient[(3 * c + j) * rank + k];
+                    let of = |c: usize, j: usize| entry(c, j) * &(&(&u[c] * &v[j]) + &(&v[c] * &u[j]));
+                    (0..9).map(|e| of(e / 3, e % 3)).sum()
+                };
+                let expected: Dyadic = (0..rank).map(|k| twice(k).square()).sum();
+                let found = AffineMap::new(gradient.clone()).squared_form(&u, &v);
+                assert_eq!(found.times_power(2), expected);
+            }
+        }
+    }
 }

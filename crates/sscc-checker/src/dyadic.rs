@@ -132,7 +132,7 @@ impl Sum for Dyadic {
 }
 
 impl AddAssign for Dyadic {
-    /// Adds a number like `+`, but reuses the memory of both.
+    /// Adds a number like `+`, but consumes it, so that memory can be reused.
     fn add_assign(&mut self, other: Self) {
         if self.is_zero() {
             *self = other;
@@ -212,7 +212,10 @@ mod tests {
                 let (a, b) = (Dyadic::of(x), Dyadic::of(y));
                 assert_eq!(a.partial_cmp(&b), x.partial_cmp(&y), "{x} {y}");
                 assert_eq!(&(&a + &b) - &b, a);
-                assert_eq!([a.clone(), b.clone()].into_iter().sum::<Dyadic>(), &a + &b);
+                let sum = |numbers: [&Dyadic; 3]| numbers.into_iter().cloned().sum::<Dyadic>();
+                let negative = &Dyadic::default() - &a;
+                assert_eq!(sum([&a, &b, &a]), &(&a + &b) + &a);
+                assert_eq!(sum([&a, &negative, &b]), b);
                 assert_eq!(&(&a + &b).square() - &(&a - &b).square(), (&a * &b).times_power(2));
             }
         }

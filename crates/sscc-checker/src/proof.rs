@@ -121,10 +121,13 @@ impl Check<'_> {
             }
         };
         let refused = thread::scope(|scope| {
-            let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(work)).collect();
+            // The system may refuse threads.
+            let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
+            let threads: Vec<_> = (1..threads).map_while(start).collect();
+            let own = work();
             let failed = |_| Some((0, Refusal::Proof("a thread failed".into())));
-            let refused = threads.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
-            refused.min_by_key(|(index, _)| *index)
+            let others = threads.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
+            others.chain(own).min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
         let Entry { nodes: [n, m], radius } = entries[index];

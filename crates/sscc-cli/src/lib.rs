@@ -18,13 +18,11 @@ mod usage;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 use outcome::{EXIT_ERROR, EXIT_FINDING, EXIT_INTERRUPTED, Outcome};
 
 /// Runs the program, and returns its exit code.
 pub fn main() -> ExitCode {
-    let cli = match args::Cli::try_parse_from(args::with_joined_switches(std::env::args_os())) {
+    let cli = match args::parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => return usage::report(&error),
     };

@@ -1,5 +1,7 @@
 //! Errors of dynamics.
 
+use sscc::parts::short_number;
+
 /// Error of a simulation; its message is one line that names the cause.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -63,7 +65,7 @@ pub enum DynamicsError {
     #[error("position, orientation, velocity and spin of a body must be finite, and its orientation not 0")]
     Start,
     /// An option of the world, its contacts or its ground is outside its range.
-    #[error("{what} is {value:?}: it must be {range}")]
+    #[error("{what} is {}: it must be {range}", short_number(*value))]
     Option {
         /// Name of the option.
         what: &'static str,

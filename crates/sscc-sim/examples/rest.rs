@@ -72,7 +72,7 @@ fn main() {
                 for a in 0..b {
                     if !boxes[a].is_disjoint(&boxes[b]) {
                         let (left, right) = posed.split_at_mut(b);
-                        left[a].colliding(&mut right[0], around, &mut pairs);
+                        left[a].colliding(&mut right[0], around, &mut pairs).unwrap();
                     }
                 }
             }

@@ -120,7 +120,7 @@ pub enum Error {
         rank: usize,
     },
     /// A weight that is not positive and finite.
-    #[error("metric weight {index} (counted from 0) is {}: weights must be positive and finite", number(*value))]
+    #[error("metric weight {index} (counted from 0) is {}: weights must be positive and finite", short_number(*value))]
     MetricWeight {
         /// The mode, from 0.
         index: usize,
@@ -169,7 +169,11 @@ pub enum Error {
         rank: usize,
     },
     /// A range of weights that is empty or not finite.
-    #[error("mode {mode} (counted from 0): the range from {low} to {high} is empty or not finite")]
+    #[error(
+        "mode {mode} (counted from 0): the range from {} to {} is empty or not finite",
+        short_number(*low),
+        short_number(*high)
+    )]
     SweepRange {
         /// The mode, from 0.
         mode: usize,
@@ -229,7 +233,7 @@ pub enum Error {
         rings: u32,
     },
     /// An option out of range.
-    #[error("{name} is {}: it must be {wanted}", number(*value))]
+    #[error("{name} is {}: it must be {wanted}", short_number(*value))]
     Option {
         /// Name of the option.
         name: &'static str,
@@ -281,19 +285,19 @@ pub enum Error {
 
 /// Returns the number as people write it: huge and tiny ones with an exponent (`{}` alone prints 1e300 as 301 digits), whole
 /// ones without a fraction.
-fn number(value: f64) -> String {
+pub fn short_number(value: f64) -> String {
     let text = format!("{value:?}");
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::short_number;
 
     #[test]
     fn numbers_have_few_digits() {
         let values = [0.0, -1.0, 5.0, 0.25, 1048577.0, 1e300, -2.5e-300, f64::NAN, f64::INFINITY];
         let texts = ["0", "-1", "5", "0.25", "1048577", "1e300", "-2.5e-300", "NaN", "inf"];
-        assert_eq!(values.map(number), texts);
+        assert_eq!(values.map(short_number), texts);
     }
 }

@@ -5,7 +5,7 @@
 //! - The command, the page and benches: the hierarchy, defaults and checks of options, the shares of a shape that each kind of
 //!   certificate proves ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
 //! - Dynamics: queries between shapes in the world ([`PosedShape`], [`SweptShape`]).
-//! - Several crates: AABBs, areas, disjoint sets, pseudo-random numbers, vertices at equal positions, and exact tests of
+//! - Several crates: AABBs, areas, disjoint sets, pseudo-random numbers, numbers in messages, vertices at equal positions, and exact tests of
 //!   simplices that share vertices or move.
 //!
 //! These items change more often than those at the root.
@@ -23,6 +23,7 @@ pub use crate::detect::{
     BodyPenetration, body_penetration, detector_with_weld_classes, surroundings_between_meshes,
 };
 pub use crate::disjoint_sets::DisjointSets;
+pub use crate::error::short_number;
 pub use crate::filter::{GroupTable, check_continuous, check_models, weld_classes_of_positions};
 pub use crate::geometry::{
     Aabb, Feature, Intersection, IntersectionPoint, Penetration, impact_edge_edge, impact_vertex_face,

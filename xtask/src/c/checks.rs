@@ -74,29 +74,35 @@ impl Checks {
         self.tally += SkipLog::skip(&self.log, name, reason);
     }
 
-    /// Runs a program in a folder, with the libraries of cargo. Returns its exit code and its output.
+    /// Runs a program in a folder, with the libraries of cargo. Returns its exit code, 0 or 1, and its output.
     pub fn output(&self, folder: &Path, program: &Path, arguments: &[&str]) -> Result<(i32, String), String> {
+        let (code, [out, err]) = self.run_program(folder, program, arguments)?;
+        if (0..=1).contains(&code) {
+            Ok((code, out))
+        } else {
+            Err(exited(program, arguments, code, [out, err]))
+        }
+    }
+
+    /// Runs a program like [`Checks::output`]. Returns its exit code, its output and its messages.
+    fn run_program(
+        &self,
+        folder: &Path,
+        program: &Path,
+        arguments: &[&str],
+    ) -> Result<(i32, [String; 2]), String> {
         let mut command = Command::new(program);
         command.args(arguments).current_dir(folder).stdin(Stdio::null());
         command.env("SSCC_PREBUILT_DIR", &self.libraries).env("CARGO_TERM_COLOR", "never");
         let output = command.output().map_err(|e| format!("{}: {e}", program.display()))?;
-        let code = output.status.code().unwrap_or(-1);
-        let [out, err] =
-            [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
-        if !(0..=1).contains(&code) {
-            return Err(format!(
-                "{} {}: exit code {code}\n{out}{err}",
-                program.display(),
-                arguments.join(" ")
-            ));
-        }
-        Ok((code, out))
+        let texts = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        Ok((output.status.code().unwrap_or(-1), texts))
     }
 
     /// Runs a program that must succeed, and returns its output.
     pub fn succeed(&self, folder: &Path, program: &Path, arguments: &[&str]) -> Result<String, String> {
-        let (code, text) = self.output(folder, program, arguments)?;
-        if code == 0 { Ok(text) } else { Err(format!("{} failed\n{text}", program.display())) }
+        let (code, [out, err]) = self.run_program(folder, program, arguments)?;
+        if code == 0 { Ok(out) } else { Err(exited(program, arguments, code, [out, err])) }
     }
 
     /// Configures and builds a project.
@@ -106,4 +112,9 @@ impl Checks {
         self.succeed(&self.root, cmake, &[&["-S", source, "-B", &build], options].concat())?;
         self.succeed(&self.root, cmake, &["--build", &build, "--parallel", "2"]).map(drop)
     }
+}
+
+/// Describes a program that failed.
+fn exited(program: &Path, arguments: &[&str], code: i32, [out, err]: [String; 2]) -> String {
+    format!("{} {}: exit code {code}\n{out}{err}", program.display(), arguments.join(" "))
 }

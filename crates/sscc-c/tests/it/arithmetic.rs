@@ -5,7 +5,7 @@ use std::arch::asm;
 use std::thread;
 
 use glam::DVec3;
-use sscc::parts::{Pose, PosedShape, Scope};
+use sscc::parts::{Aabb, Pose, PosedShape, Scope, SweptShape};
 use sscc::{
     Certificates, CertifyOptions, Detector, Error, KineticQuery, Method, Modes, Query, ReducedModel, TriMesh,
 };
@@ -95,6 +95,7 @@ fn searches_in_another_mode_are_refused() {
     refused("resolve", || query.resolve(&[1.0], &sscc::ResolveOptions::default()));
     let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
     refused("kinetic", || kinetic.discrete(&[1.0]).map(<[_]>::len));
+    refused("kinetic continuous", || kinetic.continuous(&[0.9], &[1.0]).map(<[_]>::len));
     let mesh = mesh().unwrap();
     let mut detector = Detector::new(&mesh);
     refused("detector", || detector.discrete(mesh.rest_positions()).map(<[_]>::len));
@@ -104,6 +105,17 @@ fn searches_in_another_mode_are_refused() {
         height += 1.0;
         shape.place(&[0.0], &Pose { translation: DVec3::Z * height, ..Pose::default() })
     });
+    // These shapes were placed in the right mode.
+    let mut other = shape.clone();
+    let mut pairs = Vec::new();
+    refused("against", || shape.colliding(&mut other, Aabb::EMPTY, &mut pairs));
+    let [mut x, mut y] = [(); 2].map(|()| {
+        let mut swept = SweptShape::new(&shape).unwrap();
+        swept.place([&[0.0], &[1.0]], [&Pose::default(); 2]).unwrap();
+        swept
+    });
+    let mut impacts = Vec::new();
+    refused("impacts", || x.impacts(&mut y, Aabb::EMPTY, &mut impacts));
 }
 
 /// Each thread has its own mode, so that other threads are not refused.

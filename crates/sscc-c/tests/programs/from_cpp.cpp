@@ -153,6 +153,8 @@ int main() {
   auto second = sscc::shape::make(model);
   const auto bounds = second.place(q0, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 1}});
   CHECK(bounds.upper[2] > 1.9 && shape.against(second).size() == 1 && shape.pairs()[0].a == 1);
+  shape.place(q0, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}});
+  CHECK(shape.pairs().empty());
 
   // Callables that cancel queries, and that throw.
   const strip folded(200);

@@ -6,6 +6,7 @@ use super::model::{Model, Options};
 use super::values::Json;
 use clap::Args;
 use sscc::Clearance;
+use sscc::parts::short_number;
 
 /// `sscc certify`
 #[derive(Debug, Args)]
@@ -34,7 +35,7 @@ pub struct Certify {
     #[arg(long, value_name = "FILE", conflicts_with = "clearance")]
     pub proof: Option<PathBuf>,
     /// With --proof: prove N of the entries into which all pairs of triangles are divided, spread over all [default: all]
-    #[arg(long, value_name = "N", requires = "proof", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub proof_sample: Option<u32>,
     #[command(flatten)]
     pub clearance: CertifiedClearance,
@@ -53,7 +54,7 @@ pub struct CertifiedClearance {
     pub clearance: Option<f64>,
     /// With --clearance: leave out triangles within N rings of each other on the surface: 1 for a common vertex, 2 for a common
     /// neighbour of this kind, and so on [default: 1]
-    #[arg(long, value_name = "N", requires = "clearance", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub rings: Option<u32>,
 }
 
@@ -74,7 +75,9 @@ impl CertifiedClearance {
 pub fn clearance(distance: Option<f64>, rings: Option<u32>) -> anyhow::Result<Option<Clearance>> {
     let of = |distance: f64| match Clearance::new(distance) {
         Ok(clearance) => Ok(clearance.beyond_rings(rings.unwrap_or(1))),
-        Err(_) => anyhow::bail!("--clearance is {distance}: it must be positive and finite"),
+        Err(_) => {
+            anyhow::bail!("--clearance is {}: it must be positive and finite", short_number(distance))
+        }
     };
     distance.map(of).transpose()
 }

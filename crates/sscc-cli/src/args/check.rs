@@ -75,7 +75,7 @@ pub struct Check {
     pub clearance: Option<f64>,
     /// With --clearance: leave out triangles of one mesh within N rings of each other on the surface: 1 for a common vertex, 2 for a
     /// common neighbour of this kind, and so on [default: 1]
-    #[arg(long, value_name = "N", requires = "clearance", conflicts_with = "against", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", conflicts_with = "against", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub rings: Option<u32>,
     /// List one colliding pair of each query (with --continuous: the one with the earliest time of impact)
     #[arg(long, conflicts_with = "limit")]
@@ -95,7 +95,7 @@ pub struct Check {
     #[arg(long, conflicts_with = "continuous")]
     pub depths: bool,
     /// With --against: add the volume that both meshes share, and the diameter of the largest ball inside of both; both must be closed
-    #[arg(long, requires = "against", conflicts_with_all = ["continuous", "clearance"])]
+    #[arg(long, conflicts_with_all = ["continuous", "clearance"])]
     pub penetration: bool,
     /// Also write a report (.html) that plays the frames of a mesh with their colliding pairs: one file for any browser
     #[arg(long, value_name = "FILE", conflicts_with_all = ["trajectory", "q", "first", "limit", "meshes"])]

@@ -24,6 +24,7 @@ mod load;
 mod model;
 mod modes;
 mod motion;
+mod requirements;
 mod resolve;
 mod simulate;
 mod sweep;
@@ -32,7 +33,8 @@ mod view;
 
 use std::ffi::OsString;
 
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use audit::Audit;
 pub use bench::Bench;
@@ -106,9 +108,21 @@ pub enum Command {
     View(View),
 }
 
+/// Parses a command line.
+///
+/// # Errors
+/// When it is invalid, or asks for help or the version.
+pub fn parse(typed: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
+    let mut command = Cli::command();
+    let matches = command.try_get_matches_from_mut(with_joined_switches(typed))?;
+    let refused = |cause| command.error(ErrorKind::MissingRequiredArgument, cause);
+    requirements::check(&matches).map_err(refused)?;
+    Cli::from_arg_matches(&matches)
+}
+
 /// Joins `--weld on` and `--weld off` to one argument. The value of `--weld` is optional, so the parser would take a word
 /// after it for the name of a file.
-pub fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     let mut has_ended = false;
     for word in typed {
@@ -130,7 +144,6 @@ pub fn with_joined_switches(typed: impl IntoIterator<Item = OsString>) -> Vec<Os
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_value_of_weld_may_follow_a_blank() {

@@ -13,7 +13,7 @@ use sscc::parts::is_reach;
 pub struct Model {
     /// The model: *.model.safetensors, a .glb, .gltf or .vrm with morph targets, a complete .npz (mean, components,
     /// faces), or a mesh (.obj, .off, .ply, .stl) or solid (.mesh, .veg, .msh, .node, .ele, .vtu, .vtk) with --modes; check without a
-    /// q takes any of them as a mesh
+    /// q takes any of them but the models as a mesh
     #[arg(value_name = "MODEL")]
     pub path: PathBuf,
     /// The modes U of a mesh: .npy (3V x r, V x 3 x r, r x V x 3), .npz, a VegaFEM modal matrix (.U, .float, ...), or

@@ -15,35 +15,29 @@ pub struct Motion {
     #[arg(long, value_name = "MESH", conflicts_with_all = ["trajectory", "q", "animation", "meshes"])]
     pub against: Option<PathBuf>,
     /// The other mesh where its glTF file has several, as --mesh-name for MODEL
-    #[arg(long, value_name = "NAME", requires = "against")]
+    #[arg(long, value_name = "NAME")]
     pub against_mesh: Option<String>,
     /// Frames of the other mesh; if both meshes move, as many as those of --frames
-    #[arg(long, value_name = "FRAMES", requires = "against")]
+    #[arg(long, value_name = "FRAMES")]
     pub against_frames: Option<PathBuf>,
     /// The animation of a .glb, .gltf or .vrm, by name or number, as a player would show it: nodes, morph targets, skins
     #[arg(long, value_name = "NAME", conflicts_with_all = ["trajectory", "q", "mesh_name"])]
     pub animation: Option<String>,
     /// Check the animation N times a second, from 0 to its last key frame [default: 30]
-    #[arg(long, value_name = "N", requires = "animation", conflicts_with = "times")]
+    #[arg(long, value_name = "N", conflicts_with = "times")]
     pub fps: Option<f64>,
     /// Check the animation at these times (s)
-    #[arg(
-        long,
-        value_name = "TIMES",
-        requires = "animation",
-        value_delimiter = ',',
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_hyphen_values = true)]
     pub times: Option<Vec<f64>>,
     /// Also compare the meshes of every two nodes with each other at each time; those that collide have a line. The
     /// nodes of a glTF file with several meshes are always compared in this way without --animation
     #[arg(long, conflicts_with_all = ["trajectory", "q", "frames", "against"])]
     pub between_nodes: bool,
     /// Check the mesh at this node only, by its name or its number in the file [default: every node with a mesh]
-    #[arg(long, value_name = "NODE", requires = "animation")]
+    #[arg(long, value_name = "NODE")]
     pub node: Option<String>,
     /// How to read skin weights that do not sum to 1 [default: normalized]
-    #[arg(long, value_enum, value_name = "READING", requires = "animation")]
+    #[arg(long, value_enum, value_name = "READING")]
     pub weights: Option<Weights>,
 }
 

@@ -49,7 +49,7 @@ pub struct Sweep {
     pub combinations: bool,
     /// Also write a page (.html) with the model, its intervals marked along the sliders, and for each weight that has
     /// intervals the curve of the depth
-    #[arg(long, value_name = "FILE", requires = "intervals")]
+    #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,

@@ -45,7 +45,7 @@ pub struct View {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["port", "no_open"])]
     pub report: Option<PathBuf>,
     /// Folder of the npm package `sscc`: the report checks shapes itself, without a server
-    #[arg(long, value_name = "DIR", requires = "report")]
+    #[arg(long, value_name = "DIR")]
     pub wasm: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,

@@ -72,7 +72,7 @@ impl BodyCollisions {
         for &[a, b] in suspects.as_ref().unwrap_or(&self.discrete.candidates) {
             let first = self.pairs.len();
             let (left, right) = bodies.split_at_mut(b);
-            left[a].posed.colliding(&mut right[0].posed, around, &mut self.pairs);
+            left[a].posed.colliding(&mut right[0].posed, around, &mut self.pairs)?;
             if self.pairs.len() > first {
                 self.colliding_bodies.push(Found { bodies: [a, b], first, end: self.pairs.len() });
             }
@@ -115,16 +115,18 @@ impl BodyCollisions {
         let mut found: Vec<([usize; 2], Vec<Impact>)> = Vec::new();
         while !open.is_empty() {
             let mut round = disjoint_pairs(bodies, &mut open);
-            round.par_iter_mut().for_each(|one| {
+            let search = |one: &mut MotionPair| -> Result<(), DynamicsError> {
                 let [x, y] = &mut one.motions;
-                x.impacts(y, around, &mut one.impacts);
-            });
+                Ok(x.impacts(y, around, &mut one.impacts)?)
+            };
+            let searched = round.par_iter_mut().map(search).collect();
             for MotionPair { bodies: [a, b], motions: [x, y], impacts } in round {
                 (bodies[a].swept, bodies[b].swept) = (Some(x), Some(y));
                 if !impacts.is_empty() {
                     found.push(([a, b], impacts));
                 }
             }
+            first_error(searched)?;
         }
         found.sort_unstable_by_key(|(bodies, _)| *bodies);
         for (bodies, impacts) in found {

@@ -72,6 +72,9 @@ fn invalid_options_and_starts_are_refused() {
         let error = refused(wrong).unwrap();
         assert!(!error.contains('\n') && error.contains("must"), "{error}");
     }
+    let friction = ContactOptions { friction: -1e300, ..contact };
+    let error = refused(WorldOptions { contact: friction, ..fine }).unwrap();
+    assert!(error.contains("friction") && error.contains(" is -1e300: it must be "), "{error}");
     let mut world = World::new(fine).unwrap();
     for wrong in [
         Start { position: Some(DVec3::INFINITY), ..Start::default() },

@@ -9,7 +9,8 @@ use std::thread;
 const AHEAD: usize = 2;
 
 /// Calls `work` for 0 to `count - 1` on threads, each with its own state, and `take` with each result in order, on the thread
-/// of the caller. Thread t computes the items t, t + threads, ... Ends early when `take` breaks or fails.
+/// of the caller. Thread t computes the items t, t + threads, ... If the system refuses a thread, the caller computes its items. Ends
+/// early when `take` breaks or fails.
 pub(super) fn in_order<S, T: Send, E>(
     count: usize,
     threads: usize,
@@ -31,18 +32,23 @@ pub(super) fn in_order<S, T: Send, E>(
         let start = |first: usize| {
             let (sender, receiver) = sync_channel(AHEAD);
             let (state, work) = (&state, &work);
-            scope.spawn(move || {
+            let items = move || {
                 let mut state = state();
                 // Without a receiver no further results are needed.
                 (first..count).step_by(threads).all(|item| sender.send(work(&mut state, item)).is_ok())
-            });
-            receiver
+            };
+            thread::Builder::new().spawn_scoped(scope, items).ok().map(|_| receiver)
         };
         // The receivers are dropped at the end, before the scope waits for its threads.
         let receivers: Vec<_> = (0..threads).map(start).collect();
+        let mut own = None;
         for item in 0..count {
+            let result = match &receivers[item % threads] {
+                Some(receiver) => receiver.recv(),
+                None => Ok(work(own.get_or_insert_with(&state), item)),
+            };
             // A thread that panicked sends nothing. The scope passes its panic on.
-            let Ok(result) = receivers[item % threads].recv() else { break };
+            let Ok(result) = result else { break };
             if take(item, result)?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }

@@ -82,10 +82,11 @@ fn index_of_smallest<const N: usize>(values: &[f64; N]) -> usize {
 /// Returns the weights (their sum is 1) of the smallest point in the affine hull of one to four points, by least squares over
 /// the edges from the first one. None when the points are affinely dependent.
 ///
-/// Elimination without pivoting, since the matrix is positive definite, written out for each number of edges: this takes 0.65
-/// of the time of loops.
+/// The matrix is positive definite, so that elimination needs no pivoting. It is written out for each number of edges, because
+/// loops are slower (docs/notes/exact-tests.md#nearest-points).
 #[inline]
 fn affine_minimum(points: &[DVec3]) -> Option<[f64; 4]> {
+    debug_assert!((1..=4).contains(&points.len()));
     let (&first, others) = points.split_first()?;
     // The weights of the points but the first one.
     let [x, y, z] = match *others {
@@ -121,8 +122,8 @@ fn affine_minimum(points: &[DVec3]) -> Option<[f64; 4]> {
             }
             let (factor_f, factor_g, of_e) = (ef / ee, eg / ee, -e.dot(first));
             let [row_f, row_g] =
-                [(ff, fg, f, factor_f), (fg, gg, g, factor_g)].map(|(f, g, edge, factor)| {
-                    [f - factor * ef, g - factor * eg, -edge.dot(first) - factor * of_e]
+                [(ff, fg, f, factor_f), (fg, gg, g, factor_g)].map(|(with_f, with_g, edge, factor)| {
+                    [with_f - factor * ef, with_g - factor * eg, -edge.dot(first) - factor * of_e]
                 });
             if is_singular(row_f[0], ff) {
                 return None;
@@ -141,7 +142,7 @@ fn affine_minimum(points: &[DVec3]) -> Option<[f64; 4]> {
     weights.iter().all(|weight| weight.is_finite()).then_some(weights)
 }
 
-/// Whether nothing of the squared length of an edge is left once its share along the other edges is subtracted.
+/// Whether at most 1e-12 of the squared length of an edge is left once its part along the edges before it is subtracted, or NaN.
 #[inline]
 fn is_singular(pivot: f64, squared_length: f64) -> bool {
     pivot <= 1e-12 * squared_length || pivot.is_nan()
@@ -197,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Returns the same weights as [`affine_minimum`] by loops over the matrix.
+    /// Returns the same weights as [`affine_minimum`], up to the sign of zeros, by loops over the matrix.
     fn affine_minimum_by_loops(points: &[DVec3]) -> Option<[f64; 4]> {
         let n = points.len() - 1;
         let edge = |i: usize| points[i + 1] - points[0];
@@ -225,20 +226,22 @@ mod tests {
     }
 
     #[test]
-    fn weights_in_affine_hulls_have_the_bits_of_elimination_by_loops() {
+    fn weights_in_affine_hulls_are_those_of_elimination_by_loops() {
         let random = &mut Random(5);
         let mut found = [[0; 2]; 4];
         for case in 0..4000 {
-            let points: Vec<DVec3> = (0..1 + case % 4)
-                .map(|i| match case / 4 % 4 {
+            let mut points: Vec<DVec3> = (0..1 + case % 4)
+                .map(|_| match case / 4 % 4 {
                     0 => (random.vector() * 2.0).round(),
                     1 => random.vector() * 10.0_f64.powi(-156 - (case / 16 % 8) as i32),
-                    2 => {
-                        random.vector() + DVec3::splat(if i == 2 && case % 64 < 16 { f64::NAN } else { 1e6 })
-                    }
-                    _ => random.vector(),
+                    2 => random.vector() * 10.0_f64.powi(148 + (case / 16 % 8) as i32),
+                    _ => random.vector() + DVec3::splat(1e6),
                 })
                 .collect();
+            if case % 64 >= 48 {
+                let wrong = random.below(points.len());
+                points[wrong].y = [f64::NAN, f64::INFINITY][case / 64 % 2];
+            }
             let expected = affine_minimum_by_loops(&points);
             assert_eq!(affine_minimum(&points), expected, "case {case}: {points:?}");
             found[case % 4][usize::from(expected.is_some())] += 1;

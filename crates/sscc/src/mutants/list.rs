@@ -250,6 +250,10 @@ mutants! {
     CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
     /// Scales at which a radius is reached are rounded to nearest.
     SafeScaleToNearest: Covered("norms are rounded up by more");
+    /// A swept shape that was never placed is nowhere.
+    SweptWholeUnknownAtRest: CaughtBy("lib posed::swept_shape::tests::shapes_that_were_never_placed_rest");
+    /// Frames are made of infinite boxes.
+    PosedFramesOfAnyBox: CaughtBy("lib posed::posed_shape::tests::infinite_boxes_change_no_answer");
     /// AABBs of posed shapes omit the rounding error of positions in the world.
     PosedAabbExact: CaughtBy("lib posed::posed_shape::tests::aabbs_contain_positions_that_the_world_rounds");
     /// Coarse positions in the world count as exact in axes of the model.
@@ -266,6 +270,8 @@ mutants! {
     CandidateSlackQuartered: CaughtBy("lib geometry::ccd::free_until::tests::corners_may_be_off_by_all_of_the_slack");
     /// The slack of sweeps is a quarter of it.
     SweepSlackQuartered: CaughtBy("lib query::sweep::weight_line::tests::products_that_are_rounded_apart_need_the_slack");
+    /// The slack of sweeps is that of the reach at the start.
+    SweepReachAtStart: CaughtBy("lib query::sweep::weight_line::tests::products_that_are_rounded_apart_need_the_slack");
     /// Along an axis in which squares of modes underflow, motion has no rounding error.
     ModeReachWithoutFloor: CaughtBy("it rounding::motions_whose_squares_underflow_are_no_rest");
     /// The limit of the outer round is not rounded to single precision.
@@ -302,6 +308,8 @@ mutants! {
     LocalHeightsExact: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
     /// The heights of a flat patch are those within its node.
     LocalHeightsOfNodeAlone: CaughtBy("lib certificates::local::build::tests::heights_are_at_most_their_share_of_gaps");
+    /// The ratio with a node of a list is that of its last part.
+    LocalListOfLastPart: CaughtBy("lib certificates::local::build::tests::ratios_of_lists_are_at_least_those_of_their_pairs");
     /// Ratios omit the difference between residuals and images times W.
     LocalDefectForgotten: Covered("W is no worse than its floor makes it, so ratios are rounded up by more");
     /// Nodes that one search proved are proven in the next one.
@@ -398,6 +406,8 @@ mutants! {
     RingsOneMore: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
     /// The first pair of triangles is the nearest one.
     NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
+    /// Distances of boxes are exact where they are compared with the smallest distance of triangles.
+    NearestBoxesExact: CaughtBy("it clearance::distances_that_differ_by_rounding_are_told_apart");
     /// The rounding of a position along each axis is that along any direction.
     LocalErrorAlongAxes: Covered("the rounding bound of positions is eight times their error");
     /// The rounding of factors without their affine part is omitted.
@@ -540,6 +550,8 @@ mutants! {
     PosedMarginForgotten: CaughtBy("lib posed::swept_shape::tests::impacts_are_those_of_all_triangles");
     /// AABBs from coarse positions in the world are not widened by a margin.
     PosedCoarseWithMargin: Covered("the error of coarse positions contains the margin");
+    /// Positions of a posed shape in axes of the model are exact where coarse positions are computed.
+    PosedOwnRoundingForgotten: Covered("the rounding bound in the world contains it");
     /// A shape whose q stays the same stays at its place.
     PlacedByCoordinatesAlone: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");
     /// AABBs of an earlier place are used while the frame stays the same.
@@ -552,6 +564,8 @@ mutants! {
     NearMarginHalved: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// The height of a plane in the frame of a search has no rounding error.
     HalfSpaceFrameExact: Covered("the error of positions in the world is larger");
+    /// Rotations may have parallel columns.
+    ParallelColumnsTurn: CaughtBy("lib query::smallest_stretch::tests::rotations_are_orthogonal");
     /// Weights before a time of impact are rounded to nearest.
     WeightBeforeToNearest: CaughtBy("lib query::sweep::weight_line::tests::weights_are_rounded_towards_the_start");
     /// The share of an interval of weights before a time of impact is rounded to nearest.

@@ -57,3 +57,10 @@ impl Pose {
         Err(Error::Option { name, value: if is_finite { reach } else { f64::NAN }, wanted })
     }
 }
+
+/// Returns the box if it is finite, else the empty one. A box around all compared shapes affects only the speed, and no frame can
+/// be made of one that is infinite.
+pub(super) fn finite_or_empty(around: Aabb) -> Aabb {
+    let is_finite = around.lower.is_finite() && around.upper.is_finite();
+    if with_mutant!(is_finite, PosedFramesOfAnyBox, true) { around } else { Aabb::EMPTY }
+}

@@ -66,12 +66,22 @@ impl<const E: usize> PosedMotion<E> {
             self.q[end].copy_from_slice(q[end]);
             self.pose[end] = *pose[end];
         }
-        let rounding = self.rounding();
+        let [own_rounding, rounding] = [self.own_rounding(), self.rounding()];
         let whole = |end: usize| {
-            let own = layout.bd_tree.root([&*self.q[end]], DVec3::splat(rounding));
+            let own = layout.bd_tree.root([&*self.q[end]], DVec3::splat(own_rounding));
             self.pose[end].apply_to_aabb(own, rounding)
         };
         Ok((1..with_mutant!(E, SweptWholeAtStart, 1)).fold(whole(0), |all, end| all.union(&whole(end))))
+    }
+
+    /// Returns the rounding bound of positions in axes of the model.
+    fn own_rounding(&self) -> f64 {
+        rounding_bound(self.own_reach, self.q[0].len())
+    }
+
+    /// Returns the length by which AABBs are widened in axes of the model, and again in the world, in addition to rounding.
+    fn widening(&self) -> f64 {
+        with_mutant!(self.margin, PosedMarginForgotten, 0.0)
     }
 }
 
@@ -81,7 +91,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
 
     #[inline]
     fn rounding(&self) -> f64 {
-        rounding_bound(self.reach, self.q[0].len()) + with_mutant!(self.margin, PosedMarginForgotten, 0.0)
+        rounding_bound(self.reach, self.q[0].len()) + self.widening()
     }
 
     #[inline]
@@ -104,7 +114,10 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
     #[inline]
     fn in_world(&self) -> Option<InWorld<E>> {
         let maps = self.pose.map(|pose| (pose.rotation, pose.translation));
-        Some(InWorld { maps, own_rounding: rounding_bound(self.own_reach, self.q[0].len()) })
+        // The reach in the world is at least the own one times the largest sum of magnitudes of a row of the rotation, and the
+        // rounding bound is four times the error, so that the bound in the world contains the error of own positions, too.
+        let own_rounding = with_mutant!(self.own_rounding(), PosedOwnRoundingForgotten, 0.0);
+        Some(InWorld { maps, own_rounding })
     }
 
     #[inline]
@@ -121,9 +134,9 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
 
     #[inline]
     fn node_aabb(&self, layout: &Layout, node: u32) -> Option<Aabb> {
-        let rounding = self.rounding();
+        let [own_widening, rounding] = [self.own_rounding() + self.widening(), self.rounding()];
         let at = |end: usize| {
-            let own = layout.bd_tree.at(node, [&*self.q[end]], DVec3::splat(rounding))?;
+            let own = layout.bd_tree.at(node, [&*self.q[end]], DVec3::splat(own_widening))?;
             Some(self.pose[end].apply_to_aabb(own, rounding))
         };
         (1..with_mutant!(E, PosedNodesAtStart, 1)).try_fold(at(0)?, |all, end| Some(all.union(&at(end)?)))

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::pose::Pose;
+use super::pose::{Pose, finite_or_empty};
 use super::posed_motion::PosedMotion;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::context::Context;
 use crate::detect::layout::Needs;
 use crate::detect::narrow_phase::DiscreteHits;
@@ -15,7 +16,8 @@ use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
-use crate::{Certificates, ContactFilter, Error, Pair, ReducedModel};
+use crate::query::check_limit;
+use crate::{Certificates, ContactFilter, Detector, Error, Pair, ReducedModel};
 
 /// A shape at some q and pose in the world, to be tested against others. Colliding pairs are exact for the f64
 /// positions [`Pose::apply`] of [`deformed_position`](crate::deformed_position). It owns its memory, so that repeated
@@ -99,10 +101,15 @@ impl PosedShape {
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) with a point in common, sorted.
     /// Touching counts. `around` is an approximate AABB of all compared shapes. It affects speed only; while it stays the
     /// same, AABBs are computed once after each [`PosedShape::place`].
-    pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) {
+    ///
+    /// # Errors
+    /// When this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]), or there are more than
+    /// [`Detector::MAX_PAIRS`](crate::Detector::MAX_PAIRS) pairs. Then nothing is appended.
+    pub fn colliding(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Pair>) -> Result<(), Error> {
+        check_arithmetic()?;
         let first = found.len();
         // The error bounds of positions in single precision hold within this AABB.
-        let around = around.union(&self.whole).union(&other.whole);
+        let around = finite_or_empty(around).union(&self.whole).union(&other.whole);
         self.enter(around);
         other.enter(around);
         let Self { context, volumes, motion, state, hits, .. } = self;
@@ -111,9 +118,11 @@ impl PosedShape {
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
         ];
         // The contexts have no token that cancels.
-        let _ = Search::between(sides, None, state, hits, usize::MAX);
-        found.extend_from_slice(&self.hits.0.list);
+        let _ = Search::between(sides, None, state, hits, Detector::MAX_PAIRS);
+        check_limit(usize::MAX, hits.0.is_complete())?;
+        found.extend_from_slice(&hits.0.list);
         found[first..].sort_unstable();
+        Ok(())
     }
 
     /// Returns an upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite
@@ -214,7 +223,7 @@ mod tests {
                     let (left, right) = shapes.split_at_mut(a);
                     let (x, y) = (&mut left[b], &mut right[0]);
                     let mut pairs = Vec::new();
-                    x.colliding(y, around, &mut pairs);
+                    x.colliding(y, around, &mut pairs).unwrap();
                     let mut expected = Vec::new();
                     for i in 0..x.model.mesh().faces().len() as u32 {
                         for j in 0..y.model.mesh().faces().len() as u32 {
@@ -228,7 +237,7 @@ mod tests {
                     empty += usize::from(pairs.is_empty());
                     // The same query from the other shape, with other AABBs.
                     let mut turned = vec![(0, 0)];
-                    y.colliding(x, Aabb { lower: far - 1e3, upper: far + 1.0 }, &mut turned);
+                    y.colliding(x, Aabb { lower: far - 1e3, upper: far + 1.0 }, &mut turned).unwrap();
                     let mut turned: Vec<Pair> = turned.drain(1..).map(|(j, i)| (i, j)).collect();
                     turned.sort_unstable();
                     assert_eq!(turned, expected);
@@ -269,7 +278,7 @@ mod tests {
             let meet = |(i, j): &Pair| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j));
             let expected: Vec<Pair> = all.filter(meet).collect();
             let mut pairs = Vec::new();
-            x.colliding(&mut y, Aabb::default(), &mut pairs);
+            x.colliding(&mut y, Aabb::default(), &mut pairs).unwrap();
             assert_eq!(pairs, expected, "case {case}");
             found += pairs.len();
         }
@@ -293,7 +302,7 @@ mod tests {
                 let [x, y] = shapes;
                 x.place(&q, &pose).unwrap();
                 let mut pairs = Vec::new();
-                x.colliding(y, Aabb::default(), &mut pairs);
+                x.colliding(y, Aabb::default(), &mut pairs).unwrap();
                 pairs
             });
             assert_eq!(answers[0], answers[1]);
@@ -372,9 +381,9 @@ mod tests {
                 all.filter(|(i, j)| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j))).collect();
             let mut pairs = Vec::new();
             match case % 2 {
-                0 => x.colliding(&mut y, Aabb::default(), &mut pairs),
+                0 => x.colliding(&mut y, Aabb::default(), &mut pairs).unwrap(),
                 _ => {
-                    y.colliding(&mut x, Aabb::default(), &mut pairs);
+                    y.colliding(&mut x, Aabb::default(), &mut pairs).unwrap();
                     pairs.iter_mut().for_each(|(i, j)| (*i, *j) = (*j, *i));
                     pairs.sort_unstable();
                 }
@@ -400,10 +409,36 @@ mod tests {
             let expected: Vec<Pair> =
                 all.filter(|(i, j)| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j))).collect();
             let mut pairs = Vec::new();
-            x.colliding(&mut y, around, &mut pairs);
+            x.colliding(&mut y, around, &mut pairs).unwrap();
             assert_eq!(pairs, expected, "case {case}");
             *(if pairs.is_empty() { &mut free } else { &mut colliding }) += 1;
         }
         assert!(colliding > 5 && free > 5, "{colliding} {free}");
+    }
+
+    #[test]
+    fn infinite_boxes_change_no_answer() {
+        let state = &mut 6;
+        let models = [model(60, state), model(60, state)];
+        let [mut x, mut y] = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
+        let infinite = Aabb { lower: DVec3::NEG_INFINITY, upper: DVec3::INFINITY };
+        let nan = Aabb { lower: DVec3::NAN, upper: DVec3::NAN };
+        let half = Aabb { lower: DVec3::ZERO, upper: DVec3::new(1.0, f64::INFINITY, 1.0) };
+        let mut found = 0;
+        for _ in 0..8 {
+            x.place(&[random(state), random(state)], &Pose::default()).unwrap();
+            let [mut expected, mut turned] = [Vec::new(), Vec::new()];
+            x.colliding(&mut y, Aabb::EMPTY, &mut expected).unwrap();
+            for around in [infinite, nan, half] {
+                let mut pairs = Vec::new();
+                x.colliding(&mut y, around, &mut pairs).unwrap();
+                assert_eq!(pairs, expected, "{around:?}");
+                turned.clear();
+                y.colliding(&mut x, around, &mut turned).unwrap();
+                assert_eq!(turned.len(), expected.len(), "{around:?}");
+            }
+            found += expected.len();
+        }
+        assert!(found > 100, "{found}");
     }
 }

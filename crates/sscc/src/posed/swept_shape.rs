@@ -4,15 +4,17 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::pose::Pose;
+use super::pose::{Pose, finite_or_empty};
 use super::posed_motion::PosedMotion;
 use super::posed_shape::PosedShape;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::context::Context;
 use crate::detect::narrow_phase::{NearHits, SweptHits};
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
-use crate::{Error, Impact, Pair, ReducedModel};
+use crate::query::check_limit;
+use crate::{Detector, Error, Impact, Pair, ReducedModel};
 
 /// A shape whose vertices move on straight lines between two configurations in the world, to be tested against others. At both
 /// ends vertices have the positions of a [`PosedShape`], bit for bit. It owns its memory, so that repeated calls allocate
@@ -43,14 +45,21 @@ impl SweptShape {
     /// Creates a shape that rests at q = 0 in its own axes.
     ///
     /// # Errors
-    /// When the model is beyond the range of numbers.
+    /// When the model is beyond the range of numbers, or this thread's arithmetic is not that of IEEE 754
+    /// ([`Error::Arithmetic`]).
     pub fn new(shape: &PosedShape) -> Result<Self, Error> {
+        let mut motion = PosedMotion::new(&shape.model)?;
+        let rest = vec![0.0; shape.model.rank()];
+        let layout = &shape.context.layout;
+        // Error bounds hold only within a box that contains this one.
+        let at_rest = motion.place(&shape.model, layout, [&rest; 2], [&Pose::default(); 2])?;
+        let whole = with_mutant!(at_rest, SweptWholeUnknownAtRest, Aabb::EMPTY);
         Ok(Self {
             model: shape.model.clone(),
             context: shape.context.clone(),
             volumes: NodeVolumes::new(&shape.context.layout, true),
-            motion: PosedMotion::new(&shape.model)?,
-            whole: Aabb::EMPTY,
+            motion,
+            whole,
             is_current: false,
             state: SearchState::default(),
             hits: SweptHits::default(),
@@ -74,10 +83,14 @@ impl SweptShape {
     /// common during the motion, sorted by pair, with the guarantee of [`Query::continuous`](crate::Query::continuous).
     /// `around` is an AABB of all compared shapes. It affects speed only; while it stays the same, AABBs are computed
     /// once after each [`SweptShape::place`].
-    pub fn impacts(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Impact>) {
+    ///
+    /// # Errors
+    /// As [`PosedShape::colliding`](crate::parts::PosedShape::colliding).
+    pub fn impacts(&mut self, other: &mut Self, around: Aabb, found: &mut Vec<Impact>) -> Result<(), Error> {
+        check_arithmetic()?;
         let first = found.len();
         // The error bound of positions in single precision holds within this AABB.
-        let around = around.union(&self.whole).union(&other.whole);
+        let around = finite_or_empty(around).union(&self.whole).union(&other.whole);
         self.enter(around, 0.0);
         other.enter(around, 0.0);
         let sides = [
@@ -85,9 +98,11 @@ impl SweptShape {
             Side { context: &other.context, volumes: &mut other.volumes, motion: &other.motion },
         ];
         // The contexts have no token that cancels.
-        let _ = Search::between(sides, None, &mut self.state, &mut self.hits, usize::MAX);
+        let _ = Search::between(sides, None, &mut self.state, &mut self.hits, Detector::MAX_PAIRS);
+        check_limit(usize::MAX, self.hits.0.is_complete())?;
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable_by_key(|impact| impact.pair);
+        Ok(())
     }
 
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) that come within the distance
@@ -96,7 +111,7 @@ impl SweptShape {
     pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, limit: usize, found: &mut Vec<Pair>) {
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
-        let around = around.union(&widened(self.whole)).union(&widened(other.whole));
+        let around = finite_or_empty(around).union(&widened(self.whole)).union(&widened(other.whole));
         let each = with_mutant!(margin / 2.0, NearMarginHalved, margin / 4.0);
         self.enter(around, each);
         other.enter(around, each);
@@ -207,7 +222,7 @@ mod tests {
             // Any AABB is valid, also one that is too small.
             for around in [Aabb::default(), Aabb { lower: far - 9.0, upper: far + 9.0 }] {
                 let mut impacts = Vec::new();
-                x.impacts(y, around, &mut impacts);
+                x.impacts(y, around, &mut impacts).unwrap();
                 assert_eq!(impacts, expected, "case {case}");
             }
             let margin = 0.1;
@@ -255,7 +270,7 @@ mod tests {
             let [t0, t1] = heights.map(at);
             y.place([&[0.0]; 2], [&t0, &t1]).unwrap();
             let (mut impacts, mut near) = (Vec::new(), Vec::new());
-            x.impacts(&mut y, around, &mut impacts);
+            x.impacts(&mut y, around, &mut impacts).unwrap();
             x.near(&mut y, around, margin, 9, &mut near);
             assert_eq!(
                 (impacts.len(), near.len()),
@@ -270,8 +285,41 @@ mod tests {
             let [t0, t1] = heights.map(at);
             y.place([&[0.0]; 2], [&t0, &t1]).unwrap();
             let mut impacts = Vec::new();
-            x.impacts(&mut y, around, &mut impacts);
+            x.impacts(&mut y, around, &mut impacts).unwrap();
             assert_eq!(impacts.len(), usize::from(meets), "{heights:?}");
         }
+    }
+
+    /// The shapes are far from the box that is given, and touch each other at corners.
+    #[test]
+    fn shapes_that_were_never_placed_rest() {
+        let state = &mut 12;
+        let mut found = 0;
+        for _ in 0..40 {
+            let middle = DVec3::splat(1000.0);
+            let corners: Vec<DVec3> = (0..90).map(|_| middle + vector(state) * 0.1).collect();
+            let faces: Vec<[u32; 3]> = (0..30).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+            // Each triangle of the second shape has one corner on the first shape.
+            let touching: Vec<DVec3> = (0..90)
+                .map(|i| if i % 3 == 0 { corners[i + 1] } else { middle + vector(state) * 0.1 })
+                .collect();
+            let shapes = [&corners, &touching].map(|positions| {
+                let mesh = TriMesh::new(positions.clone(), faces.clone()).unwrap();
+                let modes = Modes::new(1, vec![DVec3::X; 90]).unwrap();
+                PosedShape::without_certificates(&ReducedModel::new(mesh, modes).unwrap()).unwrap()
+            });
+            let [mut x, mut y] = shapes.each_ref().map(|shape| SweptShape::new(shape).unwrap());
+            let mut impacts = Vec::new();
+            let around = Aabb { lower: DVec3::ZERO, upper: DVec3::ONE };
+            x.impacts(&mut y, around, &mut impacts).unwrap();
+            let all = (0..30).flat_map(|i| (0..30).map(move |j| (i, j)));
+            let meet = |(i, j): &Pair| {
+                crate::intersect_triangle_triangle(&shapes[0].corners(*i), &shapes[1].corners(*j))
+            };
+            let expected: Vec<Pair> = all.filter(meet).collect();
+            assert_eq!(impacts.iter().map(|impact| impact.pair).collect::<Vec<_>>(), expected);
+            found += expected.len();
+        }
+        assert!(found > 1200, "{found}");
     }
 }

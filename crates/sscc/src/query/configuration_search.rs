@@ -48,6 +48,7 @@ impl<const E: usize, N: NarrowPhase<E> + Default> ConfigurationSearch<E, N> {
         limit: usize,
         statistics: &mut Statistics,
     ) -> Result<(), Error> {
+        statistics.complete = false;
         let result = self.search(context, ends, norm, limit);
         statistics.set_counters(self.counters());
         statistics.set_proof(result?);

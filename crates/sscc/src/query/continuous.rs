@@ -1,9 +1,9 @@
 //! Continuous queries: which pairs of triangles collide between two configurations, and when (paper, section 7).
 
 use super::configuration_search::SweptSearch;
-use super::query::Query;
+use super::query::{Query, check_limit};
 use crate::detect::answer::Statistics;
-use crate::{Error, Impact};
+use crate::{Detector, Error, Impact};
 
 impl Query {
     /// Returns all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at
@@ -64,7 +64,9 @@ impl Query {
             return Ok(&[]);
         }
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
-        swept.find(&self.context, [t0, t1], self.norm, limit, &mut self.statistics)?;
+        let most = limit.min(Detector::MAX_PAIRS);
+        swept.find(&self.context, [t0, t1], self.norm, most, &mut self.statistics)?;
+        check_limit(limit, self.statistics.complete)?;
         let impacts = &mut swept.narrow.0.list;
         impacts.sort_unstable_by_key(|impact| impact.pair);
         self.discrete.narrow.0.list.extend(impacts.iter().map(|impact| impact.pair));

@@ -165,8 +165,9 @@ impl Query {
     ///
     /// # Errors
     /// When q has the wrong length, an entry is not finite, or q moves vertices beyond
-    /// [`limits::LARGEST`](crate::limits::LARGEST); when the query was cancelled; when this thread's arithmetic is not
-    /// that of IEEE 754 ([`Error::Arithmetic`]), which a query that the root's radius answers does not check.
+    /// [`limits::LARGEST`](crate::limits::LARGEST); when the query was cancelled; when there are more than
+    /// [`Detector::MAX_PAIRS`](crate::Detector::MAX_PAIRS) pairs; when this thread's arithmetic is not that of IEEE 754
+    /// ([`Error::Arithmetic`]), which a query that the root's radius answers does not check.
     pub fn discrete(&mut self, q: &[f64]) -> Result<&[Pair], Error> {
         self.discrete_at_most(q, usize::MAX)
     }
@@ -175,7 +176,7 @@ impl Query {
     /// [`Statistics::complete`] is false: there may be more.
     ///
     /// # Errors
-    /// As [`Query::discrete`].
+    /// As [`Query::discrete`]; more pairs than the maximum are an error only where `limit` is above the maximum.
     pub fn discrete_at_most(&mut self, q: &[f64], limit: usize) -> Result<&[Pair], Error> {
         self.forget();
         let configuration = self.measure(q)?;
@@ -215,7 +216,8 @@ impl Query {
     /// Finds at most `limit` colliding pairs at a configuration, after [`Self::forget`].
     ///
     /// # Errors
-    /// When the query was cancelled, or this thread's arithmetic is not that of IEEE 754.
+    /// When the query was cancelled, there are more pairs than their maximum number, which is below `limit`, or this thread's
+    /// arithmetic is not that of IEEE 754.
     #[inline(always)]
     pub(super) fn find_pairs(&mut self, configuration: Configuration<'_>, limit: usize) -> Result<(), Error> {
         self.norm = configuration.norm;
@@ -225,7 +227,8 @@ impl Query {
             return Ok(());
         }
         let Self { context, discrete, statistics, .. } = self;
-        discrete.find_pairs(context, configuration, limit, statistics)
+        discrete.find_pairs(context, configuration, limit.min(Detector::MAX_PAIRS), statistics)?;
+        check_limit(limit, statistics.complete)
     }
 
     /// Returns the pairs that the last query found; after [`Query::continuous`] those of its impacts.
@@ -243,6 +246,15 @@ impl Query {
     pub(crate) fn norm(&self) -> f64 {
         self.norm
     }
+}
+
+/// Checks a search with the smaller one of a limit and [`Detector::MAX_PAIRS`].
+///
+/// # Errors
+/// When the search is incomplete because of the maximum.
+pub(crate) fn check_limit(limit: usize, is_complete: bool) -> Result<(), Error> {
+    let most = Detector::MAX_PAIRS;
+    if is_complete || limit <= most { Ok(()) } else { Err(Error::TooManyPairs { most }) }
 }
 
 impl Scope {

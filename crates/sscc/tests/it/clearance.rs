@@ -194,6 +194,28 @@ fn the_nearest_pair_is_that_of_all_triangles() {
     assert_eq!(Detector::new(&mesh).nearest(&positions, 1).unwrap(), None);
 }
 
+/// Points, as degenerate triangles, whose distances from one point differ by rounding. The distance of two boxes is rounded, too.
+#[test]
+fn distances_that_differ_by_rounding_are_told_apart() {
+    let random = &mut Numbers(19);
+    let mut equal = 0;
+    for case in 0..400 {
+        let (middle, radius) = (vector(random), random.power(0.0, 2.0));
+        let x: Vec<DVec3> =
+            (0..24).map(|_| middle + vector(random).normalize_or(DVec3::X) * radius).collect();
+        let around = TriMesh::new(x.clone(), (0..24).map(|v| [v; 3]).collect()).unwrap();
+        let alone = TriMesh::new(vec![middle], vec![[0; 3]]).unwrap();
+        let distances: Vec<f64> =
+            x.iter().map(|x| distance_triangle_triangle(&[middle; 3], &[*x; 3])).collect();
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let [mut alone, mut around] = [alone, around].map(|mesh| Detector::new(&mesh));
+        let found = alone.nearest_against(&[middle], &mut around, &x).unwrap().unwrap();
+        assert_eq!(found.distance, least, "case {case}");
+        equal += distances.iter().filter(|distance| **distance <= least * (1.0 + 1e-15)).count() - 1;
+    }
+    assert!(equal > 1000, "{equal}");
+}
+
 #[test]
 fn ignored_pairs_groups_and_neighbours_do_not_count() {
     let at = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);

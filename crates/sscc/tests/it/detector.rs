@@ -179,7 +179,8 @@ fn pairs_of_two_meshes_are_those_of_brute_force() {
     let random = &mut Random::new(12);
     let (mut colliding, mut free, mut hits) = (0, 0, 0);
     for case in 0..cases(80) {
-        let large = if case % 16 == 3 { [150, 300] } else { [60, 90] };
+        // A bucket has at most 64 triangles.
+        let large = if case % 16 == 3 { [150, 300] } else { [70, 130] };
         let sizes = [[1, 1], [5, 200], [200, 5], large][case % 4];
         let meshes = sizes.map(|triangles| {
             let (rest, faces) = soup(random, triangles, 1.0);
@@ -239,7 +240,7 @@ fn pairs_of_two_meshes_are_those_of_brute_force() {
             hits += impacts.len();
         }
     }
-    assert!(colliding > 500 && free > 10 && hits > colliding, "{colliding} {free} {hits}");
+    assert!(colliding > 500 && free > 10 && hits > 2 * colliding, "{colliding} {free} {hits}");
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn pairs_of_posed_shapes_are_those_of_all_triangles() {
         x.place(&q, &here).unwrap();
         y.place(&r, &there).unwrap();
         pairs.clear();
-        x.colliding(&mut y, Aabb::default(), &mut pairs);
+        x.colliding(&mut y, Aabb::default(), &mut pairs).unwrap();
         let faces = model.mesh().faces().len() as u32;
         let corners = [&x, &y].map(|shape| (0..faces).map(|t| shape.corners(t)).collect::<Vec<_>>());
         let mut expected = Vec::new();
@@ -157,7 +157,7 @@ fn pairs_of_posed_shapes_are_those_of_all_triangles() {
         moving.place([&q, &q], [&Pose { translation: DVec3::Z * -9.0, ..here }, &here]).unwrap();
         resting.place([&r, &r], [&there, &there]).unwrap();
         impacts.clear();
-        moving.impacts(&mut resting, Aabb::default(), &mut impacts);
+        moving.impacts(&mut resting, Aabb::default(), &mut impacts).unwrap();
         for pair in &pairs {
             assert!(
                 impacts.binary_search_by_key(pair, |impact| impact.pair).is_ok(),

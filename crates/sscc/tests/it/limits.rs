@@ -261,8 +261,8 @@ fn posed_shapes_at_the_limit_have_the_answers_of_smaller_ones() {
             let around = Aabb { lower: DVec3::splat(-scale), upper: DVec3::splat(scale) };
             let ([x, y], [v, w]) = (&mut shapes, &mut swept);
             let (mut colliding, mut impacts, mut near) = (Vec::new(), Vec::new(), Vec::new());
-            x.colliding(y, around, &mut colliding);
-            v.impacts(w, around, &mut impacts);
+            x.colliding(y, around, &mut colliding).unwrap();
+            v.impacts(w, around, &mut impacts).unwrap();
             v.near(w, around, 0.01 * scale, usize::MAX, &mut near);
             assert!(pairs(&impacts).iter().all(|pair| near.contains(pair)));
             (colliding, pairs(&impacts))

@@ -1,5 +1,6 @@
 //! Checks meshes without modes: as they are, in frames, in an animation, or against another mesh.
 
+use std::iter;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -114,10 +115,12 @@ fn is_own_frames(path: &Path) -> bool {
 /// Refuses flags for models, and flags that have no effect together.
 fn check_flags(args: &Check) -> Result<()> {
     let (options, motion) = (&args.options, &args.motion);
-    let path = args.model.path.display();
-    let is_model = args.model.path.extension().is_some_and(|e| e == "safetensors" || e == "npz");
-    if args.model.modes.is_some() || is_model && motion.frames.is_none() && motion.against.is_none() {
-        bail!("{path}: a model deforms by modes: add --q or --trajectory");
+    let is_model = |path: &&PathBuf| path.extension().is_some_and(|e| e == "safetensors" || e == "npz");
+    let model = iter::once(&args.model.path).chain(&args.meshes).find(is_model);
+    let as_mesh = motion.frames.is_some() || motion.against.is_some();
+    if let Some(path) = args.model.modes.is_some().then_some(&args.model.path).or(model.filter(|_| !as_mesh))
+    {
+        bail!("{}: a model deforms by modes: add --q or --trajectory", path.display());
     }
     for (flag, is_given) in [
         ("certificates", args.certificates.is_some()),
@@ -132,16 +135,6 @@ fn check_flags(args: &Check) -> Result<()> {
         ("reach", options.reach.is_some()),
     ] {
         ensure!(!is_given, "--{flag} is for models with modes: add --q or --trajectory, or leave it out");
-    }
-    // clap does not require --animation where a flag that excludes it is given.
-    for (flag, is_given) in [
-        ("fps", motion.fps.is_some()),
-        ("times", motion.times.is_some()),
-        ("node", motion.node.is_some()),
-        ("weights", motion.weights.is_some()),
-    ] {
-        let has_effect = !is_given || motion.animation.is_some();
-        ensure!(has_effect, "--{flag} is for animations: add --animation, or leave it out");
     }
     if motion.against.is_some() {
         let is_filtered =

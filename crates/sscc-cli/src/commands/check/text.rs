@@ -1,5 +1,7 @@
 //! The answers of `sscc check` as text.
 
+use std::collections::BTreeSet;
+
 use sscc_tasks::{FreeProof, LeftOut, free_sentence};
 
 use super::answer::{Answer, InsideAnswer};
@@ -206,7 +208,8 @@ pub struct Summary {
     microseconds: Vec<f64>,
     /// The pairs that the answers leave out, added once for each mesh.
     left_out: LeftOut,
-    last: Option<(Option<String>, Option<usize>)>,
+    /// The file and the node of each of these meshes.
+    seen: BTreeSet<(Option<String>, Option<usize>)>,
 }
 
 /// The answer with the deepest pair, for a clearance with the nearest pair; among equal ones that with most pairs.
@@ -228,7 +231,7 @@ impl Summary {
             worst: None,
             microseconds: Vec::new(),
             left_out: LeftOut::default(),
-            last: None,
+            seen: BTreeSet::new(),
         }
     }
 
@@ -237,10 +240,8 @@ impl Summary {
             *self.root_certified.get_or_insert(0) += usize::from(is_certified && !answer.is_finding());
         }
         // The frames of one mesh leave out the same pairs.
-        let mesh = Some((answer.file.clone(), answer.node));
-        if self.last != mesh {
+        if self.seen.insert((answer.file.clone(), answer.node)) {
             self.left_out = std::mem::take(&mut self.left_out).and(answer.left_out);
-            self.last = mesh;
         }
         self.findings += usize::from(answer.is_finding());
         self.is_near |= answer.near.is_some();

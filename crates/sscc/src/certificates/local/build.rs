@@ -45,7 +45,7 @@ struct LocalCertificate {
 
 /// Computes the certificates of nodes down to buckets about the centre, on the threads of the current pool. Those of fewest modes
 /// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes`
-/// is 0, [`PatchModel::new`] returns None, pairs that share an edge count, or the certificates kept would cover too few
+/// is 0, [`PatchModel::new`] or [`CornerGaps::new`] returns None, pairs that share an edge count, or the certificates kept would cover too few
 /// triangles ([`LEAST_PROVEN_SHARE`]).
 pub(crate) fn compute_local_certificates(
     model: &ReducedModel,
@@ -58,7 +58,9 @@ pub(crate) fn compute_local_certificates(
         return LocalCertificates::default();
     }
     let Some(patch_model) = PatchModel::new(model, center) else { return LocalCertificates::default() };
-    let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions);
+    let Some(gaps) = CornerGaps::new(hierarchy, filter, &patch_model.positions) else {
+        return LocalCertificates::default();
+    };
     let touching = TouchingNodes::new(hierarchy, filter);
     let builder = Builder { model: &patch_model, gaps: &gaps, touching: &touching };
     let mut wanted = certified_nodes(hierarchy);
@@ -243,7 +245,7 @@ impl Builder<'_> {
                 }
                 let floor = if is_first { floor } else { ratio };
                 let of_child = self.list(search, around, child, floor, list);
-                ratio = larger(ratio, of_child);
+                ratio = with_mutant!(larger(ratio, of_child), LocalListOfLastPart, of_child);
             }
         }
         list.push((node, ratio));

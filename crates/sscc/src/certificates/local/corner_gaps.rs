@@ -69,8 +69,17 @@ pub(super) struct CornerGaps<'g> {
     tight: Vec<(u32, TightPair)>,
 }
 
+/// The largest number of near pairs, divided by the number of leaves. Meshes of long thin triangles may have more, and their
+/// tables would not fit into the memory (docs/notes/local-certificates.md#near-leaves).
+const MAX_NEAR_SHARE: usize = 256;
+
 impl<'g> CornerGaps<'g> {
-    pub(super) fn new(hierarchy: &'g Hierarchy, filter: &'g PairFilter, positions: &'g [DVec3]) -> Self {
+    /// Computes all tables. None if more pairs of leaves are near than [`MAX_NEAR_SHARE`] allows.
+    pub(super) fn new(
+        hierarchy: &'g Hierarchy,
+        filter: &'g PairFilter,
+        positions: &'g [DVec3],
+    ) -> Option<Self> {
         let nodes = hierarchy.nodes();
         let (mut starts, mut vertices) = (vec![0], Vec::new());
         for node in nodes {
@@ -93,7 +102,8 @@ impl<'g> CornerGaps<'g> {
             tight: Vec::new(),
         };
         gaps.spheres = gaps.node_spheres();
-        let mut near = gaps.near_leaves();
+        let leaves = nodes.iter().filter(|node| node.is_leaf()).count();
+        let mut near = gaps.near_leaves(MAX_NEAR_SHARE * leaves)?;
         near.sort_unstable();
         let tables: Vec<Option<GapTable>> = parallel::map(&near, |pair| gaps.table(*pair));
         (gaps.tight_starts, gaps.table_starts) = (vec![0; nodes.len() + 1], vec![0; nodes.len() + 1]);
@@ -110,7 +120,7 @@ impl<'g> CornerGaps<'g> {
         }
         gaps.table_leaves = near.into_iter().map(|(_, m)| m).collect();
         gaps.tables = tables;
-        gaps
+        Some(gaps)
     }
 
     /// Returns the vertices of a leaf, ascending.
@@ -187,10 +197,14 @@ impl<'g> CornerGaps<'g> {
         spheres
     }
 
-    fn near_leaves(&self) -> Vec<NodePair> {
+    /// Returns the pairs of near leaves, each leaf with itself included. None if there are more than `most`.
+    fn near_leaves(&self, most: usize) -> Option<Vec<NodePair>> {
         let nodes = self.hierarchy.nodes();
         let (mut near, mut stack) = (Vec::new(), vec![(0, 0)]);
         while let Some((n, m)) = stack.pop() {
+            if near.len() > most {
+                return None;
+            }
             let [a, b] = [n, m].map(|n| nodes[n as usize]);
             if n != m {
                 let [x, y] = [n, m].map(|n| self.spheres[n as usize]);
@@ -213,7 +227,7 @@ impl<'g> CornerGaps<'g> {
                 stack.extend(b.children().map(|c| (n, c)));
             }
         }
-        near
+        Some(near)
     }
 
     fn table(&self, (n, m): NodePair) -> Option<GapTable> {

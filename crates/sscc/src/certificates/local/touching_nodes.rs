@@ -46,8 +46,13 @@ impl<'t> TouchingNodes<'t> {
         let nodes = self.hierarchy.nodes();
         let node = &nodes[n as usize];
         let own = node.first_triangle..node.first_triangle + node.triangle_count;
-        let classes = self.hierarchy.triangles(node).iter().flat_map(|&t| self.filter.vertex_classes(t));
+        let triangles = self.hierarchy.triangles(node).iter();
+        let mut classes: Vec<u32> = triangles.flat_map(|&t| self.filter.vertex_classes(t)).collect();
+        // Many triangles may share a vertex, which may be in many buckets.
+        classes.sort_unstable();
+        classes.dedup();
         let mut around: Vec<u32> = classes
+            .into_iter()
             .flat_map(|class| {
                 let [start, end] = [class, class + 1].map(|class| self.starts[class as usize] as usize);
                 &self.buckets[start..end]

@@ -124,6 +124,7 @@ impl Detector {
                 result.is_ok() && !rings.contain(&context.filter, *a, *b)
             });
         }
+        self.statistics.complete &= result.is_ok();
         result?;
         self.check_complete().map_err(|_| Error::TooManyNearPairs { most })
     }

@@ -126,7 +126,11 @@ fn nearest(
                 let distance = distance_triangle_triangle(x, y);
                 if best.is_none_or(|best| distance < best.distance) {
                     best = Some(NearPair { pair: if is_turned { (b, a) } else { (a, b) }, distance });
-                    most = distance * (1.0 + 1e-12) + f64::MIN_POSITIVE;
+                    most = with_mutant!(
+                        distance * (1.0 + 1e-12) + f64::MIN_POSITIVE,
+                        NearestBoxesExact,
+                        distance
+                    );
                 }
             }
         }

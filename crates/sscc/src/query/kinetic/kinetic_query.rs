@@ -179,6 +179,7 @@ impl KineticQuery {
             self.query.statistics = Statistics::PROVEN_FREE;
             return Ok(&[]);
         }
+        check_arithmetic()?;
         if self.is_free_within_region(ends)? {
             self.query.statistics.complete = true;
             return Ok(&[]);

@@ -101,6 +101,23 @@ fn rotations_are_orthogonal() {
         good += usize::from(stretch > 1e-3 * size && along > 0.99 * stretch);
     }
     assert!(found > 4000 && good > 2500, "{found} {good}");
+    // The columns of these maps are parallel up to rounding.
+    let (mut found, mut none) = (0, 0);
+    for case in 0..20_000 {
+        let (column, row) = (random.vector(), random.vector());
+        let of =
+            |x: f64, random: &mut Numbers| column * x * (1.0 + random.power(-17.0, -14.0) * random.signed());
+        let map = DMat3::from_cols(of(row.x, random), of(row.y, random), of(row.z, random));
+        let Some(turn) = nearest_rotation(&map) else {
+            none += 1;
+            continue;
+        };
+        found += 1;
+        let wrong = turn.transpose() * turn - DMat3::IDENTITY;
+        let worst = wrong.to_cols_array().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(worst < 4e-15, "case {case}: {worst}");
+    }
+    assert!(found > 100 && none > 100, "{found} {none}");
 }
 
 /// The distance of the two maps from their mean is close to that at which the kind of bound changes.

@@ -62,8 +62,9 @@ impl WeightLine {
     }
 
     /// Returns an upper bound of the difference, along each axis, between the distance of two vertices and that of their chords, at
-    /// any weight between the ends: `4 E` of the head of this file. `reach`: the larger one of both ends, rounded to nearest.
-    pub(super) fn slack(&self, reach: f64) -> f64 {
+    /// any weight between the ends: `4 E` of the head of this file. `reaches`: those of both ends, rounded to nearest.
+    pub(super) fn slack(&self, reaches: [f64; 2]) -> f64 {
+        let reach = with_mutant!(reaches[0].max(reaches[1]), SweepReachAtStart, reaches[0]);
         let after = self.ends[0][self.mode + 1..].iter().filter(|weight| **weight != 0.0).count();
         let error = (f64::EPSILON / 2.0) * (2 + after) as f64 * reach;
         // The factor covers the rounding of the reach and of partial sums, the constant the underflow of products.
@@ -136,9 +137,8 @@ mod tests {
             let (w0, w1) = (random.signed() * 2.0, random.signed() * 2.0);
             let mut line = WeightLine::new(&model, &q, mode);
             line.set([w0, w1]);
-            let reach = line.ends().map(|q| model.reach(q)).into_iter().fold(0.0, f64::max);
             // The bound for one vertex and its chord is half of the slack.
-            let slack = exact(line.slack(reach) / 2.0);
+            let slack = exact(line.slack(line.ends().map(|q| model.reach(q))) / 2.0);
             for v in 0..model.mesh().rest_positions().len() as u32 {
                 let [x0, x1] = line.ends().map(|q| model.position(v, q));
                 for i in 1..8 {
@@ -173,6 +173,8 @@ mod tests {
         for case in 0..400 {
             let mut just_above = || 1.0 + 1e-3 * random.signed().abs();
             let (u, w0, w1) = (just_above(), just_above(), just_above());
+            // Some motions start near rest, where the reach is small.
+            let w0 = if case % 4 == 3 { w0 * 1e-3 } else { w0 };
             // The second vertex moves in the opposite direction. A third one makes a triangle.
             let modes = [DVec3::X * u, DVec3::X * -just_above(), DVec3::ZERO].to_vec();
             let mesh = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
@@ -180,8 +182,7 @@ mod tests {
             let model = ReducedModel::with_metric(mesh, modes, Metric::identity(1)).unwrap();
             let mut line = WeightLine::new(&model, &[0.0], 0);
             line.set([w0, w1]);
-            let reach = line.ends().map(|q| model.reach(q)).into_iter().fold(0.0, f64::max);
-            let slack = exact(line.slack(reach));
+            let slack = exact(line.slack(line.ends().map(|q| model.reach(q))));
             let distance = |w: f64| {
                 let [x, y] = [0, 1].map(|v| exact(model.position(v, &[w]).x));
                 y - x

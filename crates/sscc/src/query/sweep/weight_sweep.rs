@@ -192,12 +192,13 @@ impl WeightSweep<'_> {
         if with_mutant!(!query.statistics.complete, SweepCutOffIsFree, false) {
             return Ok(Step::TooMany);
         }
-        let slack = line.slack(t0.reach.max(t1.reach));
+        let slack = line.slack([t0.reach, t1.reach]);
         let filter = &query.context.detect.filter;
         let [start, mut end] = weights;
         let mut blocking = None;
         for (i, &pair) in search.narrow.0.list.iter().enumerate() {
             if i.is_multiple_of(CANDIDATES_PER_CHECK) && query.context.detect.is_cancelled() {
+                query.statistics.complete = false;
                 return Err(Error::Cancelled);
             }
             for simplices in filter.simplex_pairs(pair.0, pair.1) {

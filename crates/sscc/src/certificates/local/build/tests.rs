@@ -54,7 +54,7 @@ fn strains_are_at_least_those_of_exact_residuals() {
         }
         let bounds = all.bounds[0];
         let patch_model = PatchModel::new(&model, &center).unwrap();
-        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions);
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
         let gradient = |c: usize, j: usize, k: usize| {
             let e = 3 * j + c;
             exact(f64::from(if e < 8 { all.gradients[8 * k + e] } else { all.gradients[8 * rank + k] }))
@@ -188,7 +188,7 @@ fn heights_are_at_most_their_share_of_gaps() {
         let filter = PairFilter::new(&model, &ContactFilter::default());
         let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
         let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
-        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions);
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
         let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
         let leaves = |n: u32| {
             let node = &nodes[n as usize];
@@ -234,6 +234,78 @@ fn heights_are_at_most_their_share_of_gaps() {
         }
     }
     assert!(checked > 1_000_000 && close > 1000 && outside > 30, "{checked} {close} {outside}");
+}
+
+/// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` with the ratio of each node of a list, for pairs of that node and the
+/// certificate's own. With one mode, whose f is 1 here, the largest quotient of all pairs is close to the ratio.
+#[test]
+fn ratios_of_lists_are_at_least_those_of_their_pairs() {
+    let random = &mut Numbers(33);
+    let (mut checked, mut close, mut of_parts) = (0, 0, 0);
+    for case in 0..6 {
+        let side = 16 + 2 * case;
+        let flat = square(side);
+        let bump = |p: &DVec3, random: &mut Numbers| *p + DVec3::Z * (0.3 * random.signed() / side as f64);
+        let positions: Vec<DVec3> = flat.rest_positions().iter().map(|p| bump(p, random)).collect();
+        let modes: Vec<DVec3> = positions
+            .iter()
+            .map(|p| {
+                DVec3::new((4.0 * p.y).sin(), p.x * p.y, (5.0 * p.x).cos())
+                    + random.vector() * random.power(-4.0, -1.0)
+            })
+            .collect();
+        let mesh = TriMesh::new(positions, flat.faces().to_vec()).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, modes.clone()).unwrap()).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+        let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
+        let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
+        let leaves = |n: u32| -> Vec<u32> {
+            let node = &nodes[n as usize];
+            let own = node.first_triangle..node.first_triangle + node.triangle_count;
+            let is_own = |leaf: &u32| {
+                nodes[*leaf as usize].is_leaf() && own.contains(&nodes[*leaf as usize].first_triangle)
+            };
+            (0..nodes.len() as u32).filter(is_own).collect()
+        };
+        for (index, n) in all.nodes.iter().enumerate() {
+            assert_eq!(all.mode_starts[index + 1] - all.mode_starts[index], 1);
+            let own = leaves(*n);
+            let entries = &all.gradients[16 * index..][..9];
+            let gradient = DMat3::from_cols_array(&std::array::from_fn(|e| f64::from(entries[e])));
+            let image = f64::from(f32::from_bits(u32::from(all.ellipsoids[8 * index]) << 16)).abs();
+            for of_list in all.list_starts[index]..all.list_starts[index + 1] {
+                let (m, ratio) = (all.list_nodes[of_list as usize], all.list_ratios[of_list as usize]);
+                let strain = f64::from(ratio) * image + all.bounds[index].per_factor;
+                let is_part = !nodes[m as usize].fits_in_bucket();
+                for (x, y) in leaves(m).iter().flat_map(|y| own.iter().map(move |x| (*x.min(y), *x.max(y)))) {
+                    let Some(Some(table)) = gaps.near((x, y)) else { continue };
+                    let pairs =
+                        gaps.vertices(x).iter().flat_map(|i| gaps.vertices(y).iter().map(move |j| (*i, *j)));
+                    for ((i, j), gap) in pairs.zip(&table.gaps).filter(|(_, gap)| **gap < f32::INFINITY) {
+                        let [i, j] = [i, j].map(|v| v as usize);
+                        let apart = patch_model.positions[j] - patch_model.positions[i];
+                        let residual = (modes[j] - modes[i] - gradient * apart).length();
+                        checked += 1;
+                        if residual < 0.9 * strain * f64::from(*gap) {
+                            continue;
+                        }
+                        let gap = widest_gap(&gaps, &parents, (x, y), (i as u32, j as u32));
+                        assert!(
+                            residual <= strain * gap * (1.0 + 1e-9),
+                            "case {case}: {i} {j}, nodes {n} {m}"
+                        );
+                        let is_close = residual > 0.9 * strain * gap;
+                        (close, of_parts) =
+                            (close + u32::from(is_close), of_parts + u32::from(is_close && is_part));
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 100_000 && close > 100 && of_parts > 20, "{checked} {close} {of_parts}");
 }
 
 /// A budget of 0 gives no certificates, and a larger one gives that of the root.
