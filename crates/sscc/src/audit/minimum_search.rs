@@ -126,7 +126,8 @@ impl MinimumSearch<'_> {
         }
     }
 
-    /// Searches collisions along rays: along each mode, and along directions in which points of the pair approach.
+    /// Searches collisions along rays: along each of the first eight modes, and along directions in which points of the pair
+    /// approach.
     fn search_along_rays(
         &self,
         faces: Pair,

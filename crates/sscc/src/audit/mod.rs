@@ -30,10 +30,10 @@ pub use options::AuditOptions;
 /// The results of an audit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of configurations tested. 0 if nothing is claimed: every radius is 0, and there are no local certificates.
+    /// Number of attacks made, each at one configuration or two. 0 if nothing is claimed: every radius is 0, and there are no
+    /// local certificates.
     pub samples: usize,
-    /// The number of these configurations that attacked local certificates: about half if there are any, all if every
-    /// radius is 0.
+    /// The number of these attacks that were on local certificates: about half if there are any, all if every radius is 0.
     pub local_samples: usize,
     /// A line for each configuration that refutes a claim, and for each difference between the answers of two methods.
     /// Empty for sound certificates.
@@ -69,7 +69,8 @@ pub struct AuditReport {
 ///
 /// # Errors
 /// If the certificates are of another model, this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]),
-/// a comparison finds more pairs than an answer may have, or `progress` cancels.
+/// a comparison finds more near pairs than an answer may have, a configuration of a comparison moves vertices beyond
+/// [`limits::LARGEST`](crate::limits::LARGEST), or `progress` cancels.
 pub fn audit(
     model: &ReducedModel,
     certificates: &Certificates,

@@ -27,8 +27,10 @@ impl FrameMap {
     ///
     /// Error bound. Let u = 2^-24 and r the largest sum of magnitudes of a row of the matrix. Images in either frame are in
     /// [-2.001, 2.001], so the shift is at most 2.001 (1 + r). The error of entries, shift, three products and three sums is at most
-    /// 8 u times the sum of all magnitudes, 2.1 r + 2.001 (1 + r); centres and half extents of AABBs, their products and ends add at
-    /// most 20 u (1 + r). Exact positions are mapped with the error of the frame.
+    /// 8 u times the sum of all magnitudes, 2.1 r + 2.001 (1 + r). Half extents of AABBs are at most about d, the sum of all
+    /// factors in [`Quantization::begin`](super::quantization::Quantization::begin). Centres and half extents, their products and
+    /// ends add at most 20 u r (1 + d). That is at most 6 u r and r times `error`, which AABBs contain already. Exact positions
+    /// are mapped with the error of the frame.
     pub(crate) fn new(
         [own, world]: [&F32Frame; 2],
         (rotation, translation): (DMat3, DVec3),

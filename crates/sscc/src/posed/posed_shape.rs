@@ -125,8 +125,8 @@ impl PosedShape {
         Ok(())
     }
 
-    /// Returns an upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; infinite
-    /// or NaN if q is. It costs O(r) for each 64 triangles.
+    /// Returns an upper bound of the length of the displacement `sum_k U_k q_k` of every used vertex, rounding included; NaN if q
+    /// is not finite. It costs O(r) for each 64 triangles.
     ///
     /// # Errors
     /// When the length of q is not the number of modes.

@@ -94,7 +94,7 @@ impl NearSearch {
     /// Removes the pairs within the rings.
     ///
     /// # Errors
-    /// When the token cancels; then there are no pairs.
+    /// When the token cancels; then the list of pairs is incomplete.
     fn leave_out_rings(&mut self, rings: u32) -> Result<(), Error> {
         if rings <= 1 || self.narrow.hits.list.is_empty() {
             return Ok(());

@@ -40,8 +40,8 @@ impl<'t> TouchingNodes<'t> {
         Self { hierarchy, filter, parents, starts, buckets }
     }
 
-    /// Returns the nodes, down to buckets, that share a vertex with this one but no triangle, and have at most as many triangles;
-    /// ascending.
+    /// Returns the buckets, and the larger nodes of at most as many triangles as this one, that share a vertex with it but no
+    /// triangle; ascending.
     pub(super) fn around(&self, n: u32) -> Vec<u32> {
         let nodes = self.hierarchy.nodes();
         let node = &nodes[n as usize];

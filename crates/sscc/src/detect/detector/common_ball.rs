@@ -55,7 +55,7 @@ impl Ord for Cell {
 /// Returns the radius of a ball that is inside of both meshes, and a bound of the radii of all such balls.
 ///
 /// # Errors
-/// When the token of the first mesh cancels.
+/// When the token of either mesh cancels.
 pub(super) fn largest_common_ball(sides: [&Side<'_>; 2]) -> Result<(f64, f64), Error> {
     let aabbs = sides.map(|side| side.boxes.of_nodes[0]);
     let shared =

@@ -21,7 +21,8 @@ use crate::{CancelToken, ContactFilter, Error, Impact, Pair, ReducedModel, TriMe
 
 /// Finds the colliding triangles of a mesh at given positions. It builds a bounding volume hierarchy (BVH) once and refits it
 /// for each answer; if the cost of the hierarchy has grown too much, it rebuilds it. It owns its memory, so that repeated answers
-/// allocate nothing. One detector serves one thread; clones share the data that does not change.
+/// about collisions allocate nothing, unless it rebuilds the hierarchy. One detector serves one thread; clones share the data
+/// that does not change.
 ///
 /// Two triangles are listed exactly when they count under the contact filter (by default when they share no vertex) and have a
 /// point in common at the given f64 positions. Touching counts. See `docs/guarantees.md`.

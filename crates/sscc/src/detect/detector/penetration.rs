@@ -29,7 +29,7 @@ pub struct BodyPenetration {
 
 /// Returns the volume that two meshes share, and the diameter of the largest ball inside of both, each mesh at its positions. The cost
 /// is that of the pairs of triangles whose projections along z overlap, and of a search that takes longer for a flatter shared volume.
-/// The token of the first detector cancels it.
+/// The token of the first detector cancels it, and so does that of the second, except in the sum of the volume.
 ///
 /// # Errors
 /// As [`Detector::discrete_at_most`], for the positions of both meshes; when a mesh is open, or has parts that face

@@ -4,7 +4,7 @@
 //! - swept ([`SweptHits`]): whether and when they first do on the straight lines from one configuration to another;
 //! - AABB ([`AabbHits`]): whether their AABBs, around all positions in a region of z or between two configurations, overlap;
 //! - clearance ([`ClearanceHits`]): whether they are nearer than a distance at one configuration;
-//! - near ([`NearHits`]): no test; it keeps all pairs whose widened boxes overlap.
+//! - near ([`NearHits`]): no test; it keeps all pairs that widened boxes and separating axes do not rule out.
 
 mod aabb;
 mod clearance;

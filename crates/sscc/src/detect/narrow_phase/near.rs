@@ -1,4 +1,5 @@
-//! The near narrow phase: keeps every pair of triangles whose widened boxes overlap.
+//! The near narrow phase: keeps every pair of triangles that the tests in single precision, of widened boxes and of separating
+//! axes, do not rule out.
 
 use glam::DVec3;
 

@@ -11,7 +11,7 @@ use crate::filter::PairFilter;
 use crate::geometry::{TwoTriangles, nearest_to_origin};
 use crate::model::{RoundingBound, ScaledModel, scale_direction};
 
-/// Safe distances are at most this many times the norm of the z about which they are computed.
+/// Safe distances are at most this many times the largest norm of the z about which they are computed.
 ///
 /// The proof needs no such cap. Let E be the rounding bound of a gap at `|z|`, `e0 + e1 |z|`, and let the distance D
 /// be about a z of at most the norm N: both ends together need `2 e0 + e1 (2 N + D)`.
