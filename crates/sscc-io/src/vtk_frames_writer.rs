@@ -30,8 +30,8 @@ pub struct VtkFramesWriter {
 }
 
 impl VtkFramesWriter {
-    /// Checks, before long work, that [`create`](Self::create) can begin a collection, and that the collection would
-    /// replace no file of these inputs.
+    /// Checks, before long work, that [`create`](Self::create) can begin a collection, and that no file of these inputs is in
+    /// the folder whose files the collection replaces. The inputs are not compared with `path` itself.
     ///
     /// # Errors
     /// As [`create`](Self::create); when an input, which may be a file, `FILE#NAME`, a folder or a collection, has files in the folder

@@ -10,7 +10,8 @@ impl Solid {
     /// corners of its edge. It has the same shape and the same vertices first.
     ///
     /// # Errors
-    /// When it has cubes, whose edges would have no middles, or is of second order already.
+    /// When it has cubes, whose edges would have no middles, or is of second order already; when a tetrahedron is flatter than
+    /// tetrahedra of second order may be.
     pub fn elevated(&self) -> Result<(Self, Vec<[u32; 2]>), SolidError> {
         let (tets, second_order) = (self.tets().len(), self.tets10().len());
         if !self.cubes().is_empty() || second_order > 0 {

@@ -23,7 +23,7 @@ const MAX_KEPT: usize = 1 << 30;
 /// The frames of a mesh: positions of all its vertices in each.
 ///
 /// Frames of a `.npy` file are read when they are needed; a point cache is read as a whole. Meshes of a folder and
-/// grids of VTK take longer to read than to check, so [`FrameReader::check`] keeps their positions, up to 1 GiB.
+/// grids of VTK take longer to read than to check, so [`FrameReader::check`] keeps their positions until they take 1 GiB.
 pub struct FrameReader {
     path: PathBuf,
     mesh: TriMesh,
@@ -112,7 +112,7 @@ impl FrameReader {
         }
     }
 
-    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes and grids, up to 1 GiB.
+    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes and grids until they take 1 GiB.
     ///
     /// # Errors
     /// As [`FrameReader::read`].

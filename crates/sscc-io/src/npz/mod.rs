@@ -6,7 +6,7 @@
 //! | --- | --- | --- |
 //! | rest positions | `mean`, `mean_`, `vertices`, `v_template`, `rest_positions` | (V, 3) or (3V) |
 //! | modes | `modes`, `shapedirs`, `U`, `basis` | (3V, r), (V, 3, r), (r, V, 3), (V, 3) or (3V) |
-//! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r) or (V, 3, r) |
+//! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r), (V, 3, r), (V, 3) or (3V) |
 //! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
 //! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
 //!

@@ -162,7 +162,8 @@ impl PlacedMesh {
         self.shape.influences.as_ref().map_or(0.0, |influences| influences.largest_sum_error)
     }
 
-    /// Faces (N, at least 1): three vertex indices each, in file order over all primitives of triangles.
+    /// Faces (N): three vertex indices each, in file order over all primitives of triangles. N is 0 if the mesh has only
+    /// strips whose triangles have repeated corners.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.shape.faces
     }
