@@ -8,7 +8,7 @@
 //!
 //! [`read`] does not read data that a model does not need, so an error in them refuses no file: accessors, buffers, skins
 //! and nodes that the mesh does not use, materials, images, and extensions that a file uses but does not require. Meshes at
-//! rest and scenes also need all nodes and the names of materials, and scenes the buffers of all meshes, skins and
+//! rest and scenes also need all nodes, their groups the names of materials, and scenes the buffers of all meshes, skins and
 //! animations.
 //!
 //! A scene ([`AnimatedScene`]) has world positions at any time of an animation, with node hierarchy, morph targets and

@@ -21,7 +21,7 @@ pub struct MeshNode {
     /// Stored weights of the morph targets.
     pub(super) weights: Vec<f64>,
     pub(super) shape: Arc<Shape>,
-    pub(super) names: Arc<PartNames>,
+    pub(super) names: Arc<Result<PartNames, FormatError>>,
 }
 
 impl MeshNode {
@@ -80,11 +80,12 @@ impl MeshNode {
     /// Returns the group of each triangle.
     ///
     /// # Errors
-    /// When there are more than 65,536 groups.
+    /// When a name or the material of a primitive is malformed, or there are more than 65,536 groups.
     pub fn groups(&self, by: GroupsBy) -> Result<NamedGroups, FormatError> {
+        let names = (*self.names).as_ref().map_err(Clone::clone)?;
         let mut groups = GroupCollector::default();
         for &(primitive, end) in &self.shape.primitives {
-            groups.extend_to(end as usize, &self.names.group(by, Some(self.node), self.mesh, primitive))?;
+            groups.extend_to(end as usize, &names.group(by, Some(self.node), self.mesh, primitive))?;
         }
         Ok(groups.finish())
     }
