@@ -95,7 +95,10 @@ pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<NamedModes, FormatErr
     }
     let largest = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let tolerance = largest * 2.0_f64.powi(-20);
-    let is_close = |vertex: &usize| (mean[*vertex] - positions[*vertex]).abs().max_element() <= tolerance;
+    // NaN must fail this test, too. The largest entry of a vector would ignore it.
+    let is_close = |vertex: &usize| {
+        (mean[*vertex] - positions[*vertex]).to_array().iter().all(|entry| entry.abs() <= tolerance)
+    };
     match (0..mean.len()).find(|vertex| !is_close(vertex)) {
         Some(vertex) => {
             let [x, y, z] = (mean[vertex] - positions[vertex]).to_array();
