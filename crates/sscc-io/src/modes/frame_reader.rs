@@ -11,6 +11,7 @@ use super::folder::positions_like;
 use super::frames::frame_files;
 use super::point_cache::PointCache;
 use super::vtk_frames::VtkFrames;
+use crate::error::shown_name;
 use crate::file::{ending, unsupported};
 use crate::mesh_path::split_mesh_name;
 use crate::npy::Blocks;
@@ -76,7 +77,7 @@ impl FrameReader {
             let frames = VtkFrames::open(&file, name.as_deref())?;
             Source::Vtk { kept: vec![None; frames.len()], frames }
         };
-        let name = format!("the mesh ({})", mesh_path.file_name().unwrap_or_default().display());
+        let name = format!("the mesh ({})", shown_name(mesh_path));
         let warnings = match &source {
             Source::Vtk { frames, .. } => frames.warnings()?,
             Source::Folder { files, .. } if is_vtk_name(&files[0]) => {
