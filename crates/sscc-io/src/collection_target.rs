@@ -33,8 +33,8 @@ impl Target {
         Ok(Self { path: path.to_owned(), folder, name })
     }
 
-    /// Returns an error if the collection cannot be written, or if its folder is no folder or has anything but the
-    /// files of an earlier collection: other files would be lost.
+    /// Returns an error if the collection cannot be written, if its folder is no folder or has anything but the files of
+    /// an earlier collection, or if that collection cannot be read: other files would be lost.
     pub fn check(&self) -> Result<(), IoError> {
         check_target(&self.path)?;
         let refused = |cause| not_written(&self.folder, cause);
@@ -47,11 +47,24 @@ impl Target {
                 return Err(IoError::request(&self.folder, cause));
             }
         }
-        let named = read_collection(&self.path).unwrap_or_default();
+        let read = match read_collection(&self.path) {
+            Err(IoError::NotFound { .. }) => Ok(Vec::new()),
+            read => read,
+        };
         for entry in fs::read_dir(&self.folder).map_err(refused)? {
             let entry = entry.map_err(refused)?;
             let name = entry.file_name();
             let file = folder(&self.path).join(&self.name).join(&name);
+            let named = match &read {
+                Ok(named) => named,
+                Err(error) => {
+                    let cause = format!(
+                        "contains {}, and the collection cannot be read ({error}): move both away, or choose another name",
+                        quoted(&name.to_string_lossy())
+                    );
+                    return Err(IoError::request(&self.folder, cause));
+                }
+            };
             let is_own = entry.file_type().is_ok_and(|kind| kind.is_file())
                 && self.is_frame_name(&name.to_string_lossy())
                 && named.iter().any(|named| named.file == file);

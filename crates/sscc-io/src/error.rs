@@ -176,6 +176,11 @@ fn line(path: &Path) -> String {
     if shown.chars().any(char::is_control) { shown.escape_debug().to_string() } else { shown.into_owned() }
 }
 
+/// Returns the name of a file, without its folder, on one line and truncated.
+pub(crate) fn shown_name(path: &Path) -> String {
+    cut(&path.file_name().unwrap_or_default().to_string_lossy(), 80)
+}
+
 /// Returns text from a file for a message: quoted, on one line, truncated.
 pub(crate) fn quoted(text: &str) -> String {
     format!("'{}'", cut(text, 40))
@@ -206,6 +211,7 @@ mod tests {
         assert_eq!(error.to_string(), r"dir/x\ny.obj: line 3: 'a\nb' is bad");
         let error = FormatError::part("array 'a\n\"'", "is bad");
         assert_eq!(error.to_string(), r#"array 'a\n"': is bad"#);
+        assert_eq!(shown_name(Path::new("dir/x\ny.obj")), r"x\ny.obj");
         assert_eq!(quoted(&"x".repeat(50)), format!("'{}...'", "x".repeat(40)));
     }
 }

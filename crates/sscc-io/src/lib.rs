@@ -56,8 +56,8 @@
 //!
 //! All readers accept untrusted bytes. They report an error of one line with the file, the place and the cause. They
 //! never panic, and never allocate by a number that the size of the file does not confirm. Files are read, as a whole
-//! or block by block, and never mapped, because a mapped file that is truncated while in use ends the process. Files
-//! are replaced atomically.
+//! or block by block, and never mapped, because a mapped file that is truncated while in use ends the process. A file is
+//! replaced atomically; the files of a `.pvd` collection are replaced as [`VtkFramesWriter::finish`] states.
 //!
 //! Each format can also be parsed from bytes ([`mesh::obj::parse`], [`npy::parse`], ...), without a file.
 

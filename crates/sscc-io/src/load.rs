@@ -75,7 +75,8 @@ impl LoadedModel {
 pub struct LoadedMesh {
     /// The mesh.
     pub mesh: TriMesh,
-    /// Lines about content whose meaning is not clear ([`read_mesh_with_warnings`]).
+    /// Lines about content whose meaning is not clear ([`read_mesh_with_warnings`]), or that was not evaluated
+    /// ([`gltf::PlacedMesh::notes`]).
     pub warnings: Vec<String>,
 }
 
@@ -160,7 +161,7 @@ pub fn load_mesh(path: &Path, mesh_name: Option<&str>) -> Result<TriMesh, IoErro
     load_mesh_with_warnings(path, mesh_name).map(|loaded| loaded.mesh)
 }
 
-/// As [`load_mesh`], with lines about content of the file whose meaning is not clear.
+/// As [`load_mesh`], with lines about content of the file whose meaning is not clear or that was not evaluated.
 ///
 /// # Errors
 /// As [`load_mesh`].
@@ -178,7 +179,7 @@ pub fn load_mesh_with_warnings(path: &Path, mesh_name: Option<&str>) -> Result<L
     let (mesh, warnings) = match format.as_str() {
         _ if gltf::is_gltf(path) => {
             let placed = gltf::read_placed_mesh(path, mesh_name.as_deref())?;
-            (placed.to_mesh(0).map_err(|error| error.of(path))?, Vec::new())
+            (placed.to_mesh(0).map_err(|error| error.of(path))?, placed.notes().to_vec())
         }
         "safetensors" => (read_model(path)?.0.mesh().clone(), Vec::new()),
         "npz" => (read_npz_model(path)?.mesh, Vec::new()),
@@ -383,6 +384,24 @@ mod tests {
             let (model, _) = load_model(&path(name), Some(&path("a.npy"))).unwrap();
             assert_eq!(model.mesh().rest_positions()[3].z, 1.0, "{name}");
         }
+    }
+
+    #[test]
+    fn the_mesh_of_a_gltf_file_has_the_notes_of_its_nodes() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.gltf");
+        let bytes: Vec<u8> =
+            [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32].iter().flat_map(|x| x.to_le_bytes()).collect();
+        std::fs::write(directory.path().join("a.bin"), bytes).unwrap();
+        let json = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":36}],
+            "bufferViews":[{"buffer":0,"byteLength":36}],
+            "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+            "nodes":[{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}}]}"#;
+        std::fs::write(&path, json).unwrap();
+        let warnings = load_mesh_with_warnings(&path, None).unwrap().warnings;
+        assert_eq!(warnings, gltf::read_placed_mesh(&path, None).unwrap().notes());
+        assert!(warnings.len() == 1 && warnings[0].starts_with("nodes[0]: the extension EXT_mesh_gpu"));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::folder_files::list_files;
 use crate::gltf::is_gltf;
 use crate::mesh::is_mesh_name;
 use crate::solid::is_solid_name;
+use crate::solid::tetgen::companion;
 
 /// Lists the meshes, solids and glTF files of a folder, in natural order: `9.obj` comes before `10.obj`. It lists a TetGen
 /// solid by its `.node` file alone. Other files, among them models with modes, hidden files and folders are skipped.
@@ -15,7 +16,7 @@ use crate::solid::is_solid_name;
 /// # Errors
 /// When the folder cannot be read, or has no such file.
 pub fn list_mesh_files(folder: &Path) -> Result<Vec<PathBuf>, IoError> {
-    let is_second = |path: &Path| ending(path) == "ele" && path.with_extension("node").is_file();
+    let is_second = |path: &Path| ending(path) == "ele" && companion(path, "node").is_file();
     let has_mesh = |path: &Path| is_mesh_name(path) || is_gltf(path) || is_solid_name(path);
     let files = list_files(folder, |path| has_mesh(path) && !is_second(path))?;
     if files.is_empty() {
@@ -43,6 +44,15 @@ mod tests {
         std::fs::create_dir(folder.join("g.obj")).unwrap();
         let expected = ["9.STL", "10.obj", "a.node", "b.ele", "c.veg", "d.glb"].map(|name| folder.join(name));
         assert_eq!(list_mesh_files(folder).unwrap(), expected);
+        // A pair in capitals is one solid, too.
+        for name in ["B.NODE", "B.ELE"] {
+            std::fs::write(folder.join(name), "").unwrap();
+        }
+        let listed = list_mesh_files(folder).unwrap();
+        assert!(
+            listed.contains(&folder.join("B.NODE")) && !listed.contains(&folder.join("B.ELE")),
+            "{listed:?}"
+        );
         let missing = list_mesh_files(&folder.join("none")).unwrap_err().to_string();
         assert!(missing.ends_with("none: not found"), "{missing}");
     }

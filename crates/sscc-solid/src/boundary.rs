@@ -22,7 +22,7 @@ impl Solid {
     /// Returns the boundary. Costs O(n log n) in the number of faces.
     ///
     /// # Errors
-    /// When three or more elements share a face, so that elements overlap.
+    /// When three or more elements share a face, so that elements overlap; when no face belongs to exactly one element.
     pub fn boundary(&self) -> Result<Boundary, SolidError> {
         let triangles = outer_triangles(
             self.tets(),
@@ -45,7 +45,7 @@ impl VolumeMesh {
     /// [`Solid::boundary`].
     ///
     /// # Errors
-    /// When three or more elements share a face.
+    /// When three or more elements share a face; when no face belongs to exactly one element.
     pub fn surface_mesh(&self) -> Result<TriMesh, SolidError> {
         let within = tets_within(self.tets(), self.surface());
         let kept: Vec<usize> = (0..within.len()).filter(|tet| within[*tet]).collect();

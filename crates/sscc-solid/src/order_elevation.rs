@@ -10,7 +10,8 @@ impl Solid {
     /// corners of its edge. It has the same shape and the same vertices first.
     ///
     /// # Errors
-    /// When it has cubes, whose edges would have no middles, or is of second order already.
+    /// When it has cubes, whose edges would have no middles, or is of second order already; when a tetrahedron is so nearly
+    /// flat that rounding decides whether it is.
     pub fn elevated(&self) -> Result<(Self, Vec<[u32; 2]>), SolidError> {
         let (tets, second_order) = (self.tets().len(), self.tets10().len());
         if !self.cubes().is_empty() || second_order > 0 {
@@ -67,6 +68,22 @@ mod tests {
         edges.sort_unstable();
         assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()));
         assert!(matches!(solid.elevated(), Err(SolidError::MixedOrders { tets: 2, second_order: 2 })));
+    }
+
+    #[test]
+    fn flat_tetrahedra_are_valid_in_both_orders_or_in_none() {
+        // The longest edge begins at the first corner and has length 1, or it begins at another corner.
+        for (third, cubed) in [(DVec3::new(0.5, 0.8, 0.0), 1.0), (DVec3::Y, 8.0_f64.sqrt())] {
+            for volume in [1e-6, 1e-9, 9e-10, 2.9e-10, 2.8e-10, 1.001e-10, 0.999e-10, 1e-11, 0.0] {
+                let top = DVec3::new(0.2, 0.2, volume / third.y);
+                let corners = vec![DVec3::ZERO, DVec3::X, third, top];
+                let solid = Solid::uniform(corners, vec![[0, 1, 2, 3]], vec![], Material::default());
+                assert_eq!(solid.is_ok(), volume > 1e-10 * cubed, "{third} {volume}");
+                if let Ok(solid) = solid {
+                    assert!(solid.elevated().is_ok(), "{third} {volume}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -122,7 +122,7 @@ fn collections_are_frames_with_times() {
     collection(folder, "twice.pvd", &[("rest.vtu", 1.0), ("deformed.vtu", 1.0)]);
     assert!(
         refused(&["twice.pvd"])
-            .contains("rest.vtu and deformed.vtu have the same time 1: a frame is one file")
+            .contains("'rest.vtu' and 'deformed.vtu' have the same time 1: a frame is one file")
     );
     collection(folder, "gone.pvd", &[("gone.vtu", 1.0)]);
     assert!(refused(&["gone.pvd"]).ends_with("gone.vtu: not found"));
@@ -146,6 +146,12 @@ fn collections_are_frames_with_times() {
         "again: contains 'notes.txt', which is not a file of an earlier collection 'again.pvd': move it away"
     ));
     assert_eq!(frames(&["again.pvd"]), expected);
+    // Readers refuse larger collections, so the command refuses them before it writes a frame.
+    sscc_io::write_npy(&folder.join("many.npy"), &[10_001, 8, 3], &vec![0.0; 10_001 * 8 * 3]).unwrap();
+    assert!(refused(&["rest.vtu", "--frames=many.npy", "--frames-out=many.pvd"]).ends_with(
+        "many.pvd: a collection has at most 10000 frames, but there are 10001: write fewer, or write a .npy file"
+    ));
+    assert!(!folder.join("many").exists() && !folder.join("many.pvd").exists());
     let output = refused(&["motion.pvd", "--frames-out=x.vtu"]);
     assert_eq!(output, "error: x.vtu: the name of frames must end in .npy or .pvd");
 }

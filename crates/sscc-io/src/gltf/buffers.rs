@@ -64,19 +64,21 @@ impl<'a> Buffers<'a> {
                 Source::File(path)
             }
         };
-        self.sources.insert(index, source);
-        let found = self.all_of(index).len();
+        let found = self.bytes_of(&source).len();
         if buffer.byte_length > found {
             let cause = format!("it declares {} bytes, but has {found}", buffer.byte_length);
             return Err(refused(cause));
         }
+        // A buffer that is too short must fail again when it is needed again.
+        self.sources.insert(index, source);
         Ok(())
     }
 
     /// Returns the bytes of a buffer; empty if it is not loaded.
     pub fn get(&self, index: usize) -> &[u8] {
         let length = self.declared.get(index).map_or(0, |buffer| buffer.byte_length);
-        self.all_of(index).get(..length).unwrap_or_default()
+        let source = self.sources.get(&index);
+        source.and_then(|source| self.bytes_of(source).get(..length)).unwrap_or_default()
     }
 
     /// Returns the total size of the files that were read.
@@ -84,12 +86,12 @@ impl<'a> Buffers<'a> {
         self.files.values().map(|file| file.len() as u64).sum()
     }
 
-    fn all_of(&self, index: usize) -> &[u8] {
-        match self.sources.get(&index) {
-            Some(Source::Chunk) => self.chunk.unwrap_or_default(),
-            Some(Source::Embedded(bytes)) => bytes,
-            Some(Source::File(path)) => self.files.get(path).map(Vec::as_slice).unwrap_or_default(),
-            None => &[],
+    /// Returns all bytes of a source, which may be more than its buffer declares.
+    fn bytes_of<'s>(&'s self, source: &'s Source) -> &'s [u8] {
+        match source {
+            Source::Chunk => self.chunk.unwrap_or_default(),
+            Source::Embedded(bytes) => bytes,
+            Source::File(path) => self.files.get(path).map(Vec::as_slice).unwrap_or_default(),
         }
     }
 }
@@ -171,6 +173,19 @@ mod tests {
             "//x/y",
         ] {
             assert!(beside(uri).is_err(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn a_buffer_that_is_too_short_is_refused_each_time() {
+        let declared: Vec<json::Buffer> =
+            serde_json::from_str(r#"[{"uri":"data:;base64,AAEC/w","byteLength":5},{"byteLength":2}]"#)
+                .unwrap();
+        let mut buffers = Buffers::new(&declared, None, None);
+        for _ in 0..2 {
+            let message = buffers.load(0).unwrap_err().to_string();
+            assert_eq!(message, "buffers[0]: it declares 5 bytes, but has 4");
+            assert!(buffers.get(0).is_empty());
         }
     }
 

@@ -6,8 +6,10 @@
 //! in the coordinates of the mesh. An affine map, such as the transform of a node, does not change which triangles
 //! intersect. A mesh at rest ([`PlacedMesh`]) has world positions instead, for comparisons with other meshes.
 //!
-//! Data that no query needs are not read, so an error in them refuses no file: accessors, buffers, skins and nodes that
-//! the mesh does not use, materials, images, and extensions that a file uses but does not require.
+//! [`read`] does not read data that a model does not need, so an error in them refuses no file: accessors, buffers, skins
+//! and nodes that the mesh does not use, materials, images, and extensions that a file uses but does not require. Meshes at
+//! rest and scenes also need all nodes, their groups the names of materials, and scenes the buffers of all meshes, skins and
+//! animations.
 //!
 //! A scene ([`AnimatedScene`]) has world positions at any time of an animation, with node hierarchy, morph targets and
 //! skins.

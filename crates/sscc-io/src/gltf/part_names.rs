@@ -6,18 +6,18 @@ use std::fmt;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::json::parse_parts;
+use super::json::{or_default, parse_parts};
 use crate::FormatError;
 use crate::named_groups::{DEFAULT, GroupsBy};
 
 /// Names of nodes and materials, and the material of each primitive.
 #[derive(Deserialize)]
 pub(super) struct PartNames {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     materials: Vec<Named>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     meshes: Vec<MaterialsOfMesh>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     nodes: NodeNames,
 }
 
@@ -53,6 +53,7 @@ struct MaterialOfPrimitive {
 }
 
 impl PartNames {
+    /// Parses the names. Only groups need them, so readers of geometry keep an error until groups are asked for.
     pub fn parse(json: &[u8]) -> Result<Self, FormatError> {
         parse_parts(json)
     }

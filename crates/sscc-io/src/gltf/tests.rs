@@ -282,6 +282,18 @@ fn needless_content_is_not_read() {
 
 /// Data that exist only compressed are never read as zeros.
 #[test]
+fn primitives_of_an_unknown_topology_are_refused() {
+    for mode in [7_u32, u32::MAX] {
+        let named = format!(
+            "meshes[0].primitives[0]: a primitive of triangles was expected, this one has the unknown topology {mode}"
+        );
+        let json = JSON.replace(r#""mode":5"#, &format!(r#""mode":{mode}"#));
+        assert_eq!(message(&json), named);
+        assert_eq!(parse_placed_mesh(&glb(&json, &binary()), None).err().unwrap().to_string(), named);
+    }
+}
+
+#[test]
 fn data_that_exist_only_compressed_are_refused() {
     let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;
     let json = JSON.replace(r#""mode":5"#, draco);
@@ -450,4 +462,29 @@ fn groups_are_primitives_nodes_or_materials() {
     let malformed = named.replace(r#""material":1"#, r#""material":"red""#);
     let error = parse_groups(&glb(&malformed, &binary()), None, GroupsBy::Group).unwrap_err();
     assert!(error.to_string().starts_with("JSON: "), "{error}");
+}
+
+/// Only groups need materials and the names of parts.
+#[test]
+fn malformed_materials_refuse_groups_alone() {
+    let with_nodes = JSON.replace(r#""buffers""#, r#""materials":[{}],"nodes":[{"mesh":0}],"buffers""#);
+    for (from, to) in [
+        (r#""materials":[{}]"#, r#""materials":[{"name":5}]"#),
+        (r#""materials":[{}]"#, r#""materials":7"#),
+        (r#""mode":5"#, r#""mode":5,"material":-1"#),
+    ] {
+        let bytes = glb(&with_nodes.replace(from, to), &binary());
+        let scene = parse_scene(&bytes).unwrap();
+        let placed = parse_placed_mesh(&bytes, None).unwrap();
+        assert_eq!((scene.mesh_nodes().len(), placed.to_mesh(0).unwrap().faces().len()), (1, 3));
+        for error in [
+            scene.mesh_nodes()[0].groups(GroupsBy::Material).unwrap_err(),
+            placed.groups(0, GroupsBy::Material).unwrap_err(),
+        ] {
+            assert!(error.to_string().starts_with("JSON: "), "{to}: {error}");
+        }
+    }
+    let null = with_nodes.replace(r#""materials":[{}]"#, r#""materials":null"#);
+    let placed = parse_placed_mesh(&glb(&null, &binary()), None).unwrap();
+    assert_eq!(placed.groups(0, GroupsBy::Material).unwrap().names, ["default"]);
 }

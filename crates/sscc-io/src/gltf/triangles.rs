@@ -49,9 +49,10 @@ impl Topology {
     }
 }
 
-/// Whether a primitive has triangles. Points and lines cannot collide, and players draw no primitive without positions.
+/// Whether a primitive has triangles. Points and lines (modes 0 to 3) cannot collide, and players draw no primitive without
+/// positions. An unknown mode may be one of triangles, so readers must refuse it.
 pub(super) fn has_triangles(primitive: &Primitive) -> bool {
-    Topology::from_mode(primitive.mode).is_ok() && primitive.attributes.position.is_some()
+    !matches!(primitive.mode, Some(0..=3)) && primitive.attributes.position.is_some()
 }
 
 /// Returns the primitives of a mesh that have triangles, with their numbers in the mesh.

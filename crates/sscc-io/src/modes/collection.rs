@@ -8,7 +8,7 @@ use crate::solid::vtk::{elements, is_vtk_name};
 use crate::{FormatError, IoError};
 
 /// Maximum number of files in a collection.
-const MAX_FILES: usize = 10_000;
+pub(crate) const MAX_COLLECTION_FILES: usize = 10_000;
 
 /// A file of a collection.
 pub(crate) struct TimedFile {
@@ -30,7 +30,8 @@ pub(crate) fn read_collection(path: &Path) -> Result<Vec<TimedFile>, IoError> {
     match files.windows(2).find(|two| two[0].time == two[1].time) {
         None => Ok(files),
         Some(two) => {
-            let name = |file: &TimedFile| file.file.file_name().unwrap_or_default().display().to_string();
+            let name =
+                |file: &TimedFile| quoted(&file.file.file_name().unwrap_or_default().to_string_lossy());
             let cause = format!(
                 "{} and {} have the same time {}: a frame is one file; merge its parts, as ParaView's filter Merge Blocks does",
                 name(&two[0]),
@@ -75,8 +76,9 @@ fn parse(bytes: &[u8], folder: &Path) -> Result<Vec<TimedFile>, FormatError> {
                 _ => return Err(element.refused(format!("timestep {} is not a finite number", quoted(text)))),
             },
         };
-        if files.len() == MAX_FILES {
-            return Err(element.refused(format!("the collection has more than {MAX_FILES} files")));
+        if files.len() == MAX_COLLECTION_FILES {
+            let cause = format!("the collection has more than {MAX_COLLECTION_FILES} files");
+            return Err(element.refused(cause));
         }
         files.push(TimedFile { file: folder.join(file), time });
     }
@@ -142,6 +144,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn equal_times_are_an_error_of_one_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.pvd");
+        let sets = "<DataSet timestep='1' file='a&#10;b.vtu'/><DataSet timestep='1' file='c.vtu'/>";
+        std::fs::write(
+            &path,
+            format!("<VTKFile type='Collection'><Collection>{sets}</Collection></VTKFile>"),
+        )
+        .unwrap();
+        let message = read_collection(&path).err().unwrap().to_string();
+        assert!(
+            message.contains(r"x.pvd: 'a\nb.vtu' and 'c.vtu' have the same time 1: a frame is one file")
+                && !message.contains('\n'),
+            "{message}"
+        );
     }
 
     #[test]

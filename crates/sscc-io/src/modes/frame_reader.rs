@@ -11,6 +11,7 @@ use super::folder::positions_like;
 use super::frames::frame_files;
 use super::point_cache::PointCache;
 use super::vtk_frames::VtkFrames;
+use crate::error::shown_name;
 use crate::file::{ending, unsupported};
 use crate::mesh_path::split_mesh_name;
 use crate::npy::Blocks;
@@ -23,7 +24,7 @@ const MAX_KEPT: usize = 1 << 30;
 /// The frames of a mesh: positions of all its vertices in each.
 ///
 /// Frames of a `.npy` file are read when they are needed; a point cache is read as a whole. Meshes of a folder and
-/// grids of VTK take longer to read than to check, so [`FrameReader::check`] keeps their positions, up to 1 GiB.
+/// grids of VTK take longer to read than to check, so [`FrameReader::check`] keeps their positions until they take 1 GiB.
 pub struct FrameReader {
     path: PathBuf,
     mesh: TriMesh,
@@ -76,7 +77,7 @@ impl FrameReader {
             let frames = VtkFrames::open(&file, name.as_deref())?;
             Source::Vtk { kept: vec![None; frames.len()], frames }
         };
-        let name = format!("the mesh ({})", mesh_path.file_name().unwrap_or_default().display());
+        let name = format!("the mesh ({})", shown_name(mesh_path));
         let warnings = match &source {
             Source::Vtk { frames, .. } => frames.warnings()?,
             Source::Folder { files, .. } if is_vtk_name(&files[0]) => {
@@ -112,7 +113,7 @@ impl FrameReader {
         }
     }
 
-    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes and grids, up to 1 GiB.
+    /// As [`FrameReader::read`], to check a frame early. Keeps the positions of meshes and grids until they take 1 GiB.
     ///
     /// # Errors
     /// As [`FrameReader::read`].

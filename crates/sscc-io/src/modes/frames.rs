@@ -6,6 +6,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use super::folder::{mesh_files, positions_like};
+use crate::error::shown_name;
 use crate::solid::vtk::{Displacement, is_vtk_name, read_surface};
 use crate::{IoError, read_mesh_with_warnings};
 
@@ -34,7 +35,7 @@ pub struct Frames {
 pub fn read_frames(folder: &Path) -> Result<Frames, IoError> {
     let paths = frame_files(folder)?;
     let (mesh, warnings) = read_first(&paths[0])?;
-    let first = format!("the first one ({})", paths[0].file_name().unwrap_or_default().display());
+    let first = format!("the first one ({})", shown_name(&paths[0]));
     let mut positions = vec![mesh.rest_positions().to_vec()];
     for path in &paths[1..] {
         positions.push(positions_like(path, &mesh, "frame", &first)?);

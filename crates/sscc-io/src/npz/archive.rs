@@ -15,6 +15,9 @@ const MAX_BYTES: u64 = 4 << 30;
 /// Size of the record at the end of an archive, without its comment.
 const END_RECORD_BYTES: usize = 22;
 
+/// Size of the record before it in an archive of zip64, which has the place of the record of zip64.
+const LOCATOR_BYTES: usize = 20;
+
 /// Returns the bytes of the entries (`NAME.npy`) with accepted names, by name. Other entries are not read.
 pub(super) fn entries(
     bytes: &[u8],
@@ -82,12 +85,25 @@ fn check_ends(bytes: &[u8], archive: &ZipArchive<Cursor<&[u8]>>) -> Result<(), F
     if archive.offset() != 0 {
         return Err(FormatError::new(Place::Byte(0), "bytes precede the archive"));
     }
-    // The largest number means that the archive stores the value elsewhere (zip64).
-    let entries = u16::from_le_bytes([bytes[end + 10], bytes[end + 11]]);
-    if entries != u16::MAX && usize::from(entries) != archive.len() {
+    let entries = entry_count(bytes, end);
+    if entries != archive.len() as u64 {
         let cause =
             format!("the archive has {} names for {entries} entries: is a name repeated?", archive.len());
         return Err(FormatError::new(Place::Byte(end), cause));
     }
     Ok(())
+}
+
+/// Returns the number of entries that an archive states. `end` is the place of the record at its end.
+fn entry_count(bytes: &[u8], end: usize) -> u64 {
+    let stated = u16::from_le_bytes([bytes[end + 10], bytes[end + 11]]);
+    // The largest number of 16 bits means that a record of zip64 states the number, if there is one.
+    let of_zip64 = || {
+        let locator = bytes[..end].last_chunk::<LOCATOR_BYTES>()?.strip_prefix(b"PK\x06\x07")?;
+        let at = u64::from_le_bytes(*locator[4..].first_chunk()?);
+        let record = bytes.get(usize::try_from(at).ok()?..)?.strip_prefix(b"PK\x06\x06")?;
+        record.get(28..)?.first_chunk().map(|count| u64::from_le_bytes(*count))
+    };
+    let of_zip64 = if stated == u16::MAX { of_zip64() } else { None };
+    of_zip64.unwrap_or(u64::from(stated))
 }

@@ -6,7 +6,7 @@
 //! | --- | --- | --- |
 //! | rest positions | `mean`, `mean_`, `vertices`, `v_template`, `rest_positions` | (V, 3) or (3V) |
 //! | modes | `modes`, `shapedirs`, `U`, `basis` | (3V, r), (V, 3, r), (r, V, 3), (V, 3) or (3V) |
-//! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r) or (V, 3, r) |
+//! | modes, first axis first | `components`, `components_` (scikit-learn) | (r, 3V), (r, V, 3), (3V, r), (V, 3, r), (V, 3) or (3V) |
 //! | triangles | `faces`, `f`, `triangles` | (N, 3), integers from 0 |
 //! | one number for each mode | `weights`, `explained_variance`, `explained_variance_`, `eigenvalues` | (r) |
 //!
@@ -95,7 +95,10 @@ pub fn parse_modes(bytes: &[u8], mesh: &TriMesh) -> Result<NamedModes, FormatErr
     }
     let largest = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let tolerance = largest * 2.0_f64.powi(-20);
-    let is_close = |vertex: &usize| (mean[*vertex] - positions[*vertex]).abs().max_element() <= tolerance;
+    // NaN must fail this test, too. The largest entry of a vector would ignore it.
+    let is_close = |vertex: &usize| {
+        (mean[*vertex] - positions[*vertex]).to_array().iter().all(|entry| entry.abs() <= tolerance)
+    };
     match (0..mean.len()).find(|vertex| !is_close(vertex)) {
         Some(vertex) => {
             let [x, y, z] = (mean[vertex] - positions[vertex]).to_array();

@@ -215,6 +215,17 @@ fn modes_of_another_mesh_are_rejected() {
     let fewer = TriMesh::new(vec![DVec3::ZERO; 3], vec![[0, 1, 2]]).unwrap();
     let refused = parse_modes(&stored(&good()), &fewer).unwrap_err().to_string();
     assert!(refused.contains("the modes are for 4 vertices, the mesh has 3"), "{refused}");
+    for axis in 0..3 {
+        let mut mean = mesh.rest_positions().to_vec();
+        mean[2][axis] = f64::NAN;
+        let values: Vec<f64> = mean.iter().flat_map(|p| p.to_array()).collect();
+        let nan = with("mean", to_bytes(&[4, 3], &values).unwrap());
+        let refused = parse_modes(&stored(&nan), &mesh).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("the mean differs from the mesh: vertex 2 (counted from 0)"),
+            "{refused}"
+        );
+    }
     let other_mean = with("mean", numbers(&[3, 3]));
     assert!(
         parse_modes(&stored(&other_mean), &mesh).unwrap_err().to_string().contains("the mean has 3 vertices")
@@ -271,4 +282,30 @@ fn repeated_names_are_rejected() {
         bytes[at..at + 4].copy_from_slice(b"mean");
     }
     assert!(parse_model(&bytes).is_err());
+    // An archive of zip64 states its number of entries elsewhere.
+    assert_eq!(parse_model(&zip64(stored(&good()))), parse_model(&stored(&good())));
+    let message = parse_model(&zip64(bytes)).unwrap_err().to_string();
+    assert!(message.ends_with("the archive has 4 names for 5 entries: is a name repeated?"), "{message}");
+}
+
+/// Returns an archive with the records of zip64 at its end.
+fn zip64(mut archive: Vec<u8>) -> Vec<u8> {
+    let mut end = archive.split_off(archive.len() - 22);
+    let number = |at: usize, size: usize| {
+        let mut bytes = [0; 8];
+        bytes[..size].copy_from_slice(&end[at..at + size]);
+        bytes
+    };
+    let (entries, size, offset) = (number(10, 2), number(12, 4), number(16, 4));
+    let at = archive.len() as u64;
+    archive.extend(b"PK\x06\x06");
+    archive.extend(44_u64.to_le_bytes());
+    archive.extend([45, 0, 45, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    archive.extend([entries, entries, size, offset].concat());
+    archive.extend(b"PK\x06\x07\0\0\0\0");
+    archive.extend(at.to_le_bytes());
+    archive.extend(1_u32.to_le_bytes());
+    end[8..20].fill(0xff);
+    archive.extend(end);
+    archive
 }

@@ -26,9 +26,10 @@ impl Polygons {
         self.triangles.len()
     }
 
-    /// Returns all polygons as fans.
-    pub fn into_fans(self) -> Vec<[u32; 3]> {
-        self.triangles
+    /// Returns all polygons as fans, after checking the indices.
+    pub fn into_fans(self, vertices: usize) -> Result<Vec<[u32; 3]>, FormatError> {
+        self.check(vertices)?;
+        Ok(self.triangles)
     }
 
     /// Adds one polygon (indices from 0).
@@ -45,25 +46,30 @@ impl Polygons {
         if rest.len() > 2 {
             self.larger.push(LargerPolygon { start: self.triangles.len(), triangles: rest.len() - 1 });
         }
-        // An index beyond 32 bits is truncated here, but `largest` keeps it, and `finish` rejects it.
+        // An index beyond 32 bits is truncated here, but `largest` keeps it, and `check` rejects it.
         self.triangles.extend(rest.windows(2).map(|pair| [*first as u32, pair[0] as u32, pair[1] as u32]));
         Ok(())
     }
 
     /// Returns the polygons with the given vertices, after checking the indices.
     pub fn finish(self, positions: Vec<DVec3>) -> Result<Soup, FormatError> {
-        if positions.is_empty() {
+        self.check(positions.len())?;
+        Ok(Soup { larger: self.larger, ..Soup::of_triangles(positions, self.triangles) })
+    }
+
+    /// Returns an error if there are no vertices, or an index names none of them.
+    fn check(&self, vertices: usize) -> Result<(), FormatError> {
+        if vertices == 0 {
             return Err(FormatError::whole("the mesh has no vertices"));
         }
-        match self.largest {
-            Some((index, place)) if index >= positions.len() as u64 => {
+        match &self.largest {
+            Some((index, place)) if *index >= vertices as u64 => {
                 let (index, first) = (index.saturating_add(self.first), self.first);
-                let vertices = positions.len();
                 let cause =
                     format!("the face names vertex {index} (counted from {first}), but there are {vertices}");
-                Err(FormatError::new(place, cause))
+                Err(FormatError::new(place.clone(), cause))
             }
-            _ => Ok(Soup { larger: self.larger, ..Soup::of_triangles(positions, self.triangles) }),
+            _ => Ok(()),
         }
     }
 }
@@ -94,6 +100,9 @@ mod tests {
             polygons.push(&[0, 1, index], Place::Line(7)).unwrap();
             let Err(error) = polygons.finish(vec![DVec3::ZERO; 3]) else { panic!("{index}") };
             assert_eq!(*error.place(), Place::Line(7));
+            let mut polygons = Polygons::new(1);
+            polygons.push(&[0, 1, index], Place::Line(7)).unwrap();
+            assert_eq!(*polygons.into_fans(3).unwrap_err().place(), Place::Line(7));
         }
     }
 

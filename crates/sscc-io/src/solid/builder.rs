@@ -187,7 +187,7 @@ impl Builder {
             return Ok(VolumeOrSurface::Surface { mesh, warnings });
         }
         self.parts.element_material.append(&mut self.cube_material);
-        self.parts.surface = self.faces.into_fans();
+        self.parts.surface = self.faces.into_fans(vertices)?;
         Ok(VolumeOrSurface::Volume(VolumeMesh::new(self.parts)?))
     }
 }
@@ -219,6 +219,21 @@ mod tests {
         let mut builder = with_vertices(4);
         builder.face([0, 1, 4], Place::Line(8)).unwrap();
         assert_eq!(*builder.finish().unwrap_err().place(), Place::Line(8));
+        // Polygons beside the elements of a solid.
+        for index in [4, u64::from(u32::MAX), (1 << 32) + 1, u64::MAX - 1] {
+            let mut builder = with_vertices(4);
+            builder.tet([0, 1, 2, 3], 0, Place::Cell(0)).unwrap();
+            builder.material("a");
+            builder.polygon(&[0, 1, 2, index], Place::Cell(1)).unwrap();
+            let message = builder.finish_any().err().unwrap().to_string();
+            let vertex = index + 1;
+            assert_eq!(
+                message,
+                format!(
+                    "cell 1 (counted from 0): the face names vertex {vertex} (counted from 1), but there are 4"
+                )
+            );
+        }
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! All vertices of the file are kept in its order, even unused ones. Elements keep the file's order within their kind,
 //! and the order of their corners. Readers check the guarantees of [`VolumeMesh`]: numbers, indices, repeated corners,
-//! duplicate elements. They accept inverted, flat or overlapping elements, which [`VolumeMesh::solid`] rejects.
+//! duplicate elements. They accept inverted, flat or overlapping elements. [`VolumeMesh::solid`] rejects flat elements, and
+//! inverted ones unless all tetrahedra are inverted, which it then reverses. It does not detect overlaps.
 //!
 //! Tetrahedra of second order are read from the files of gmsh and VTK alone. Other elements of higher order, prisms and pyramids are
 //! errors: skipping them would leave holes in the body.

@@ -32,10 +32,18 @@ pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
 }
 
 /// Returns the path of the same name with another ending, in capitals if the given one is.
-fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
+pub(crate) fn companion(path: &Path, other: &str) -> PathBuf {
     let capitals =
         path.extension().is_some_and(|e| e.to_string_lossy().bytes().all(|b| b.is_ascii_uppercase()));
-    let companion = path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() });
+    path.with_extension(if capitals { other.to_ascii_uppercase() } else { other.to_owned() })
+}
+
+/// Returns the [`companion`] of a file.
+///
+/// # Errors
+/// When it does not exist.
+fn beside(path: &Path, other: &str) -> Result<PathBuf, IoError> {
+    let companion = companion(path, other);
     // If the given file is missing, its reader reports it.
     if path.exists() && !companion.exists() {
         let cause = format!("the .{other} file of the same name does not exist beside it");

@@ -38,6 +38,12 @@ impl<'a> FramesOut<'a> {
                     "{}: several nodes have a mesh: name one by --node, or for a file at rest as FILE#NODE",
                     self.path.display()
                 );
+                let (frames, most) = (found.frames, VtkFramesWriter::MAX_FRAMES);
+                ensure!(
+                    frames <= most || !is_collection(self.path),
+                    "{}: a collection has at most {most} frames, but there are {frames}: write fewer, or write a .npy file",
+                    self.path.display()
+                );
                 let shape = [found.frames, found.mesh.rest_positions().len(), 3];
                 writer.insert(match is_collection(self.path) {
                     true => Writer::Vtk(VtkFramesWriter::create(self.path)?),

@@ -21,7 +21,7 @@ pub struct MeshNode {
     /// Stored weights of the morph targets.
     pub(super) weights: Vec<f64>,
     pub(super) shape: Arc<Shape>,
-    pub(super) names: Arc<PartNames>,
+    pub(super) names: Arc<Result<PartNames, FormatError>>,
 }
 
 impl MeshNode {
@@ -60,7 +60,8 @@ impl MeshNode {
         self.shape.rank
     }
 
-    /// Faces (N, at least 1): three vertex indices each. Nodes with the same mesh share them.
+    /// Faces (N): three vertex indices each. N is 0 if the mesh has only strips whose triangles have repeated corners. Nodes
+    /// with the same mesh share them.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.shape.faces
     }
@@ -79,11 +80,12 @@ impl MeshNode {
     /// Returns the group of each triangle.
     ///
     /// # Errors
-    /// When there are more than 65,536 groups.
+    /// When a name or the material of a primitive is malformed, or there are more than 65,536 groups.
     pub fn groups(&self, by: GroupsBy) -> Result<NamedGroups, FormatError> {
+        let names = (*self.names).as_ref().map_err(Clone::clone)?;
         let mut groups = GroupCollector::default();
         for &(primitive, end) in &self.shape.primitives {
-            groups.extend_to(end as usize, &self.names.group(by, Some(self.node), self.mesh, primitive))?;
+            groups.extend_to(end as usize, &names.group(by, Some(self.node), self.mesh, primitive))?;
         }
         Ok(groups.finish())
     }

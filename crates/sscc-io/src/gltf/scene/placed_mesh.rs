@@ -37,7 +37,7 @@ pub struct PlacedMesh {
     skins: BTreeMap<usize, Skin>,
     /// World transforms of all nodes.
     world: Vec<DMat4>,
-    names: PartNames,
+    names: Result<PartNames, FormatError>,
     notes: Vec<String>,
 }
 
@@ -126,7 +126,7 @@ fn parse_in(
     let shown = shown.into_iter().map(|node| (node, skin_of(&node))).collect();
     // These nodes take most of the memory for a file of empty nodes.
     drop(placed);
-    let (world, names) = (nodes.world_transforms(&[]), PartNames::parse(chunks.json)?);
+    let (world, names) = (nodes.world_transforms(&[]), PartNames::parse(chunks.json));
     Ok(PlacedMesh { mesh: index, shape, nodes: shown, skins, world, names, notes })
 }
 
@@ -162,7 +162,8 @@ impl PlacedMesh {
         self.shape.influences.as_ref().map_or(0.0, |influences| influences.largest_sum_error)
     }
 
-    /// Faces (N, at least 1): three vertex indices each, in file order over all primitives of triangles.
+    /// Faces (N): three vertex indices each, in file order over all primitives of triangles. N is 0 if the mesh has only
+    /// strips whose triangles have repeated corners.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.shape.faces
     }
@@ -223,11 +224,12 @@ impl PlacedMesh {
     /// Returns the group of each triangle, at a place.
     ///
     /// # Errors
-    /// When there are more than 65,536 groups.
+    /// When a name or the material of a primitive is malformed, or there are more than 65,536 groups.
     pub fn groups(&self, place: usize, by: GroupsBy) -> Result<NamedGroups, FormatError> {
+        let names = self.names.as_ref().map_err(Clone::clone)?;
         let mut groups = GroupCollector::default();
         for &(primitive, end) in &self.shape.primitives {
-            let name = self.names.group(by, self.node(place), self.mesh, primitive);
+            let name = names.group(by, self.node(place), self.mesh, primitive);
             groups.extend_to(end as usize, &name)?;
         }
         Ok(groups.finish())

@@ -55,7 +55,7 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let refused = |cause| FormatError::part("nodes", cause);
     accessors.allowance.take(scene.nodes.len() as u64, NODE_SIZE).map_err(refused)?;
     let nodes = Nodes::new(&scene.nodes)?;
-    let names = Arc::new(PartNames::parse(chunks.json)?);
+    let names = Arc::new(PartNames::parse(chunks.json));
     let (mesh_nodes, skins) = mesh_nodes(&mut accessors, &root, &scene, &nodes, &names)?;
     let targets = morph_targets_of_nodes(&root, &scene.nodes);
     let mut reader = AnimationReader {
@@ -99,7 +99,7 @@ fn mesh_nodes(
     root: &Root,
     scene: &SceneRoot,
     nodes: &Nodes,
-    names: &Arc<PartNames>,
+    names: &Arc<Result<PartNames, FormatError>>,
 ) -> Result<(Vec<MeshNode>, BTreeMap<usize, Skin>), FormatError> {
     let mut skins = BTreeMap::new();
     let has_triangles: Vec<bool> = root.meshes.iter().map(has_triangles).collect();

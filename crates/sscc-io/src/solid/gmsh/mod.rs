@@ -76,6 +76,15 @@ pub fn parse_any(bytes: &[u8]) -> Result<VolumeOrSurface, FormatError> {
                 elements = true;
                 elements::read(&mut numbers, version, nodes, &groups, &mut builder)?;
             }
+            ("PhysicalNames" | "Entities", _)
+                if elements && (name == "PhysicalNames" || version == Version::V4) =>
+            {
+                let cause = format!(
+                    "{} comes after $Elements, which need it for their materials: move it before them",
+                    quoted(section)
+                );
+                return refused(cause);
+            }
             ("PhysicalNames", _) => groups.read_names(&mut numbers.words)?,
             ("Entities", _) if version == Version::V4 => groups.read_entities(&mut numbers)?,
             _ if numbers.words.skip_past_line(&format!("$End{name}")) => continue,

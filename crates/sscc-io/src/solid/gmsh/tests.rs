@@ -177,6 +177,18 @@ fn errors_name_the_line() {
     assert!(message(&mixed).starts_with("1 of 2 tetrahedra are of second order"), "{}", message(&mixed));
     assert_eq!(v2("$Elements", "$Other"), "the file ends before '$EndOther'");
     assert_eq!(v2("$EndElements\n", "$EndElements\n$Nodes\n"), "line 24: the section '$Nodes' is repeated");
+    for (text, section, line) in [(V2, "PhysicalNames", 19), (V4, "PhysicalNames", 37), (V4, "Entities", 34)]
+    {
+        let [start, end] = [format!("${section}\n"), format!("$End{section}\n")];
+        let (before, rest) = text.split_once(&start).unwrap();
+        let (content, after) = rest.split_once(&end).unwrap();
+        let cause = format!(
+            "line {line}: '${section}' comes after $Elements, which need it for their materials: move it before them"
+        );
+        assert_eq!(message(&format!("{before}{after}{start}{content}{end}")), cause);
+    }
+    // The reader skips the entities of version 2.
+    check(&parse(format!("{V2}$Entities\nx\n$EndEntities\n").as_bytes()).unwrap());
     assert_eq!(v2("$Elements\n4", "$Elements\n5"), "line 23: '$EndElements' is not an integer");
     assert_eq!(v4("2 5 7 40", "2 6 7 40"), "line 28: the section has 5 nodes, but declares 6");
     assert_eq!(v4("4 4 1 4", "4 5 1 4"), "line 39: the section has 4 elements, but declares 5");

@@ -37,7 +37,8 @@ pub fn parse(bytes: &[u8]) -> Result<VolumeMesh, FormatError> {
 ///
 /// # Errors
 /// As [`parse`], except for `*INCLUDE`; also when an included file cannot be read, is not in the folder of the file or
-/// below, is included twice, or there are too many. Errors in an included file name both files.
+/// below, is included twice, or there are too many. Errors in the content of an included file, and for one that does not
+/// exist, name both files. Other errors of reading an included file (it is empty or a folder) name that file alone.
 pub fn read(path: &Path) -> Result<VolumeMesh, IoError> {
     let mut reader = Reader { main: path, seen: Vec::new(), parser: Parser::default() };
     reader.feed(&read_whole(path)?, None, 0)?;

@@ -27,6 +27,8 @@ struct Parser<'a, 'd> {
     displacement: &'d Displacement,
     points: Option<Vec<DVec3>>,
     cells: Cells,
+    /// Keywords of the points and lists read so far.
+    parts: Vec<String>,
     /// Whether the types of an unstructured grid have been read.
     has_types: bool,
     section: (Section, u64),
@@ -50,6 +52,7 @@ pub(super) fn parse(bytes: &[u8], displacement: &Displacement) -> Result<Grid, F
         displacement,
         points: None,
         cells: Cells::default(),
+        parts: Vec::new(),
         has_types: false,
         section: (Section::Grid, 1),
         vectors: Vec::new(),
@@ -81,12 +84,16 @@ impl Parser<'_, '_> {
         while let Some(keyword) = self.numbers.words.next_word()? {
             let keyword = keyword.to_ascii_uppercase();
             if let (false, Some((_, kind))) = (is_grid, LISTS.iter().find(|(name, _)| *name == keyword)) {
-                self.list(Some(*kind))?;
+                self.first_of(&keyword)?;
+                self.list(&keyword, Some(*kind))?;
                 continue;
             }
             match keyword.as_str() {
                 "POINTS" => self.points()?,
-                "CELLS" if is_grid => self.list(None)?,
+                "CELLS" if is_grid => {
+                    self.first_of(&keyword)?;
+                    self.list(&keyword, None)?;
+                }
                 "CELL_TYPES" if is_grid => self.types()?,
                 "POINT_DATA" => self.section = (Section::Points, self.size("the number of points")?),
                 "CELL_DATA" => self.section = (Section::Cells, self.size("the number of cells")?),
@@ -96,11 +103,22 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
+    /// Refuses a second part of this name: which of the two holds is unknown.
+    fn first_of(&mut self, keyword: &str) -> Result<(), FormatError> {
+        if self.parts.iter().any(|part| part == keyword) {
+            let cause = format!("there is a second {keyword}: save each grid as a file");
+            return self.numbers.words.refused(cause);
+        }
+        self.parts.push(keyword.to_owned());
+        Ok(())
+    }
+
     fn size(&mut self, what: &str) -> Result<u64, FormatError> {
         Ok(self.numbers.words.count(what)? as u64)
     }
 
     fn points(&mut self) -> Result<(), FormatError> {
+        self.first_of("POINTS")?;
         let count = self.size("the number of points")?;
         let kind = self.numbers.kind()?;
         let coordinates = self.numbers.floats(count.saturating_mul(3), kind, "a coordinate")?;
@@ -109,13 +127,13 @@ impl Parser<'_, '_> {
     }
 
     /// Reads a list of cells, all of one type or of types that follow.
-    fn list(&mut self, kind: Option<u64>) -> Result<(), FormatError> {
+    fn list(&mut self, keyword: &str, kind: Option<u64>) -> Result<(), FormatError> {
         let (count, size) = (self.size("the number of cells")?, self.size("the size of the cells")?);
         let is_new = self.numbers.words.peek().ok().flatten() == Some("OFFSETS");
         let before = self.cells.ends.len();
         match is_new {
             true => self.offsets_and_connectivity(count, size)?,
-            false => self.counted_cells(count, size)?,
+            false => self.counted_cells(keyword, count, size)?,
         }
         if let Some(kind) = kind {
             self.cells.types.extend((before..self.cells.ends.len()).map(|_| kind));
@@ -128,6 +146,19 @@ impl Parser<'_, '_> {
         self.numbers.words.word("OFFSETS")?;
         let kind = self.numbers.kind()?;
         let offsets = self.numbers.integers(count, kind, "an offset")?;
+        if let Some(first) = offsets.first().filter(|first| **first != 0) {
+            let cause = format!(
+                "the first offset is {first}, but offsets begin with 0: correct it, or save the grid again"
+            );
+            return self.numbers.words.refused(cause);
+        }
+        let end = offsets.last().copied().unwrap_or_default();
+        if end != size {
+            let cause = format!(
+                "the last offset is {end}, but the list has {size} corners: correct its counts, or save the grid again"
+            );
+            return self.numbers.words.refused(cause);
+        }
         let keyword = self.numbers.words.word("CONNECTIVITY")?;
         if keyword != "CONNECTIVITY" {
             return self.numbers.words.refused(format!("CONNECTIVITY was expected, not {}", quoted(keyword)));
@@ -141,7 +172,7 @@ impl Parser<'_, '_> {
     }
 
     /// Reads the list of earlier versions: for each cell its number of corners, and the corners.
-    fn counted_cells(&mut self, count: u64, size: u64) -> Result<(), FormatError> {
+    fn counted_cells(&mut self, keyword: &str, count: u64, size: u64) -> Result<(), FormatError> {
         let numbers = self.numbers.ints(size, "a corner")?;
         let mut rest = &numbers[..];
         for cell in 0..count {
@@ -156,10 +187,19 @@ impl Parser<'_, '_> {
             self.cells.ends.push(self.cells.connectivity.len() as u64);
             rest = after;
         }
+        if !rest.is_empty() {
+            let used = numbers.len() - rest.len();
+            let cause = format!(
+                "{keyword} has {size} numbers, but its {count} cells take {used} of them: correct its counts, or save the \
+                 grid again"
+            );
+            return self.numbers.words.refused(cause);
+        }
         Ok(())
     }
 
     fn types(&mut self) -> Result<(), FormatError> {
+        self.first_of("CELL_TYPES")?;
         let count = self.size("the number of types")?;
         self.cells.types = self.numbers.ints(count, "the type of a cell")?;
         self.has_types = true;

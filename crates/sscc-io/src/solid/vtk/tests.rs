@@ -193,6 +193,10 @@ fn bad_input_is_refused() {
             vtu(TET, ["0 1 2 4", "4", "10"], ""),
             "the element names vertex 4 (counted from 0), but there are 4",
         ),
+        (
+            vtu(TET, ["0 1 2 3 0 2 4294967297", "4 7", "10 7"], ""),
+            "cell 1 (counted from 0): the face names vertex 4294967297 (counted from 0), but there are 4",
+        ),
         (vtu(TET, ["0 1 2 2", "4", "10"], ""), "the element names vertex 2 (counted from 0) twice"),
         (vtu(TET, ["0 1 2 -3", "4", "10"], ""), "array 'connectivity': '-3' is no number of its type"),
         (vtu(TET, ["0 1 2 3", "5", "10"], ""), "array 'connectivity': it has 4 numbers, 5 are needed"),
@@ -314,6 +318,43 @@ fn bad_legacy_files_are_refused() {
     let text = format!("{whole}{data}{}", "1 ".repeat(36));
     let grid = parse_grid(text.as_bytes(), &Displacement::ByName).unwrap();
     assert_eq!(grid.moved().points[3], DVec3::new(0.0, 0.0, 3.0));
+}
+
+#[test]
+fn surplus_numbers_and_repeated_parts_of_legacy_files_are_refused() {
+    let head = "# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET ";
+    let points = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    let grid = format!("{head}UNSTRUCTURED_GRID\n{points}");
+    let lists = "OFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n";
+    let types = "CELL_TYPES 1\n10\n";
+    let whole = format!("{grid}CELLS 2 4\n{lists}{types}");
+    assert_eq!(parse(whole.as_bytes()).unwrap().tets(), [[0, 1, 2, 3]]);
+    let polygons = "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n";
+    let surface = format!("{head}POLYDATA\n{points}{polygons}");
+    assert!(parse_any(surface.as_bytes()).is_ok());
+    for (text, named) in [
+        (
+            format!("{grid}CELLS 1 10\n4 0 1 2 3 4 1 2 3 4\n{types}"),
+            "line 8: CELLS has 10 numbers, but its 1 cells take 5 of them: correct its counts, or save the grid again",
+        ),
+        (
+            whole.replace("\n0 4\n", "\n1 4\n"),
+            "line 9: the first offset is 1, but offsets begin with 0: correct it, or save the grid again",
+        ),
+        (
+            surface.replace("\n0 3\n", "\n0 2\n"),
+            "line 9: the last offset is 2, but the list has 3 corners: correct its counts, or save the grid again",
+        ),
+        (format!("{whole}{points}"), "line 14: there is a second POINTS: save each grid as a file"),
+        (format!("{whole}{types}"), "line 14: there is a second CELL_TYPES: save each grid as a file"),
+        (
+            whole.replace(types, &format!("CELLS 2 4\n{lists}CELL_TYPES 2\n10 10\n")),
+            "line 12: there is a second CELLS: save each grid as a file",
+        ),
+        (format!("{surface}{polygons}"), "line 12: there is a second POLYGONS: save each grid as a file"),
+    ] {
+        assert_eq!(refused(&text), named);
+    }
 }
 
 const LEGACY: &str = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
