@@ -94,7 +94,10 @@ pub fn run(random: &mut Random, tally: &mut Tally, share: f64) {
         };
         let around = if random.one_in(2) { box_a.union(&box_b) } else { box_a };
         let mut found = Vec::new();
-        a.colliding(b, around, &mut found).unwrap();
+        if let Err(error) = a.colliding(b, around, &mut found) {
+            tally.wrong(|| format!("{}: {error}", x.model.name));
+            continue;
+        }
         let exact = pairs_between(&triangles(&x, &q[0], &places[0]), &triangles(y, &q[1], &places[1]));
         tally.compare(&found, &exact, || {
             format!("{} and {}: q={q:?} at {places:?}", x.model.name, y.model.name)
@@ -124,7 +127,10 @@ fn swept(
     );
     let (Ok(box_a), Ok(box_b)) = ends else { return };
     let mut impacts: Vec<Impact> = Vec::new();
-    moving.impacts(&mut resting, box_a.union(&box_b), &mut impacts).unwrap();
+    if let Err(error) = moving.impacts(&mut resting, box_a.union(&box_b), &mut impacts) {
+        tally.wrong(|| format!("{}: {error}", x.model.name));
+        return;
+    }
     tally.answer();
     tally.reach("swept");
     let from = triangles(x, &q[0], &places[0]);

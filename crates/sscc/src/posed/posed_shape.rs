@@ -419,7 +419,7 @@ mod tests {
     #[test]
     fn infinite_boxes_change_no_answer() {
         let state = &mut 6;
-        let models = [model(60, state), model(60, state)];
+        let models = [sized(1.0, 20, state), sized(1.0, 20, state)];
         let [mut x, mut y] = models.each_ref().map(|model| PosedShape::without_certificates(model).unwrap());
         let infinite = Aabb { lower: DVec3::NEG_INFINITY, upper: DVec3::INFINITY };
         let nan = Aabb { lower: DVec3::NAN, upper: DVec3::NAN };

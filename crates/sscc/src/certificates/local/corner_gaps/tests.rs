@@ -3,6 +3,7 @@
 use sscc_testing::{Dyadic, Numbers};
 
 use super::*;
+use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
 fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
@@ -43,4 +44,24 @@ fn gaps_differ_from_corner_to_corner() {
         let expected = along[ij % 3] + along[ij / 3];
         assert!(gap <= expected && gap > expected - 1e-12, "{gap} {expected}");
     }
+}
+
+/// All leaves of a cylinder of long thin triangles are near each other.
+#[test]
+fn meshes_with_too_many_near_leaves_have_no_tables() {
+    let angle = |i: usize, quads: usize| std::f64::consts::TAU * i as f64 / quads as f64;
+    let is_bounded = |quads: usize, length: f64| {
+        let at =
+            |i: usize| [0.0, length].map(|z| DVec3::new(angle(i, quads).cos(), angle(i, quads).sin(), z));
+        let positions: Vec<DVec3> = (0..=quads).flat_map(at).collect();
+        let corners = |i: u32| [[i, i + 1, i + 2], [i + 1, i + 3, i + 2]];
+        let faces = (0..quads as u32).flat_map(|i| corners(2 * i)).collect();
+        let modes = Modes::from_matrix(positions.len(), 1, |row, _| (row as f64).sin()).unwrap();
+        let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        CornerGaps::new(&hierarchy, &filter, model.mesh().rest_positions()).is_some()
+    };
+    assert!(is_bounded(3000, 0.01) && is_bounded(200, 10.0));
+    assert!(!is_bounded(3000, 10.0));
 }
