@@ -701,7 +701,7 @@ def _scene_contents(
     path: _Path,
 ) -> tuple[list[tuple[int, str | None, str | None, int, int]], list[tuple[str | None, float]]]: ...
 def _scene_positions(
-    path: _Path, node: str, animation: str | None, times: ArrayLike | None, fps: float | None
+    path: _Path, node: str | None, animation: str | None, times: ArrayLike | None, fps: float | None
 ) -> _F64: ...
 def _check_scene(
     path: _Path,

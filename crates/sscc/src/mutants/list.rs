@@ -564,8 +564,6 @@ mutants! {
     NearMarginHalved: CaughtBy("lib posed::swept_shape::tests::motions_and_margins_change_within_one_frame");
     /// The height of a plane in the frame of a search has no rounding error.
     HalfSpaceFrameExact: Covered("the error of positions in the world is larger");
-    /// Rotations may have parallel columns.
-    ParallelColumnsTurn: CaughtBy("lib query::smallest_stretch::tests::rotations_are_orthogonal");
     /// Weights before a time of impact are rounded to nearest.
     WeightBeforeToNearest: CaughtBy("lib query::sweep::weight_line::tests::weights_are_rounded_towards_the_start");
     /// The share of an interval of weights before a time of impact is rounded to nearest.

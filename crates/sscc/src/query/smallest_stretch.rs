@@ -134,7 +134,7 @@ pub(super) fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
     let y = (y - x * x.dot(y)).try_normalize()?;
     // If the map is nearly singular, two columns may be parallel after the iteration.
     let cosine = x.dot(y).abs();
-    if cosine.is_nan() || with_mutant!(cosine > ORTHOGONAL, ParallelColumnsTurn, false) {
+    if cosine.is_nan() || cosine > ORTHOGONAL {
         return None;
     }
     let z = x.cross(y);

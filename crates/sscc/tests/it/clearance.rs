@@ -1,6 +1,6 @@
 //! Clearance: near pairs and the nearest pair are compared with all pairs of triangles.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 use sscc::{
     CancelToken, Certificates, CertifyOptions, Clearance, ContactFilter, Detector, Error, Modes, NearPair,
     Neighbours, Query, ReducedModel, TriMesh, distance_triangle_triangle,
@@ -194,19 +194,27 @@ fn the_nearest_pair_is_that_of_all_triangles() {
     assert_eq!(Detector::new(&mesh).nearest(&positions, 1).unwrap(), None);
 }
 
-/// Points, as degenerate triangles, whose distances from one point differ by rounding. The distance of two boxes is rounded, too.
+/// The triangles have an edge along an axis and lie around one point, so that their distances from it, like those of their boxes,
+/// differ by rounding alone.
 #[test]
 fn distances_that_differ_by_rounding_are_told_apart() {
     let random = &mut Numbers(19);
     let mut equal = 0;
     for case in 0..400 {
         let (middle, radius) = (vector(random), random.power(0.0, 2.0));
-        let x: Vec<DVec3> =
-            (0..24).map(|_| middle + vector(random).normalize_or(DVec3::X) * radius).collect();
-        let around = TriMesh::new(x.clone(), (0..24).map(|v| [v; 3]).collect()).unwrap();
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z][case % 3];
+        let mut x = Vec::new();
+        for _ in 0..24 {
+            let outwards = (vector(random) * (DVec3::ONE - axis)).normalize_or(axis.zxy());
+            let nearest = middle + outwards * radius;
+            let along = axis * radius * (1.0 + random.signed().abs());
+            x.extend([nearest - along, nearest + along, nearest + outwards * radius]);
+        }
+        let faces: Vec<[u32; 3]> = (0..24).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let around = TriMesh::new(x.clone(), faces).unwrap();
         let alone = TriMesh::new(vec![middle], vec![[0; 3]]).unwrap();
         let distances: Vec<f64> =
-            x.iter().map(|x| distance_triangle_triangle(&[middle; 3], &[*x; 3])).collect();
+            (0..24).map(|t| distance_triangle_triangle(&[middle; 3], &corners(&around, &x, t))).collect();
         let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
         let [mut alone, mut around] = [alone, around].map(|mesh| Detector::new(&mesh));
         let found = alone.nearest_against(&[middle], &mut around, &x).unwrap().unwrap();
