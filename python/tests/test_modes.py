@@ -111,6 +111,7 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
         (lambda: sscc.modes.linear(tmp_path / "a.obj", 3), FileNotFoundError, r"a\.obj: not found$"),
         (lambda: sscc.modes.linear((vertices, faces), 0), ValueError, "^rank is 0: a whole number from 1 to 500"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[96]), ValueError, "^source: fix: there is no vertex 96"),
+        (lambda: sscc.modes.linear((vertices, faces), 3, fix=[]), ValueError, "fix: it selects no vertex: name vertices"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[[1]]), ValueError, r"^fix has shape \[1, 1\]"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix=[-1]), ValueError, r"^fix\[0\] is -1"),
         (lambda: sscc.modes.linear((vertices, faces), 3, fix_box=[[0, 0, 0]]), ValueError, one_corner),

@@ -10,9 +10,9 @@ use crate::integration_point::{IntegrationPoint, jacobian};
 /// Corners of the edge of each middle node.
 pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
-/// Minimum of six times the volume of a tetrahedron over its longest edge cubed. Below it, the stiffness is rounding. Both
-/// orders have one threshold, so that a valid solid stays valid in second order.
-pub(crate) const MIN_RELATIVE_VOLUME: f64 = 1e-10;
+/// Jacobian determinant at a node or an integration point, over the cube of the largest distance of a node from the
+/// first one. If it is at most this, the element is flat or inverted there.
+const MIN_JACOBIAN: f64 = 1e-9;
 
 /// Orbits of four integration points in barycentric coordinates, with the weight of each point. With [`EDGE_ORBIT`], the 14
 /// points are exact for polynomials of degree 5 (Walkington 2000); where edges are straight, the mass has degree 4, energies
@@ -49,9 +49,7 @@ pub(crate) fn points(nodes: &[DVec3; 10]) -> Vec<IntegrationPoint> {
         .collect()
 }
 
-/// Whether an element is flat or inverted at a node or an integration point: the determinant of the Jacobian, which is six times
-/// the volume where edges are straight, is at most [`MIN_RELATIVE_VOLUME`] times the cube of the largest distance of a node
-/// from the first one.
+/// Whether an element is flat or inverted at a node or an integration point.
 pub(crate) fn is_inverted(nodes: &[DVec3; 10]) -> bool {
     let size = nodes.iter().map(|p| p.distance(nodes[0])).fold(0.0, f64::max);
     let corners = (0..4).map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k))));
@@ -59,7 +57,7 @@ pub(crate) fn is_inverted(nodes: &[DVec3; 10]) -> bool {
     corners.chain(middles).chain(rule().map(|(at, _)| at)).any(|at| {
         let determinant = jacobian(nodes, &gradients(at)).determinant();
         // NaN (an overflow) is inverted, too.
-        determinant.is_nan() || determinant <= MIN_RELATIVE_VOLUME * size * size * size
+        determinant.is_nan() || determinant <= MIN_JACOBIAN * size * size * size
     })
 }
 

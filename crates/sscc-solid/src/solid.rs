@@ -6,8 +6,11 @@ use glam::DVec3;
 use sscc::limits;
 
 use crate::element::{Element, cube_is_inverted};
-use crate::second_order::{self, EDGES, MIN_RELATIVE_VOLUME};
+use crate::second_order::{self, EDGES};
 use crate::{Material, SolidError};
+
+/// Minimum of six times the volume of a tetrahedron over its longest edge cubed. Below it, the stiffness is rounding.
+const MIN_RELATIVE_VOLUME: f64 = 1e-10;
 
 /// Elastic solid: tetrahedra (all of first or all of second order) and hexahedra ("cubes") of positive volume, each with a
 /// material. Every vertex belongs to an element.

@@ -5,8 +5,8 @@
 //! - The command, the page and benches: the hierarchy, defaults and checks of options, the shares of a shape that each kind of
 //!   certificate proves ([`ProvenShares`]), where and how deep triangles intersect ([`contact_curves`]).
 //! - Dynamics: queries between shapes in the world ([`PosedShape`], [`SweptShape`]).
-//! - Several crates: AABBs, areas, disjoint sets, pseudo-random numbers, numbers in messages, vertices at equal positions, and exact tests of
-//!   simplices that share vertices or move.
+//! - Several crates: AABBs, areas, disjoint sets, pseudo-random numbers, numbers in messages, vertices at equal positions, and exact
+//!   tests of simplices that share vertices or move.
 //!
 //! These items change more often than those at the root.
 

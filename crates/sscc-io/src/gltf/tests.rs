@@ -280,7 +280,6 @@ fn needless_content_is_not_read() {
     assert_eq!(parse(&glb(&two, &binary()), None).unwrap(), whole);
 }
 
-/// Data that exist only compressed are never read as zeros.
 #[test]
 fn primitives_of_an_unknown_topology_are_refused() {
     for mode in [7_u32, u32::MAX] {
@@ -293,6 +292,7 @@ fn primitives_of_an_unknown_topology_are_refused() {
     }
 }
 
+/// Data that exist only compressed are never read as zeros.
 #[test]
 fn data_that_exist_only_compressed_are_refused() {
     let draco = r#""mode":5,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}"#;

@@ -404,6 +404,8 @@ mutants! {
     WeldsStayTogether: CaughtBy("it clearance::a_component_whose_welded_vertices_part_is_open");
     /// One further ring does not count.
     RingsOneMore: CaughtBy("it clearance::near_pairs_are_those_of_all_triangles");
+    /// An answer that the maximum number of pairs cut off is no error.
+    IncompleteAnswersWithoutError: CaughtBy("lib detect::detector::detector::tests::more_pairs_than_the_maximum_are_an_error");
     /// The first pair of triangles is the nearest one.
     NearestTakenFirst: CaughtBy("it clearance::the_nearest_pair_is_that_of_all_triangles");
     /// Distances of boxes are exact where they are compared with the smallest distance of triangles.
@@ -550,7 +552,7 @@ mutants! {
     PosedMarginForgotten: CaughtBy("lib posed::swept_shape::tests::impacts_are_those_of_all_triangles");
     /// AABBs from coarse positions in the world are not widened by a margin.
     PosedCoarseWithMargin: Covered("the error of coarse positions contains the margin");
-    /// Positions of a posed shape in axes of the model are exact where coarse positions are computed.
+    /// Positions of a posed shape in axes of the model are exact.
     PosedOwnRoundingForgotten: Covered("the rounding bound in the world contains it");
     /// A shape whose q stays the same stays at its place.
     PlacedByCoordinatesAlone: CaughtBy("lib posed::posed_shape::tests::each_shape_has_its_own_error");

@@ -74,9 +74,11 @@ impl<const E: usize> PosedMotion<E> {
         Ok((1..with_mutant!(E, SweptWholeAtStart, 1)).fold(whole(0), |all, end| all.union(&whole(end))))
     }
 
-    /// Returns the rounding bound of positions in axes of the model.
+    /// Returns the rounding bound of positions in axes of the model. Answers would be right without it: the reach in the world is
+    /// at least the own one times the largest sum of magnitudes of a row of the rotation, and rounding bounds are four times the
+    /// error, so that the bound in the world contains the error of own positions.
     fn own_rounding(&self) -> f64 {
-        rounding_bound(self.own_reach, self.q[0].len())
+        with_mutant!(rounding_bound(self.own_reach, self.q[0].len()), PosedOwnRoundingForgotten, 0.0)
     }
 
     /// Returns the length by which AABBs are widened in axes of the model, and again in the world, in addition to rounding.
@@ -114,10 +116,7 @@ impl<const E: usize> VertexMotion<E> for PosedMotion<E> {
     #[inline]
     fn in_world(&self) -> Option<InWorld<E>> {
         let maps = self.pose.map(|pose| (pose.rotation, pose.translation));
-        // The reach in the world is at least the own one times the largest sum of magnitudes of a row of the rotation, and the
-        // rounding bound is four times the error, so that the bound in the world contains the error of own positions, too.
-        let own_rounding = with_mutant!(self.own_rounding(), PosedOwnRoundingForgotten, 0.0);
-        Some(InWorld { maps, own_rounding })
+        Some(InWorld { maps, own_rounding: self.own_rounding() })
     }
 
     #[inline]

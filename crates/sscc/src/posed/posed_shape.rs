@@ -16,7 +16,6 @@ use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
-use crate::query::check_limit;
 use crate::{Certificates, ContactFilter, Detector, Error, Pair, ReducedModel};
 
 /// A shape at some q and pose in the world, to be tested against others. Colliding pairs are exact for the f64
@@ -119,7 +118,7 @@ impl PosedShape {
         ];
         // The contexts have no token that cancels.
         let _ = Search::between(sides, None, state, hits, Detector::MAX_PAIRS);
-        check_limit(usize::MAX, hits.0.is_complete())?;
+        Detector::check_limit(usize::MAX, hits.0.is_complete())?;
         found.extend_from_slice(&hits.0.list);
         found[first..].sort_unstable();
         Ok(())
@@ -427,15 +426,17 @@ mod tests {
         let mut found = 0;
         for _ in 0..8 {
             x.place(&[random(state), random(state)], &Pose::default()).unwrap();
-            let [mut expected, mut turned] = [Vec::new(), Vec::new()];
-            x.colliding(&mut y, Aabb::EMPTY, &mut expected).unwrap();
+            let all = (0..20).flat_map(|i| (0..20).map(move |j| (i, j)));
+            let expected: Vec<Pair> =
+                all.filter(|(i, j)| intersect_triangle_triangle(&x.corners(*i), &y.corners(*j))).collect();
             for around in [infinite, nan, half] {
-                let mut pairs = Vec::new();
+                let [mut pairs, mut turned] = [Vec::new(), Vec::new()];
                 x.colliding(&mut y, around, &mut pairs).unwrap();
                 assert_eq!(pairs, expected, "{around:?}");
-                turned.clear();
                 y.colliding(&mut x, around, &mut turned).unwrap();
-                assert_eq!(turned.len(), expected.len(), "{around:?}");
+                turned.iter_mut().for_each(|(i, j)| (*i, *j) = (*j, *i));
+                turned.sort_unstable();
+                assert_eq!(turned, expected, "{around:?}");
             }
             found += expected.len();
         }

@@ -13,7 +13,6 @@ use crate::detect::narrow_phase::{NearHits, SweptHits};
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
 use crate::geometry::Aabb;
-use crate::query::check_limit;
 use crate::{Detector, Error, Impact, Pair, ReducedModel};
 
 /// A shape whose vertices move on straight lines between two configurations in the world, to be tested against others. At both
@@ -99,7 +98,7 @@ impl SweptShape {
         ];
         // The contexts have no token that cancels.
         let _ = Search::between(sides, None, &mut self.state, &mut self.hits, Detector::MAX_PAIRS);
-        check_limit(usize::MAX, self.hits.0.is_complete())?;
+        Detector::check_limit(usize::MAX, self.hits.0.is_complete())?;
         found.extend_from_slice(&self.hits.0.list);
         found[first..].sort_unstable_by_key(|impact| impact.pair);
         Ok(())

@@ -1,7 +1,7 @@
 //! Continuous queries: which pairs of triangles collide between two configurations, and when (paper, section 7).
 
 use super::configuration_search::SweptSearch;
-use super::query::{Query, check_limit};
+use super::query::Query;
 use crate::detect::answer::Statistics;
 use crate::{Detector, Error, Impact};
 
@@ -66,7 +66,7 @@ impl Query {
         let swept = self.swept.get_or_insert_with(|| Box::new(SweptSearch::new(&self.context)));
         let most = limit.min(Detector::MAX_PAIRS);
         swept.find(&self.context, [t0, t1], self.norm, most, &mut self.statistics)?;
-        check_limit(limit, self.statistics.complete)?;
+        Detector::check_limit(limit, self.statistics.complete)?;
         let impacts = &mut swept.narrow.0.list;
         impacts.sort_unstable_by_key(|impact| impact.pair);
         self.discrete.narrow.0.list.extend(impacts.iter().map(|impact| impact.pair));

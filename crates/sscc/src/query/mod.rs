@@ -41,7 +41,6 @@ pub use kinetic::KineticQuery;
 pub use method::Method;
 pub use proven_shares::ProvenShares;
 pub use query::Query;
-pub(crate) use query::check_limit;
 pub use resolve::{FreeSamples, ResolveOptions, Resolved};
 pub use sweep::{
     ModeRange, Sweep, SweepOutcome, WeightInterval, WeightIntervals, WeightSample, largest_depth,

@@ -228,7 +228,7 @@ impl Query {
         }
         let Self { context, discrete, statistics, .. } = self;
         discrete.find_pairs(context, configuration, limit.min(Detector::MAX_PAIRS), statistics)?;
-        check_limit(limit, statistics.complete)
+        Detector::check_limit(limit, statistics.complete)
     }
 
     /// Returns the pairs that the last query found; after [`Query::continuous`] those of its impacts.
@@ -246,15 +246,6 @@ impl Query {
     pub(crate) fn norm(&self) -> f64 {
         self.norm
     }
-}
-
-/// Checks a search with the smaller one of a limit and [`Detector::MAX_PAIRS`].
-///
-/// # Errors
-/// When the search is incomplete because of the maximum.
-pub(crate) fn check_limit(limit: usize, is_complete: bool) -> Result<(), Error> {
-    let most = Detector::MAX_PAIRS;
-    if is_complete || limit <= most { Ok(()) } else { Err(Error::TooManyPairs { most }) }
 }
 
 impl Scope {

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec3;
 use sscc::{
-    CancelToken, Certificates, CertifyOptions, Error, KineticQuery, Method, Modes, Query, ReducedModel,
-    TriMesh,
+    CancelToken, Certificates, CertifyOptions, Clearance, Detector, Error, KineticQuery, Method, Modes,
+    Query, ReducedModel, ResolveOptions, TriMesh,
 };
 
 use crate::common::Random;
@@ -82,6 +82,36 @@ fn queries_check_the_token_after_few_triangle_tests() {
             assert!(query.statistics().complete);
         }
     }
+}
+
+/// After a sweep, a resolution or a search for near pairs is cancelled, the statistics say that the answer is incomplete.
+#[test]
+fn cancelled_answers_are_incomplete() {
+    let model = strip(120);
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let after = After::new();
+    let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(after.token());
+    let mut cancelled = [0; 3];
+    for most in 0..400 {
+        after.allow(most);
+        if query.sweep(&[0.0, 0.0], 0, 1.0).err() == Some(Error::Cancelled) {
+            assert!(!query.statistics().complete, "sweep, {most}");
+            cancelled[0] += 1;
+        }
+        after.allow(most);
+        if query.resolve(&[1.0, 0.0], &ResolveOptions::default()).err() == Some(Error::Cancelled) {
+            assert!(!query.statistics().complete, "resolve, {most}");
+            cancelled[1] += 1;
+        }
+        let mut detector = Detector::new(model.mesh()).cancelled_by(after.token());
+        let clearance = Clearance::new(0.1).unwrap().beyond_rings(2);
+        after.allow(most);
+        if detector.within(model.mesh().rest_positions(), &clearance) == Err(Error::Cancelled) {
+            assert!(!detector.statistics().complete, "clearance, {most}");
+            cancelled[2] += 1;
+        }
+    }
+    assert!(cancelled.iter().all(|count| *count > 1), "{cancelled:?}");
 }
 
 /// The token of a batch also cancels the current query.

@@ -45,8 +45,8 @@ struct LocalCertificate {
 
 /// Computes the certificates of nodes down to buckets about the centre, on the threads of the current pool. Those of fewest modes
 /// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes`
-/// is 0, [`PatchModel::new`] or [`CornerGaps::new`] returns None, pairs that share an edge count, or the certificates kept would cover too few
-/// triangles ([`LEAST_PROVEN_SHARE`]).
+/// is 0, [`PatchModel::new`] or [`CornerGaps::new`] returns None, pairs that share an edge count, or the certificates kept would
+/// cover too few triangles ([`LEAST_PROVEN_SHARE`]).
 pub(crate) fn compute_local_certificates(
     model: &ReducedModel,
     hierarchy: &Hierarchy,

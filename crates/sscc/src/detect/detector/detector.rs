@@ -238,7 +238,21 @@ impl Detector {
     /// # Errors
     /// When the maximum number of pairs stopped the last search.
     pub(super) fn check_complete(&self) -> Result<(), Error> {
-        if self.statistics.complete { Ok(()) } else { Err(Error::TooManyPairs { most: Self::MAX_PAIRS }) }
+        Self::check_limit(usize::MAX, self.statistics.complete)
+    }
+
+    /// Checks a search with the smaller one of a limit and [`Detector::MAX_PAIRS`], of a detector, a query or a shape.
+    ///
+    /// # Errors
+    /// When the maximum stopped the search.
+    pub(crate) fn check_limit(limit: usize, is_complete: bool) -> Result<(), Error> {
+        let most = Self::MAX_PAIRS;
+        let is_allowed = is_complete || limit <= most;
+        if with_mutant!(is_allowed, IncompleteAnswersWithoutError, true) {
+            Ok(())
+        } else {
+            Err(Error::TooManyPairs { most })
+        }
     }
 
     /// Computes the masks of adjacent triangles at the second search with a hierarchy, so that a detector that is used once saves
@@ -319,5 +333,9 @@ mod tests {
         detector.discrete_at_most(mesh.rest_positions(), 0).unwrap();
         let most = Detector::MAX_PAIRS;
         assert!(matches!(detector.check_complete(), Err(Error::TooManyPairs { most: m }) if m == most));
+        // A caller that gives a limit knows that there may be more.
+        let errors =
+            [most - 1, most, most + 1, usize::MAX].map(|limit| Detector::check_limit(limit, false).is_err());
+        assert_eq!(errors, [false, false, true, true]);
     }
 }

@@ -16,6 +16,16 @@ fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
 }
 
+/// Returns the leaves of a node.
+fn leaves_of(hierarchy: &Hierarchy, n: u32) -> Vec<u32> {
+    let nodes = hierarchy.nodes();
+    let node = &nodes[n as usize];
+    let own = node.first_triangle..node.first_triangle + node.triangle_count;
+    let is_own =
+        |leaf: &u32| nodes[*leaf as usize].is_leaf() && own.contains(&nodes[*leaf as usize].first_triangle);
+    (0..nodes.len() as u32).filter(is_own).collect()
+}
+
 /// `|(E_j - E_i) f| <= s_ij (kappa |W f| + rho T)` for the exact residuals of the modes, not for computed ones. Modes are affine
 /// maps up to rounding, so that residuals are rounding alone, or have a part that is not affine.
 #[test]
@@ -189,15 +199,8 @@ fn heights_are_at_most_their_share_of_gaps() {
         let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
         let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
         let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
-        let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
-        let leaves = |n: u32| {
-            let node = &nodes[n as usize];
-            let own = node.first_triangle..node.first_triangle + node.triangle_count;
-            (0..nodes.len() as u32).filter(move |leaf| {
-                let node = &nodes[*leaf as usize];
-                node.is_leaf() && own.contains(&node.first_triangle)
-            })
-        };
+        let parents = parents(&hierarchy);
+        let leaves = |n: u32| leaves_of(&hierarchy, n);
         for (index, n) in all.nodes.iter().enumerate() {
             let bounds = all.bounds[index];
             if !bounds.flatness.is_finite() {
@@ -205,7 +208,7 @@ fn heights_are_at_most_their_share_of_gaps() {
             }
             let across = DVec3::from_array(bounds.across);
             let list = &all.list_nodes[all.list_starts[index] as usize..all.list_starts[index + 1] as usize];
-            let own: BTreeSet<u32> = leaves(*n).collect();
+            let own: BTreeSet<u32> = leaves(*n).into_iter().collect();
             let around: BTreeSet<u32> = list.iter().flat_map(|m| leaves(*m)).collect();
             for (x, y) in own.iter().flat_map(|x| own.range(x..).chain(&around).map(|y| (*x, *y))) {
                 let (x, y) = (x.min(y), x.max(y));
@@ -264,14 +267,7 @@ fn ratios_of_lists_are_at_least_those_of_their_pairs() {
         let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
         let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
         let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
-        let leaves = |n: u32| -> Vec<u32> {
-            let node = &nodes[n as usize];
-            let own = node.first_triangle..node.first_triangle + node.triangle_count;
-            let is_own = |leaf: &u32| {
-                nodes[*leaf as usize].is_leaf() && own.contains(&nodes[*leaf as usize].first_triangle)
-            };
-            (0..nodes.len() as u32).filter(is_own).collect()
-        };
+        let leaves = |n: u32| leaves_of(&hierarchy, n);
         for (index, n) in all.nodes.iter().enumerate() {
             assert_eq!(all.mode_starts[index + 1] - all.mode_starts[index], 1);
             let own = leaves(*n);
