@@ -96,8 +96,9 @@ fn searches_in_another_mode_are_refused() {
     let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
     refused("kinetic", || kinetic.discrete(&[1.0]).map(<[_]>::len));
     // Beyond the root's radius, and within the region of the last query, which needs no search.
-    kinetic.discrete(&[1.5]).unwrap();
-    refused("kinetic continuous", || kinetic.continuous(&[1.5], &[1.5 + 1e-6]).map(<[_]>::len));
+    let at = |step: i32| [1.5 + 1e-6 * f64::from(step)];
+    (0..=12).for_each(|step| assert!(kinetic.discrete(&at(step)).unwrap().is_empty()));
+    refused("kinetic continuous", || kinetic.continuous(&at(12), &at(13)).map(<[_]>::len));
     let mesh = mesh().unwrap();
     let mut detector = Detector::new(&mesh);
     refused("detector", || detector.discrete(mesh.rest_positions()).map(<[_]>::len));
