@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
+use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 use sscc::Neighbours;
@@ -37,6 +38,9 @@ pub fn number(any: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Option<f64
     let Some(any) = any else { return Ok(None) };
     match any.extract::<f64>() {
         Ok(number) if !any.is_instance_of::<PyBool>() => Ok(Some(number)),
+        Err(error) if error.is_instance_of::<PyOverflowError>(any.py()) => {
+            Err(value(format!("{name} is beyond the range of a float64")))
+        }
         _ => Err(kind(format!("{name} is a {}: a number was expected", any.get_type().name()?))),
     }
 }

@@ -319,7 +319,8 @@ impl Certificates {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduction<'py, (Bound<'py, PyBytes>, Py<Model>)>> {
-        let bytes = certificates_to_bytes(self.core()).map_err(|error| value(error.to_string()))?;
+        let bytes = py.detach(|| certificates_to_bytes(self.core()));
+        let bytes = bytes.map_err(|error| value(error.to_string()))?;
         let make = py.import("sscc._sscc")?.getattr("_certificates")?;
         Ok((make, (PyBytes::new(py, &bytes), self.model.clone_ref(py))))
     }
@@ -339,6 +340,6 @@ impl Certificates {
 #[pyfunction]
 pub fn _certificates(bytes: &[u8], model: &Bound<'_, Model>) -> PyResult<Certificates> {
     let name = "pickled certificates";
-    let read = certificates_from_bytes(bytes).map_err(|error| value(format!("{name}: {error}")))?;
-    Certificates::with(model, read, name)
+    let read = model.py().detach(|| certificates_from_bytes(bytes));
+    Certificates::with(model, read.map_err(|error| value(format!("{name}: {error}")))?, name)
 }

@@ -63,7 +63,7 @@ pub fn answer<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyRes
     }
 }
 
-/// The progress of work on other threads, and the token that cancels it.
+/// The progress of work on other threads, and the token that cancels it. All reports have the same total.
 #[derive(Default)]
 struct Monitor {
     done: AtomicUsize,
@@ -102,9 +102,14 @@ impl Reporter {
         self.0.as_ref().map_or(Ok(()), |(report, _)| report.call1(py, (share,)).map(drop))
     }
 
-    /// Ends the report after success or an error.
-    fn close<T>(&self, py: Python<'_>, result: PyResult<T>) -> PyResult<T> {
-        let result = result.and_then(|result| self.report(py, 1.0).map(|()| result));
+    /// Ends the report after success or an error. Only success reports the share 1.
+    fn close<T, E>(&self, py: Python<'_>, result: PyResult<Result<T, E>>) -> PyResult<Result<T, E>> {
+        let result = result.and_then(|outcome| {
+            if outcome.is_ok() {
+                self.report(py, 1.0)?;
+            }
+            Ok(outcome)
+        });
         if let Some((_, close)) = &self.0 {
             close.call0(py)?;
         }
@@ -124,7 +129,8 @@ impl Reporter {
                 (Ok(result), None) => return Ok(Some(result)),
                 (Err(RecvTimeoutError::Disconnected), None) => return Ok(None),
                 (Err(RecvTimeoutError::Timeout), None) => {
-                    let share = monitor.share().filter(|share| *share > reported);
+                    // Work may continue after its last report, so `close` reports the share 1.
+                    let share = monitor.share().filter(|share| *share > reported && *share < 1.0);
                     let outcome = Python::attach(|py| {
                         py.check_signals()?;
                         share.map_or(Ok(()), |share| self.report(py, share))
@@ -141,14 +147,14 @@ impl Reporter {
 }
 
 /// Runs long work on another thread, without the GIL. Meanwhile this thread checks signals and reports the finished
-/// share to `progress` (the argument of that name). An exception of either cancels the work and is the error. Work that
-/// does not end in time continues detached.
-pub fn run<T: Send + 'static>(
+/// share to `progress` (the argument of that name): it ascends, and is 1 only after the success of the work. An exception
+/// of either cancels the work and is the error. Work that does not end in time continues detached.
+pub fn run<T: Send + 'static, E: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     label: &str,
-    work: impl FnOnce(&dyn Progress) -> T + Send + 'static,
-) -> PyResult<T> {
+    work: impl FnOnce(&dyn Progress) -> Result<T, E> + Send + 'static,
+) -> PyResult<Result<T, E>> {
     let reporter = Reporter::of(py, progress, label)?;
     let result = py.detach(|| {
         let monitor = Arc::new(Monitor::default());
@@ -171,12 +177,12 @@ pub fn run<T: Send + 'static>(
 }
 
 /// Like [`run`], for work on borrowed data. It waits for the end of the work, which must stop soon.
-pub fn run_borrowing<T: Send>(
+pub fn run_borrowing<T: Send, E: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     label: &str,
-    work: impl FnOnce(&dyn Progress) -> T + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(&dyn Progress) -> Result<T, E> + Send,
+) -> PyResult<Result<T, E>> {
     let reporter = Reporter::of(py, progress, label)?;
     let result = py.detach(|| {
         let monitor = Monitor::default();

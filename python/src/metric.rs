@@ -12,11 +12,11 @@ use crate::errors::{refused, value};
 /// Returns the metric of an argument: a name, weights (r) or a matrix (r, r); `None` for an absent argument.
 pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Metric>> {
     let Some(any) = metric else { return Ok(None) };
-    let rank = model.rank();
+    let (py, rank) = (any.py(), model.rank());
     let made = if let Ok(name) = any.cast::<PyString>() {
         match name.to_str()? {
-            "displacement" => Metric::displacement(model.mesh(), model.modes()),
-            "mass" => Metric::mass(model.mesh(), model.modes()),
+            "displacement" => py.detach(|| Metric::displacement(model.mesh(), model.modes())),
+            "mass" => py.detach(|| Metric::mass(model.mesh(), model.modes())),
             "identity" => Ok(Metric::identity(rank)),
             "energy" if model.metric().kind() == MetricKind::Energy => Ok(model.metric().clone()),
             "energy" => {
@@ -48,7 +48,8 @@ pub fn read_metric(model: &ReducedModel, metric: Option<&Bound<'_, PyAny>>) -> P
             }
         }
     };
-    let checked = made.and_then(|made| check_metric(&made, model.mesh(), model.modes()).map(|()| made));
+    let checked =
+        py.detach(|| made.and_then(|made| check_metric(&made, model.mesh(), model.modes()).map(|()| made)));
     Ok(Some(checked.map_err(|error| refused(&error, "metric"))?))
 }
 

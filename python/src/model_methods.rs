@@ -4,7 +4,7 @@ use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple, PyType};
-use sscc::{ContactFilter, Modes, ReducedModel};
+use sscc::{ContactFilter, Error, Modes, ReducedModel};
 use sscc_io::container::{model_from_bytes, model_to_bytes};
 use sscc_io::npy::Array;
 use sscc_io::{LoadOptions, ModelInfo, load_model_with, write_model};
@@ -38,6 +38,7 @@ impl Model {
     #[new]
     #[pyo3(signature = (vertices, faces, modes, metric=None))]
     fn new(
+        py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         modes: &Bound<'_, PyAny>,
@@ -45,11 +46,13 @@ impl Model {
     ) -> PyResult<Self> {
         let mesh = mesh(vertices, faces)?;
         let modes = read_modes(modes, mesh.rest_positions().len())?;
-        let model = ReducedModel::new(mesh, modes).map_err(|error| refused(&error, ""))?;
+        let model = py.detach(|| ReducedModel::new(mesh, modes)).map_err(|error| refused(&error, ""))?;
         let model = match read_metric(&model, metric)? {
             Some(metric) => {
-                let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
-                ReducedModel::with_metric(mesh, modes, metric).map_err(|error| refused(&error, "metric"))?
+                let with_metric = py.detach(|| {
+                    ReducedModel::with_metric(model.mesh().clone(), model.modes().clone(), metric)
+                });
+                with_metric.map_err(|error| refused(&error, "metric"))?
             }
             None => model,
         };
@@ -133,8 +136,10 @@ impl Model {
     /// Returns the vertices at q, (V, 3): the positions that all queries test, bit for bit.
     fn positions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let q = vector(q, "q")?;
-        let positions = self.core().positions(&q).map_err(|error| refused(&error, "q"))?;
-        table(py, 3, positions.iter().flat_map(|p| p.to_array()).collect())
+        let positions = py.detach(|| -> Result<Vec<f64>, Error> {
+            Ok(self.core().positions(&q)?.iter().flat_map(|p| p.to_array()).collect())
+        });
+        table(py, 3, positions.map_err(|error| refused(&error, "q"))?)
     }
 
     /// Returns the q of forces on the vertices and of gravity.
@@ -155,15 +160,18 @@ impl Model {
             }
         };
         let LoadedModel { model, info, .. } = &*self.loaded;
-        let found = static_answer(model, info, &forces, gravity).map_err(|error| value(error.to_string()))?;
-        Ok(line(py, found.q))
+        let found = py.detach(|| static_answer(model, info, &forces, gravity));
+        Ok(line(py, found.map_err(|error| value(error.to_string()))?.q))
     }
 
     /// Returns the q whose shape is nearest to positions, and the share of the displacements that remains.
     fn fit<'py>(&self, py: Python<'py>, positions: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, f64)> {
         let mut displacements = self.of_vertices(positions, "positions")?;
-        displacements.iter_mut().zip(self.core().mesh().rest_positions()).for_each(|(x, rest)| *x -= *rest);
-        let found = DisplacementFit::new(self.core().modes()).and_then(|fit| fit.fit(&displacements));
+        let found = py.detach(|| {
+            let rest_positions = self.core().mesh().rest_positions();
+            displacements.iter_mut().zip(rest_positions).for_each(|(x, rest)| *x -= *rest);
+            DisplacementFit::new(self.core().modes())?.fit(&displacements)
+        });
         let found = found.map_err(|error| value(format!("positions: {error}")))?;
         Ok((line(py, found.q), found.residual))
     }
@@ -182,9 +190,11 @@ impl Model {
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let modes = self.core().modes();
         let mut entries = room(3 * modes.displacements().len(), "modes")?;
-        for of_vertex in modes.displacements().chunks_exact(modes.rank()) {
-            (0..3).for_each(|axis| entries.extend(of_vertex.iter().map(|u| u[axis])));
-        }
+        py.detach(|| {
+            for of_vertex in modes.displacements().chunks_exact(modes.rank()) {
+                (0..3).for_each(|axis| entries.extend(of_vertex.iter().map(|u| u[axis])));
+            }
+        });
         table(py, modes.rank(), entries)?.call_method1("reshape", (modes.vertices(), 3, modes.rank()))
     }
 
@@ -237,7 +247,8 @@ impl Model {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduction<'py, Bound<'py, PyTuple>>> {
         let py = slf.py();
         let loaded = &slf.get().loaded;
-        let bytes = model_to_bytes(&loaded.model, &loaded.info).map_err(|error| value(error.to_string()))?;
+        let bytes = py.detach(|| model_to_bytes(&loaded.model, &loaded.info));
+        let bytes = bytes.map_err(|error| value(error.to_string()))?;
         let is_split = loaded.model.mesh().has_split_vertices();
         let arguments =
             (PyBytes::new(py, &bytes), &loaded.default_q, &loaded.mode_names, is_split).into_pyobject(py)?;
@@ -258,16 +269,20 @@ impl Model {
 /// Unpickles models.
 #[pyfunction]
 pub fn _model(
+    py: Python<'_>,
     bytes: &[u8],
     default_q: Option<Vec<f64>>,
     mode_names: Vec<String>,
     is_split: bool,
 ) -> PyResult<Model> {
-    let (model, info) = model_from_bytes(bytes).map_err(|error| value(format!("pickled model: {error}")))?;
+    let read = py.detach(|| model_from_bytes(bytes));
+    let (model, info) = read.map_err(|error| value(format!("pickled model: {error}")))?;
     let model = if is_split {
-        let (mesh, metric) = (model.mesh().clone().with_split_vertices(), model.metric().clone());
-        ReducedModel::with_metric(mesh, model.modes().clone(), metric)
-            .map_err(|error| refused(&error, "pickled model"))?
+        let split = py.detach(|| {
+            let (mesh, metric) = (model.mesh().clone().with_split_vertices(), model.metric().clone());
+            ReducedModel::with_metric(mesh, model.modes().clone(), metric)
+        });
+        split.map_err(|error| refused(&error, "pickled model"))?
     } else {
         model
     };
@@ -282,5 +297,6 @@ fn read_modes(modes: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Modes> {
     let mut copy = room::<f64>(2 * entries.len(), "modes")?;
     copy.extend_from_slice(entries);
     let array = Array::from_c_order(array.shape(), copy).ok_or_else(|| kind("modes changed its shape"))?;
-    sscc_io::modes::array::from_array(&array, vertices).map_err(|error| value(format!("modes: {error}")))
+    let read = modes.py().detach(|| sscc_io::modes::array::from_array(&array, vertices));
+    read.map_err(|error| value(format!("modes: {error}")))
 }

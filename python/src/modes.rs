@@ -20,7 +20,8 @@ use crate::arrays::{floats, integers};
 use crate::errors::{file, kind, room, value, warn};
 use crate::interrupt::run;
 use crate::model::{LoadedModel, Model, mesh, mesh_of, points};
-use crate::pool::{self, on_threads};
+use crate::pool;
+use crate::watching::Phases;
 
 /// A file with a mesh or solid, or a surface as `(vertices, faces)`.
 enum Source {
@@ -96,7 +97,18 @@ pub fn _elastic(
     if let Some(corners) = fix_box {
         options.fixed_box = Some(two_corners(corners)?);
     }
-    compute(py, source, threads, progress, move |source, progress| elastic(source, kind, options, progress))
+    let phases = phase_count(&source, kind);
+    compute(py, source, threads, progress, phases, move |source, progress| {
+        elastic(source, kind, options, progress)
+    })
+}
+
+/// Returns the number of phases in which the modes are computed: for a surface its lattice; then the vibrations or the forces,
+/// for nonlinear modes the vibrations, their derivatives and the forces.
+fn phase_count(source: &Source, kind: ModesKind) -> usize {
+    let has_lattice = !matches!(source, Source::File(path) if is_solid(path));
+    let of_modes = if kind == ModesKind::Nonlinear { 3 } else { 1 };
+    usize::from(has_lattice) + of_modes
 }
 
 /// Returns the two corners of a box from an array (2, 3).
@@ -109,7 +121,14 @@ fn two_corners(corners: &Bound<'_, PyAny>) -> PyResult<[DVec3; 2]> {
     if array.shape() != [2, 3] {
         return Err(wrong());
     }
-    points(&array, "fix_box")?.try_into().map_err(|_| wrong())
+    let corners: [DVec3; 2] = points(&array, "fix_box")?.try_into().map_err(|_| wrong())?;
+    for (row, corner) in corners.iter().enumerate() {
+        if let Some(axis) = corner.to_array().iter().position(|x| !x.is_finite()) {
+            let x = corner[axis];
+            return Err(value(format!("fix_box[{row}][{axis}] is {x}: every entry must be finite")));
+        }
+    }
+    Ok(corners)
 }
 
 /// Returns a model with polynomial modes of a surface. A solid in a file adds its stiffness.
@@ -120,7 +139,9 @@ pub fn _polynomial(
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Model> {
-    compute(py, Source::of(source)?, threads, progress, |source, progress| match source {
+    let source = Source::of(source)?;
+    let phases = phase_count(&source, ModesKind::Polynomial);
+    compute(py, source, threads, progress, phases, |source, progress| match source {
         Source::File(path) if is_solid(path) => {
             elastic(source, ModesKind::Polynomial, BodyOptions::default(), progress)
         }
@@ -182,19 +203,22 @@ fn elastic(
     Ok((elastic_model(kind, rank, solid, &held, &source.name(), progress)?, note))
 }
 
-/// Computes a model on other threads, and issues the note on its file as a warning.
+/// Computes a model on other threads, in this number of phases, and issues the note on its file as a warning.
 fn compute(
     py: Python<'_>,
     source: Source,
     threads: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    phases: usize,
     make: impl FnOnce(&Source, &dyn Progress) -> Result<(NewModel, Option<String>), TaskError> + Send + 'static,
 ) -> PyResult<Model> {
-    let threads = pool::threads(threads)?;
+    let threads = pool::start(pool::threads(threads)?)?;
     let source = Arc::new(source);
     let of_worker = Arc::clone(&source);
-    let model =
-        run(py, progress, "modes", move |progress| on_threads(threads, || make(&of_worker, progress)))?;
+    let model = run(py, progress, "modes", move |progress| {
+        let progress = Phases::new(progress, phases);
+        threads.install(|| make(&of_worker, &progress))
+    })?;
     let (model, note) = model.map_err(|error| source.refused(&error))?;
     warn(py, note.as_slice())?;
     Ok(Model::of(LoadedModel::new(model.model, model.info)))
@@ -251,8 +275,9 @@ pub fn _pca(
         let Some(first) = frames.first() else { return Err(value("shapes is empty")) };
         (mesh_of(first.clone(), "shapes", faces)?, frames, "shapes in memory".into())
     };
+    let threads = pool::start(threads)?;
     let found = run(py, progress, "principal components", move |progress| {
-        on_threads(threads, || pca_model(&mesh, &frames, rank, &name, progress))
+        threads.install(|| pca_model(&mesh, &frames, rank, &name, progress))
     })?;
     let found = found.map_err(|error| value(format!("shapes: {error}")))?;
     Ok(Model::of(LoadedModel::new(found.model, found.info)))

@@ -6,6 +6,7 @@ use std::thread::{self, ThreadId};
 use pyo3::prelude::*;
 use sscc::{Certificates, Error, KineticQuery, Query};
 
+use crate::errors::value;
 use crate::interrupt::signals;
 use crate::model::LoadedModel;
 
@@ -91,11 +92,11 @@ pub fn threads(threads: Option<&Bound<'_, PyAny>>) -> PyResult<Option<usize>> {
     crate::arguments::count(threads, "threads", 1..=1024)
 }
 
-/// Runs work on this number of threads (`None` means all cores), in its own pool: a forked process cannot use the
-/// global pool. If the threads cannot be started, the work uses the global pool.
-pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
+/// Starts the threads of work that uses rayon (`None` means all cores), because a forked process cannot use the global pool.
+///
+/// # Errors
+/// When the system refuses them.
+pub fn start(threads: Option<usize>) -> PyResult<rayon::ThreadPool> {
+    let started = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    started.map_err(|error| value(format!("threads: the system refuses so many: {error}; choose fewer")))
 }

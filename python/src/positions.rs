@@ -96,11 +96,14 @@ impl Weld {
             return Err(value(format!("weld has shape {:?}: {expected}", array.shape())));
         }
         let given = array.as_slice()?.to_vec();
-        let mut sorted = given.clone();
-        sorted.sort_unstable();
-        sorted.dedup();
-        let class = |number: &i64| sorted.partition_point(|other| other < number) as u32;
-        Ok(Self::Classes(given.iter().map(class).collect()))
+        let classes = any.py().detach(|| {
+            let mut sorted = given.clone();
+            sorted.sort_unstable();
+            sorted.dedup();
+            let class = |number: &i64| sorted.partition_point(|other| other < number) as u32;
+            given.iter().map(class).collect()
+        });
+        Ok(Self::Classes(classes))
     }
 }
 

@@ -69,8 +69,11 @@ pub fn free_samples<'py>(
     for (row, q) in rows.iter().enumerate() {
         model.check_coordinates(q).map_err(|error| refused(&error, &format!("draws[{row}]")))?;
     }
-    let options = options(pool, start, all)?;
-    let options = switch(resolve, "resolve")?.unwrap_or(true).then_some(options);
+    let is_resolving = switch(resolve, "resolve")?.unwrap_or(true);
+    if !is_resolving && (start.is_some() || all.is_some()) {
+        return Err(value("resolve is False, so start and all have no effect: leave them out"));
+    }
+    let options = is_resolving.then(|| options(pool, start, all)).transpose()?;
     let threads = pool::threads(threads)?;
     let found = run_borrowing(py, progress, "resolving", |progress| {
         pool.first().free_samples(&rows, options.as_ref(), threads, progress)

@@ -19,7 +19,7 @@ use crate::certify::rest_rings;
 use crate::errors::{file, refused_task, room, value, warn};
 use crate::interrupt::run_borrowing;
 use crate::pool;
-use crate::watching::Watching;
+use crate::watching::{Phases, Watching};
 
 /// Times per second, if neither a rate nor times are given.
 const RATE: f64 = 30.0;
@@ -127,7 +127,7 @@ impl Kept {
     }
 }
 
-/// Checks a scene; returns a list of `sscc.SceneAnswer`.
+/// Checks a scene; returns a list of `sscc.SceneAnswer`. `phases` is 2 if several nodes are compared with each other, else 1.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn _check_scene<'py>(
@@ -146,6 +146,7 @@ pub fn _check_scene<'py>(
     limit: Option<&Bound<'py, PyAny>>,
     threads: Option<&Bound<'py, PyAny>>,
     progress: Option<&Bound<'py, PyAny>>,
+    phases: usize,
 ) -> PyResult<Bound<'py, PyList>> {
     let times = times_of(animation.as_deref(), times, fps)?;
     let clearance = number(clearance, "clearance")?.map(Clearance::new).transpose();
@@ -169,14 +170,17 @@ pub fn _check_scene<'py>(
     }
     request.motion =
         MeshMotion::Animation(AnimationMotion { animation, times, node, weights: SkinWeights::Normalized });
-    let (found, warnings) = run_borrowing(py, progress, "checking", |progress| {
-        let watch = Watching::all(progress);
+    let mut warnings = Vec::new();
+    let found = run_borrowing(py, progress, "checking", |progress| {
+        let progress = Phases::new(progress, phases);
+        let watch = Watching::all(&progress);
         let mut kept = Vec::new();
         let found = detect(&request, &watch, |_, found| {
             kept.push(Kept::of(found?));
             Ok::<_, TaskError>(ControlFlow::Continue(()))
         });
-        (found.map(|()| kept), watch.notes())
+        warnings = watch.notes();
+        found.map(|()| kept)
     })?;
     warn(py, &warnings)?;
     let class = py.import("sscc._scene")?.getattr("SceneAnswer")?;

@@ -35,10 +35,12 @@ pub fn _simulate(
         cache: folder(cache, "cache")?,
         threads: pool::threads(threads)?,
     };
-    let (written, notes) = run_borrowing(py, None, "simulating", |progress| {
+    let mut notes = Vec::new();
+    let written = run_borrowing(py, None, "simulating", |progress| {
         let steps = Watching::steps(progress);
         let written = simulated(&request, &steps);
-        (written, steps.notes())
+        notes = steps.notes();
+        written
     })?;
     warn(py, &notes)?;
     written.map_err(|error| refused_simulation(&error))

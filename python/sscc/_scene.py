@@ -157,6 +157,7 @@ class Scene:
         only, ignored = _pairs(only_groups, "only_groups"), _pairs(ignore_groups, "ignore_groups")
         if only and ignored:
             raise ValueError("give ignore_groups or only_groups, not both")
+        is_compared = between_nodes is not False and node is None and len(self.nodes) > 1
         return _check_scene(
             self.path,
             _name(animation, "animation"),
@@ -172,6 +173,7 @@ class Scene:
             limit,
             threads,
             progress,
+            2 if is_compared else 1,
         )
 
     def positions(

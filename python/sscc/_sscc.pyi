@@ -99,8 +99,9 @@ class Model:
         ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count. A pair (a, a) ignores pairs within
             group a.
         threads: the number of threads. None means all cores. The certificates do not depend on it.
-        progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. True shows a bar on
-            standard error, False nothing. None means a bar on a terminal or in a notebook.
+        progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. The share ascends, and is
+            1 only at the end of work without an error. True shows a bar on standard error, False nothing. None means a bar on a
+            terminal or in a notebook.
         """
     def positions(self, q: ArrayLike) -> _F64:
         """Returns the vertices at q, (V, 3): the positions that all queries test."""
@@ -235,7 +236,8 @@ class Certificates:
         progress: _Progress = None,
     ) -> FreeSamples:
         """Returns free configurations from the rows of draws (n, r) of any distribution. Colliding draws are resolved as by
-        ``resolve``. With ``resolve=False`` they are rejected, even if only exceptions collide."""
+        ``resolve``. With ``resolve=False`` they are rejected, even if only exceptions collide; ``start`` and ``all`` are then
+        refused."""
     def clamp(self, q: ArrayLike) -> _F64 | None:
         """Returns q, or the last point on the line from the centre to q that the root's certificate proves free. Returns None if
         its radius is 0, there are exceptions, or the certificates have a ``clearance``."""
@@ -718,6 +720,7 @@ def _check_scene(
     limit: int | None,
     threads: int | None,
     progress: _Progress,
+    phases: int,
 ) -> list[SceneAnswer]: ...
 
 # Functions for sscc.batch.

@@ -7,7 +7,7 @@ polynomial modes without a solid; its solid is a lattice of cubes around it.
 
 Common arguments:
 
-- ``fix``: numbers of fixed vertices (n,); ``fix_box``: two corners (2, 3) of a box in which all vertices are fixed.
+- ``fix``: numbers of fixed vertices (n,); ``fix_box``: two finite corners (2, 3) of a box in which all vertices are fixed.
   Without fixed vertices the body is free, and its rigid motions are not among the modes.
 - ``youngs``, ``poisson``, ``density``: the material. None means the material of a solid's file, else 1e6, 0.4 and 1000.
 - ``resolution``: number of cubes along the longest side of the lattice. None means about 20,000 cubes in total.

@@ -78,6 +78,7 @@ OPTIONS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"epsilon": 0}, ValueError, "epsilon is 0: a number between 0 and 1 was expected"),
     ({"epsilon": float("nan")}, ValueError, "epsilon is NaN"),
     ({"epsilon": "x"}, TypeError, "epsilon is a str: a number was expected"),
+    ({"epsilon": 10**400}, ValueError, "epsilon is beyond the range of a float64"),
     ({"center": [0, 0]}, ValueError, "center has 2 entries, the model has 3 modes"),
     ({"center": [0, np.nan, 0]}, ValueError, "center[1] is NaN: every entry must be finite"),
     ({"center": [0, 1e200, 0]}, ValueError, "center moves vertices beyond 2^200 (about 1.6e60): scale it or the model down"),

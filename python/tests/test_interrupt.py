@@ -127,6 +127,30 @@ def test_progress_ascends_to_one(model: sscc.Model) -> None:
     assert len(certs.hierarchy) > 1
 
 
+def test_progress_is_one_only_at_the_end() -> None:
+    """Certificates are computed beyond the last report, and modes in phases whose reports begin again."""
+    vertices, faces, _ = torus(60, 30, 1)
+    many: list[Callable[[Callable[[float], object]], object]] = [
+        lambda report: sscc.Model(*torus(80, 40, 8)).certify(progress=report),
+        lambda report: sscc.modes.linear((vertices, faces), 8, resolution=30, progress=report),
+        lambda report: sscc.modes.nonlinear((vertices, faces), 10, resolution=24, progress=report),
+        lambda report: sscc.modes.polynomial((vertices, faces), resolution=30, progress=report),
+    ]
+    for work in many:
+        shares: list[float] = []
+        work(shares.append)
+        assert shares == sorted(shares) and shares[-1] == 1.0 and shares.count(1.0) == 1
+
+
+def test_refused_work_is_never_finished(certs: sscc.Certificates) -> None:
+    shares: list[float] = []
+    with pytest.raises(ValueError, match=r"^Q\[0\]\[0\] is NaN"):
+        certs.check_many(np.full((3, 6), np.nan), progress=shares.append)
+    with pytest.raises(ValueError, match="is empty"):
+        certs.sweep((1, 1), progress=shares.append)
+    assert 1.0 not in shares
+
+
 def test_progress_is_reported_during_the_work(medium: sscc.Model) -> None:
     class Enough(Exception):
         pass

@@ -105,6 +105,7 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
     not_a_pair: Any = vertices
     one_corner = r"^fix_box has shape \[1, 3\]: \(2, 3\) was expected, two corners of a box$"
     three_corners = r"^fix_box has shape \[3, 2\]: \(2, 3\) was expected"
+    no_corners = [(np.nan, r"^fix_box\[0\]\[1\] is NaN: every entry"), (-np.inf, r"^fix_box\[0\]\[1\] is -inf: every")]
     cases: list[tuple[Callable[[], object], type[Exception], str]] = [
         (lambda: sscc.modes.linear((vertices, faces[1:]), 3), ValueError, "^source: "),
         (lambda: sscc.modes.linear(not_a_pair, 3), TypeError, "^source is a ndarray: the name of a file or"),
@@ -132,6 +133,9 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
     for call, error, message in cases:
         with pytest.raises(error, match=message):
             call()
+    for bound, message in no_corners:
+        with pytest.raises(ValueError, match=message):
+            sscc.modes.linear((vertices, faces), 3, fix_box=[[-2, bound, -2], [2, 2, 2]])
 
 
 def test_loads_and_displacements_give_q(surface: Surface) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -74,5 +75,9 @@ def test_invalid_arguments(certs: sscc.Certificates) -> None:
         certs.free_samples([[0.0] * 6, [0.0, 0.0, np.nan, 0.0, 0.0, 0.0]])
     with pytest.raises(ValueError, match=r"^draws has shape \[6\]: \(n, 6\) was expected"):
         certs.free_samples(np.zeros(6))
+    unused: list[dict[str, Any]] = [{"start": np.zeros(6)}, {"all": True}]
+    for argument in unused:
+        with pytest.raises(ValueError, match="^resolve is False, so start and all have no effect: leave them out"):
+            certs.free_samples(np.zeros((2, 6)), resolve=False, **argument)
     with pytest.raises(TypeError, match="all is a "):
         certs.resolve(np.zeros(6), all="yes")  # type: ignore[arg-type]

@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sscc
@@ -65,6 +66,14 @@ def test_positions_are_those_of_the_player(scene: sscc.Scene) -> None:
     assert found[:, 0].tolist() == [[1, 1, 1], [1, 1, 0.5], [1, 1, -1]]
     assert scene.positions(0)[0].tolist() == [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
     assert scene.positions("shirt", "wave", fps=4).shape == (5, 3, 3)
+
+
+def test_progress_is_one_only_at_the_end(scene: sscc.Scene) -> None:
+    """The nodes are compared with each other after each with itself."""
+    shares: list[float] = []
+    answers = scene.check("wave", times=np.linspace(0, 1, 20_000), progress=shares.append)
+    assert len(answers) > 40_000
+    assert shares == sorted(shares) and shares[-1] == 1.0 and shares.count(1.0) == 1
 
 
 def test_bad_arguments_are_named(scene: sscc.Scene, tmp_path: Path) -> None:

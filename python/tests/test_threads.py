@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
 
 import sscc
-from shapes import samples, two_triangles
+from shapes import samples, torus, two_triangles
 
 THREADS = 8
 
@@ -83,3 +87,53 @@ def test_long_calls_release_the_gil(model: sscc.Model) -> None:
     done.set()
     counter.join()
     assert counted > 10
+
+
+def has_run_meanwhile(call: Callable[[], object]) -> bool:
+    """Whether another thread runs during the call, which is repeated until it does, for at most a minute.
+
+    Python does not switch threads by itself in this time, so the other thread runs only if the call releases the GIL.
+    """
+    go, has_run = threading.Event(), threading.Event()
+
+    def run() -> None:
+        go.wait()
+        has_run.set()
+
+    other = threading.Thread(target=run)
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1000)
+    try:
+        other.start()
+        go.set()
+        end = time.monotonic() + 60
+        while not has_run.is_set() and time.monotonic() < end:
+            call()
+        return has_run.is_set()
+    finally:
+        sys.setswitchinterval(interval)
+        go.set()
+        other.join()
+
+
+def test_work_on_large_arrays_releases_the_gil() -> None:
+    vertices, faces, modes = torus(120, 60, 12)
+    model = sscc.Model(vertices, faces, modes)
+    certs = model.certify(scheme="paper", epsilon=0.9)
+    elastic = sscc.modes.linear((vertices, faces), 4, resolution=14, fix=[0, 1, 2, 3])
+    q, forces = np.full(12, 0.1), np.full((len(vertices), 3), 1e-3)
+    classes = np.arange(len(vertices))
+    pickled: Any = model.__reduce__()
+    calls: dict[str, Callable[[], object]] = {
+        "Model": lambda: sscc.Model(vertices, faces, modes),
+        "positions": lambda: model.positions(q),
+        "fit": lambda: model.fit(vertices),
+        "static": lambda: elastic.static(forces),
+        "modes": lambda: model.modes,
+        "weld": lambda: sscc.Detector(faces, weld=classes),
+        "pickling a model": lambda: model.__reduce__(),
+        "unpickling a model": lambda: pickled[0](*pickled[1]),
+        "pickling certificates": lambda: certs.__reduce__(),
+    }
+    for name, call in calls.items():
+        assert has_run_meanwhile(call), f"{name} holds the GIL"

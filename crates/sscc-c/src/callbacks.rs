@@ -88,3 +88,71 @@ pub fn cancel_token(cancel: sscc_cancel_fn, user: *mut c_void) -> Option<CancelT
     let (cancel, user) = (cancel?, AtomicPtr::new(user));
     Some(CancelToken::when(move || cancel(user.load(Ordering::Relaxed)) != 0))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::c_int;
+    use std::hint::spin_loop;
+    use std::ptr::null_mut;
+    use std::sync::Barrier;
+    use std::sync::atomic::AtomicUsize;
+    use std::thread;
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Some threads ask at the same time, again and again. The first answer cancels, so that there is no second call.
+    #[test]
+    fn a_function_that_has_cancelled_is_not_called_again() {
+        static CALLS: AtomicUsize = AtomicUsize::new(0);
+        extern "C" fn cancel(_user: *mut c_void) -> c_int {
+            CALLS.fetch_add(1, Ordering::SeqCst);
+            1
+        }
+        const THREADS: usize = 4;
+        for round in 0..2000 {
+            CALLS.store(0, Ordering::SeqCst);
+            let reporter = Reporter::new(None, Some(cancel), null_mut());
+            let start = Barrier::new(THREADS);
+            thread::scope(|scope| {
+                for _ in 0..THREADS {
+                    scope.spawn(|| {
+                        start.wait();
+                        while !reporter.is_cancelled() {
+                            spin_loop();
+                        }
+                    });
+                }
+            });
+            assert_eq!(CALLS.load(Ordering::SeqCst), 1, "round {round}");
+            assert!(reporter.has_cancelled());
+        }
+    }
+
+    /// A report waits for the call of another thread, and is not passed on if that call cancels.
+    #[test]
+    fn a_report_during_a_call_that_cancels_is_not_passed_on() {
+        static REPORTS: AtomicUsize = AtomicUsize::new(0);
+        static IS_INSIDE: AtomicBool = AtomicBool::new(false);
+        extern "C" fn progress(_user: *mut c_void, _done: usize, _total: usize) -> c_int {
+            REPORTS.fetch_add(1, Ordering::SeqCst);
+            0
+        }
+        extern "C" fn cancel(_user: *mut c_void) -> c_int {
+            IS_INSIDE.store(true, Ordering::SeqCst);
+            // Meanwhile the other thread begins its report.
+            thread::sleep(Duration::from_millis(50));
+            1
+        }
+        let reporter = Reporter::new(Some(progress), Some(cancel), null_mut());
+        thread::scope(|scope| {
+            scope.spawn(|| assert!(reporter.is_cancelled()));
+            while !IS_INSIDE.load(Ordering::SeqCst) {
+                thread::yield_now();
+            }
+            reporter.report(1, 2);
+        });
+        assert_eq!(REPORTS.load(Ordering::SeqCst), 0);
+        assert!(reporter.has_cancelled());
+    }
+}

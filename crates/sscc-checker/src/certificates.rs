@@ -138,6 +138,24 @@ impl Certificates {
     }
 }
 
+#[cfg(test)]
+impl Certificates {
+    /// Returns certificates of one leaf with this many triangles, which has a radius.
+    pub(crate) fn of_leaf(triangles: u32, radius: f64) -> Self {
+        Self {
+            digest: [0; 32],
+            nodes: vec![Node { first: 0, count: triangles, first_child: 0, children: 0 }],
+            order: (0..triangles).collect(),
+            node_radii: vec![radius],
+            root_pair_radii: Vec::new(),
+            pair_limit: 0.0,
+            starts: Vec::new(),
+            radii: Vec::new(),
+            links: Vec::new(),
+        }
+    }
+}
+
 /// Checks that each triangle is listed once, that the triangles of each node are the disjoint union of those of its
 /// children, and that no leaf is larger than a bucket.
 fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {

@@ -2,12 +2,18 @@
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
 use crate::model::Model;
-use crate::refusal::{Refusal, proof};
+use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof};
 use crate::scope::{CountedPairs, Scope};
 
 /// Checks that each exception counts and collides at the centre.
-pub(crate) fn check(model: &Model, scope: &Scope, counted: &CountedPairs<'_>) -> Result<(), Refusal> {
+pub(crate) fn check(
+    model: &Model,
+    scope: &Scope,
+    counted: &CountedPairs<'_>,
+    is_cancelled: &IsCancelled<'_>,
+) -> Result<(), Refusal> {
     for &[a, b] in &scope.exceptions {
+        check_cancelled(is_cancelled)?;
         let simplices = counted.with_exceptions(a, b);
         if simplices.is_empty() {
             return proof(format!("exception: triangles {a} and {b} do not count"));

@@ -23,7 +23,7 @@ mod scope;
 
 pub use files::read;
 pub use model::Model;
-pub use refusal::Refusal;
+pub use refusal::{IsCancelled, Refusal};
 
 use certificates::Certificates;
 use proof::{Check, Proof};
@@ -54,13 +54,27 @@ impl Confirmed {
     }
 }
 
-/// Checks a proof, on this number of threads (at least 1). `certificates`, `proof`: the bytes of the files.
+/// Checks a proof as [`check_until`], without cancellation.
+///
+/// # Errors
+/// As [`check_until`].
+pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
+    check_until(model, certificates, proof, threads, &|| false)
+}
+
+/// Checks a proof, on this number of threads (at least 1), until the caller cancels. `certificates`, `proof`: the bytes of the files.
 ///
 /// # Errors
 /// [`Refusal::Input`] if the certificates are damaged, of another model, or of a kind that is not checked, or the file of the
 /// proof is no proof or of other certificates; [`Refusal::Proof`] if the hierarchy, the pair tree or an exception of the certificates is
-/// invalid, or the proof is damaged or does not hold.
-pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
+/// invalid, or the proof is damaged or does not hold; [`Refusal::Cancelled`] if the caller cancels.
+pub fn check_until(
+    model: &Model,
+    certificates: &[u8],
+    proof: &[u8],
+    threads: usize,
+    is_cancelled: &IsCancelled<'_>,
+) -> Result<Confirmed, Refusal> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");
     let of_proof = |refusal: Refusal| refusal.of("proof");
     let file = container::Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;
@@ -69,13 +83,14 @@ pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -
     let counted = CountedPairs::new(model, &scope);
     let is_of_model = digest::digest(model, &scope, &counted.classes) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
-    exceptions::check(model, &scope, &counted).map_err(of_certificates)?;
-    let scaled = scaled::ScaledModel::new(model, &scope).map_err(of_certificates)?;
+    exceptions::check(model, &scope, &counted, is_cancelled).map_err(of_certificates)?;
+    let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
     let entries = entries::entries(&certificates).map_err(of_certificates)?;
     let proof = Proof::parse(proof).map_err(of_proof)?;
     let is_theirs = proof.digest == certificates.digest && proof.entries == entries.len() as u64;
     require(is_theirs, "proof: of other certificates")?;
-    let check = Check { certificates: &certificates, counted: &counted, scaled: &scaled, model };
+    let check =
+        Check { certificates: &certificates, counted: &counted, scaled: &scaled, model, is_cancelled };
     check.run(&proof, &entries, threads).map_err(of_proof)?;
     let groups = if scope.groups.is_some() { "pairs of groups" } else { "no groups" };
     let local = if file.has("local_nodes") { "local certificates" } else { "no local certificates" };

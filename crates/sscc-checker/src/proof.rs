@@ -10,13 +10,15 @@ use crate::dyadic::{Dyadic, Vector, vector};
 use crate::entries::Entry;
 use crate::model::Model;
 use crate::node_maps::{NodeMaps, numbers_of_map};
-use crate::refusal::{Refusal, proof, require};
+use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof, require};
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::{CountedPairs, Simplices};
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 /// The largest depth of quarters within quarters.
 const MAX_DEPTH: usize = 64;
+/// Pairs of triangles without a witness between two checks for cancellation.
+const PAIRS_PER_CHECK: usize = 1 << 12;
 
 /// Witnesses of node pairs.
 const DIRECTION: u8 = b'd';
@@ -101,10 +103,11 @@ pub(crate) struct Check<'a> {
     pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
     pub(crate) model: &'a Model,
+    pub(crate) is_cancelled: &'a IsCancelled<'a>,
 }
 
 impl Check<'_> {
-    /// Checks all entries that are proven, on several threads.
+    /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some.
     pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
         let nodes = self.certificates.nodes.len();
         if (file.rank as usize, file.nodes as usize) != (self.scaled.rank, nodes) {
@@ -130,6 +133,9 @@ impl Check<'_> {
             others.chain(own).min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
+        if refusal == Refusal::Cancelled {
+            return Err(refusal);
+        }
         let Entry { nodes: [n, m], radius } = entries[index];
         proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
     }
@@ -161,10 +167,10 @@ struct EntryReader<'a> {
 impl EntryReader<'_> {
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+        check_cancelled(self.check.is_cancelled)?;
         let Check { certificates, counted, .. } = self.check;
         let children = |n: u32| certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
-        let counts = |&[a, b]: &[u32; 2]| !counted.simplices(a, b).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
                 let dir = self.bytes.vector()?;
@@ -173,10 +179,18 @@ impl EntryReader<'_> {
                 }
                 proof(format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => match certificates.pairs([n, m]).find(counts) {
-                Some([a, b]) => proof(format!("triangles {a} and {b} count")),
-                None => Ok(()),
-            },
+            [NOTHING_COUNTS] => {
+                // Large nodes have many pairs.
+                for (number, [a, b]) in certificates.pairs([n, m]).enumerate() {
+                    if number % PAIRS_PER_CHECK == PAIRS_PER_CHECK - 1 {
+                        check_cancelled(self.check.is_cancelled)?;
+                    }
+                    if !counted.simplices(a, b).is_empty() {
+                        return proof(format!("triangles {a} and {b} count"));
+                    }
+                }
+                Ok(())
+            }
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
             [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
             [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
@@ -188,6 +202,7 @@ impl EntryReader<'_> {
         (self.directions, self.map) = (Vec::new(), None);
         let Check { certificates, counted, .. } = self.check;
         for [a, b] in certificates.pairs(nodes) {
+            check_cancelled(self.check.is_cancelled)?;
             for simplices in counted.simplices(a, b) {
                 if !self.simplices(simplices)? {
                     return proof(format!("the witness of triangles {a} and {b} does not hold"));
@@ -224,6 +239,7 @@ impl EntryReader<'_> {
 
     /// Whether a witness holds for two triangles, or parts of them.
     fn parts(&mut self, [x, y]: [&Triangle; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
+        check_cancelled(self.check.is_cancelled)?;
         let scaled = self.check.scaled;
         if let Some(number) = self.direction(tag)? {
             return Ok(self.directions[number].separates_corners(x, y, &self.radius));
@@ -252,6 +268,79 @@ impl EntryReader<'_> {
                 Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
             }
             _ => Ok(false),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+    use crate::scope::Scope;
+
+    /// The number of entries of [`check`].
+    const ENTRIES: usize = 200;
+
+    /// Checks a proof of the same entry again and again, on this number of threads: two triangles one unit apart, which the mode
+    /// brings together at 1, are separate below 1/2 by the direction along z. The numbered entry has a direction across.
+    fn check(threads: usize, wrong: Option<usize>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+        let corners = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+        let mode = (0..18).map(|row| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 }).collect();
+        let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;
+        let scope = Scope {
+            factor: vec![1.0],
+            is_dense: false,
+            center: vec![0.0],
+            one_vertex: false,
+            weld: false,
+            ignored: Vec::new(),
+            exceptions: Vec::new(),
+            groups: None,
+        };
+        let (certificates, counted) = (Certificates::of_leaf(2, 0.5), CountedPairs::new(&model, &scope));
+        let scaled = &ScaledModel::new(&model, &scope, &|| false)?;
+        let witness = |dir: [f64; 3]| {
+            let numbers = dir.into_iter().flat_map(f64::to_le_bytes);
+            [TRIANGLES, NEW_DIRECTION].into_iter().chain(numbers).collect::<Vec<u8>>()
+        };
+        let (along, across) = (witness([0.0, 0.0, 1.0]), witness([1.0, 0.0, 0.0]));
+        let bytes = |index: usize| if wrong == Some(index) { &across[..] } else { &along[..] };
+        let proven = (0..ENTRIES).map(|index| (index, bytes(index))).collect();
+        let file = Proof { digest: &[], entries: ENTRIES as u64, rank: 1, nodes: 1, maps: &[], proven };
+        let entries = [Entry { nodes: [0, 0], radius: 0.5 }; ENTRIES];
+        let (certificates, counted, model) = (&certificates, &counted, &model);
+        Check { certificates, counted, scaled, model, is_cancelled }.run(&file, &entries, threads)
+    }
+
+    /// One thread is what remains if the system refuses all others.
+    #[test]
+    fn any_number_of_threads_checks_all_entries() {
+        for threads in [1, 2, 7] {
+            assert_eq!(check(threads, None, &|| false), Ok(()), "{threads} threads");
+            for wrong in [0, 1, ENTRIES / 2, ENTRIES - 1] {
+                let refusal = check(threads, Some(wrong), &|| false).unwrap_err();
+                let Refusal::Proof(line) = &refusal else { panic!("{refusal}") };
+                assert!(line.starts_with(&format!("entry {wrong}, nodes 0 and 0")), "{line}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cancelled_check_ends_soon() {
+        for threads in [1, 2, 7] {
+            for most in [0, 1, 5, ENTRIES] {
+                let (checks, is_cancelled) = (AtomicUsize::new(0), AtomicBool::new(false));
+                let cancels = || {
+                    if checks.fetch_add(1, Ordering::Relaxed) >= most {
+                        is_cancelled.store(true, Ordering::Relaxed);
+                    }
+                    is_cancelled.load(Ordering::Relaxed)
+                };
+                assert_eq!(check(threads, None, &cancels), Err(Refusal::Cancelled), "{threads} threads");
+                // Each thread ends at its next check.
+                assert!(checks.load(Ordering::Relaxed) <= most + threads);
+            }
         }
     }
 }

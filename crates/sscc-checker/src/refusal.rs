@@ -1,4 +1,4 @@
-//! `Refusal`: the reason why a proof or a file is refused.
+//! `Refusal`: the reason why a proof or a file is refused, or why a check ended early.
 
 use std::fmt;
 
@@ -9,12 +9,19 @@ pub enum Refusal {
     Input(String),
     /// The proof does not hold, or the certificates do not have the parts that they should have.
     Proof(String),
+    /// The caller cancelled the check.
+    Cancelled,
 }
+
+/// Whether the caller cancels a check. Several threads call it often. Once true, it must stay true.
+pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Input(line) | Self::Proof(line)) = self;
-        f.write_str(line)
+        match self {
+            Self::Input(line) | Self::Proof(line) => f.write_str(line),
+            Self::Cancelled => f.write_str("interrupted"),
+        }
     }
 }
 
@@ -23,10 +30,16 @@ impl std::error::Error for Refusal {}
 impl Refusal {
     /// Adds the name of the file before the message.
     pub(crate) fn of(mut self, name: &str) -> Self {
-        let (Self::Input(line) | Self::Proof(line)) = &mut self;
-        line.insert_str(0, &format!("{name}: "));
+        if let Self::Input(line) | Self::Proof(line) = &mut self {
+            line.insert_str(0, &format!("{name}: "));
+        }
         self
     }
+}
+
+/// Ends a check that the caller cancels.
+pub(crate) fn check_cancelled(is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+    if is_cancelled() { Err(Refusal::Cancelled) } else { Ok(()) }
 }
 
 /// Returns the refusal of an input.

@@ -9,7 +9,7 @@
 
 use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
 use crate::model::Model;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{IsCancelled, Refusal, check_cancelled, input};
 use crate::scope::Scope;
 
 /// Binary digits of T for a diagonal and for a dense factor, which needs more, because products cancel.
@@ -36,7 +36,7 @@ pub(crate) struct ScaledModel {
 }
 
 impl ScaledModel {
-    pub(crate) fn new(model: &Model, scope: &Scope) -> Result<Self, Refusal> {
+    pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self, Refusal> {
         let rank = model.rank;
         let (columns, delta) = inverse(scope, rank)?;
         let mut used = vec![false; model.positions.len()];
@@ -52,6 +52,7 @@ impl ScaledModel {
         };
         let mut center_errors = Vector::default();
         for i in (0..used.len()).filter(|i| used[*i]) {
+            check_cancelled(is_cancelled)?;
             let rest = vector(model.positions[i]);
             this.positions[i] = vector(model.computed_position(i, &scope.center));
             for c in 0..3 {

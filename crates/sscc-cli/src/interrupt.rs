@@ -6,15 +6,13 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use anyhow::bail;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use sscc::CancelToken;
 
+use crate::flags;
 use crate::outcome::EXIT_INTERRUPTED;
-
-/// The message of every interrupt, the same as that of [`sscc::Error::Cancelled`].
-const MESSAGE: &str = "interrupted";
+use crate::output::one_line;
 
 static INTERRUPTED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
@@ -44,7 +42,7 @@ pub fn token() -> &'static CancelToken {
 /// Returns an error if the program has received an interrupt.
 pub fn check() -> anyhow::Result<()> {
     if is_interrupted() {
-        bail!(MESSAGE);
+        return Err(sscc::Error::Cancelled.into());
     }
     Ok(())
 }
@@ -52,10 +50,30 @@ pub fn check() -> anyhow::Result<()> {
 /// Returns an error as one line. For interrupted work the line has the root cause only, so that all commands print the
 /// same message.
 pub fn message(error: &anyhow::Error) -> String {
-    let root = error.root_cause().to_string();
-    if root.starts_with(MESSAGE) {
-        return root;
+    message_of(error, is_interrupted())
+}
+
+fn message_of(error: &anyhow::Error, is_interrupted: bool) -> String {
+    let root = flags::message(error.root_cause());
+    if is_interrupted && root.starts_with("interrupted") {
+        return one_line(&root);
     }
-    let messages: Vec<String> = error.chain().map(crate::flags::message).collect();
-    crate::output::one_line(&messages.join(": "))
+    let messages: Vec<String> = error.chain().map(flags::message).collect();
+    one_line(&messages.join(": "))
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::anyhow;
+
+    use super::*;
+
+    #[test]
+    fn interrupted_work_has_no_context() {
+        let error = || anyhow::Error::from(sscc::Error::Cancelled).context("the place");
+        assert_eq!(message_of(&error(), true), "interrupted");
+        // Names of files may begin with the same word.
+        let other = anyhow!("interrupted.obj: not found").context("the place");
+        assert_eq!(message_of(&other, false), "the place: interrupted.obj: not found");
+    }
 }

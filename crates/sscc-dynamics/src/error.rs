@@ -75,7 +75,7 @@ pub enum DynamicsError {
         range: &'static str,
     },
     /// A body penetrates another one, itself or the ground at the start.
-    #[error("body {body} (counted from 0) begins in {what} ({count} {unit}): move it, or deform it less")]
+    #[error("body {body} (counted from 0) begins in {what} ({count} {unit}): {}", what.way_out())]
     Interpenetration {
         /// The body.
         body: usize,
@@ -130,6 +130,17 @@ pub enum Obstacle {
     Itself,
     /// The ground.
     Ground,
+}
+
+impl Obstacle {
+    /// Returns the change of the body by which it no longer penetrates the obstacle.
+    fn way_out(self) -> &'static str {
+        match self {
+            Self::Body(_) | Self::Ground => "move it, or deform it less",
+            // No motion of the whole body changes how it meets itself.
+            Self::Itself => "deform it less",
+        }
+    }
 }
 
 impl std::fmt::Display for Obstacle {

@@ -145,7 +145,7 @@ impl World {
             for (n, body) in self.bodies.iter_mut().enumerate() {
                 let mut below = Vec::new();
                 body.place()?;
-                body.posed.vertices_below(ground.normal, ground.height, &mut below);
+                body.posed.vertices_below(ground.normal, ground.height, &mut below)?;
                 if !below.is_empty() {
                     return refused(n, Obstacle::Ground, below.len(), "vertices");
                 }

@@ -34,6 +34,7 @@ settings! {
     Kind "kind", LocalBudget "local_budget", Material "material", MaxExceptions "max_exceptions", MeshName "mesh_name",
     Metric "metric", Models "models", Modes "modes", Node "node", OnlyGroups "only_groups", Out "out", Q "q",
     Range "range", Rank "rank", Reach "reach", Resolution "resolution", Restart "restart", Rings "rings", Scheme "scheme", Steps "steps",
+    Threads "threads",
 }
 
 /// Text of a message, with settings in it. It is displayed with their names in Rust and in Python.

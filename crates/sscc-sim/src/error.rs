@@ -72,6 +72,21 @@ pub enum SimError {
         /// Error of a file that was not written.
         unwritten: Option<Box<SimError>>,
     },
+    /// A simulation is complete, but the measurement of the traditional method after it failed or was cancelled.
+    #[error(
+        "{failure}: the traditional method was not measured; the simulation is complete, and its files are in {}{}; the same command measures \
+         again",
+        folder.display(),
+        in_parentheses(unwritten)
+    )]
+    Unmeasured {
+        /// Cause of the end.
+        failure: Box<SimError>,
+        /// The folder of its files.
+        folder: PathBuf,
+        /// Error of a file that was not written.
+        unwritten: Option<Box<SimError>>,
+    },
 }
 
 impl SimError {
@@ -95,6 +110,7 @@ impl SimError {
             Self::Task(error) => error.is_cancelled(),
             Self::Dynamics(DynamicsError::Core(error)) => *error == sscc::Error::Cancelled,
             Self::Interrupted { .. } => true,
+            Self::Unmeasured { failure, .. } => failure.is_cancelled(),
             _ => false,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use sscc_io::Setting;
 use sscc_tasks::{Cache, Watch, available_threads, make_folder, models_folder};
 
@@ -30,7 +31,7 @@ pub struct Request {
 
 /// Simulates a scene, or continues a stopped simulation of it. [`Outputs::write`](crate::Outputs::write) writes the
 /// files of the result. Divergence and cancellation are not errors: [`FinishedRun::failure`] holds them, and the states
-/// are kept.
+/// are kept. [`FinishedRun::unmeasured`] holds an error after the last step.
 ///
 /// # Errors
 /// When the scene or a model cannot be read or computed; when the simulation cannot begin or continue ([`run`]), for
@@ -46,8 +47,7 @@ pub fn simulate(request: &Request, watch: &dyn Watch) -> Result<FinishedRun, Sim
     };
     make_folder(&folder)?;
     let threads = request.threads.unwrap_or_else(available_threads);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| SimError::refused("threads", error.to_string()))?;
+    let pool = start_threads(ThreadPoolBuilder::new(), threads)?;
     let steps = request.steps.unwrap_or(scene.steps);
     pool.install(|| finish(scene, models.as_deref(), &cache, folder, steps, request.restart, watch))
 }
@@ -81,8 +81,15 @@ fn finish(
         Ok(costs) => (costs, None),
         Err(error) => (Vec::new(), Some(error)),
     };
-    let failure = failure.or(unmeasured);
-    Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure })
+    Ok(FinishedRun { scene, prepared, folder, history, summary, traditional, failure, unmeasured })
+}
+
+/// Starts this number of threads.
+fn start_threads(builder: ThreadPoolBuilder, count: usize) -> Result<ThreadPool> {
+    builder.num_threads(count).build().map_err(|error| {
+        let place = Setting::Threads + format!(" {count}");
+        SimError::refused(place, format!("the system refuses so many threads: {error}; choose fewer"))
+    })
 }
 
 /// Returns the folder that is named after the scene.
@@ -93,4 +100,19 @@ fn own_folder(path: &Path, name: &str) -> Result<PathBuf> {
         return Err(SimError::refused(path.display(), cause));
     }
     Ok(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refused_threads_are_an_error_with_their_number() {
+        // No address space has room for such a stack (bytes).
+        let builder = || ThreadPoolBuilder::new().stack_size((isize::MAX as usize >> 16) << 16);
+        let message = start_threads(builder(), 2).err().unwrap().to_string();
+        let start = "threads 2: the system refuses so many threads: ";
+        assert!(message.starts_with(start) && message.ends_with("; choose fewer"), "{message}");
+        assert_eq!(start_threads(ThreadPoolBuilder::new(), 2).unwrap().current_num_threads(), 2);
+    }
 }

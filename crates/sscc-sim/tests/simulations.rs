@@ -175,6 +175,43 @@ fn a_cancelled_simulation_continues_to_the_same_bits() {
     }
 }
 
+/// Cancels when the measurement of the traditional method begins.
+#[derive(Default)]
+struct Unmeasured(CancelToken);
+
+impl Progress for Unmeasured {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.0)
+    }
+}
+
+impl Watch for Unmeasured {
+    fn begin(&self, stage: Stage) {
+        if stage == Stage::Comparison {
+            self.0.cancel();
+        }
+    }
+
+    fn note(&self, _note: &str) {}
+}
+
+#[test]
+fn a_simulation_is_complete_without_the_measurement_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = simulate(&request(folder.path()), &Unmeasured::default()).unwrap();
+    assert!(run.failure.is_none() && run.traditional.is_empty());
+    assert_eq!(run.history.len(), 400);
+    let error = written(run).unwrap_err();
+    assert!(error.is_cancelled());
+    let message = "interrupted: the traditional method was not measured; the simulation is complete, and its files are in ";
+    assert_eq!(
+        error.to_string(),
+        format!("{message}{}; the same command measures again", folder.path().display())
+    );
+}
+
 #[test]
 fn a_damaged_model_is_made_anew_with_a_note() {
     let (folder, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

@@ -84,6 +84,17 @@ pub enum SolidError {
         /// Its vertices.
         corners: [u32; 4],
     },
+    /// A tetrahedron is so nearly flat that rounding decides whether it is, so that it has no second order.
+    #[error(
+        "tetrahedron {tet} (counted from 0, vertices {corners:?}) is too flat for second order: keep the solid in first order, or \
+         mesh it anew"
+    )]
+    NearlyFlatTet {
+        /// The tetrahedron, from 0.
+        tet: usize,
+        /// Its vertices.
+        corners: [u32; 4],
+    },
     /// A tetrahedron is inverted, while others are not.
     #[error(
         "tetrahedron {tet} (counted from 0, vertices {corners:?}) is inverted, one of {count}: exchange two of its vertices, or mesh the solid anew"

@@ -31,9 +31,14 @@ impl Solid {
             self.tets().iter().map(|tet| EDGES.map(|edge| middle(edge.map(|k| tet[k])))).collect();
         let (materials, of_elements) = self.materials();
         let (materials, of_elements) = (materials.to_vec(), of_elements.to_vec());
+        // The nodes are in the middles of the edges, so only a nearly flat tetrahedron is refused.
+        let nearly_flat = |error| match error {
+            SolidError::InvertedSecondOrderTet { tet, corners } => SolidError::NearlyFlatTet { tet, corners },
+            other => other,
+        };
         let solid =
-            Self::with_middles(vertices, self.tets().to_vec(), &middles, vec![], materials, of_elements)?;
-        Ok((solid, edges))
+            Self::with_middles(vertices, self.tets().to_vec(), &middles, vec![], materials, of_elements);
+        Ok((solid.map_err(nearly_flat)?, edges))
     }
 }
 
@@ -68,6 +73,16 @@ mod tests {
         edges.sort_unstable();
         assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()));
         assert!(matches!(solid.elevated(), Err(SolidError::MixedOrders { tets: 2, second_order: 2 })));
+    }
+
+    #[test]
+    fn a_nearly_flat_tetrahedron_stays_in_first_order() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.25, 0.25, 5e-10)];
+        let solid = Solid::uniform(corners, vec![[0, 1, 2, 3]], vec![], Material::default()).unwrap();
+        let message = solid.elevated().map(drop).unwrap_err().to_string();
+        let cause = "tetrahedron 0 (counted from 0, vertices [0, 1, 2, 3]) is too flat for second order: keep the solid in first \
+                     order, or mesh it anew";
+        assert_eq!(message, cause);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! A host can change the floating-point mode of a thread: audio threads often flush small numbers to zero. Then rounding
 //! bounds are too small, and a difference of two positions may be 0 though they differ. Meshes and queries check the
-//! mode when they are made, certificates when they are computed, shapes when they are placed, and detectors and the
+//! mode when they are made, certificates when they are computed, and detectors, shapes and the
 //! searches of queries each time. Only a query that the root's radius answers does not check it: that query stays one
 //! comparison.
 

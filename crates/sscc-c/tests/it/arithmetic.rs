@@ -119,6 +119,10 @@ fn searches_in_another_mode_are_refused() {
     });
     let mut impacts = Vec::new();
     refused("impacts", || x.impacts(&mut y, Aabb::EMPTY, &mut impacts));
+    refused("near", || x.near(&mut y, Aabb::EMPTY, 0.5, 9, &mut pairs));
+    let mut vertices = Vec::new();
+    refused("vertices below a plane", || shape.vertices_below(DVec3::Z, 0.5, &mut vertices));
+    refused("bound of displacements", || shape.displacement_bound(&[0.5]));
 }
 
 /// Each thread has its own mode, so that other threads are not refused.

@@ -111,10 +111,13 @@ fn audit_exactly(args: &Audit, model: &ReducedModel, certificates: &Certificates
         Ok(witnesses) => {
             proof.extend(witnesses);
             let file = read_whole(&args.certificates)?;
-            match sscc_checker::check(&checked_model(model)?, &file, &proof, threads) {
+            let is_cancelled = &interrupt::is_interrupted;
+            match sscc_checker::check_until(&checked_model(model)?, &file, &proof, threads, is_cancelled) {
                 Ok(confirmed) => Ok(confirmed.left_out),
                 Err(Refusal::Proof(line)) => Err(line),
-                Err(refusal @ Refusal::Input(_)) => return Err(refusal).with_context(named),
+                Err(refusal @ (Refusal::Input(_) | Refusal::Cancelled)) => {
+                    return Err(refusal).with_context(named);
+                }
             }
         }
         Err(error) => Err(error.to_string()),

@@ -1,10 +1,12 @@
 //! `sscc resolve`: finds a free q near each colliding q.
 
-use anyhow::{Context, Result, ensure};
+use std::ops::ControlFlow;
+
+use anyhow::{Result, ensure};
 use serde::Serialize;
 use sscc::ResolveOptions;
-use sscc_io::Setting;
-use sscc_tasks::{ResolveReport, read_configuration, resolve_rows};
+use sscc_io::{LoadedModel, Setting};
+use sscc_tasks::{ResolveReport, TaskError, read_configuration, resolve_rows};
 
 use super::check::coordinates;
 use crate::args::Resolve;
@@ -37,35 +39,56 @@ pub fn run(args: &Resolve) -> Result<Outcome> {
     };
     let options = ResolveOptions::default().start(start).all(args.all);
     let threads = load::threads(&args.options.threads);
-    let found = resolve_rows(model, &certificates, &rows, &options, threads, &Bar::new("resolving"));
-    interrupt::check()?;
-    // All other arguments were checked before, so an error is about the start.
-    let found = found.context("--from")?;
-    let mut out = Output::new();
-    let is_listed = |report: &ResolveReport| !args.only.is_colliding() || !report.is_free_as_given();
-    for (index, report) in found.iter().enumerate().filter(|(_, report)| is_listed(report)) {
-        match (args.json.json, args.at.trajectory.is_some()) {
-            (true, _) if args.only.is_colliding() => out.json(&Row { index, report })?,
-            (true, _) => out.json(report)?,
-            (false, true) => out.line(format_args!("row {index:>5}  {report}"))?,
-            (false, false) => {
-                let q = report.q.as_deref().filter(|_| !report.is_free_as_given());
-                let q = q.map(|q| {
-                    format!("q (rounded; --json prints all digits): {}", rounded(q, &loaded.mode_names))
-                });
-                [Some(report.to_string()), q].into_iter().flatten().try_for_each(|line| out.line(line))?;
-            }
+    let bar = Bar::new("resolving");
+    // Where every row is printed, the rows show the progress.
+    let is_listing = args.at.trajectory.is_some() && !args.only.is_colliding();
+    let bar = if is_listing { bar.beside_output() } else { bar };
+    let (mut out, mut summary) = (Output::new(), Summary::default());
+    let take = |index: usize, report: ResolveReport| {
+        summary.add(index, &report);
+        if !args.only.is_colliding() || !report.is_free_as_given() {
+            print(&mut out, args, &loaded, index, &report)?;
+            // The next row may take minutes.
+            out.flush()?;
         }
-    }
+        Ok(if out.is_closed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    };
+    let resolved: Result<()> = resolve_rows(model, &certificates, &rows, &options, threads, &bar, take);
+    drop(bar);
+    interrupt::check()?;
+    // All other arguments were checked before, so an error of the task is about the start.
+    resolved.map_err(|error| if error.is::<TaskError>() { error.context("--from") } else { error })?;
     if !args.json.json && (args.at.trajectory.is_some() || args.only.is_colliding()) {
-        out.line(summary(&found))?;
+        out.line(summary.line())?;
     }
     out.finish()?;
-    let is_done = found.iter().all(|report| report.resolved);
+    let is_done = summary.failed == 0;
     if !is_done {
         note("give a free start by --from, or certificates about a free centre");
     }
     Ok(if is_done { Outcome::Done } else { Outcome::Finding })
+}
+
+/// Prints the report of a row.
+fn print(
+    out: &mut Output,
+    args: &Resolve,
+    loaded: &LoadedModel,
+    index: usize,
+    report: &ResolveReport,
+) -> Result<()> {
+    match (args.json.json, args.at.trajectory.is_some()) {
+        (true, _) if args.only.is_colliding() => out.json(&Row { index, report }),
+        (true, _) => out.json(report),
+        (false, true) => out.line(format_args!("row {index:>5}  {report}")),
+        (false, false) => {
+            let q = report.q.as_deref().filter(|_| !report.is_free_as_given());
+            let q = q.map(|q| {
+                format!("q (rounded; --json prints all digits): {}", rounded(q, &loaded.mode_names))
+            });
+            [Some(report.to_string()), q].into_iter().flatten().try_for_each(|line| out.line(line))
+        }
+    }
 }
 
 /// Returns q with four digits: the entries of named modes that are not 0, or all entries.
@@ -83,19 +106,37 @@ fn rounded(q: &[f64], names: &[String]) -> String {
     }
 }
 
-/// Returns the line that counts the rows and names the one with the largest change.
-fn summary(found: &[ResolveReport]) -> String {
-    let free = found.iter().filter(|report| report.is_free_as_given()).count();
-    let failed = found.iter().filter(|report| !report.resolved).count();
-    let resolved = found.len() - free - failed;
-    let changed =
-        found.iter().enumerate().filter(|(_, report)| report.resolved && !report.is_free_as_given());
-    let largest = changed.max_by(|a, b| a.1.change.total_cmp(&b.1.change).then(b.0.cmp(&a.0)));
-    let largest =
-        largest.map(|(index, report)| format!("; worst: row {index} (change {})", length(report.change)));
-    format!(
-        "{}: {free} free as given, {resolved} resolved, {failed} not resolved{}; rows are counted from 0; --json prints each free q",
-        counted(found.len() as u64, "row"),
-        largest.unwrap_or_default()
-    )
+/// Counts of the rows so far, and the one with the largest change.
+#[derive(Default)]
+struct Summary {
+    rows: usize,
+    free: usize,
+    failed: usize,
+    /// The row and its change.
+    largest: Option<(usize, f64)>,
+}
+
+impl Summary {
+    fn add(&mut self, index: usize, report: &ResolveReport) {
+        self.rows += 1;
+        if !report.resolved {
+            self.failed += 1;
+        } else if report.is_free_as_given() {
+            self.free += 1;
+        } else if self.largest.is_none_or(|(_, change)| report.change > change) {
+            self.largest = Some((index, report.change));
+        }
+    }
+
+    fn line(&self) -> String {
+        let Self { rows, free, failed, largest } = *self;
+        let resolved = rows - free - failed;
+        let largest =
+            largest.map(|(index, change)| format!("; worst: row {index} (change {})", length(change)));
+        format!(
+            "{}: {free} free as given, {resolved} resolved, {failed} not resolved{}; rows are counted from 0; --json prints each free q",
+            counted(rows as u64, "row"),
+            largest.unwrap_or_default()
+        )
+    }
 }

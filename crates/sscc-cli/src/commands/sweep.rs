@@ -60,12 +60,17 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let swept = sweep_model(&loaded, &certificates, &request, &bar);
     interrupt::check()?;
     let rows = swept.map_err(|error| load::in_file(error.into(), &args.model.path))?;
-    print(args, &rows, &certificates, || {
-        [vec![ranges.to_string()], sweep_table(&rows, "--q, --ignore-rest")].concat()
-    })?;
+    // Given certificates refuse --ignore-rest unless they were computed with it.
+    let (remedy, ignore_rest) = match args.certificates {
+        Some(_) => ("--q, certificates with --ignore-rest", "certificates with --ignore-rest leave"),
+        None => ("--q, --ignore-rest", "--ignore-rest leaves"),
+    };
+    print(args, &rows, &certificates, || [vec![ranges.to_string()], sweep_table(&rows, remedy)].concat())?;
     // The table itself states this.
     if args.json.json && rows.iter().any(|row| row.outcome == SweepOutcome::CollidingAtStart) {
-        note("pairs collide at the start: --ignore-rest leaves out those at rest, --q sets other weights");
+        note(format_args!(
+            "pairs collide at the start: {ignore_rest} out those at rest, --q sets other weights"
+        ));
     }
     Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
 }

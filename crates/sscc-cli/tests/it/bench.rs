@@ -307,6 +307,13 @@ fn invalid_requests_are_refused() {
     ] {
         assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{name}");
     }
+    let lines = bench(folder.path(), &["--list", "--json"]).json();
+    assert_eq!(lines.len(), list.stdout.lines().count());
+    for (line, text) in lines.iter().zip(list.stdout.lines()) {
+        assert_eq!(keys(line), ["about", "name"]);
+        let [name, about] = ["name", "about"].map(|key| line[key].as_str().unwrap());
+        assert_eq!(text, format!("{name:<20}{about}"));
+    }
     assert_eq!(files(folder.path()), [] as [&Path; 0], "--list leaves no file");
     for (args, named) in [
         (&["amplitude"][..], "there is no scenario 'amplitude'; did you mean 'amplitudes'?"),

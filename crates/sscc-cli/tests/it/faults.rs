@@ -276,6 +276,30 @@ fn without_memory_files_stay_old() {
     assert!((1..7).contains(&failed), "{failed}");
 }
 
+/// No address space has room for the stacks that the environment requests, so the system refuses each thread.
+#[test]
+fn a_system_that_refuses_threads_is_an_error_of_one_line() {
+    let directory = folder();
+    let folder = directory.path();
+    let before = files(folder);
+    for args in [
+        &["check", "mesh.obj"][..],
+        &["certify", "sheet.model.safetensors", "-o", "new.sscc.safetensors"],
+        &["simulate", "spring", "--out", "out"],
+    ] {
+        let mut command = command(folder, args);
+        let run = Run::of(command.env("RUST_MIN_STACK", (1_u64 << 60).to_string()));
+        let message = run.refusal();
+        assert!(
+            message.starts_with("error: the system refuses threads: free memory, or allow "),
+            "{message}"
+        );
+        // The cause is that of the system.
+        assert!(!message.contains("already been initialized"), "{message}");
+    }
+    assert_eq!(files(folder), before);
+}
+
 #[test]
 fn commands_whose_reader_closes_the_pipe_do_not_panic() {
     let directory = folder();

@@ -3,13 +3,13 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::common::{command, files, strips};
+use crate::common::{Run, command, files, strips};
 
 /// Waits until a program has installed its signal handlers, by the process status of Linux; elsewhere for a second.
 fn wait_for_handlers(child: &Child) {
@@ -49,6 +49,20 @@ fn interrupted(folder: &Path, all: &[(&[&str], &str)]) -> Vec<(Option<i32>, Stri
         (child.wait().unwrap().code(), stderr)
     };
     children.iter_mut().map(end).collect()
+}
+
+/// Starts a command, and interrupts it when it has printed its first line. Returns all lines that it has printed.
+pub fn interrupted_after_a_line(folder: &Path, args: &[&str]) -> Run {
+    let mut child = command(folder, args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut reader = BufReader::new(child.stdout.take().unwrap());
+    let (mut stdout, mut stderr) = (String::new(), String::new());
+    reader.read_line(&mut stdout).unwrap();
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(sent.unwrap().success());
+    reader.read_to_string(&mut stdout).unwrap();
+    child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
+    let args = args.iter().map(|arg| (*arg).to_owned()).collect();
+    Run { args, code: child.wait().unwrap().code(), stdout, stderr }
 }
 
 /// Writes the spring with polynomial modes, whose certificates take long at a small epsilon.

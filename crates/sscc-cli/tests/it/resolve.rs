@@ -6,6 +6,8 @@ use serde_json::json;
 use sscc_io::write_npy;
 
 use crate::common::{keys, sorted, sscc, strips};
+#[cfg(unix)]
+use crate::interrupt::interrupted_after_a_line;
 
 const MODEL: &str = "strips.model.safetensors";
 const CERTIFICATES: &str = "strips.sscc.safetensors";
@@ -39,6 +41,27 @@ fn every_q_of_a_trajectory_is_resolved() {
     // From the other side.
     let run = sscc(folder, &["resolve", MODEL, "--q=1,0", "--from=2,0", "--json"]);
     assert!(run.code == Some(0) && run.json()[0]["q"][0].as_f64().unwrap() > 1.0, "{run:?}");
+}
+
+#[test]
+#[cfg(unix)]
+fn rows_before_an_interrupt_are_printed() {
+    const ROWS: usize = 50_000;
+    let directory = strips();
+    let folder = directory.path();
+    let rows: Vec<f64> = (0..ROWS).flat_map(|row| [1.0, 1e-5 * row as f64]).collect();
+    write_npy(&folder.join("q.npy"), &[ROWS, 2], &rows).unwrap();
+    let args = ["resolve", MODEL, "--certificates", CERTIFICATES, "--trajectory", "q.npy", "--json"];
+    let run = interrupted_after_a_line(folder, &args);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(130), "error: interrupted\n"));
+    let lines = run.json();
+    assert!((1..ROWS).contains(&lines.len()), "{}", lines.len());
+    for line in lines {
+        assert_eq!(
+            (keys(&line), &line["resolved"]),
+            (sorted("resolved, q, change, safe_scale_change"), &json!(true))
+        );
+    }
 }
 
 #[test]

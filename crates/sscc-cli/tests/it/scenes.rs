@@ -419,6 +419,40 @@ fn pairs_of_nodes_at_the_first_time_are_ignored() {
     assert_eq!(numbers(&playback["curves"]["offsets"])[2], 2);
 }
 
+/// A file of contact curves has those of one mesh, or those between two.
+#[test]
+fn curves_of_nodes_that_are_compared_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let sheet = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+    let needle = [[1.0, 1.0, -0.5], [1.25, 1.0, 0.5], [1.0, 1.25, 0.5]];
+    write(folder, "two.gltf", &moving(&sheet, &needle, [0.0, 0.0, 4.0]));
+    let check = |args: &[&str]| sscc(folder, &[&["check"], args, &["--curves=c.obj"]].concat());
+    let animated = ["two.gltf", "--animation=pass", "--times=0", "--between-nodes"];
+    for (args, way_out) in [
+        (&["two.gltf"][..], "name one as FILE#NODE, and a second one by --against FILE#NODE"),
+        (&animated, "name one by --node"),
+    ] {
+        let refused = check(args);
+        let cause = "error: c.obj: contact curves are those of one mesh or between two, but two.gltf shows several nodes: ";
+        assert_eq!(refused.refusal(), format!("{cause}{way_out}"));
+        assert!(!folder.join("c.obj").exists());
+    }
+    let curves = |args: &[&str]| {
+        let run = check(args);
+        let text = fs::read_to_string(folder.join("c.obj")).unwrap();
+        (run.code, text.lines().next().unwrap().split(';').next().unwrap().to_owned())
+    };
+    assert_eq!(
+        curves(&["two.gltf#sheet", "--against=two.gltf#needle"]),
+        (Some(1), "# contact curves: 1".to_owned())
+    );
+    assert_eq!(
+        curves(&[&animated[..], &["--node=needle"]].concat()),
+        (Some(0), "# contact curves: 0".to_owned())
+    );
+}
+
 /// A mesh at two nodes is one mesh, whose nodes are compared on request.
 #[test]
 fn nodes_of_one_mesh_are_compared_on_request() {
@@ -459,6 +493,33 @@ fn scenes_without_meshes_are_refused_in_one_line() {
     write(folder, "points.gltf", &points);
     let found = lines(folder, &["points.gltf"]);
     assert_eq!((found.len(), &found[0]["node"]), (1, &json!(1)));
+}
+
+/// A strip whose triangles all have repeated corners has no triangles: the other nodes are checked.
+#[test]
+fn nodes_without_triangles_are_left_out_with_a_warning() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut file = gltf(&[("a", &triangle), ("b", &triangle)], json!([{"mesh": 0}, {"mesh": 1}]));
+    file["meshes"][0]["primitives"][0]["mode"] = json!(5);
+    file["meshes"][0]["primitives"][0]["indices"] = json!(2);
+    let add = |list: &mut Value, item: Value| list.as_array_mut().unwrap().push(item);
+    let corners = BASE64.encode([0_u8, 0, 1, 1]);
+    add(&mut file["buffers"], json!({"byteLength": 4, "uri": format!("data:;base64,{corners}")}));
+    add(&mut file["bufferViews"], json!({"buffer": 2, "byteLength": 4}));
+    add(
+        &mut file["accessors"],
+        json!({"bufferView": 2, "componentType": 5121, "count": 4, "type": "SCALAR"}),
+    );
+    write(folder, "strip.gltf", &file);
+    let run = sscc(folder, &["check", "strip.gltf", "--json"]);
+    assert_eq!((run.code, run.json().len(), &run.json()[0]["node"]), (Some(0), 1, &json!(1)), "{run:?}");
+    let warning =
+        "warning: strip.gltf: nodes[0]: meshes[0] has only strips whose triangles have repeated corners";
+    assert!(run.stderr.starts_with(warning) && run.stderr.lines().count() == 1, "{run:?}");
+    let alone = sscc(folder, &["check", "strip.gltf#a"]);
+    assert!(alone.refusal().starts_with("error: strip.gltf#a: meshes[0]: it has only strips "), "{alone:?}");
 }
 
 /// A warning names an extension that shows a mesh at many places: its instances are not compared.

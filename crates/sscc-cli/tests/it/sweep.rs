@@ -252,5 +252,6 @@ fn a_start_that_collides_is_reported_in_one_line() {
     assert_eq!((run.code, run.stderr.as_str(), lines.len()), (Some(1), "", 5), "{run:?}");
     assert_eq!(lines[0], "each weight from -2 to 2, in units of q");
     assert!(lines[2].starts_with("all ") && lines[2].contains("COLLIDING at the start  "), "{run:?}");
+    assert!(lines[3].ends_with(" (--q, certificates with --ignore-rest)"), "{run:?}");
     assert!(lines[4].starts_with("4 sweeps: 0 free, 4 not; "), "{run:?}");
 }

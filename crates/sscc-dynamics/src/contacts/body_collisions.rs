@@ -146,13 +146,14 @@ impl BodyCollisions {
         [a, b]: [usize; 2],
         margin: f64,
         found: &mut Vec<([usize; 2], Pair)>,
-    ) {
+    ) -> Result<(), DynamicsError> {
         let mut pairs = Vec::new();
         let (left, right) = bodies.split_at_mut(b);
         if let (Some(x), Some(y)) = (&mut left[a].swept, &mut right[0].swept) {
-            x.near(y, self.around.unwrap_or_default(), margin, MAX_NEAR, &mut pairs);
+            x.near(y, self.around.unwrap_or_default(), margin, MAX_NEAR, &mut pairs)?;
         }
         found.extend(pairs.into_iter().map(|pair| ([a, b], pair)));
+        Ok(())
     }
 
     /// Returns the colliding bodies, sorted, with their triangle pairs.

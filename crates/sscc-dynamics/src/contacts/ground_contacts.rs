@@ -183,7 +183,7 @@ impl GroundContacts {
             ground.normal.dot((lower + upper) * 0.5) - ground.normal.abs().dot((upper - lower) * 0.5);
         let clear = lowest - ground.height - skin;
         if clear < near {
-            body.posed.vertices_below(ground.normal, ground.height + skin + near, &mut self.vertices);
+            body.posed.vertices_below(ground.normal, ground.height + skin + near, &mut self.vertices)?;
         }
         self.search_limit = Some(near.max(clear) - rounding);
         (self.travel, self.near_travel) = (0.0, 0.0);

@@ -39,7 +39,7 @@ impl ImpactContacts {
         selected: &BodySet,
     ) -> Result<(), DynamicsError> {
         let at_impacts: Vec<_> = impacts.iter().map(|one| corners_at_impact(bodies, one)).collect();
-        self.find_near(bodies, contacts, impacts);
+        self.find_near(bodies, contacts, impacts)?;
         wake(bodies, contacts, selected)?;
         let WorldContacts { laws, triangles, .. } = contacts;
         let first = triangles.list.len();
@@ -61,14 +61,19 @@ impl ImpactContacts {
 
     /// Finds the pairs of triangles near impacts that have no contact. Without them, other triangles near the impacts would
     /// be found only in later corrections.
-    fn find_near(&mut self, bodies: &mut [Body], contacts: &WorldContacts, impacts: &[([usize; 2], Impact)]) {
+    fn find_near(
+        &mut self,
+        bodies: &mut [Body],
+        contacts: &WorldContacts,
+        impacts: &[([usize; 2], Impact)],
+    ) -> Result<(), DynamicsError> {
         let Self { near, gathered } = self;
         let WorldContacts { laws, collisions, triangles, .. } = contacts;
         near.clear();
         for (numbers, _) in impacts {
             if numbers[0] != numbers[1] && !gathered.contains(numbers) {
                 gathered.push(*numbers);
-                collisions.find_near(bodies, *numbers, NEAR_MARGIN * laws.skin, near);
+                collisions.find_near(bodies, *numbers, NEAR_MARGIN * laws.skin, near)?;
             }
         }
         near.extend(
@@ -80,6 +85,7 @@ impl ImpactContacts {
             let has_begun = numbers[0] == numbers[1] && triangles.has_begun(indices, *pair);
             !has_begun && !triangles.has_rigid(indices, *pair)
         });
+        Ok(())
     }
 }
 

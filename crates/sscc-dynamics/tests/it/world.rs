@@ -24,6 +24,7 @@ fn bodies_that_penetrate_at_the_start_are_refused() {
     assert!(error.to_string().starts_with("body 1 (counted from 0) begins in body 0"), "{error}");
     let error = with(&[at(0.0, 0.5), at(5.0, 0.05)]).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 1, what: Obstacle::Ground, .. }));
+    assert!(error.to_string().ends_with(": move it, or deform it less"), "{error}");
     // A folded body.
     let r = shapes[1].model().rank();
     let folded = (0..r).flat_map(|k| [-1.0, 1.0].map(|s| (k, s))).find_map(|(k, s)| {
@@ -41,6 +42,7 @@ fn bodies_that_penetrate_at_the_start_are_refused() {
     };
     let error = check_start(Response::Contact).unwrap_err();
     assert!(matches!(error, DynamicsError::Interpenetration { body: 0, what: Obstacle::Itself, .. }));
+    assert!(error.to_string().ends_with(" pairs of triangles): deform it less"), "{error}");
     // Bodies without a contact response may begin in self-collision.
     assert_eq!(
         (check_start(Response::Ignore).is_ok(), check_start(Response::Constrain).is_ok()),

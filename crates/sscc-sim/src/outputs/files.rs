@@ -68,21 +68,21 @@ impl Outputs {
     /// Returns the result of the simulation.
     ///
     /// # Errors
-    /// When the simulation was cancelled or ended early; else when a file was not written: the error is that of the
-    /// first such file.
+    /// When the simulation, or the measurement after it, was cancelled or ended early; else when a file was not written:
+    /// the error is that of the first such file.
     pub fn finish(self, run: FinishedRun) -> Result<(), SimError> {
-        let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place).map(|(_, error)| error);
-        match (run.failure, unwritten) {
-            (None, None) => Ok(()),
-            (None, Some(unwritten)) => Err(unwritten),
+        let folder = self.folder;
+        let unwritten = self.unwritten.into_iter().min_by_key(|(place, _)| *place);
+        let unwritten = unwritten.map(|(_, error)| Box::new(error));
+        match (run.failure, run.unmeasured) {
+            (None, None) => unwritten.map_or(Ok(()), |error| Err(*error)),
             (Some(failure), _) if failure.is_cancelled() => {
                 Err(SimError::Interrupted { steps: run.history.len() })
             }
-            (Some(failure), unwritten) => Err(SimError::EndedEarly {
-                failure: Box::new(failure),
-                folder: self.folder,
-                unwritten: unwritten.map(Box::new),
-            }),
+            (Some(failure), _) => Err(SimError::EndedEarly { failure: Box::new(failure), folder, unwritten }),
+            (None, Some(failure)) => {
+                Err(SimError::Unmeasured { failure: Box::new(failure), folder, unwritten })
+            }
         }
     }
 }

@@ -23,8 +23,10 @@ pub struct FinishedRun {
     pub summary: Summary,
     /// Costs of the traditional method at some states.
     pub traditional: Vec<TraditionalCost>,
-    /// Error that ended the simulation or the measurement of the traditional method early, if any.
+    /// Error that ended the simulation early, if any.
     pub failure: Option<SimError>,
+    /// Error of the measurement of the traditional method after a complete simulation, if any.
+    pub unmeasured: Option<SimError>,
 }
 
 impl FinishedRun {

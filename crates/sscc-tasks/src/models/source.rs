@@ -159,7 +159,7 @@ impl SolidSource {
 
     /// Adds lines about the file of its surface.
     #[must_use]
-    fn with_warnings(mut self, lines: Vec<String>) -> Self {
+    pub(crate) fn with_warnings(mut self, lines: Vec<String>) -> Self {
         if let Self::Around { warnings, .. } | Self::Within { warnings, .. } = &mut self {
             *warnings = lines;
         }

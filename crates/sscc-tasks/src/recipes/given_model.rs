@@ -35,6 +35,8 @@ pub struct GivenModel {
     pub mass: MassData,
     /// Properties that were assumed because the files do not state them.
     pub assumed: Option<String>,
+    /// Lines about content of the files whose meaning is not clear.
+    pub warnings: Vec<String>,
 }
 
 /// Names of the unit of length in scenes; a model that states no unit is in metres.
@@ -58,7 +60,7 @@ impl GivenModel {
         let path = &files.path;
         let refused = |cause: String| Err(TaskError::refused(path.display(), cause));
         let loaded = load_model_with(path, &LoadOptions::new(files.modes.as_deref(), None))?;
-        let (model, info) = (loaded.model, loaded.info);
+        let (model, info, warnings) = (loaded.model, loaded.info, loaded.warnings);
         if !METRES.contains(&info.units.trim().to_lowercase().as_str()) {
             let unit = crate::text::one_line(&info.units);
             return refused(format!(
@@ -78,7 +80,7 @@ impl GivenModel {
             return refused(cause.into());
         }
         let elasticity = if is_linear { elasticity.linearized() } else { elasticity };
-        let given = Self { model, elasticity, mass, assumed };
+        let given = Self { model, elasticity, mass, assumed, warnings };
         let given = if is_linear { given.uncoupled().in_file(path)? } else { given };
         let factor = resize.factor(given.model.mesh().rest_positions()).in_file(path)?;
         given.scaled(factor).in_file(path)
@@ -102,6 +104,7 @@ impl GivenModel {
             elasticity: Elasticity::Linear(Stiffness::from_diagonal(&found.eigenvalues)?),
             mass: MassData { moments, ..self.mass },
             assumed: self.assumed,
+            warnings: self.warnings,
         })
     }
 
@@ -110,7 +113,7 @@ impl GivenModel {
         if factor == 1.0 {
             return Ok(self);
         }
-        let Self { model, elasticity, mass, assumed } = self;
+        let Self { model, elasticity, mass, assumed, warnings } = self;
         let divisor = factor.powf(1.5);
         let modes = model.modes().displacements().iter().map(|u| *u / divisor).collect();
         let modes = Modes::new(model.rank(), modes)?;
@@ -123,7 +126,8 @@ impl GivenModel {
         } else {
             ReducedModel::new(mesh, modes)?
         };
-        Ok(Self { model, elasticity: elasticity.scaled(factor)?, mass: mass.scaled(factor), assumed })
+        let (elasticity, mass) = (elasticity.scaled(factor)?, mass.scaled(factor));
+        Ok(Self { model, elasticity, mass, assumed, warnings })
     }
 
     /// Returns at most `count` uncoupled modes of the linear forces, with their eigenvalues (1/s^2), ascending.

@@ -182,6 +182,38 @@ mod tests {
         assert_ne!(key, of_stiff);
     }
 
+    /// Keeps notes.
+    #[derive(Default)]
+    struct Notes(std::sync::Mutex<Vec<String>>);
+
+    impl sscc::Progress for Notes {
+        fn report(&self, _done: usize, _total: usize) {}
+    }
+
+    impl Watch for Notes {
+        fn begin(&self, _stage: Stage) {}
+
+        fn note(&self, note: &str) {
+            self.0.lock().unwrap().push(note.into());
+        }
+    }
+
+    #[test]
+    fn warnings_about_an_embedded_surface_are_a_note() {
+        let folder = tempfile::tempdir().unwrap();
+        let [surface, solid] = ["bent.obj", "soft.veg"].map(|name| folder.path().join(name));
+        let bent = "v 0.1 0.1 0.1\nv 0.3 0.1 0.1\nv 0.3 0.3 0.2\nv 0.1 0.3 0.1\nf 1 2 3 4\n";
+        std::fs::write(&surface, bent).unwrap();
+        std::fs::write(&solid, SOFT).unwrap();
+        let recipe = Recipe::new("soft", Shape::Embedded { surface, solid }, ModesSpec::Linear(6));
+        let notes = Notes::default();
+        LoadedRecipe::load(&recipe, None, &notes).unwrap();
+        let notes = notes.0.into_inner().unwrap();
+        let is_of_surface =
+            |note: &&String| note.starts_with("bent.obj in soft.veg: ") && note.contains("are not plane");
+        assert_eq!(notes.iter().filter(is_of_surface).count(), 1, "{notes:?}");
+    }
+
     #[test]
     fn amplitudes_are_the_units_of_certificates() {
         let plain = Recipe::new("spring", Shape::SMALL_SPRING, ModesSpec::Linear(6));

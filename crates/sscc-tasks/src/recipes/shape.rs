@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use sscc::TriMesh;
-use sscc_io::{Message, Setting, read_mesh, read_mesh_with_warnings, read_volume_mesh};
+use sscc_io::{Message, Setting, read_mesh_with_warnings, read_volume_mesh};
 use sscc_modes::shapes::{hare, serpent, spring_of};
 use sscc_solid::PartialMaterial;
 
@@ -97,7 +97,7 @@ impl Shape {
             Self::File(path) if !is_solid(path) => {
                 let (mesh, warnings) = read_mesh_with_warnings(path)?;
                 let source = file_name(path);
-                let note = (!warnings.is_empty()).then(|| format!("{source}: {}", warnings.join("; ")));
+                let note = note_of(&source, &warnings);
                 return surface(mesh, source, note);
             }
             Self::File(path) => {
@@ -107,23 +107,29 @@ impl Shape {
                 return solid(SolidSource::whole(&file, material).in_file(path)?, file_name(path), factor);
             }
             Self::Embedded { surface, solid: path } => {
-                let (mesh, _) = read_embedded(surface).in_file(surface)?;
+                let (mesh, warnings) = read_embedded(surface).in_file(surface)?;
                 let factor = resize.factor(mesh.rest_positions()).in_file(surface)?;
                 let file = read_volume_mesh(path)?.scaled(factor).in_file(path)?;
                 let found = SolidSource::embedded(scaled(mesh, factor)?, &file, material, watch);
                 let source = format!("{} in {}", file_name(surface), file_name(path));
-                return solid(found.in_file(path)?, source, factor);
+                return solid(found.in_file(path)?.with_warnings(warnings), source, factor);
             }
             Self::Model(files) => {
                 let given = GivenModel::load(files, material, resize)?;
-                let (source, note) = (file_name(&files.path), given.assumed.clone());
+                let source = file_name(&files.path);
+                let notes: Vec<String> =
+                    note_of(&source, &given.warnings).into_iter().chain(given.assumed.clone()).collect();
+                let note = (!notes.is_empty()).then(|| notes.join("; "));
                 return Ok(LoadedShape { matter: Matter::Model(Box::new(given)), source, note, factor: 1.0 });
             }
             Self::Bunny => ("bunny_14964_closed.obj", "hare", hare),
             Self::Dragon => ("dragon_77202_closed.ply", "serpent", serpent),
         };
         match models {
-            Some(folder) => surface(read_mesh(&folder.join(file))?, file.into(), None),
+            Some(folder) => {
+                let (mesh, warnings) = read_mesh_with_warnings(&folder.join(file))?;
+                surface(mesh, file.into(), note_of(file, &warnings))
+            }
             None => surface(
                 embedded(),
                 format!("embedded {name}"),
@@ -134,6 +140,11 @@ impl Shape {
             ),
         }
     }
+}
+
+/// Returns the warnings about a file as one note, if there are any.
+fn note_of(source: &str, warnings: &[String]) -> Option<String> {
+    (!warnings.is_empty()).then(|| format!("{source}: {}", warnings.join("; ")))
 }
 
 /// Returns the folder of real models: `wanted`, else the folder in the environment variable `SSCC_MODELS`, else None.

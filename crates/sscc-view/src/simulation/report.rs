@@ -27,9 +27,11 @@ pub fn simulation_report(run: &FinishedRun, progress: &dyn Progress) -> Result<S
         let named = |error| ViewError::Model { name: name.clone(), error: Box::new(error) };
         scene.models.push(made.map_err(named)?);
     }
-    let failure =
-        run.failure.iter().map(|failure| ("stopped early".to_owned(), one_line(&failure.to_string())));
-    scene.summary = failure.chain(run.summary.table()).collect();
+    let stopped = run.failure.iter().map(|error| ("stopped early", error));
+    let failures =
+        stopped.chain(run.unmeasured.iter().map(|error| ("traditional method not measured", error)));
+    let failures = failures.map(|(what, error)| (what.to_owned(), one_line(&error.to_string())));
+    scene.summary = failures.chain(run.summary.table()).collect();
     scene.plots.push(energy(run));
     if run.scene.sound.is_some() {
         scene.plots.push(sound(run));

@@ -17,6 +17,12 @@ const ROOT: usize = 25;
 /// One in this many attacks is on a node pair, if there is a pair tree: alternately an absent pair and an entry of the tree.
 const NODE_PAIR: usize = 3;
 
+/// Attacks are divided into at most this many blocks, so that memory does not grow with their number.
+const MAX_BLOCKS: usize = 1 << 16;
+
+/// The smallest number of attacks in a block, and the largest number of lines about violations that are kept of a block.
+const MIN_BLOCK: usize = 64;
+
 /// Nodes of more triangles than this are not attacked, except the root; nor are node pairs of more triangles together,
 /// except those of the root's children.
 const LARGE: u32 = 2000;
@@ -60,7 +66,9 @@ impl Attack<'_> {
         if !is_any_claimed && !local.is_possible() {
             return Ok(Attacks::default());
         }
-        let blocks = self.options.samples.div_ceil(64);
+        let samples = self.options.samples;
+        let in_block = samples.div_ceil(MAX_BLOCKS).max(MIN_BLOCK);
+        let blocks = samples.div_ceil(in_block);
         let results: Vec<Result<Attacks, Error>> = map_with(
             0..blocks,
             usize::MAX,
@@ -73,11 +81,12 @@ impl Attack<'_> {
             |queries: &mut Result<Queries, Error>, block| {
                 let queries = queries.as_mut().map_err(|error| error.clone())?;
                 let mut attacks = Attacks::default();
-                for sample in block * 64..self.options.samples.min(block * 64 + 64) {
+                let first = block * in_block;
+                for sample in first..samples.min(first.saturating_add(in_block)) {
                     if self.progress.is_cancelled() {
                         break;
                     }
-                    let mut random = Random::new(self.options.seed, 1_000_000 + sample as u64);
+                    let mut random = Random::new(self.options.seed, (sample as u64).wrapping_add(1_000_000));
                     let attack = match &mut queries.local {
                         Some(certified) if !is_any_claimed || random.below(2) == 0 => {
                             let queries = LocalQueries { certified, exact: &mut queries.part };
@@ -88,7 +97,8 @@ impl Attack<'_> {
                         _ => self.attack(sample, &mut random, queries),
                     };
                     attacks.samples += usize::from(attack.is_some());
-                    attacks.violations.extend(attack.flatten());
+                    let is_kept = attacks.violations.len() < MIN_BLOCK;
+                    attacks.violations.extend(attack.flatten().filter(|_| is_kept));
                 }
                 self.progress.report(block, blocks);
                 Ok(attacks)

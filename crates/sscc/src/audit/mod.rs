@@ -36,7 +36,7 @@ pub struct AuditReport {
     /// The number of these attacks that were on local certificates: about half if there are any, all if every radius is 0.
     pub local_samples: usize,
     /// A line for each configuration that refutes a claim, and for each difference between the answers of two methods.
-    /// Empty for sound certificates.
+    /// Empty for sound certificates. Of more than 2^22 attacks, some lines may be missing.
     pub violations: Vec<String>,
     /// The root's radius over the smallest `|z|` found at which the model collides. None if the radius is 0 or capped, or no
     /// collision was found.

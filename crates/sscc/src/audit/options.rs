@@ -19,7 +19,8 @@ impl Default for AuditOptions {
 impl AuditOptions {
     setters! {
         /// Number of attacks, each at one configuration q or two. Comparisons of methods come in addition, one for
-        /// every 50 attacks, but at least one and at most 200. 10,000 by default.
+        /// every 50 attacks, but at least one and at most 200. Any number takes the same memory, but time without a limit: give the
+        /// audit a token that cancels. 10,000 by default.
         samples: usize,
         /// Seed of the pseudo-random numbers: the same seed gives the same attacks. 1 by default.
         seed: u64,

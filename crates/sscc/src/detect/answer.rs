@@ -1,7 +1,7 @@
 //! The answer for one shape of a batch, its cost, and the kind of its proof.
 
 use super::search::Counters;
-use crate::Pair;
+use crate::{Error, Pair};
 
 /// The kind of proof of the answer of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +27,11 @@ pub struct Answer {
 }
 
 /// The cost of an answer, and the kind of its proof.
+///
+/// Every call that answers a question replaces the statistics of the last one, also if it ends with an error. After a success
+/// `complete` is true, unless a limit stopped the search. After an error `complete` and `root_certified` are false; `norm` is that
+/// of the q at which the call ended, 0 if it refused q; the counters are those of the search that the error stopped, for a sweep
+/// also of those before it, and 0 if there was none. A call with two detectors sets the statistics of the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// `|z| = |S (q - center)|`, rounded up, in the metric and about the centre of the query; for a continuous query the larger
@@ -36,7 +41,8 @@ pub struct Statistics {
     pub root_certified: bool,
     /// The kind of proof of the answer, exceptions apart.
     pub proof: Proof,
-    /// Whether the search was complete, so that all pairs are listed. False if a limit or an error stopped the query.
+    /// Whether the answer is complete: all pairs are listed, or the question is answered. False if a limit or an error stopped the
+    /// call.
     pub complete: bool,
     /// Nodes and node pairs that were opened.
     pub opened: u64,
@@ -68,6 +74,15 @@ impl Statistics {
     pub(crate) fn set_proof(&mut self, proof: Proof) {
         self.proof = proof;
         self.root_certified = proof != Proof::Search;
+    }
+
+    /// Notes whether a call succeeded, and returns its result.
+    pub(crate) fn finish<T>(&mut self, result: Result<T, Error>) -> Result<T, Error> {
+        self.complete = result.is_ok();
+        if result.is_err() {
+            self.set_proof(Proof::Search);
+        }
+        result
     }
 
     /// Copies the counters of a search.

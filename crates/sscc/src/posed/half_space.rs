@@ -3,19 +3,36 @@
 use glam::{DVec3, Vec4};
 
 use super::posed_shape::PosedShape;
+use crate::arithmetic::check_arithmetic;
 use crate::detect::aabb8::AabbF32;
+use crate::{Error, limits};
 
 impl PosedShape {
     /// Appends to `found` the used vertices x with `normal . x < height` in the world, ascending. Their heights are
     /// rounded.
-    pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) {
+    ///
+    /// # Errors
+    /// When a component of the normal is not finite or beyond [`limits::LARGEST`], the height is not finite, or this thread's
+    /// arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]). Then nothing is appended.
+    pub fn vertices_below(&mut self, normal: DVec3, height: f64, found: &mut Vec<u32>) -> Result<(), Error> {
+        check_arithmetic()?;
+        if !limits::contains(normal) {
+            let (name, wanted) = ("the normal of a plane", "finite and at most 2^200 (about 1.6e60)");
+            let is_outside = |x: &f64| !limits::contains(DVec3::splat(*x));
+            let value = normal.to_array().into_iter().find(is_outside).unwrap_or(f64::NAN);
+            return Err(Error::Option { name, value, wanted });
+        }
+        if !height.is_finite() {
+            return Err(Error::Option { name: "the height of a plane", value: height, wanted: "finite" });
+        }
         let first = found.len();
         self.enter(self.whole);
         let layout = std::sync::Arc::clone(&self.volumes.layout);
         let pose = self.motion.pose[0];
         let local = pose.rotation.transpose() * normal;
         let own_height = height - normal.dot(pose.translation);
-        // The plane in the frame of the search. Vertices higher by more than the errors are not below it. All numbers there are finite.
+        // The plane in the frame of the search. Vertices higher by more than the errors are not below it. The images of
+        // vertices are finite.
         let frame = self.volumes.frame();
         let reach = normal.abs().element_sum();
         let error = reach * f64::from(self.volumes.corner_error()) * (1.0 + 1e-6);
@@ -28,6 +45,8 @@ impl PosedShape {
         let limit = limit
             + with_mutant!(error, HalfSpaceExact, 0.0)
             + with_mutant!(rounding, HalfSpaceFrameExact, 0.0);
+        // A height that overflows in the frame may leave NaN, which would exclude all vertices.
+        let limit = if limit.is_nan() { f64::INFINITY } else { limit };
         let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
         let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
         self.below.clear();
@@ -59,6 +78,7 @@ impl PosedShape {
             }
         }
         found.truncate(kept);
+        Ok(())
     }
 }
 
@@ -99,10 +119,40 @@ mod tests {
             let own = height - normal.dot(pose.translation);
             let expected: Vec<u32> = (0..302).filter(|v| heights[*v as usize] < own).collect();
             let mut found = Vec::new();
-            shape.vertices_below(normal, height, &mut found);
+            shape.vertices_below(normal, height, &mut found).unwrap();
             assert_eq!(found, expected, "case {case}");
             partly += usize::from(!found.is_empty() && found.len() < 302);
         }
         assert!(partly > 300, "{partly}");
+    }
+
+    #[test]
+    fn invalid_planes_are_refused() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mesh = TriMesh::new(corners.clone(), vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, corners).unwrap()).unwrap();
+        let mut shape = PosedShape::without_certificates(&model).unwrap();
+        let mut below = |normal: DVec3, height: f64| {
+            let mut found = Vec::new();
+            let result = shape.vertices_below(normal, height, &mut found);
+            assert!(result.is_ok() || found.is_empty());
+            result.map(|()| found.len())
+        };
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e61] {
+            for normal in
+                [DVec3::new(wrong, 0.0, 1.0), DVec3::new(0.0, wrong, 1.0), DVec3::new(1.0, 0.0, wrong)]
+            {
+                let error = below(normal, 1.0).unwrap_err().to_string();
+                assert!(error.starts_with("the normal of a plane is "), "{error}");
+            }
+        }
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = below(DVec3::Z, wrong).unwrap_err().to_string();
+            assert!(error.starts_with("the height of a plane is "), "{error}");
+        }
+        // Planes above and below all vertices, as far away as numbers allow.
+        for (height, count) in [(1.0, 3), (f64::MAX, 3), (0.0, 0), (f64::MIN, 0)] {
+            assert_eq!(below(DVec3::Z, height), Ok(count), "{height}");
+        }
     }
 }

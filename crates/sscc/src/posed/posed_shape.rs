@@ -128,8 +128,10 @@ impl PosedShape {
     /// is not finite. It costs O(r) for each 64 triangles.
     ///
     /// # Errors
-    /// When the length of q is not the number of modes.
+    /// When the length of q is not the number of modes, or this thread's arithmetic is not that of IEEE 754
+    /// ([`Error::Arithmetic`]).
     pub fn displacement_bound(&self, q: &[f64]) -> Result<f64, Error> {
+        check_arithmetic()?;
         self.model.metric().check_len(q)?;
         let layout = &self.context.layout;
         Ok(layout.bd_tree.displacement_bound(layout.buckets.nodes(), q) * (1.0 + 1e-9))
@@ -209,7 +211,7 @@ mod tests {
                 let normal = vector(state).normalize();
                 let height = normal.dot(translation) + random(state);
                 let mut below = Vec::new();
-                shape.vertices_below(normal, height, &mut below);
+                shape.vertices_below(normal, height, &mut below).unwrap();
                 let vertices = 0..shape.model.mesh().rest_positions().len() as u32;
                 let is_below = |v: &u32| normal.dot(pose.apply(shape.model.position(*v, &q))) < height;
                 assert_eq!(below, vertices.filter(is_below).collect::<Vec<u32>>());

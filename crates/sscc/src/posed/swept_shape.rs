@@ -107,7 +107,23 @@ impl SweptShape {
     /// Appends to `found` all pairs (triangle of this shape, triangle of the other) that come within the distance
     /// `margin` of each other during the motion, and some others, sorted. If they are more than `limit`, only that many
     /// are appended. `around` is that of [`SweptShape::impacts`].
-    pub fn near(&mut self, other: &mut Self, around: Aabb, margin: f64, limit: usize, found: &mut Vec<Pair>) {
+    ///
+    /// # Errors
+    /// When the margin is negative or not finite, or this thread's arithmetic is not that of IEEE 754 ([`Error::Arithmetic`]).
+    /// Then nothing is appended.
+    pub fn near(
+        &mut self,
+        other: &mut Self,
+        around: Aabb,
+        margin: f64,
+        limit: usize,
+        found: &mut Vec<Pair>,
+    ) -> Result<(), Error> {
+        check_arithmetic()?;
+        if !(margin >= 0.0 && margin.is_finite()) {
+            let wanted = "finite and at least 0";
+            return Err(Error::Option { name: "the margin of near pairs", value: margin, wanted });
+        }
         let first = found.len();
         let widened = |Aabb { lower, upper }: Aabb| Aabb { lower: lower - margin, upper: upper + margin };
         let around = finite_or_empty(around).union(&widened(self.whole)).union(&widened(other.whole));
@@ -122,6 +138,7 @@ impl SweptShape {
         let _ = Search::between(sides, None, &mut self.state, &mut self.near, limit);
         found.extend_from_slice(&self.near.0.list);
         found[first..].sort_unstable();
+        Ok(())
     }
 
     /// Returns the corners of a triangle in the world at both ends.
@@ -226,7 +243,7 @@ mod tests {
             }
             let margin = 0.1;
             let mut near = Vec::new();
-            x.near(y, Aabb::default(), margin, usize::MAX, &mut near);
+            x.near(y, Aabb::default(), margin, usize::MAX, &mut near).unwrap();
             assert!(near.is_sorted() && expected.iter().all(|impact| near.contains(&impact.pair)));
             let is_within = |(i, j): &(u32, u32)| {
                 let [a, b] = [x.corners(*i), y.corners(*j)];
@@ -238,7 +255,7 @@ mod tests {
             assert!(within.iter().all(|pair| near.binary_search(pair).is_ok()), "case {case}");
             close += within.len();
             let mut some = Vec::new();
-            x.near(y, Aabb::default(), margin, 3, &mut some);
+            x.near(y, Aabb::default(), margin, 3, &mut some).unwrap();
             assert!(some.len() == near.len().min(3) && some.iter().all(|pair| near.contains(pair)));
             found += expected.len();
             between += expected.iter().filter(|impact| impact.time > 0.0).count();
@@ -270,15 +287,19 @@ mod tests {
             y.place([&[0.0]; 2], [&t0, &t1]).unwrap();
             let (mut impacts, mut near) = (Vec::new(), Vec::new());
             x.impacts(&mut y, around, &mut impacts).unwrap();
-            x.near(&mut y, around, margin, 9, &mut near);
+            x.near(&mut y, around, margin, 9, &mut near).unwrap();
             assert_eq!(
                 (impacts.len(), near.len()),
                 (usize::from(meets), usize::from(is_near)),
                 "{heights:?}"
             );
             let mut again = Vec::new();
-            x.near(&mut y, around, 30.0, 9, &mut again);
+            x.near(&mut y, around, 30.0, 9, &mut again).unwrap();
             assert_eq!(again, [(0, 0)]);
+            for wrong in [f64::NAN, f64::INFINITY, -1.0] {
+                assert!(matches!(x.near(&mut y, around, wrong, 9, &mut again), Err(Error::Option { .. })));
+                assert_eq!(again, [(0, 0)]);
+            }
         }
         for (heights, meets) in [([9.0, 9.0], false), ([9.0, -1.0], true), ([9.0, 8.0], false)] {
             let [t0, t1] = heights.map(at);

@@ -2,6 +2,7 @@
 //! pairs.
 
 use super::query::Query;
+use crate::detect::answer::Statistics;
 use crate::detect::{Detector, detector_of_model};
 use crate::{Clearance, Error, NearPair};
 
@@ -27,8 +28,9 @@ impl Query {
     fn within_certified(&mut self, q: &[f64], clearance: &Clearance) -> Result<&[NearPair], Error> {
         self.forget();
         let Some(near) = &mut self.near else { return Ok(&[]) };
-        self.statistics = near.find(q, clearance, self.context.detect.cancel.as_ref())?;
+        let found = near.find(q, clearance, self.context.detect.cancel.as_ref(), &mut self.statistics);
         self.norm = near.norm;
+        found?;
         Ok(near.pairs())
     }
 
@@ -57,7 +59,8 @@ impl Query {
         let detector = detector.cancelled_by(self.context.detect.cancel.clone());
         let detector = self.detector.insert(Box::new(detector));
         let found = ask(detector, &positions);
-        self.statistics = detector.statistics();
+        // Cost and rebuilds of the detector's hierarchy are no part of the statistics of a query.
+        self.statistics = Statistics { tree_cost: 0.0, rebuilds: 0, ..detector.statistics() };
         found
     }
 }

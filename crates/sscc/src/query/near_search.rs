@@ -55,7 +55,7 @@ impl NearSearch {
         &self.narrow.hits.list
     }
 
-    /// Finds all near pairs at q, sorted. [`Self::is_for`] must be true for the clearance.
+    /// Finds all near pairs at q, sorted. [`Self::is_for`] must be true for the clearance. `statistics` are empty before the call.
     ///
     /// # Errors
     /// When q is not a configuration of the model, this thread's arithmetic is not that of IEEE 754, there are more
@@ -65,12 +65,15 @@ impl NearSearch {
         q: &[f64],
         clearance: &Clearance,
         cancel: Option<&CancelToken>,
-    ) -> Result<Statistics, Error> {
+        statistics: &mut Statistics,
+    ) -> Result<(), Error> {
         self.narrow.hits.list.clear();
+        self.norm = 0.0;
         let configuration = self.check.measure(&self.context, q)?;
         self.norm = configuration.norm;
         if self.context.is_proven_free(configuration.norm) {
-            return Ok(Statistics::PROVEN_FREE);
+            *statistics = Statistics::PROVEN_FREE;
+            return Ok(());
         }
         check_arithmetic()?;
         self.context.detect.cancel = cancel.cloned();
@@ -79,16 +82,17 @@ impl NearSearch {
         let deformed = DeformedMotion::new([q], reach);
         let motion = WidenedMotion::new(deformed, &self.context.detect.layout, clearance.distance());
         let sought = (Sought::All, Detector::MAX_PAIRS);
-        let proof = self.search.find(&self.context, norm, &motion, &mut self.narrow, sought)?;
+        let found = self.search.find(&self.context, norm, &motion, &mut self.narrow, sought);
+        statistics.set_counters(&self.search.broad.state.counters);
+        let proof = found?;
         if !self.narrow.hits().is_complete() {
             return Err(Error::TooManyNearPairs { most: Detector::MAX_PAIRS });
         }
         self.leave_out_rings(clearance.rings())?;
         self.narrow.hits.list.sort_unstable_by_key(|near| near.pair);
-        let mut statistics = Statistics { complete: true, ..Statistics::default() };
-        statistics.set_counters(&self.search.broad.state.counters);
         statistics.set_proof(proof);
-        Ok(statistics)
+        statistics.complete = true;
+        Ok(())
     }
 
     /// Removes the pairs within the rings.

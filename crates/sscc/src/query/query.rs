@@ -203,6 +203,7 @@ impl Query {
     /// Clears the last answer and its cost.
     #[inline]
     pub(super) fn forget(&mut self) {
+        self.norm = 0.0;
         self.statistics = Statistics::default();
         self.discrete.narrow.0.list.clear();
     }
@@ -236,7 +237,7 @@ impl Query {
         &self.discrete.narrow.0.list
     }
 
-    /// Returns the cost of the last query.
+    /// Returns the cost of the last query, also of one that ended with an error.
     pub fn statistics(&self) -> Statistics {
         Statistics { norm: self.norm, ..self.statistics }
     }

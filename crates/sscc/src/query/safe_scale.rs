@@ -29,8 +29,8 @@ impl Query {
     /// # Errors
     /// As [`Query::discrete`].
     pub fn safe_scale(&mut self, q: &[f64]) -> Result<f64, Error> {
-        check_arithmetic()?;
         self.forget();
+        check_arithmetic()?;
         self.norm = self.measure(q)?.norm;
         let line = ConfigurationLine::new(&self.context.model, &self.context.scope.center, q);
         let global = self.context.certificates.as_ref().map_or(f64::INFINITY, Certificates::global_radius);

@@ -2,12 +2,31 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use sscc::parts::{CertificateParts, PairTree};
-use sscc::{AuditOptions, Certificates, CertifyOptions, ContactFilter, Error, audit};
+use sscc::{
+    AuditOptions, Certificates, CertifyOptions, ContactFilter, Error, Modes, ReducedModel, TriMesh, audit,
+};
 use sscc_testing::{cases, threshold};
 
 use crate::common::pair_trees::{START, edited};
 use crate::common::{after, random_model, random_options};
+
+/// Blocks of attacks are as large as necessary, so that no number of attacks needs much memory.
+#[test]
+fn audits_of_any_number_of_samples_can_be_cancelled() {
+    // Two triangles one unit apart, and a mode that lowers the second.
+    let positions = [DVec3::ZERO, DVec3::Z].map(|p| [p, p + DVec3::X, p + DVec3::Y]).concat();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let lowers = |row, _| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 };
+    let model = ReducedModel::new(mesh, Modes::from_matrix(6, 1, lowers).unwrap()).unwrap();
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    assert!(certificates.root_radius() > 0.0);
+    for samples in [usize::MAX / 3, usize::MAX - 1, usize::MAX] {
+        let asked = AuditOptions::default().samples(samples).threads(1);
+        assert_eq!(audit(&model, &certificates, &asked, &after(2000)), Err(Error::Cancelled));
+    }
+}
 
 /// Right certificates of every scope have no violations. If radii are 1.5 times as large, audits find violations of
 /// nearly all models whose right radii are tight.

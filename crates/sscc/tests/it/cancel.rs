@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use sscc::{
     CancelToken, Certificates, CertifyOptions, Clearance, Detector, Error, KineticQuery, Method, Modes,
-    Query, ReducedModel, ResolveOptions, TriMesh,
+    Progress, Query, ReducedModel, ResolveOptions, TriMesh,
 };
 
 use crate::common::Random;
@@ -40,6 +40,31 @@ impl After {
 
     fn looks(&self) -> usize {
         self.0.looks.load(Ordering::Relaxed)
+    }
+}
+
+/// Counts reports, and cancels at one of them.
+struct AtReport {
+    token: CancelToken,
+    reports: AtomicUsize,
+    last: usize,
+}
+
+impl AtReport {
+    fn new(last: usize) -> Self {
+        Self { token: CancelToken::new(), reports: AtomicUsize::new(0), last }
+    }
+}
+
+impl Progress for AtReport {
+    fn report(&self, _done: usize, _total: usize) {
+        if self.reports.fetch_add(1, Ordering::Relaxed) + 1 == self.last {
+            self.token.cancel();
+        }
+    }
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.token)
     }
 }
 
@@ -82,6 +107,19 @@ fn queries_check_the_token_after_few_triangle_tests() {
             assert!(query.statistics().complete);
         }
     }
+}
+
+/// The last report is that of the radii; then local certificates are computed.
+#[test]
+fn certificates_can_be_cancelled_after_their_radii() {
+    let model = strip(120);
+    let options = CertifyOptions::default().threads(1);
+    let all = AtReport::new(usize::MAX);
+    assert!(Certificates::compute(&model, &options, &all).is_ok());
+    let reports = all.reports.load(Ordering::Relaxed);
+    assert!(reports > 0);
+    let cancelled = Certificates::compute(&model, &options, &AtReport::new(reports));
+    assert_eq!(cancelled.err(), Some(Error::Cancelled));
 }
 
 /// After a sweep, a resolution or a search for near pairs is cancelled, the statistics say that the answer is incomplete.

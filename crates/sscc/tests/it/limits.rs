@@ -263,7 +263,7 @@ fn posed_shapes_at_the_limit_have_the_answers_of_smaller_ones() {
             let (mut colliding, mut impacts, mut near) = (Vec::new(), Vec::new(), Vec::new());
             x.colliding(y, around, &mut colliding).unwrap();
             v.impacts(w, around, &mut impacts).unwrap();
-            v.near(w, around, 0.01 * scale, usize::MAX, &mut near);
+            v.near(w, around, 0.01 * scale, usize::MAX, &mut near).unwrap();
             assert!(pairs(&impacts).iter().all(|pair| near.contains(pair)));
             (colliding, pairs(&impacts))
         });

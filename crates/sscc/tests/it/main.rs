@@ -36,5 +36,6 @@ mod reach;
 mod resolve;
 mod rounding;
 mod safe_scale;
+mod statistics;
 mod sweep;
 mod sweep_intervals;

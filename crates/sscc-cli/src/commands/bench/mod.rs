@@ -8,7 +8,8 @@ mod scenarios;
 mod table;
 
 use anyhow::{Context, ensure};
-use sscc_bench::{ModelsScenario, Scenario, Setup};
+use serde::Serialize;
+use sscc_bench::{ListedScenario, ModelsScenario, Scenario, Setup};
 use sscc_io::write_whole;
 use sscc_tasks::{Cache, machine_description, models_folder};
 
@@ -22,7 +23,7 @@ use printer::Printer;
 pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     let (name, scenario) = match &args.scenario {
         Some(name) if !args.list => (name, Scenario::from_name(name)?),
-        _ => return list(),
+        _ => return list(args.json.json),
     };
     check_options(args, scenario)?;
     let models = models_folder(args.models.as_deref())?;
@@ -48,11 +49,21 @@ pub fn run(args: &Bench) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// The JSON line of a scenario in the list.
+#[derive(Serialize)]
+struct Listed {
+    name: &'static str,
+    about: String,
+}
+
 /// Prints the name and a description of each scenario.
-fn list() -> anyhow::Result<Outcome> {
+fn list(is_json: bool) -> anyhow::Result<Outcome> {
     let mut out = Output::new();
-    for listed in Scenario::list()? {
-        out.line(format_args!("{:<20}{}", listed.name, listed.about))?;
+    for ListedScenario { name, about } in Scenario::list()? {
+        match is_json {
+            true => out.json(&Listed { name, about })?,
+            false => out.line(format_args!("{name:<20}{about}"))?,
+        }
     }
     out.finish()?;
     Ok(Outcome::Done)

@@ -55,6 +55,11 @@ pub fn check(args: &Check) -> Result<bool> {
             Err(error) => return Err(error.into()),
         };
         answers += 1;
+        if let Some(path) = &args.curves
+            && data_set.files.last().is_some_and(|last| last == file)
+        {
+            check_curves(path, &request, found)?;
+        }
         if found.node.is_some() && matches!(request.motion, MeshMotion::Rest) {
             printer.set_noun("comparison");
         }
@@ -89,6 +94,23 @@ pub fn check(args: &Check) -> Result<bool> {
     hint.print(&args.model.path);
     data_set.finish()?;
     Ok(colliding)
+}
+
+/// Refuses the curves of a scene whose nodes are compared with each other: the file would lack those between two nodes.
+fn check_curves(path: &Path, request: &Detection, found: &DetectionAnswer<'_>) -> Result<()> {
+    let is_at_rest = matches!(request.motion, MeshMotion::Rest);
+    let is_scene = request.against.is_none() && found.node.is_some() && (is_at_rest || request.between_nodes);
+    let way_out = match is_at_rest {
+        true => "name one as FILE#NODE, and a second one by --against FILE#NODE",
+        false => "name one by --node",
+    };
+    ensure!(
+        !is_scene || found.queries == found.frames,
+        "{}: contact curves are those of one mesh or between two, but {} shows several nodes: {way_out}",
+        path.display(),
+        found.file.display()
+    );
+    Ok(())
 }
 
 /// Whether equal vertices of a mesh are welded, or the user has decided.

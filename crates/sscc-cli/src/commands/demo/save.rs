@@ -34,10 +34,11 @@ pub fn save(
 
 /// Returns lines with the folder's files and commands that read them.
 pub fn next_commands(folder: &Path) -> Vec<String> {
-    let file = |name: &str| folder.join(name).display().to_string();
+    let file = |name: &str| shell_word(&folder.join(name).to_string_lossy());
     let (model, certificates) = (file(MODEL), file(CERTIFICATES));
     // The name by which the user called the program, since it need not be on the path.
-    let sscc = std::env::args().next().unwrap_or_else(|| "sscc".into());
+    let sscc = std::env::args_os().next().unwrap_or_else(|| "sscc".into());
+    let sscc = shell_word(&sscc.to_string_lossy());
     vec![
         String::new(),
         format!(
@@ -56,6 +57,18 @@ pub fn next_commands(folder: &Path) -> Vec<String> {
     ]
 }
 
+/// Returns an argument as a word of a shell: in quotes if it has characters that shells interpret.
+fn shell_word(argument: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+,:@".contains(c) || cfg!(windows) && c == '\\';
+    if !argument.is_empty() && argument.chars().all(is_plain) {
+        argument.to_owned()
+    } else if cfg!(windows) {
+        format!("\"{argument}\"")
+    } else {
+        format!("'{}'", argument.replace('\'', r"'\''"))
+    }
+}
+
 /// Returns the mesh as OBJ. Reading the numbers gives the same bits.
 fn to_obj(mesh: &TriMesh) -> String {
     let mut text = String::new();
@@ -66,4 +79,21 @@ fn to_obj(mesh: &TriMesh) -> String {
         let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
     }
     text
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_shells_interpret_are_in_quotes() {
+        let lines = next_commands(Path::new("my demo"));
+        let named = "'my demo/spring.model.safetensors' --certificates 'my demo/spring.sscc.safetensors'";
+        assert!(lines[2].ends_with(&format!(" view {named}")), "{}", lines[2]);
+        assert!(lines[4].ends_with(&format!("{named} --trajectory 'my demo/spring.npy'")), "{}", lines[4]);
+        assert!(
+            next_commands(Path::new("out/demo-1"))[3].ends_with(" info out/demo-1/spring.sscc.safetensors")
+        );
+        assert_eq!(["", "it's", "$HOME;", "a*"].map(shell_word), ["''", r"'it'\''s'", "'$HOME;'", "'a*'"]);
+    }
 }

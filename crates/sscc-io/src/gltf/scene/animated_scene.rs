@@ -41,12 +41,13 @@ pub struct AnimatedScene {
 }
 
 impl AnimatedScene {
-    /// Nodes that show a mesh with triangles, in file order.
+    /// Nodes that show a mesh with triangles, in file order. A strip whose triangles all have repeated corners has none.
     pub fn mesh_nodes(&self) -> &[MeshNode] {
         &self.mesh_nodes
     }
 
-    /// Lines about data that the standard requires but the meshes lack, and how the reader replaces them.
+    /// Lines about data that the standard requires but the meshes lack, and how the reader replaces them; about extensions
+    /// that are not evaluated; about nodes that are left out because the strips of their meshes have no triangles.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -60,8 +60,7 @@ impl MeshNode {
         self.shape.rank
     }
 
-    /// Faces (N): three vertex indices each. N is 0 if the mesh has only strips whose triangles have repeated corners. Nodes
-    /// with the same mesh share them.
+    /// Faces (N, at least 1): three vertex indices each. Nodes with the same mesh share them.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.shape.faces
     }

@@ -178,6 +178,11 @@ impl PlacedMesh {
     /// # Errors
     /// When there is no such place, or as [`PlacedMesh::place`]; when the mesh has no triangles.
     pub fn to_mesh(&self, place: usize) -> Result<TriMesh, FormatError> {
+        if self.shape.faces.is_empty() {
+            let cause = "it has only strips whose triangles have repeated corners, so it has no triangles: export the mesh with \
+                         its surface";
+            return Err(FormatError::part(format!("meshes[{}]", self.mesh), cause));
+        }
         let mut positions = self.shape.rest.clone();
         self.place(place, &mut positions)?;
         Ok(TriMesh::new(positions, self.shape.faces.clone())?.with_split_vertices())

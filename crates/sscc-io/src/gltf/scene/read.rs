@@ -23,6 +23,9 @@ use crate::gltf::select::has_triangles;
 use crate::gltf::triangles::{morph_targets, with_triangles};
 use crate::{FormatError, IoError, read_whole};
 
+/// Maximum memory of the note on a node that is left out (bytes).
+const NOTE_SIZE: u64 = 256;
+
 /// Reads the nodes with a mesh, the skins and the animations of a glTF file. Buffers may be in the file, or in files in
 /// its folder or below; symbolic links are followed.
 ///
@@ -56,7 +59,7 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     accessors.allowance.take(scene.nodes.len() as u64, NODE_SIZE).map_err(refused)?;
     let nodes = Nodes::new(&scene.nodes)?;
     let names = Arc::new(PartNames::parse(chunks.json));
-    let (mesh_nodes, skins) = mesh_nodes(&mut accessors, &root, &scene, &nodes, &names)?;
+    let (mut mesh_nodes, skins) = mesh_nodes(&mut accessors, &root, &scene, &nodes, &names)?;
     let targets = morph_targets_of_nodes(&root, &scene.nodes);
     let mut reader = AnimationReader {
         accessors: &mut accessors,
@@ -74,8 +77,21 @@ fn parse_in(bytes: &[u8], folder: Option<&Path>) -> Result<AnimatedScene, Format
     let of_meshes = shown.into_iter().flat_map(|mesh| morph::notes(&root.meshes[mesh], mesh));
     let numbers = mesh_nodes.iter().map(|mesh_node| mesh_node.node);
     let of_nodes = numbers.filter_map(|node| scene.nodes[node].instancing_note(node));
-    let notes = of_meshes.chain(of_nodes).collect();
+    let left_out = left_out(&mesh_nodes);
+    let notes = of_meshes.chain(of_nodes).chain(left_out).collect();
+    mesh_nodes.retain(|mesh_node| !mesh_node.faces().is_empty());
     Ok(AnimatedScene { nodes, mesh_nodes, skins, animations, infos, notes })
+}
+
+/// Returns a note on each node whose mesh has no triangles, although it has primitives of triangles.
+fn left_out(mesh_nodes: &[MeshNode]) -> impl Iterator<Item = String> {
+    let left_out = mesh_nodes.iter().filter(|mesh_node| mesh_node.faces().is_empty());
+    left_out.map(|MeshNode { node, mesh, .. }| {
+        format!(
+            "nodes[{node}]: meshes[{mesh}] has only strips whose triangles have repeated corners, so it has no triangles; the \
+             node is left out"
+        )
+    })
 }
 
 /// Returns the accessors that the scene uses; some may not exist.
@@ -141,7 +157,9 @@ fn mesh_nodes(
         }
         let stored = if node.weights.is_empty() { &mesh.weights[..] } else { &node.weights };
         let weights = morph::fitted_weights(stored, shape.rank);
-        accessors.allowance.take(1, size_of::<MeshNode>() as u64 + 8 * shape.rank as u64).map_err(refused)?;
+        let note = if shape.faces.is_empty() { NOTE_SIZE } else { 0 };
+        let size = note + size_of::<MeshNode>() as u64 + 8 * shape.rank as u64;
+        accessors.allowance.take(1, size).map_err(refused)?;
         mesh_nodes.push(MeshNode {
             node: node_number,
             name: node.name.as_deref().map(str::to_owned),

@@ -34,7 +34,7 @@ impl Certificates {
             let preparation = Preparation::new(model, options, progress)?;
             let mut executor = ThreadExecutor { preparation: &preparation, progress };
             let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
-            Ok(radii.into_certificates(model, options, preparation))
+            radii.into_certificates(model, options, preparation, progress)
         })
     }
 }
@@ -71,12 +71,16 @@ impl CertifiedRadii {
 
     /// Returns the certificates of the model that was prepared, with local certificates, which it computes on the threads of the
     /// current pool.
+    ///
+    /// # Errors
+    /// When `progress` cancels.
     pub(crate) fn into_certificates(
         self,
         model: &ReducedModel,
         options: &CertifyOptions,
         preparation: Preparation,
-    ) -> Certificates {
+        progress: &dyn Progress,
+    ) -> Result<Certificates, Error> {
         // Local certificates prove that parts do not collide, not how far apart they stay.
         let local = if options.local_budget == 0 || options.clearance.is_some() {
             LocalCertificates::default()
@@ -84,10 +88,10 @@ impl CertifiedRadii {
             let both = options.budget.saturating_add(options.local_budget);
             let bytes = both.saturating_mul(model.mesh().faces().len());
             let left = bytes.saturating_sub(self.bytes(&preparation.hierarchy));
-            preparation.local_certificates(model, left)
+            preparation.local_certificates(model, left, progress)?
         };
         let Preparation { digest, scope, hierarchy, rest_collisions, epsilon, .. } = preparation;
-        Certificates::new(CertificateParts {
+        Ok(Certificates::new(CertificateParts {
             digest,
             scope: Arc::new(scope),
             rest_collisions,
@@ -98,6 +102,6 @@ impl CertifiedRadii {
             root_pair_radii: self.radii.root_pairs,
             pair_tree: self.pair_tree,
             local: Arc::new(local),
-        })
+        }))
     }
 }

@@ -125,8 +125,17 @@ impl Preparation {
     }
 
     /// Computes the local certificates of the model, in at most `most_bytes` bytes.
-    pub(crate) fn local_certificates(&self, model: &ReducedModel, most_bytes: usize) -> LocalCertificates {
-        compute_local_certificates(model, &self.hierarchy, &self.filter, &self.scope.center, most_bytes)
+    ///
+    /// # Errors
+    /// When `progress` cancels.
+    pub(crate) fn local_certificates(
+        &self,
+        model: &ReducedModel,
+        most_bytes: usize,
+        progress: &dyn Progress,
+    ) -> Result<LocalCertificates, Error> {
+        let Self { hierarchy, filter, scope, .. } = self;
+        compute_local_certificates(model, hierarchy, filter, &scope.center, most_bytes, progress)
     }
 
     /// Creates a search for one thread.

@@ -14,7 +14,7 @@ use crate::hierarchy::Hierarchy;
 use crate::model::mode_rows::squared_distance;
 use crate::parallel;
 use crate::vectors::{InstructionSet, LANES};
-use crate::{Neighbours, ReducedModel};
+use crate::{Error, Neighbours, Progress, ReducedModel};
 use glam::DVec3;
 
 /// Maximum number of vertices to which the ellipsoid is fitted.
@@ -47,31 +47,41 @@ struct LocalCertificate {
 /// are kept while they fit into `most_bytes`. `filter` leaves out exceptions. There are no certificates if `most_bytes`
 /// is 0, [`PatchModel::new`] or [`CornerGaps::new`] returns None, pairs that share an edge count, or the certificates kept would
 /// cover too few triangles ([`LEAST_PROVEN_SHARE`]).
+///
+/// # Errors
+/// When `progress` cancels.
 pub(crate) fn compute_local_certificates(
     model: &ReducedModel,
     hierarchy: &Hierarchy,
     filter: &PairFilter,
     center: &[f64],
     most_bytes: usize,
-) -> LocalCertificates {
+    progress: &dyn Progress,
+) -> Result<LocalCertificates, Error> {
     if most_bytes == 0 || filter.neighbours() == Neighbours::IncludeFolded {
-        return LocalCertificates::default();
+        return Ok(LocalCertificates::default());
     }
-    let Some(patch_model) = PatchModel::new(model, center) else { return LocalCertificates::default() };
-    let Some(gaps) = CornerGaps::new(hierarchy, filter, &patch_model.positions) else {
-        return LocalCertificates::default();
+    let Some(patch_model) = PatchModel::new(model, center) else { return Ok(LocalCertificates::default()) };
+    let Some(gaps) = CornerGaps::new(hierarchy, filter, &patch_model.positions, progress)? else {
+        return Ok(LocalCertificates::default());
     };
     let touching = TouchingNodes::new(hierarchy, filter);
     let builder = Builder { model: &patch_model, gaps: &gaps, touching: &touching };
     let mut wanted = certified_nodes(hierarchy);
     wanted.sort_by_key(|n| std::cmp::Reverse(hierarchy.nodes()[*n as usize].triangle_count));
     let scratch = || Scratch::new(patch_model.positions.len());
-    let certified =
-        parallel::map_with(wanted, usize::MAX, scratch, |scratch, n| Some((n, builder.certify(n, scratch)?)));
+    let certify = |scratch: &mut Scratch, n: u32| {
+        if gaps.is_cancelled() { None } else { Some((n, builder.certify(n, scratch)?)) }
+    };
+    let certified = parallel::map_with(wanted, usize::MAX, scratch, certify);
+    // Certificates of a cancelled computation prove less than they could, or are missing.
+    if progress.is_cancelled() {
+        return Err(Error::Cancelled);
+    }
     let mut found: Vec<(u32, LocalCertificate)> = certified.into_iter().flatten().collect();
     keep_within(&mut found, hierarchy, most_bytes);
     if found.is_empty() {
-        return LocalCertificates::default();
+        return Ok(LocalCertificates::default());
     }
     let mut all =
         LocalCertificates { mode_starts: vec![0], list_starts: vec![0], ..LocalCertificates::default() };
@@ -86,7 +96,7 @@ pub(crate) fn compute_local_certificates(
         all.list_ratios.extend(certificate.list.iter().map(|(_, ratio)| ratio));
         all.list_starts.push(all.list_nodes.len() as u32);
     }
-    all
+    Ok(all)
 }
 
 /// Keeps the certificates of fewest modes, and at equal numbers of modes those of the largest nodes, while they fit into the

@@ -6,7 +6,7 @@
 use crate::filter::{PairFilter, Relation, SimplexPair};
 use crate::geometry::nearest_to_origin;
 use crate::hierarchy::{Hierarchy, NodePair};
-use crate::parallel;
+use crate::{Error, Progress, parallel};
 use glam::DVec3;
 
 /// Leaves have a table if the gap of their spheres is at most this share of the sum of the radii.
@@ -53,6 +53,7 @@ pub(super) struct CornerGaps<'g> {
     pub(super) hierarchy: &'g Hierarchy,
     pub(super) filter: &'g PairFilter,
     positions: &'g [DVec3],
+    progress: &'g dyn Progress,
     /// For each node the start of its vertices, which only leaves have, and the end.
     starts: Vec<u32>,
     vertices: Vec<u32>,
@@ -73,13 +74,20 @@ pub(super) struct CornerGaps<'g> {
 /// tables would not fit into the memory (docs/notes/local-certificates.md#near-leaves).
 const MAX_NEAR_SHARE: usize = 256;
 
+/// Tables between two checks for cancellation; one takes some microseconds.
+const TABLES_PER_CHECK: usize = 1 << 12;
+
 impl<'g> CornerGaps<'g> {
     /// Computes all tables. None if more pairs of leaves are near than [`MAX_NEAR_SHARE`] allows.
+    ///
+    /// # Errors
+    /// When `progress` cancels.
     pub(super) fn new(
         hierarchy: &'g Hierarchy,
         filter: &'g PairFilter,
         positions: &'g [DVec3],
-    ) -> Option<Self> {
+        progress: &'g dyn Progress,
+    ) -> Result<Option<Self>, Error> {
         let nodes = hierarchy.nodes();
         let (mut starts, mut vertices) = (vec![0], Vec::new());
         for node in nodes {
@@ -92,6 +100,7 @@ impl<'g> CornerGaps<'g> {
             hierarchy,
             filter,
             positions,
+            progress,
             starts,
             vertices,
             spheres: Vec::new(),
@@ -103,9 +112,15 @@ impl<'g> CornerGaps<'g> {
         };
         gaps.spheres = gaps.node_spheres();
         let leaves = nodes.iter().filter(|node| node.is_leaf()).count();
-        let mut near = gaps.near_leaves(MAX_NEAR_SHARE * leaves)?;
+        let Some(mut near) = gaps.near_leaves(MAX_NEAR_SHARE * leaves) else { return Ok(None) };
         near.sort_unstable();
-        let tables: Vec<Option<GapTable>> = parallel::map(&near, |pair| gaps.table(*pair));
+        let mut tables: Vec<Option<GapTable>> = Vec::with_capacity(near.len());
+        for pairs in near.chunks(TABLES_PER_CHECK) {
+            if progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            tables.extend(parallel::map(pairs, |pair| gaps.table(*pair)));
+        }
         (gaps.tight_starts, gaps.table_starts) = (vec![0; nodes.len() + 1], vec![0; nodes.len() + 1]);
         for (pair, table) in near.iter().zip(&tables) {
             gaps.table_starts[pair.0 as usize + 1] += 1;
@@ -120,7 +135,12 @@ impl<'g> CornerGaps<'g> {
         }
         gaps.table_leaves = near.into_iter().map(|(_, m)| m).collect();
         gaps.tables = tables;
-        Some(gaps)
+        Ok(Some(gaps))
+    }
+
+    /// Whether the computation should end.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.progress.is_cancelled()
     }
 
     /// Returns the vertices of a leaf, ascending.

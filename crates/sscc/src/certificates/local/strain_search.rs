@@ -11,6 +11,9 @@ use crate::vectors::{InstructionSet, Kernel, LANES, Vectors};
 /// A pair of nodes whose bound is at most this many times the largest ratio found is not split.
 const ACCEPTED: f32 = 1.1;
 
+/// Pairs of parts visited between two checks for cancellation; a visit of two leaves with many modes takes some 100 us.
+const VISITS_PER_CHECK: u32 = 1024;
+
 /// Covers the rounding of norms of images, which are sums of `3 r` squares, and of quotients.
 const ROUND_UP: f32 = 1.0 + 1e-4;
 
@@ -44,6 +47,8 @@ pub(super) struct StrainSearch {
     /// The largest change of the difference of two images by rounding to single precision.
     image_error: f32,
     stack: Vec<(u32, u32)>,
+    /// Pairs of parts visited in all searches.
+    visits: u32,
     components: [Vec<f64>; 2],
     /// The smallest gap that a ratio of the patch assumes, whichever images it was found with.
     pub(super) smallest_gap: f64,
@@ -110,13 +115,14 @@ impl StrainSearch {
     }
 
     /// Returns an upper bound of the ratio of all pairs within a part, not below `floor`; infinite or NaN if none was
-    /// found.
+    /// found, or the computation was cancelled.
     pub(super) fn within(&mut self, gaps: &CornerGaps<'_>, part: u32, floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: (part, part), floor })
     }
 
-    /// Returns an upper bound of the ratio of two parts, at most [`ACCEPTED`] times `floor` if the ratio is below `floor`.
+    /// Returns an upper bound of the ratio of two parts, at most [`ACCEPTED`] times `floor` if the ratio is below `floor`; infinite
+    /// if the computation was cancelled.
     pub(super) fn between(&mut self, gaps: &CornerGaps<'_>, parts: (u32, u32), floor: f32) -> f32 {
         let instructions = self.instructions;
         instructions.run(Search { search: self, gaps, start: parts, floor })
@@ -225,6 +231,11 @@ impl Kernel for Search<'_, '_> {
         stack.clear();
         stack.push(start);
         while let Some((x, y)) = stack.pop() {
+            search.visits = search.visits.wrapping_add(1);
+            if search.visits.is_multiple_of(VISITS_PER_CHECK) && gaps.is_cancelled() {
+                largest = f32::INFINITY;
+                break;
+            }
             let (a, b) = (search.parts[x as usize], search.parts[y as usize]);
             if x == y {
                 if a.child_count > 0 {

@@ -33,7 +33,7 @@ pub fn compute_in_shards(
     let key = Key::of(&preparation);
     let mut executor = RemoteExecutor { preparation: &preparation, key, shards, run, progress };
     let radii = CertifiedRadii::compute(&preparation, options.budget, &mut executor, progress)?;
-    Ok(on_threads(options.threads, || radii.into_certificates(model, options, preparation)))
+    on_threads(options.threads, || radii.into_certificates(model, options, preparation, progress))
 }
 
 /// Writes the tasks of a stage as jobs, runs these by a callback, and reads their results.

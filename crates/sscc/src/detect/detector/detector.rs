@@ -181,6 +181,7 @@ impl Detector {
     /// # Errors
     /// As [`Detector::discrete`], for both sets of positions; when the filter has [`Neighbours::IncludeFolded`](crate::Neighbours).
     pub fn continuous(&mut self, x_t0: &[DVec3], x_t1: &[DVec3]) -> Result<&[Impact], Error> {
+        self.statistics = self.statistics.forget();
         check_continuous(self.context.filter.neighbours())?;
         let motion = self.check([x_t0, x_t1])?;
         self.mask_adjacent();
@@ -206,8 +207,8 @@ impl Detector {
         &mut self,
         positions: [&'x [DVec3]; E],
     ) -> Result<GivenMotion<'x, E>, Error> {
-        check_arithmetic()?;
         self.statistics = self.statistics.forget();
+        check_arithmetic()?;
         for x in positions {
             check_count(x.len(), self.vertex_count)?;
             if let Some(vertex) = x.iter().position(|x| !limits::contains(*x)) {

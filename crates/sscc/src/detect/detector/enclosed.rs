@@ -39,6 +39,20 @@ impl Detector {
     ) -> Result<[Enclosed; 2], Error> {
         self.check([positions])?;
         other.check([other_positions])?;
+        let enclosed = self.count_enclosed(positions, other, other_positions);
+        self.statistics.finish(enclosed)
+    }
+
+    /// Counts as [`Detector::enclosed`], at positions that were checked.
+    ///
+    /// # Errors
+    /// When a token cancels.
+    fn count_enclosed(
+        &mut self,
+        positions: &[DVec3],
+        other: &mut Detector,
+        other_positions: &[DVec3],
+    ) -> Result<[Enclosed; 2], Error> {
         let components = [self.components_at(positions), other.components_at(other_positions)];
         let [one, two] = components.each_ref().map(|components| &**components);
         if with_mutant!(

@@ -42,8 +42,7 @@ impl Detector {
         };
         let boxes = Boxes::new(&self.context, positions);
         let found = nearest([&boxes, &boxes], true, counts);
-        self.statistics.complete = found.is_ok();
-        found
+        self.statistics.finish(found)
     }
 
     /// Returns the nearest two triangles (triangle of this mesh at `positions`, triangle of the other at
@@ -64,8 +63,7 @@ impl Detector {
         let groups = self.context.filter.groups_against(&other.context.filter);
         let counts = |a: u32, b: u32| groups.is_none_or(|groups| groups.is_counted((a, b)));
         let found = nearest([&one, &two], false, counts);
-        self.statistics.complete = found.is_ok();
-        found
+        self.statistics.finish(found)
     }
 }
 

@@ -40,6 +40,15 @@ pub fn body_penetration(
 ) -> Result<BodyPenetration, Error> {
     one.check([positions])?;
     two.check([other_positions])?;
+    let penetration = penetration([&mut *one, two], [positions, other_positions]);
+    one.statistics.finish(penetration)
+}
+
+/// Returns the penetration as [`body_penetration`], at positions that were checked.
+fn penetration(
+    [one, two]: [&mut Detector; 2],
+    [positions, other_positions]: [&[DVec3]; 2],
+) -> Result<BodyPenetration, Error> {
     let components = [one.components_at(positions), two.components_at(other_positions)];
     if let Some(open) = components.iter().position(|components| !components.are_closed()) {
         return Err(Error::OpenMesh(["first", "second"][open]));

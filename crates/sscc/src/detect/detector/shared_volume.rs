@@ -5,8 +5,9 @@ use glam::DVec3;
 use crate::geometry::{Aabb, overlap_integral};
 use crate::{CancelToken, Error};
 
-/// Number of pairs between two checks whether the search was cancelled.
-const PAIRS: usize = 1 << 12;
+/// Pairs of triangles compared between two checks for cancellation, whether their projections overlap or not. An integral takes some
+/// microseconds.
+const PAIRS_PER_CHECK: usize = 1 << 10;
 
 /// Returns the volume that two closed meshes share, and a bound of its rounding error. `sign`: -1 if exactly one of them faces inward,
 /// otherwise 1.
@@ -35,17 +36,18 @@ pub(super) fn shared_volume(
         let span = if is_of_a { &a[at_a] } else { &b[at_b] };
         let (own, others) = if is_of_a { (&mut open_a, &mut open_b) } else { (&mut open_b, &mut open_a) };
         others.retain(|other| other.upper.x >= span.lower.x);
-        for other in
-            others.iter().filter(|other| other.lower.y <= span.upper.y && span.lower.y <= other.upper.y)
-        {
+        for other in others.iter() {
+            pairs += 1;
+            if pairs.is_multiple_of(PAIRS_PER_CHECK) && cancel.is_some_and(CancelToken::is_cancelled) {
+                return Err(Error::Cancelled);
+            }
+            if other.lower.y > span.upper.y || span.lower.y > other.upper.y {
+                continue;
+            }
             let (x, y) = if is_of_a { (span, *other) } else { (*other, span) };
             let term = overlap_integral(&x.corners, &y.corners);
             sum += term.value;
             error += term.error + f64::EPSILON * sum.abs();
-            pairs += 1;
-            if pairs.is_multiple_of(PAIRS) && cancel.is_some_and(CancelToken::is_cancelled) {
-                return Err(Error::Cancelled);
-            }
         }
         own.push(span);
         if is_of_a { at_a += 1 } else { at_b += 1 }
@@ -74,4 +76,34 @@ fn spans(mesh: &[[DVec3; 3]], shared: &Aabb, center: DVec3) -> Vec<Span> {
         .collect();
     spans.sort_unstable_by(|a, b| a.lower.x.total_cmp(&b.lower.x));
     spans
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    /// The projections of all triangles overlap along x, but none overlap along y, so that no integral is computed.
+    #[test]
+    fn pairs_whose_projections_are_disjoint_count_as_work() {
+        let strip = |first: f64| -> Vec<[DVec3; 3]> {
+            let at = |i: i32| 2.0 * f64::from(i) + first;
+            let triangle =
+                |y: f64| [[0.0, y, 0.0], [9.0, y, 0.0], [4.0, y + 0.5, 1.0]].map(DVec3::from_array);
+            (0..200).map(|i| triangle(at(i))).collect()
+        };
+        let (a, b) = (strip(0.0), strip(1.0));
+        let sum = |most: usize| {
+            let checks = Arc::new(AtomicUsize::new(0));
+            let counted = Arc::clone(&checks);
+            let token = CancelToken::when(move || counted.fetch_add(1, Ordering::Relaxed) >= most);
+            (shared_volume([&a, &b], 1.0, Some(&token)), checks.load(Ordering::Relaxed))
+        };
+        let (found, checks) = sum(usize::MAX);
+        assert_eq!(found, Ok((0.0, 0.0)));
+        assert!(checks > 20, "{checks}");
+        assert_eq!(sum(5), (Err(Error::Cancelled), 6));
+    }
 }

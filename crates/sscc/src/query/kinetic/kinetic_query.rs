@@ -228,7 +228,9 @@ impl KineticQuery {
             let [a, b] = [a, b].map(|t| search.sides[0].triangle(t));
             search.test_triangles(a, b);
         }
-        search.end()?;
+        let result = search.end();
+        self.query.statistics.set_counters(swept.counters());
+        result?;
         Ok(swept.narrow.hits().list.is_empty())
     }
 
@@ -339,9 +341,11 @@ impl KineticQuery {
         let worth = usize::try_from(worth).unwrap_or(usize::MAX).saturating_add(CHEAP_PAIRS);
         let limit = most.min(worth);
         let motion = CapsuleMotion::new(&self.rates, [&self.region.start, &self.region.end], radius, reach);
-        let is_complete = self.search.find(context, &motion, norm, limit)?;
+        let result = self.search.find(context, &motion, norm, limit);
         let found = &self.search.narrow.0.list;
         let counters = &self.search.certified.broad.state.counters;
+        // The counters of a success are added to those of the first step.
+        let is_complete = result.inspect_err(|_| self.query.statistics.set_counters(counters))?;
         let cost = node_cost(counters) + FIND_COST * found.len() as u64;
         if !is_complete {
             self.control.record_overflow(cost, share);
@@ -389,7 +393,9 @@ impl KineticQuery {
             if cost.is_multiple_of(DISTANCES_PER_CHECK * DISTANCE_COST) {
                 search.check_cancelled();
                 if search.state.is_cancelled() {
-                    return search.end();
+                    let result = search.end();
+                    statistics.set_counters(&broad.state.counters);
+                    return result;
                 }
             }
         }

@@ -33,7 +33,7 @@ impl Query {
     /// The search is local: a nearer one may exist. `docs/guarantees.md` states the full guarantee.
     ///
     /// Takes as long as some tens to hundreds of continuous queries, and allocates; its memory does not grow with the
-    /// number of steps. The last answer of the query is lost.
+    /// number of steps. The last answer of the query is lost; [`Query::statistics`] are those of the last search.
     ///
     /// ```
     /// # use glam::DVec3;
@@ -58,6 +58,13 @@ impl Query {
     /// # Errors
     /// As [`Query::discrete`], for q and the start; when a given start collides.
     pub fn resolve(&mut self, q: &[f64], options: &ResolveOptions) -> Result<Resolved, Error> {
+        self.forget();
+        let resolved = self.resolve_by_walk(q, options);
+        self.statistics.finish(resolved)
+    }
+
+    /// Resolves q; the caller notes whether that succeeded.
+    fn resolve_by_walk(&mut self, q: &[f64], options: &ResolveOptions) -> Result<Resolved, Error> {
         let (model, center) = (&self.context.model, self.context.scope.center.clone());
         model.check_coordinates(q)?;
         if let Some(start) = &options.start {

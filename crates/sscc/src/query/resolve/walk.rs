@@ -91,7 +91,6 @@ impl<'w> Walk<'w> {
         self.update(margin);
         for projections in 1..=MAX_PROJECTIONS {
             if self.query.context.detect.is_cancelled() {
-                self.query.statistics.complete = false;
                 return Err(Error::Cancelled);
             }
             let there = self.nearest();

@@ -14,7 +14,6 @@
 use super::sweep::{Sweep, SweepOutcome};
 use super::weight_line::{WeightLine, forward, weight_before};
 use super::work::Work;
-use crate::detect::answer::Statistics;
 use crate::geometry::free_until;
 use crate::query::configuration_search::SweptSearch;
 use crate::query::query::Query;
@@ -96,6 +95,12 @@ impl Query {
         to: f64,
         work: Work,
     ) -> Result<Sweep, Error> {
+        let sweep = self.sweep_from(q, mode, to, work);
+        self.statistics.finish(sweep)
+    }
+
+    /// Sweeps from q, which may collide; the caller notes whether the sweep succeeded.
+    fn sweep_from(&mut self, q: &[f64], mode: usize, to: f64, work: Work) -> Result<Sweep, Error> {
         let model = self.context.model.clone();
         let pairs = self.discrete(q)?.to_vec();
         let rank = model.rank();
@@ -114,10 +119,10 @@ impl Query {
         }
         let bracket = BRACKET * range;
         let mut sweep = WeightSweep { query: self, line, sweep, range, bracket, work };
-        sweep.run()?;
+        let result = sweep.run();
         let WeightSweep { query, sweep, work, .. } = sweep;
-        query.statistics = Statistics { complete: true, ..work.statistics() };
-        Ok(sweep)
+        query.statistics = work.statistics();
+        result.map(|()| sweep)
     }
 }
 
@@ -187,8 +192,9 @@ impl WeightSweep<'_> {
         }
         let search = query.candidates.get_or_insert_with(|| Box::new(SweptSearch::new(&query.context)));
         let limit = work.candidates;
-        search.find(&query.context, [t0, t1], query.norm, limit, &mut query.statistics)?;
+        let found = search.find(&query.context, [t0, t1], query.norm, limit, &mut query.statistics);
         work.add_search(&query.statistics, search.narrow.0.list.len());
+        found?;
         if with_mutant!(!query.statistics.complete, SweepCutOffIsFree, false) {
             return Ok(Step::TooMany);
         }
@@ -198,7 +204,6 @@ impl WeightSweep<'_> {
         let mut blocking = None;
         for (i, &pair) in search.narrow.0.list.iter().enumerate() {
             if i.is_multiple_of(CANDIDATES_PER_CHECK) && query.context.detect.is_cancelled() {
-                query.statistics.complete = false;
                 return Err(Error::Cancelled);
             }
             for simplices in filter.simplex_pairs(pair.0, pair.1) {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::file::{JSON, REST, binary, glb, positions, scene};
-use crate::gltf::{AnimationInfo, parse_scene};
+use super::file::{JSON, REST, binary, changed, glb, positions, scene};
+use crate::gltf::{AnimationInfo, parse_placed_mesh, parse_scene};
 
 #[test]
 fn nodes_and_animations_are_listed() {
@@ -55,6 +55,28 @@ fn unusual_files_are_read() {
     let unused = parse_scene(&glb(&json, &binary())).unwrap();
     let info = &unused.animations()[0];
     assert_eq!((unused.mesh_nodes().len(), info.channels, info.extension_channels), (0, 3, 2));
+}
+
+/// The indices of the strip are the numbers of the joints, which are 0 and 1.
+#[test]
+fn nodes_whose_strips_have_no_triangles_are_left_out_with_a_note() {
+    let indices = r#""type":"SCALAR"},{"bufferView":2,"componentType":5121,"count":16,"type":"SCALAR"}]"#;
+    let changes = [(r#""mode":5"#, r#""mode":5,"indices":10"#), (r#""type":"SCALAR"}]"#, indices)];
+    let scene = scene(&changes);
+    assert!(scene.mesh_nodes().is_empty());
+    let note = |node: u32| {
+        format!(
+            "nodes[{node}]: meshes[0] has only strips whose triangles have repeated corners, so it has no triangles; the node \
+             is left out"
+        )
+    };
+    assert_eq!(scene.notes(), [note(3), note(4)]);
+    let message = scene.find_mesh_nodes(None).unwrap_err().to_string();
+    assert_eq!(message, "no node of the file shows a mesh with triangles");
+    // The mesh alone has an error with its number.
+    let mesh = parse_placed_mesh(&changed(&changes), None).unwrap();
+    let message = mesh.to_mesh(0).unwrap_err().to_string();
+    assert!(message.starts_with("meshes[0]: it has only strips whose triangles have repeated"), "{message}");
 }
 
 #[test]

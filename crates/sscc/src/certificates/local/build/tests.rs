@@ -1,6 +1,8 @@
 //! Tests the inequality of a certificate against exact arithmetic.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DMat3, DVec3};
 use sscc_testing::{Dyadic, Numbers, common_denominator};
@@ -10,7 +12,7 @@ use crate::certificates::local::widest_gap::{parents, widest_gap};
 use crate::certificates::test_models::ring;
 use crate::filter::Relation;
 use crate::test_models::square;
-use crate::{ContactFilter, Modes, TriMesh};
+use crate::{CancelToken, ContactFilter, Modes, TriMesh};
 
 fn exact(x: f64) -> Dyadic {
     Dyadic::new(x)
@@ -58,13 +60,13 @@ fn strains_are_at_least_those_of_exact_residuals() {
         let hierarchy = Hierarchy::build(&model, model.metric());
         let filter = PairFilter::new(&model, &ContactFilter::default());
         let center = vec![0.0; rank];
-        let all = compute_local_certificates(&model, &hierarchy, &filter, &center, 1 << 20);
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &center, 1 << 20, &()).unwrap();
         if all.nodes != [0] || !all.bounds[0].ratio.is_finite() {
             continue;
         }
         let bounds = all.bounds[0];
         let patch_model = PatchModel::new(&model, &center).unwrap();
-        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions, &()).unwrap().unwrap();
         let gradient = |c: usize, j: usize, k: usize| {
             let e = 3 * j + c;
             exact(f64::from(if e < 8 { all.gradients[8 * k + e] } else { all.gradients[8 * rank + k] }))
@@ -196,9 +198,9 @@ fn heights_are_at_most_their_share_of_gaps() {
         let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
         let hierarchy = Hierarchy::build(&model, model.metric());
         let filter = PairFilter::new(&model, &ContactFilter::default());
-        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20, &()).unwrap();
         let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
-        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions, &()).unwrap().unwrap();
         let parents = parents(&hierarchy);
         let leaves = |n: u32| leaves_of(&hierarchy, n);
         for (index, n) in all.nodes.iter().enumerate() {
@@ -263,9 +265,9 @@ fn ratios_of_lists_are_at_least_those_of_their_pairs() {
         let size = model.mode_displacement_bound(0, 1.0);
         let hierarchy = Hierarchy::build(&model, model.metric());
         let filter = PairFilter::new(&model, &ContactFilter::default());
-        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+        let all = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20, &()).unwrap();
         let patch_model = PatchModel::new(&model, &[0.0]).unwrap();
-        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions).unwrap();
+        let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions, &()).unwrap().unwrap();
         let (nodes, parents) = (hierarchy.nodes(), parents(&hierarchy));
         let leaves = |n: u32| leaves_of(&hierarchy, n);
         for (index, n) in all.nodes.iter().enumerate() {
@@ -316,11 +318,34 @@ fn a_budget_of_zero_gives_no_certificates() {
     let model = ReducedModel::new(mesh, modes).unwrap();
     let hierarchy = Hierarchy::build(&model, model.metric());
     let filter = PairFilter::new(&model, &ContactFilter::default());
-    let none = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 0);
+    let none = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 0, &()).unwrap();
     assert_eq!(none, LocalCertificates::default());
-    let some = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20);
+    let some = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20, &()).unwrap();
     assert_eq!((some.nodes.as_slice(), some.modes.as_slice()), (&[0][..], &[0][..]));
     assert!(some.bytes() > 0 && some.bounds[0].per_error >= 1.0);
+}
+
+/// The computation checks for cancellation regularly, and ends with the error if it was cancelled at any of these checks.
+#[test]
+fn a_cancelled_computation_ends_with_an_error() {
+    let model = ring(600, 3, 0.4);
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    let filter = PairFilter::new(&model, &ContactFilter::default());
+    let compute = |most: usize| {
+        let checks = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&checks);
+        let token = CancelToken::when(move || counted.fetch_add(1, Ordering::Relaxed) >= most);
+        // On one thread the number of checks is always the same.
+        let found = parallel::on_threads(Some(1), || {
+            compute_local_certificates(&model, &hierarchy, &filter, &[0.0; 3], 1 << 30, &token)
+        });
+        (found.err(), checks.load(Ordering::Relaxed))
+    };
+    let (error, all) = compute(usize::MAX);
+    assert!(error.is_none() && all > 20, "{error:?} {all}");
+    for most in [0, 1, all / 2, all - 1] {
+        assert_eq!(compute(most).0, Some(Error::Cancelled), "{most} of {all}");
+    }
 }
 
 /// Buckets, nodes at odd heights above them and the root have a certificate, but never nodes within buckets.

@@ -60,7 +60,7 @@ fn meshes_with_too_many_near_leaves_have_no_tables() {
         let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
         let hierarchy = Hierarchy::build(&model, model.metric());
         let filter = PairFilter::new(&model, &ContactFilter::default());
-        CornerGaps::new(&hierarchy, &filter, model.mesh().rest_positions()).is_some()
+        CornerGaps::new(&hierarchy, &filter, model.mesh().rest_positions(), &()).unwrap().is_some()
     };
     assert!(is_bounded(3000, 0.01) && is_bounded(200, 10.0));
     assert!(!is_bounded(3000, 10.0));

@@ -112,7 +112,7 @@ fn with_search(
 ) {
     let Case { model, hierarchy, filter } = case;
     let patch_model = PatchModel::new(model, &vec![0.0; model.rank()]).unwrap();
-    let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions).unwrap();
+    let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions, &()).unwrap().unwrap();
     let mut patch = Patch::new(model.mesh().rest_positions().len());
     patch.load(&patch_model, hierarchy, filter.faces(), [0].into_iter(), 200).unwrap();
     let mut search = StrainSearch::default();
