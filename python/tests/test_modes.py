@@ -135,7 +135,7 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
             call()
     for bound, message in no_corners:
         with pytest.raises(ValueError, match=message):
-            sscc.modes.linear((vertices, faces), 3, fix_box=[[-2, bound, -2], [2, 2, 2]])
+            sscc.modes.linear((vertices, faces), 3, fix_box=[[-2.0, bound, -2.0], [2.0, 2.0, 2.0]])
 
 
 def test_loads_and_displacements_give_q(surface: Surface) -> None:
