@@ -1,4 +1,4 @@
-//! Finds the weight at which each morph target of a face first makes it touch itself.
+//! Finds a weight at which each morph target makes a face touch itself, by 201 samples. `Query::sweep` finds the first one.
 //!
 //! `cargo run --release -p sscc-examples --example glb_face [FACE.glb [MESH]]`
 #![allow(clippy::print_stdout)]

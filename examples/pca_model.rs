@@ -39,12 +39,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &())?;
     println!("the mean itself has {} colliding pairs", certificates.rest_collisions());
 
-    // A sample has independent normal coefficients, scaled by the standard deviations if the file has variances
+    // A sample has independent normal coefficients, scaled by the standard deviations of q if the file has variances
     // (`explained_variance`).
-    let deviations: Vec<f64> = match &loaded.mode_weights {
-        Some(variances) => variances.iter().map(|variance| variance.sqrt()).collect(),
-        None => vec![1.0; model.rank()],
-    };
+    let deviations = loaded.info.deviations.clone().unwrap_or_else(|| vec![1.0; model.rank()]);
     let mut random = Random(1);
     let mut sample = || deviations.iter().map(|deviation| deviation * random.normal()).collect();
     let samples: Vec<Vec<f64>> = (0..SAMPLES).map(|_| sample()).collect();

@@ -35,7 +35,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     println!("certified about rest: free where |z| < {:.3e}", certificates.root_radius());
 
     // All modes swing with growing amplitude, up to the |z| at which mode 0 alone moves some vertex by half the size of the
-    // shape. (By default certificates reach farther, to strongly distorted shapes.)
+    // shape. (By default radii end there; local certificates may prove shapes beyond.)
     let rest = vec![0.0; model.rank()];
     let mut far = rest.clone();
     far[0] = half_size(&model);

@@ -1,5 +1,5 @@
-// Matrices of Eigen, in the order of storage that they have: `eigen_maps` checks two crossing triangles in matrices V x 3 and F x 3,
-// column by column as libigl has them, and at q = (0.5). Prints the pairs.
+// Matrices of Eigen, in the order of storage that they have: `eigen_maps` checks two triangles in matrices V x 3 and F x 3, column by
+// column as libigl has them: at rest, where they are apart, and at q = (0.5), where they cross. Prints the pairs.
 #include <Eigen/Core>
 #include <cstdio>
 

@@ -30,3 +30,8 @@ mod readme {}
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/index.md")]
 mod first_page {}
+
+/// Runs the Rust example of the page about Rust.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/rust.md")]
+mod rust_page {}

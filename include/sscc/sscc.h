@@ -2,7 +2,9 @@
  * sscc: exact collision detection for deformable triangle meshes. C interface; C++ has sscc.hpp beside it.
  *
  * OUTCOMES. Functions return a status; sscc_error_message() has the details. If the status is not SSCC_STATUS_OK, no output was
- * written. Some functions return a count, a radius or a text instead. No panic of the library crosses the C interface.
+ * written. Some functions return a count, a radius or a text instead. No panic of the library crosses the C interface. Each function
+ * states its own errors. Any function also refuses invalid pointers, lengths and numbers (SSCC_STATUS_NULL, _MISALIGNED, _OVERLAP,
+ * _ARGUMENT).
  *
  * HANDLES. sscc_X_new, _load, _compute and _clone return a handle, which the caller owns until sscc_X_free. Freeing NULL has no
  * effect. Using a handle after it was freed, or freeing it twice, is undefined behaviour; libraries with debug assertions refuse it
@@ -10,11 +12,17 @@
  *
  * ARRAYS. They belong to the caller, have the stated length, and must not change during a call; the library does not use them
  * afterwards. Inputs may be the same array. An output must not overlap an input. NULL is refused unless the length is 0 or the
- * function allows it. Addresses that are not a multiple of the size of a number are refused. Texts are UTF-8 and end with 0.
+ * function allows it. Addresses that are not a multiple of the alignment of their type are refused. Texts are UTF-8 and end with 0.
+ * Coordinates are in any one unit of length, at most 2^200.
+ *
+ * ANSWERS. A query, a kinetic query, a detector and a shape keep the pairs of their last answer. There are none before the first
+ * answer, after an answer that failed (except with SSCC_STATUS_BUSY), and after sscc_query_safe_scale and sscc_shape_place. Before
+ * the first answer `complete` of the statistics is 0.
  *
  * THREADS. Each function states which threads may call it. Models and certificates never change, so any number of threads may use
- * them. A query, a kinetic query, a detector and a shape serve one call at a time, in any thread: make a copy for each thread. Free
- * a handle when no call uses it.
+ * them. A query, a kinetic query, a detector and a shape serve one call at a time, in any thread: make a copy for each thread. Two
+ * calls at the same time with one such handle are undefined behaviour; libraries with debug assertions refuse the second with
+ * SSCC_STATUS_BUSY. Free a handle only when no call uses it.
  *
  * CALLBACKS. They must return normally, without exceptions or longjmp. sscc.hpp catches exceptions and throws them again.
  *
@@ -49,7 +57,7 @@ enum sscc_status
   SSCC_STATUS_CANCELLED = 1,
   // A pointer that must not be NULL is NULL.
   SSCC_STATUS_NULL = 2,
-  // A pointer is not a multiple of the size of the numbers to which it points.
+  // An address is not a multiple of the alignment of its type.
   SSCC_STATUS_MISALIGNED = 3,
   // Two arrays overlap, elements of a matrix overlap or are interleaved, or two handles that must differ are the same.
   SSCC_STATUS_OVERLAP = 4,
@@ -58,7 +66,7 @@ enum sscc_status
   SSCC_STATUS_ARGUMENT = 5,
   // The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
   SSCC_STATUS_HANDLE = 6,
-  // The handle is in use: by the function that called the callback, or by another thread.
+  // The handle is in use: by the function that called the callback; with debug assertions also by another thread.
   SSCC_STATUS_BUSY = 7,
   // The array is too small for the answer.
   SSCC_STATUS_CAPACITY = 8,
@@ -79,13 +87,13 @@ typedef int32_t sscc_status;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// The kind of proof of an answer, exceptions apart.
+// The kind of proof of an answer, apart from exceptions.
 enum sscc_proof
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A search of the hierarchy.
+  // A traversal of the hierarchy.
   SSCC_PROOF_SEARCH = 0,
   // The root's radius: one comparison.
   SSCC_PROOF_RADIUS = 1,
@@ -100,7 +108,7 @@ typedef int32_t sscc_proof;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// The metric in which radii are measured, |z| = |S q|.
+// The metric in which radii are measured, |z| = |S (q - center)|.
 enum sscc_metric
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
@@ -245,7 +253,7 @@ typedef struct sscc_certify_options {
   // The largest radius, in units of the paper's global radius: finite, at least 1; 0 means 1. It has no effect with
   // SSCC_SCHEME_PAPER.
   double reach;
-  // The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
+  // The q from which radii are measured, r numbers. NULL, with `center_count` 0, means q = 0.
   const double *center;
   // Number of entries of `center`.
   size_t center_count;
@@ -255,9 +263,9 @@ typedef struct sscc_certify_options {
   size_t scales_count;
   // Which pairs count; NULL means the default of the mesh.
   const struct sscc_filter *filter;
-  // Memory of the pair tree, in bytes for each triangle; 0 means 64.
+  // Memory of the pair tree, in bytes for each triangle; 0 means 64. SSCC_SCHEME_PAPER stores none.
   size_t budget;
-  // Memory of local certificates, in bytes for each triangle; 0 means 64.
+  // Memory of local certificates, in bytes for each triangle; 0 means 64. SSCC_SCHEME_PAPER stores none.
   size_t local_budget;
   // The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles,
   // rounded up. If more pairs collide there, none is an exception, and nodes that contain one have radius 0.
@@ -281,8 +289,8 @@ typedef struct sscc_certify_options {
 typedef int (*sscc_progress_fn)(void *user, size_t done, size_t total);
 
 // Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from
-// threads of the library, never from two at a time; a query or a detector calls it from the thread of the call. It
-// must not throw, and must not free the handles of the computation, the query or the detector.
+// threads of the library, never from two at a time; a query, a kinetic query or a detector calls it from the thread of
+// the call. It must not throw, and must not free the handles of the computation or of the call.
 typedef int (*sscc_cancel_fn)(void *user);
 
 // A matrix of doubles of the caller: element (i, j) is `data[i * row_stride + j * column_stride]`. Strides are numbers of
@@ -369,6 +377,9 @@ extern "C" {
 // Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both receive `user`.
 // If one of them cancels, the status is SSCC_STATUS_CANCELLED, and there are no certificates.
 //
+// Errors: SSCC_STATUS_TOO_MANY if more than 16,777,216 pairs collide at rest or at the centre, or if there are too many pairs
+// within `ignore_rings`.
+//
 // Threads: any. The computation starts its own threads.
 sscc_status sscc_certificates_compute(const struct sscc_model *model,
                                       const struct sscc_certify_options *options,
@@ -377,14 +388,18 @@ sscc_status sscc_certificates_compute(const struct sscc_model *model,
                                       void *user,
                                       struct sscc_certificates **certificates);
 
-// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model. Certificates
-// with a clearance are refused: they prove nothing about collisions.
+// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model.
+//
+// Errors: SSCC_STATUS_FILE for a file that cannot be read or is malformed; SSCC_STATUS_ARGUMENT for certificates with a clearance,
+// which prove nothing about collisions.
 //
 // Threads: any.
 sscc_status sscc_certificates_load(const char *certificates_path,
                                    struct sscc_certificates **certificates);
 
-// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the program writes.
+// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the command writes.
+//
+// Errors: SSCC_STATUS_FILE if the file cannot be written.
 //
 // Threads: any.
 sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
@@ -395,7 +410,7 @@ sscc_status sscc_certificates_save(const struct sscc_certificates *certificates,
 // Threads: any, while no other call uses the certificates.
 sscc_status sscc_certificates_free(struct sscc_certificates *certificates);
 
-// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite,
+// Returns the root's radius: if |z| of q is below it, the shape is free at q, apart from exceptions. If it is infinite,
 // that holds at every q. 0 for NULL.
 //
 // Threads: any.
@@ -416,18 +431,22 @@ sscc_status sscc_detector_new(struct sscc_matrix positions,
                               const struct sscc_filter *filter,
                               struct sscc_detector **detector);
 
-// Creates a copy for another thread. Copies share the data that does not change.
+// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_clone(const struct sscc_detector *detector, struct sscc_detector **copy);
 
 // Frees a detector. NULL is ignored.
 //
+// Errors: SSCC_STATUS_BUSY in a callback of a call with the detector, which is then not freed.
+//
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_free(struct sscc_detector *detector);
 
 // Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-// and `user` must remain valid as long as the detector has them. A copy has no such function.
+// and `user` must remain valid as long as the detector has them. A copy has no such function. Set it once, not for each answer: the
+// call copies the state of the detector. Short answers may end without a call of the function. Calls with two detectors check the
+// function of the first one only.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_set_cancel(struct sscc_detector *detector,
@@ -437,13 +456,15 @@ sscc_status sscc_detector_set_cancel(struct sscc_detector *detector,
 // Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs prove that the mesh is free.
 // sscc_detector_pairs copies the pairs.
 //
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_discrete(struct sscc_detector *detector,
                                    struct sscc_matrix positions,
                                    size_t *count);
 
-// Finds at most `limit` colliding pairs; which ones is not fixed. If the limit ended the search, `complete` of the statistics
-// is 0.
+// Finds at most `limit` colliding pairs at these positions (V x 3), for any limit; which ones is not fixed. If the limit ended the
+// search, `complete` of the statistics is 0.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_discrete_at_most(struct sscc_detector *detector,
@@ -451,8 +472,8 @@ sscc_status sscc_detector_discrete_at_most(struct sscc_detector *detector,
                                            size_t limit,
                                            size_t *count);
 
-// Finds one colliding pair, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there is
-// one; `pair` may be NULL.
+// Finds one colliding pair at these positions (V x 3), and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the
+// pair if there is one; `pair` may be NULL.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_first(struct sscc_detector *detector,
@@ -460,8 +481,11 @@ sscc_status sscc_detector_first(struct sscc_detector *detector,
                                 struct sscc_pair *pair,
                                 size_t *count);
 
-// Finds all pairs that collide while every vertex moves on a straight line from its position in `x_t0` to that in `x_t1`; `count`
-// receives their number. sscc_detector_impacts copies pairs and times.
+// Finds all pairs that collide while every vertex moves on a straight line from its position in `x_t0` to that in `x_t1` (V x 3
+// each); `count` receives their number. sscc_detector_impacts copies pairs and times.
+//
+// Errors: SSCC_STATUS_ARGUMENT for a filter with SSCC_NEIGHBOURS_INCLUDE_FOLDED; SSCC_STATUS_TOO_MANY for more than 67,108,864
+// pairs.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_continuous(struct sscc_detector *detector,
@@ -473,6 +497,8 @@ sscc_status sscc_detector_continuous(struct sscc_detector *detector,
 // their number. All such pairs count: the filters of the detectors have no effect. `detector` stores the answer.
 // `other` must be a different detector; for a mesh with itself, use a copy.
 //
+// Errors: SSCC_STATUS_OVERLAP for the same detector twice; SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each of both detectors.
 sscc_status sscc_detector_against(struct sscc_detector *detector,
                                   struct sscc_matrix x,
@@ -483,6 +509,8 @@ sscc_status sscc_detector_against(struct sscc_detector *detector,
 // Finds all pairs (triangle of this mesh, triangle of the other one) that collide while every vertex of both moves on a straight
 // line; otherwise as sscc_detector_against. sscc_detector_impacts copies pairs and times.
 //
+// Errors: as sscc_detector_against.
+//
 // Threads: one call at a time for each of both detectors.
 sscc_status sscc_detector_continuous_against(struct sscc_detector *detector,
                                              struct sscc_matrix x_t0,
@@ -492,15 +520,19 @@ sscc_status sscc_detector_continuous_against(struct sscc_detector *detector,
                                              struct sscc_matrix y_t1,
                                              size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-// pairs of the answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_pairs(const struct sscc_detector *detector,
                                 struct sscc_pair *pairs,
                                 size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_detector_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+// into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_impacts(const struct sscc_detector *detector,
@@ -508,7 +540,7 @@ sscc_status sscc_detector_impacts(const struct sscc_detector *detector,
                                   size_t capacity);
 
 // Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused.
+// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused with SSCC_STATUS_BUSY.
 //
 // Threads: one call at a time for each detector.
 sscc_status sscc_detector_visit_pairs(const struct sscc_detector *detector,
@@ -521,25 +553,30 @@ sscc_status sscc_detector_visit_pairs(const struct sscc_detector *detector,
 sscc_status sscc_detector_statistics(const struct sscc_detector *detector,
                                      struct sscc_statistics *statistics);
 
-// Creates a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+// Creates a kinetic query of a model and its certificates. It shares both, which may be freed.
+//
+// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
 //
 // Threads: any.
 sscc_status sscc_kinetic_new(const struct sscc_model *model,
                              const struct sscc_certificates *certificates,
                              struct sscc_kinetic **kinetic);
 
-// Creates a copy for another thread. Copies share the data that does not change.
+// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_clone(const struct sscc_kinetic *kinetic, struct sscc_kinetic **copy);
 
 // Frees a kinetic query. NULL is ignored.
 //
+// Errors: SSCC_STATUS_BUSY in a callback of a call with the kinetic query, which is then not freed.
+//
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_free(struct sscc_kinetic *kinetic);
 
 // Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-// and `user` must remain valid as long as the query has them. A copy has no such function.
+// and `user` must remain valid as long as the query has them. A copy has no such function. Set it once, not for each answer: the
+// call copies the state of the query. Short answers may end without a call of the function.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_set_cancel(struct sscc_kinetic *kinetic,
@@ -548,6 +585,8 @@ sscc_status sscc_kinetic_set_cancel(struct sscc_kinetic *kinetic,
 
 // Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
 // sscc_kinetic_pairs copies the pairs.
+//
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_discrete(struct sscc_kinetic *kinetic,
@@ -558,6 +597,8 @@ sscc_status sscc_kinetic_discrete(struct sscc_kinetic *kinetic,
 // Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
 // numbers each, which may be the same array); `count` receives their number. sscc_kinetic_impacts copies pairs and times.
 //
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_continuous(struct sscc_kinetic *kinetic,
                                     const double *q_t0,
@@ -565,15 +606,19 @@ sscc_status sscc_kinetic_continuous(struct sscc_kinetic *kinetic,
                                     size_t rank,
                                     size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-// pairs of the answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_pairs(const struct sscc_kinetic *kinetic,
                                struct sscc_pair *pairs,
                                size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_kinetic_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+// into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_impacts(const struct sscc_kinetic *kinetic,
@@ -581,7 +626,7 @@ sscc_status sscc_kinetic_impacts(const struct sscc_kinetic *kinetic,
                                  size_t capacity);
 
 // Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
+// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused with SSCC_STATUS_BUSY.
 //
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_visit_pairs(const struct sscc_kinetic *kinetic,
@@ -593,8 +638,8 @@ sscc_status sscc_kinetic_visit_pairs(const struct sscc_kinetic *kinetic,
 // Threads: one call at a time for each kinetic query.
 sscc_status sscc_kinetic_statistics(const struct sscc_kinetic *kinetic, struct sscc_statistics *statistics);
 
-// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
-// arrays are copied.
+// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. Its
+// metric is SSCC_METRIC_DISPLACEMENT. The arrays are copied.
 //
 // Threads: any.
 sscc_status sscc_model_new(struct sscc_matrix positions,
@@ -602,8 +647,12 @@ sscc_status sscc_model_new(struct sscc_matrix positions,
                            struct sscc_matrix modes,
                            struct sscc_model **model);
 
-// Loads a model from a file of any format that the program reads: a *.model.safetensors, a glTF file with morph targets, or a
-// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that contain modes.
+// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, a complete
+// .npz, or a mesh or a solid with a file of modes or a folder of target meshes. `FILE#NAME` names one of several meshes of a glTF
+// file. Paths are UTF-8; `modes_path` is NULL for files that contain modes. Warnings about the file, names of modes and default
+// weights are not returned.
+//
+// Errors: SSCC_STATUS_FILE for a file that cannot be read or is malformed.
 //
 // Threads: any.
 sscc_status sscc_model_load(const char *model_path,
@@ -611,6 +660,8 @@ sscc_status sscc_model_load(const char *model_path,
                             struct sscc_model **model);
 
 // Writes a model to a *.model.safetensors file, which appears whole or not at all.
+//
+// Errors: SSCC_STATUS_FILE if the file cannot be written.
 //
 // Threads: any.
 sscc_status sscc_model_save(const struct sscc_model *model, const char *model_path);
@@ -635,13 +686,17 @@ size_t sscc_model_vertex_count(const struct sscc_model *model);
 // Threads: any.
 size_t sscc_model_triangle_count(const struct sscc_model *model);
 
-// Copies the faces, three vertices for each triangle, counted from 0. `count` is the number of triangles.
+// Copies the faces: 3 F numbers, three vertices for each triangle, counted from 0. `count` is F.
+//
+// Errors: SSCC_STATUS_ARGUMENT if `count` is not the number of triangles.
 //
 // Threads: any.
 sscc_status sscc_model_faces(const struct sscc_model *model, uint32_t *faces, size_t count);
 
-// Computes the positions at q, bit for bit those to which all answers refer: x, y, z of each vertex. `count` is the number of
-// vertices.
+// Computes the positions at q (`rank` numbers), bit for bit those to which all answers refer: 3 V numbers, x, y, z of each vertex.
+// `count` is V.
+//
+// Errors: SSCC_STATUS_ARGUMENT if `count` is not the number of vertices.
 //
 // Threads: any.
 sscc_status sscc_model_positions(const struct sscc_model *model,
@@ -650,25 +705,30 @@ sscc_status sscc_model_positions(const struct sscc_model *model,
                                  double *positions,
                                  size_t count);
 
-// Creates a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+// Creates a query of a model and its certificates. It shares both, which may be freed.
+//
+// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
 //
 // Threads: any.
 sscc_status sscc_query_new(const struct sscc_model *model,
                            const struct sscc_certificates *certificates,
                            struct sscc_query **query);
 
-// Creates a copy for another thread. Copies share the data that does not change.
+// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_clone(const struct sscc_query *query, struct sscc_query **copy);
 
 // Frees a query. NULL is ignored.
 //
+// Errors: SSCC_STATUS_BUSY in a callback of a call with the query, which is then not freed.
+//
 // Threads: one call at a time for each query.
 sscc_status sscc_query_free(struct sscc_query *query);
 
 // Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-// and `user` must remain valid as long as the query has them. A copy has no such function.
+// and `user` must remain valid as long as the query has them. A copy has no such function. Set it once, not for each answer: the
+// call copies the state of the query. Short answers may end without a call of the function.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_set_cancel(struct sscc_query *query,
@@ -678,14 +738,18 @@ sscc_status sscc_query_set_cancel(struct sscc_query *query,
 // Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
 // sscc_query_pairs copies the pairs.
 //
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each query.
 sscc_status sscc_query_discrete(struct sscc_query *query,
                                 const double *q,
                                 size_t rank,
                                 size_t *count);
 
-// Finds at most `limit` colliding pairs at q; which ones is not fixed. If the limit ended the search,
+// Finds at most `limit` colliding pairs at q (`rank` numbers); which ones is not fixed. If the limit ended the search,
 // `complete` of the statistics is 0.
+//
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs, if `limit` is larger than this number.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_discrete_at_most(struct sscc_query *query,
@@ -694,8 +758,8 @@ sscc_status sscc_query_discrete_at_most(struct sscc_query *query,
                                         size_t limit,
                                         size_t *count);
 
-// Finds one colliding pair at q, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there
-// is one; `pair` may be NULL.
+// Finds one colliding pair at q (`rank` numbers), and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair
+// if there is one; `pair` may be NULL.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_first(struct sscc_query *query,
@@ -707,6 +771,8 @@ sscc_status sscc_query_first(struct sscc_query *query,
 // Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
 // numbers each, which may be the same array); `count` receives their number. sscc_query_impacts copies pairs and times.
 //
+// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each query.
 sscc_status sscc_query_continuous(struct sscc_query *query,
                                   const double *q_t0,
@@ -714,8 +780,9 @@ sscc_status sscc_query_continuous(struct sscc_query *query,
                                   size_t rank,
                                   size_t *count);
 
-// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; 0 if the
-// shape collides at the centre, infinite if no vertex moves. It takes longer than an answer, and allocates.
+// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s], with q of `rank` numbers.
+// It is 0 if the shape collides at the centre, else infinite if q is the centre or the global radius, up to which radii are
+// computed, is infinite. It is at most the scale at which |z| reaches that radius. It takes longer than an answer, and allocates.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_safe_scale(struct sscc_query *query,
@@ -723,15 +790,19 @@ sscc_status sscc_query_safe_scale(struct sscc_query *query,
                                   size_t rank,
                                   double *scale);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-// pairs of the answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_pairs(const struct sscc_query *query,
                              struct sscc_pair *pairs,
                              size_t capacity);
 
-// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_query_pairs.
+// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+// into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_impacts(const struct sscc_query *query,
@@ -739,7 +810,7 @@ sscc_status sscc_query_impacts(const struct sscc_query *query,
                                size_t capacity);
 
 // Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
+// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused with SSCC_STATUS_BUSY.
 //
 // Threads: one call at a time for each query.
 sscc_status sscc_query_visit_pairs(const struct sscc_query *query,
@@ -754,17 +825,21 @@ sscc_status sscc_query_statistics(const struct sscc_query *query, struct sscc_st
 // Creates a shape at q = 0 in its own axes. `certificates` may be NULL; only their hierarchy is used. The shape shares
 // both, which may be freed.
 //
+// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
+//
 // Threads: any.
 sscc_status sscc_shape_new(const struct sscc_model *model,
                            const struct sscc_certificates *certificates,
                            struct sscc_shape **shape);
 
-// Creates a copy for another thread. Copies share the data that does not change.
+// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_clone(const struct sscc_shape *shape, struct sscc_shape **copy);
 
 // Frees a shape. NULL is ignored.
+//
+// Errors: SSCC_STATUS_BUSY in a callback of a call with the shape, which is then not freed.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_free(struct sscc_shape *shape);
@@ -783,14 +858,18 @@ sscc_status sscc_shape_place(struct sscc_shape *shape,
 // `shape` stores the answer. `bounds` is a finite AABB that contains all compared shapes, or NULL; it affects only the
 // time. `other` must be a different shape.
 //
+// Errors: SSCC_STATUS_OVERLAP for the same shape twice; SSCC_STATUS_ARGUMENT if `bounds` is not finite; SSCC_STATUS_TOO_MANY for
+// more than 67,108,864 pairs.
+//
 // Threads: one call at a time for each of both shapes.
 sscc_status sscc_shape_against(struct sscc_shape *shape,
                                struct sscc_shape *other,
                                const struct sscc_box *bounds,
                                size_t *count);
 
-// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-// pairs of the answer.
+// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+//
+// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_pairs(const struct sscc_shape *shape,
@@ -798,7 +877,7 @@ sscc_status sscc_shape_pairs(const struct sscc_shape *shape,
                              size_t capacity);
 
 // Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused.
+// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused with SSCC_STATUS_BUSY.
 //
 // Threads: one call at a time for each shape.
 sscc_status sscc_shape_visit_pairs(const struct sscc_shape *shape,

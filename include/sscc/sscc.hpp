@@ -6,7 +6,7 @@
 // Callables (progress, cancel, visit) may throw: the call ends, and throws the same exception. A callable that returns a value
 // ends the call if the value is true.
 //
-// Views are valid until the next call with the same object. Threads: as sscc.h states.
+// Views are valid until the next call with the same object. Threads and errors: as sscc.h states.
 #ifndef SSCC_HPP
 #define SSCC_HPP
 
@@ -180,6 +180,7 @@ result<T> finish(status s, T value) {
   return {s, std::move(value)};
 }
 
+// sscc_error_message() does not have this message.
 template <class T>
 result<T> refuse(const char*) {
   return {SSCC_STATUS_ARGUMENT, T()};
@@ -319,6 +320,7 @@ class searching : public answering<Api> {
   }
 
   // Sets a callable that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED. Copies have no callable.
+  // Set it once, not for each answer: the call copies the state of the object.
   returns<void> cancel_when(std::function<bool()> ask) {
     auto next = std::make_unique<canceller>(canceller{std::move(ask), {}});
     const status s = Api::set_cancel(this->handle_.get(), canceller::c_function, next.get());
@@ -540,6 +542,7 @@ class query : public detail::searching<detail::query_api> {
     return detail::make<query, sscc_query>([&](auto out) { return sscc_query_new(m.get(), c.get(), out); });
   }
 
+  // Returns a copy for another thread. It has no pairs() and no impacts() before its first answer.
   returns<query> clone() const {
     return detail::make<query, sscc_query>([&](auto out) { return sscc_query_clone(get(), out); });
   }
@@ -568,8 +571,8 @@ class query : public detail::searching<detail::query_api> {
     return continuous_answer(s, count);
   }
 
-  // Returns a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]. It can be larger than 1,
-  // and is infinite if no vertex moves.
+  // Returns a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]. It can be larger than 1.
+  // It is 0 if the shape collides at the centre, else infinite if q is the centre or the global radius is infinite.
   returns<double> safe_scale(view<const double> q) {
     double scale = 0.0;
     const status s = sscc_query_safe_scale(get(), q.data(), q.size(), &scale);
@@ -589,16 +592,19 @@ class kinetic : public detail::searching<detail::kinetic_api> {
     return detail::make<kinetic, sscc_kinetic>([&](auto out) { return sscc_kinetic_new(m.get(), c.get(), out); });
   }
 
+  // Returns a copy for another thread. It has no pairs() and no impacts() before its first answer.
   returns<kinetic> clone() const {
     return detail::make<kinetic, sscc_kinetic>([&](auto out) { return sscc_kinetic_clone(get(), out); });
   }
 
+  // Returns all colliding pairs at q, sorted. If none are found, the shape is proven free.
   returns<view<const pair>> discrete(view<const double> q) {
     std::size_t count = 0;
     const status s = sscc_kinetic_discrete(get(), q.data(), q.size(), &count);
     return discrete_answer(s, count);
   }
 
+  // Returns all pairs that collide between two q, sorted, with their times of impact.
   returns<view<const impact>> continuous(view<const double> q_t0, view<const double> q_t1) {
     if (q_t0.size() != q_t1.size()) return detail::refuse<view<const impact>>("q_t0 and q_t1 differ in length");
     std::size_t count = 0;
@@ -618,10 +624,13 @@ class detector : public detail::searching<detail::detector_api> {
         [&](auto out) { return sscc_detector_new(rest, faces, &counted, out); });
   }
 
+  // Returns a copy for another thread. It has no pairs() and no impacts() before its first answer.
   returns<detector> clone() const {
     return detail::make<detector, sscc_detector>([&](auto out) { return sscc_detector_clone(get(), out); });
   }
 
+  // Returns all colliding pairs at these positions (V x 3), or `limit` of them if there are more, sorted. If none are found and the
+  // limit is not 0, the mesh is proven free.
   returns<view<const pair>> discrete(const matrix& x,
                                      std::size_t limit = std::numeric_limits<std::size_t>::max()) {
     const bool is_limited = limit != std::numeric_limits<std::size_t>::max();
@@ -631,24 +640,31 @@ class detector : public detail::searching<detail::detector_api> {
     return discrete_answer(s, count);
   }
 
+  // Returns one colliding pair at these positions (V x 3), or none.
   returns<view<const pair>> first(const matrix& x) {
     std::size_t count = 0;
     const status s = sscc_detector_first(get(), x, nullptr, &count);
     return discrete_answer(s, count);
   }
 
+  // Returns all pairs that collide while every vertex moves on a straight line from x_t0 to x_t1 (V x 3 each), sorted, with their
+  // times of impact.
   returns<view<const impact>> continuous(const matrix& x_t0, const matrix& x_t1) {
     std::size_t count = 0;
     const status s = sscc_detector_continuous(get(), x_t0, x_t1, &count);
     return continuous_answer(s, count);
   }
 
+  // Returns all pairs (triangle of this mesh at x, triangle of the other one at y) that collide, sorted. The filters of the
+  // detectors have no effect. `other` must be a different detector.
   returns<view<const pair>> against(const matrix& x, detector& other, const matrix& y) {
     std::size_t count = 0;
     const status s = sscc_detector_against(get(), x, other.get(), y, &count);
     return discrete_answer(s, count);
   }
 
+  // Returns all pairs (triangle of this mesh, triangle of the other one) that collide while every vertex of both moves on a
+  // straight line, sorted, with their times of impact; otherwise as against().
   returns<view<const impact>> continuous_against(const matrix& x_t0, const matrix& x_t1, detector& other,
                                                  const matrix& y_t0, const matrix& y_t1) {
     std::size_t count = 0;
@@ -671,6 +687,7 @@ class shape : public detail::answering<detail::shape_api> {
     return detail::make<shape, sscc_shape>([&](auto out) { return sscc_shape_new(m.get(), c.get(), out); });
   }
 
+  // Returns a copy for another thread. It has no pairs() before its first answer.
   returns<shape> clone() const {
     return detail::make<shape, sscc_shape>([&](auto out) { return sscc_shape_clone(get(), out); });
   }

@@ -37,11 +37,11 @@ class FreeSamples(NamedTuple):
     """Free configurations from draws, from ``Certificates.free_samples``."""
 
     q: NDArray[np.float64]
-    """The free configurations (n, r), in the order of their draws."""
+    """The free configurations (m, r), in the order of their draws."""
     draws: NDArray[np.int64]
-    """The row in the draws of each free configuration (n,)."""
+    """The row in the draws of each free configuration (m,)."""
     changes: NDArray[np.float64]
-    """The distance of each free configuration from its draw, in the metric (n,): 0 where the draw was free."""
+    """The distance of each free configuration from its draw, in the metric (m,): 0 where the draw was free."""
     drawn: int
     """Number of draws."""
     free: int

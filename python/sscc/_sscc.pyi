@@ -98,7 +98,7 @@ class Model:
         groups: the group of each triangle (F,), from 0 to 65535. None means no groups.
         ignore_groups: pairs of groups (n, 2): triangles of these two groups do not count. A pair (a, a) ignores pairs within
             group a.
-        threads: the number of threads. None means all cores. The certificates do not depend on it.
+        threads: the number of threads, from 1 to 1024. None means all cores. The certificates do not depend on it.
         progress: a function that receives the finished share, from 0 to 1; its exceptions stop the work. The share ascends, and is
             1 only at the end of work without an error. True shows a bar on standard error, False nothing. None means a bar on a
             terminal or in a notebook.
@@ -108,8 +108,9 @@ class Model:
     def static(self, forces: ArrayLike, *, gravity: ArrayLike | None = None) -> _F64:
         """Returns the q (r,) of forces on the vertices, (V, 3): the linear static solution in the span of the modes.
 
-        gravity: acceleration (3,) of the whole mass. Raises ValueError for models without stiffness, or for gravity without
-        mass.
+        forces: in newtons, for a model in metres.
+        gravity: acceleration (3,) of the whole mass, in m/s^2. Raises ValueError for models without stiffness, or for gravity
+            without mass.
         """
     def fit(self, positions: ArrayLike) -> tuple[_F64, float]:
         """Returns the q (r,) whose shape is nearest to positions (V, 3), and the share of the displacements that remains.
@@ -167,12 +168,13 @@ class Certificates:
     def save(self, path: _Path) -> None:
         """Writes ``*.sscc.safetensors``, whole or not at all."""
     def check(self, q: ArrayLike, limit: SupportsIndex | None = None) -> Answer:
-        """Returns the pairs of triangles that collide at q (r,). ``limit``: the search ends after this number of pairs."""
+        """Returns the pairs of triangles that collide at q (r,). ``limit`` (at least 1): the search ends after this number of
+        pairs. More than 67,108,864 pairs raise ValueError, unless ``limit`` is at most this number."""
     def within(
         self, q: ArrayLike, clearance: float, *, rings: SupportsIndex | None = None
     ) -> tuple[_U32, _F64]:
         """Returns all pairs (n, 2) nearer than a clearance at q (r,), and their distances (n,), equal to those that
-        ``Detector.within`` finds at the positions.
+        ``Detector.within`` finds at the positions. Clearance and distances are in the unit of the model.
 
         Certificates of this clearance or a larger one, with at most this number of rings, answer most q by one comparison.
         """
@@ -184,11 +186,12 @@ class Certificates:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> Batch:
-        """Runs ``check`` for every row of Q (n, r). ``threads``: None means all cores. ``progress``: as in ``Model.certify``."""
+        """Runs ``check`` for every row of Q (n, r). ``threads``, ``progress``: as in ``Model.certify``."""
     def continuous(self, q0: ArrayLike, q1: ArrayLike) -> Impacts:
         """Returns the pairs that collide between q0 and q1, and their times of impact. Each vertex moves on a straight line."""
     def safe_scale(self, q: ArrayLike) -> float:
-        """Returns a scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s."""
+        """Returns a scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s. It is 0 if the shape
+        collides at the centre, else infinite if q is the centre or ``global_radius`` is infinite."""
     def sweep(
         self,
         range: ArrayLike | None = None,
@@ -249,7 +252,8 @@ class Certificates:
     def kinetic(self) -> KineticQuery:
         """Returns a query for a sequence of q with small steps."""
     @property
-    def model(self) -> Model: ...
+    def model(self) -> Model:
+        """The model of the certificates."""
     @property
     def root_radius(self) -> float:
         """The norm below which the whole shape is free, apart from exceptions. With a ``clearance``, the shape keeps the
@@ -258,9 +262,11 @@ class Certificates:
     def global_radius(self) -> float:
         """The largest radius: radii are computed up to it. It may be infinite."""
     @property
-    def epsilon(self) -> float: ...
+    def epsilon(self) -> float:
+        """The allowed relative error of the root's radius."""
     @property
-    def metric(self) -> str: ...
+    def metric(self) -> str:
+        """The name of the metric: energy, displacement, mass, identity or given."""
     @property
     def metric_factor(self) -> _F64:
         """The factor S: its diagonal (r,), or S itself (r, r)."""
@@ -268,9 +274,11 @@ class Certificates:
     def center(self) -> _F64:
         """The q from which radii are measured, (r,)."""
     @property
-    def neighbours(self) -> str: ...
+    def neighbours(self) -> str:
+        """Which triangles with a common vertex count: "exclude" or "include-one-vertex"."""
     @property
-    def weld(self) -> bool: ...
+    def weld(self) -> bool:
+        """Whether vertices of equal position and modes are one, for adjacency."""
     @property
     def ignored(self) -> _U32:
         """Pairs that never count, (n, 2)."""
@@ -304,7 +312,8 @@ class Certificates:
     def digest(self) -> str:
         """BLAKE3 of the model and the scope of the certificates, in hexadecimal."""
     @property
-    def hierarchy(self) -> Hierarchy: ...
+    def hierarchy(self) -> Hierarchy:
+        """The BVH over the triangles, with the radius of each node."""
 
 @final
 class Hierarchy:
@@ -312,19 +321,22 @@ class Hierarchy:
 
     @property
     def parent(self) -> _I32:
-        """The parent of each node, -1 for the root."""
+        """The parent of each node (nodes,), -1 for the root."""
     @property
     def level(self) -> _I32:
-        """The level of each node, 0 for the root."""
+        """The level of each node (nodes,), 0 for the root."""
     @property
-    def first(self) -> _U32: ...
+    def first(self) -> _U32:
+        """The index in ``order`` of the first triangle of each node (nodes,)."""
     @property
-    def count(self) -> _U32: ...
+    def count(self) -> _U32:
+        """The number of triangles of each node (nodes,)."""
     @property
-    def order(self) -> _U32: ...
+    def order(self) -> _U32:
+        """The triangles, (F,), in an order in which those of each node are consecutive."""
     @property
     def radius(self) -> _F64:
-        """The radius of each node, see ``Certificates.radius``."""
+        """The radius of each node (nodes,), see ``Certificates.radius``."""
     def __len__(self) -> int: ...
 
 @final
@@ -332,7 +344,8 @@ class KineticQuery:
     """Runs ``check`` for a q that changes little from call to call: the same answers, at less cost. Calls from several threads
     run one after the other."""
 
-    def check(self, q: ArrayLike) -> Answer: ...
+    def check(self, q: ArrayLike) -> Answer:
+        """Returns the pairs of triangles that collide at q (r,), as ``Certificates.check``."""
 
 @final
 class Answer:
@@ -363,9 +376,11 @@ class Answer:
     def opened(self) -> int:
         """Number of opened nodes and node pairs."""
     @property
-    def box_tests(self) -> int: ...
+    def box_tests(self) -> int:
+        """Number of pairs of boxes that were compared."""
     @property
-    def triangle_tests(self) -> int: ...
+    def triangle_tests(self) -> int:
+        """Number of pairs of triangles that were tested exactly."""
 
 @final
 class Impacts:
@@ -402,7 +417,7 @@ class Impacts:
 
 @final
 class Batch:
-    """The answers for n configurations: read-only arrays with one entry for each, and ``batch[i]``, an Answer."""
+    """The answers for n configurations: read-only arrays (n,) with one entry for each, and ``batch[i]``, an Answer."""
 
     @property
     def colliding(self) -> _Bool: ...
@@ -486,7 +501,7 @@ class Detector:
     ) -> DetectorAnswer:
         """Returns the pairs of triangles that collide at these positions (V, 3), exactly.
 
-        ``limit``: the search ends after this number of pairs; ``first=True``: after one.
+        ``limit`` (at least 1): the search ends after this number of pairs; ``first=True``: after one.
         """
     def check_many(
         self,
@@ -496,7 +511,7 @@ class Detector:
         threads: int | None = None,
         progress: _Progress = None,
     ) -> DetectorBatch:
-        """Runs ``check`` for every frame (T, V, 3). ``threads``: None means all cores. ``progress``: as in ``Model.certify``."""
+        """Runs ``check`` for every frame (T, V, 3). ``threads``, ``progress``: as in ``Model.certify``."""
     def continuous(self, x0: ArrayLike, x1: ArrayLike) -> DetectorImpacts:
         """Returns the pairs that collide while each vertex moves on a straight line from x0 to x1 (V, 3), and their times."""
     def against(
@@ -515,7 +530,8 @@ class Detector:
     ) -> tuple[_U32, _F64]:
         """Returns the pairs nearer than a distance, sorted: (n, 2), and their distances (n,), which are 0 if they collide.
 
-        Distances have an error of at most 2^-40 of the size of both triangles. Triangles with a common vertex never count.
+        Distances are in the unit of the positions, with an error of at most 2^-40 of the size of both triangles. Triangles with a
+        common vertex never count.
         ``rings``: triangles within this number of rings of each other on the surface do not count either. With 1 (default) these
         are triangles with a common vertex, with 2 also triangles with a common neighbour of this kind, and so on.
         """
@@ -541,7 +557,8 @@ class Detector:
     def penetration(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike
     ) -> BodyPenetration:
-        """Returns the volume inside both meshes, and the diameter of the largest ball inside both. Both meshes must be closed."""
+        """Returns the volume inside both meshes, in the third power of the unit of the positions, and the diameter of the largest
+        ball inside both. Both meshes must be closed."""
     @property
     def faces(self) -> _U32:
         """Vertex numbers, (F, 3); a copy."""
@@ -586,9 +603,11 @@ class DetectorAnswer:
     def opened(self) -> int:
         """Number of opened nodes and node pairs."""
     @property
-    def box_tests(self) -> int: ...
+    def box_tests(self) -> int:
+        """Number of pairs of boxes that were compared."""
     @property
-    def triangle_tests(self) -> int: ...
+    def triangle_tests(self) -> int:
+        """Number of pairs of triangles that were tested exactly."""
     @property
     def tree_cost(self) -> float:
         """The cost of the refitted BVH by the surface area heuristic."""
@@ -643,7 +662,7 @@ class DetectorImpacts:
 
 @final
 class DetectorBatch:
-    """The answers for T frames: read-only arrays with one entry for each, and ``batch[t]``, a DetectorAnswer."""
+    """The answers for T frames: read-only arrays (T,) with one entry for each, and ``batch[t]``, a DetectorAnswer."""
 
     @property
     def colliding(self) -> _Bool: ...

@@ -9,7 +9,8 @@ Common arguments:
 
 - ``fix``: numbers of fixed vertices (n,); ``fix_box``: two finite corners (2, 3) of a box in which all vertices are fixed.
   Without fixed vertices the body is free, and its rigid motions are not among the modes.
-- ``youngs``, ``poisson``, ``density``: the material. None means the material of a solid's file, else 1e6, 0.4 and 1000.
+- ``youngs`` (N/m^2), ``poisson``, ``density`` (kg/m^3): the material, for a source in metres. None means the material of a solid's
+  file, else 1e6, 0.4 and 1000.
 - ``resolution``: number of cubes along the longest side of the lattice. None means about 20,000 cubes in total.
 - ``threads``, ``progress``: as in ``Model.certify``.
 

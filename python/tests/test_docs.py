@@ -84,7 +84,7 @@ def test_the_first_page_and_the_gallery_run(
     exec(compile(block, "docs/index.md", "exec"), names)
     share = names["answers"].colliding.mean()
     assert 0.01 < share < 0.5 and f"{share:.1%} of the samples" in capsys.readouterr().out
-    assert names["closest"].resolved
+    assert names["repaired"].resolved
     assert run_commands("docs/gallery.md", command) == 5
     for picture in ("spring", "spring-polynomial", "bracket"):
         assert (tmp_path / f"{picture}.png").read_bytes().startswith(b"\x89PNG"), picture

@@ -23,7 +23,11 @@ pub fn run(arguments: &[String]) -> ExitCode {
 
 fn pack(arguments: &[String]) -> Result<(), String> {
     let wheels: Vec<PathBuf> = match arguments {
-        [] => files(&root().join("target/wheel/dist")),
+        [] => {
+            let all = files(&root().join("target/wheel/dist"));
+            // Blender has no build for Linux on ARM.
+            all.into_iter().filter(|path| !path.to_string_lossy().ends_with("_aarch64.whl")).collect()
+        }
         _ => arguments.iter().map(PathBuf::from).collect(),
     };
     let wheels: Vec<_> =

@@ -24,6 +24,9 @@ impl Handle for sscc_certificates {
 /// Computes certificates of a model. `options` is NULL for the defaults. `progress` and `cancel` may be NULL; both receive `user`.
 /// If one of them cancels, the status is SSCC_STATUS_CANCELLED, and there are no certificates.
 ///
+/// Errors: SSCC_STATUS_TOO_MANY if more than 16,777,216 pairs collide at rest or at the centre, or if there are too many pairs
+/// within `ignore_rings`.
+///
 /// Threads: any. The computation starts its own threads.
 ///
 /// # Safety
@@ -52,8 +55,10 @@ pub unsafe extern "C" fn sscc_certificates_compute(
     })
 }
 
-/// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model. Certificates
-/// with a clearance are refused: they prove nothing about collisions.
+/// Loads certificates from a *.sscc.safetensors file. The creation of a query checks whether they are of its model.
+///
+/// Errors: SSCC_STATUS_FILE for a file that cannot be read or is malformed; SSCC_STATUS_ARGUMENT for certificates with a clearance,
+/// which prove nothing about collisions.
 ///
 /// Threads: any.
 ///
@@ -78,7 +83,9 @@ pub unsafe extern "C" fn sscc_certificates_load(
     })
 }
 
-/// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the program writes.
+/// Writes certificates to a *.sscc.safetensors file, which appears whole or not at all. Its bytes are those that the command writes.
+///
+/// Errors: SSCC_STATUS_FILE if the file cannot be written.
 ///
 /// Threads: any.
 ///
@@ -108,7 +115,7 @@ pub unsafe extern "C" fn sscc_certificates_free(certificates: *mut sscc_certific
     guard(|| unsafe { free(certificates) })
 }
 
-/// Returns the root's radius: if |z| of q is below it, the shape is free at q, exceptions apart. If it is infinite,
+/// Returns the root's radius: if |z| of q is below it, the shape is free at q, apart from exceptions. If it is infinite,
 /// that holds at every q. 0 for NULL.
 ///
 /// Threads: any.

@@ -72,7 +72,7 @@ pub unsafe extern "C" fn sscc_detector_new(
     })
 }
 
-/// Creates a copy for another thread. Copies share the data that does not change.
+/// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -94,6 +94,8 @@ pub unsafe extern "C" fn sscc_detector_clone(
 
 /// Frees a detector. NULL is ignored.
 ///
+/// Errors: SSCC_STATUS_BUSY in a callback of a call with the detector, which is then not freed.
+///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
@@ -105,7 +107,9 @@ pub unsafe extern "C" fn sscc_detector_free(detector: *mut sscc_detector) -> ssc
 }
 
 /// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-/// and `user` must remain valid as long as the detector has them. A copy has no such function.
+/// and `user` must remain valid as long as the detector has them. A copy has no such function. Set it once, not for each answer: the
+/// call copies the state of the detector. Short answers may end without a call of the function. Calls with two detectors check the
+/// function of the first one only.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -128,6 +132,8 @@ pub unsafe extern "C" fn sscc_detector_set_cancel(
 /// Finds all colliding pairs at these positions (V x 3); `count` receives their number. 0 pairs prove that the mesh is free.
 /// sscc_detector_pairs copies the pairs.
 ///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+///
 /// Threads: one call at a time for each detector.
 ///
 /// # Safety
@@ -141,16 +147,16 @@ pub unsafe extern "C" fn sscc_detector_discrete(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
         let out = unsafe { output(count, "count") }?;
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
-        answer.forget();
         out.write(answer.set_pairs(detector.discrete(x.vectors(&mut buffers[0]))?));
         Ok(())
     })
 }
 
-/// Finds at most `limit` colliding pairs; which ones is not fixed. If the limit ended the search, `complete` of the statistics
-/// is 0.
+/// Finds at most `limit` colliding pairs at these positions (V x 3), for any limit; which ones is not fixed. If the limit ended the
+/// search, `complete` of the statistics is 0.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -166,16 +172,16 @@ pub unsafe extern "C" fn sscc_detector_discrete_at_most(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
         let out = unsafe { output(count, "count") }?;
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
-        answer.forget();
         out.write(answer.set_pairs(detector.discrete_at_most(x.vectors(&mut buffers[0]), limit)?));
         Ok(())
     })
 }
 
-/// Finds one colliding pair, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there is
-/// one; `pair` may be NULL.
+/// Finds one colliding pair at these positions (V x 3), and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the
+/// pair if there is one; `pair` may be NULL.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -191,9 +197,9 @@ pub unsafe extern "C" fn sscc_detector_first(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
         let (pair, out) = unsafe { (optional_output(pair, "pair")?, output(count, "count")?) };
         let x = unsafe { Matrix::positions(&positions, "positions") }?;
-        answer.forget();
         let first = detector.first(x.vectors(&mut buffers[0]))?;
         if let (Some(out), Some(first)) = (pair, first) {
             out.write(first.into());
@@ -203,8 +209,11 @@ pub unsafe extern "C" fn sscc_detector_first(
     })
 }
 
-/// Finds all pairs that collide while every vertex moves on a straight line from its position in `x_t0` to that in `x_t1`; `count`
-/// receives their number. sscc_detector_impacts copies pairs and times.
+/// Finds all pairs that collide while every vertex moves on a straight line from its position in `x_t0` to that in `x_t1` (V x 3
+/// each); `count` receives their number. sscc_detector_impacts copies pairs and times.
+///
+/// Errors: SSCC_STATUS_ARGUMENT for a filter with SSCC_NEIGHBOURS_INCLUDE_FOLDED; SSCC_STATUS_TOO_MANY for more than 67,108,864
+/// pairs.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -221,10 +230,10 @@ pub unsafe extern "C" fn sscc_detector_continuous(
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers: [b0, b1, ..] } =
             &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
         let out = unsafe { output(count, "count") }?;
         let x_t0 = unsafe { Matrix::positions(&x_t0, "x_t0") }?;
         let x_t1 = unsafe { Matrix::positions(&x_t1, "x_t1") }?;
-        answer.forget();
         out.write(answer.set_impacts(detector.continuous(x_t0.vectors(b0), x_t1.vectors(b1))?));
         Ok(())
     })
@@ -233,6 +242,8 @@ pub unsafe extern "C" fn sscc_detector_continuous(
 /// Finds all pairs (triangle of this mesh at `x`, triangle of the other one at `y`) that collide; `count` receives
 /// their number. All such pairs count: the filters of the detectors have no effect. `detector` stores the answer.
 /// `other` must be a different detector; for a mesh with itself, use a copy.
+///
+/// Errors: SSCC_STATUS_OVERLAP for the same detector twice; SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
 ///
 /// Threads: one call at a time for each of both detectors.
 ///
@@ -247,14 +258,15 @@ pub unsafe extern "C" fn sscc_detector_against(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        check_distinct(detector, other)?;
+        let is_same = detector == other;
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers: [bx, by, ..] } =
             &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
+        check_distinct(is_same)?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.detector;
         let out = unsafe { output(count, "count") }?;
         let (x, y) = unsafe { (Matrix::positions(&x, "x")?, Matrix::positions(&y, "y")?) };
-        answer.forget();
         out.write(answer.set_pairs(detector.against(x.vectors(bx), other, y.vectors(by))?));
         Ok(())
     })
@@ -262,6 +274,8 @@ pub unsafe extern "C" fn sscc_detector_against(
 
 /// Finds all pairs (triangle of this mesh, triangle of the other one) that collide while every vertex of both moves on a straight
 /// line; otherwise as sscc_detector_against. sscc_detector_impacts copies pairs and times.
+///
+/// Errors: as sscc_detector_against.
 ///
 /// Threads: one call at a time for each of both detectors.
 ///
@@ -278,31 +292,33 @@ pub unsafe extern "C" fn sscc_detector_continuous_against(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        check_distinct(detector, other)?;
+        let is_same = detector == other;
         // SAFETY: by the caller's guarantee, here and below.
         let State { detector, answer, buffers } = &mut *unsafe { borrow(detector) }?.0.lock()?;
+        answer.forget();
+        check_distinct(is_same)?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.detector;
         let out = unsafe { output(count, "count") }?;
         let (x0, x1) = unsafe { (Matrix::positions(&x_t0, "x_t0")?, Matrix::positions(&x_t1, "x_t1")?) };
         let (y0, y1) = unsafe { (Matrix::positions(&y_t0, "y_t0")?, Matrix::positions(&y_t1, "y_t1")?) };
         let [b0, b1, b2, b3] = buffers;
-        answer.forget();
         let (x, y) = ([x0.vectors(b0), x1.vectors(b1)], [y0.vectors(b2), y1.vectors(b3)]);
         out.write(answer.set_impacts(detector.continuous_against(x, other, y)?));
         Ok(())
     })
 }
 
-fn check_distinct(detector: *mut sscc_detector, other: *mut sscc_detector) -> Result<()> {
-    if detector == other && !other.is_null() {
+fn check_distinct(is_same: bool) -> Result<()> {
+    if is_same {
         let message = "detector and other are the same: use a copy";
         return Err(Failure::new(sscc_status::Overlap, message));
     }
     Ok(())
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-/// pairs of the answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -321,7 +337,10 @@ pub unsafe extern "C" fn sscc_detector_pairs(
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_detector_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+/// into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 ///
 /// Threads: one call at a time for each detector.
 ///
@@ -341,7 +360,7 @@ pub unsafe extern "C" fn sscc_detector_impacts(
 }
 
 /// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused.
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this detector are refused with SSCC_STATUS_BUSY.
 ///
 /// Threads: one call at a time for each detector.
 ///

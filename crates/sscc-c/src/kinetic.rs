@@ -40,7 +40,9 @@ impl Handle for sscc_kinetic {
     }
 }
 
-/// Creates a kinetic query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+/// Creates a kinetic query of a model and its certificates. It shares both, which may be freed.
+///
+/// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
 ///
 /// Threads: any.
 ///
@@ -62,7 +64,7 @@ pub unsafe extern "C" fn sscc_kinetic_new(
     })
 }
 
-/// Creates a copy for another thread. Copies share the data that does not change.
+/// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -84,6 +86,8 @@ pub unsafe extern "C" fn sscc_kinetic_clone(
 
 /// Frees a kinetic query. NULL is ignored.
 ///
+/// Errors: SSCC_STATUS_BUSY in a callback of a call with the kinetic query, which is then not freed.
+///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
@@ -95,7 +99,8 @@ pub unsafe extern "C" fn sscc_kinetic_free(kinetic: *mut sscc_kinetic) -> sscc_s
 }
 
 /// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-/// and `user` must remain valid as long as the query has them. A copy has no such function.
+/// and `user` must remain valid as long as the query has them. A copy has no such function. Set it once, not for each answer: the
+/// call copies the state of the query. Short answers may end without a call of the function.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -118,6 +123,8 @@ pub unsafe extern "C" fn sscc_kinetic_set_cancel(
 /// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
 /// sscc_kinetic_pairs copies the pairs.
 ///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+///
 /// Threads: one call at a time for each kinetic query.
 ///
 /// # Safety
@@ -132,8 +139,8 @@ pub unsafe extern "C" fn sscc_kinetic_discrete(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
-        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         out.write(state.answer.set_pairs(state.kinetic.discrete(q)?));
         Ok(())
     })
@@ -141,6 +148,8 @@ pub unsafe extern "C" fn sscc_kinetic_discrete(
 
 /// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
 /// numbers each, which may be the same array); `count` receives their number. sscc_kinetic_impacts copies pairs and times.
+///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -157,16 +166,17 @@ pub unsafe extern "C" fn sscc_kinetic_continuous(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(kinetic) }?.0.lock()?;
+        state.answer.forget();
         let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
         let out = unsafe { output(count, "count") }?;
-        state.answer.forget();
         out.write(state.answer.set_impacts(state.kinetic.continuous(t0, t1)?));
         Ok(())
     })
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-/// pairs of the answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -185,7 +195,10 @@ pub unsafe extern "C" fn sscc_kinetic_pairs(
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_kinetic_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+/// into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///
@@ -205,7 +218,7 @@ pub unsafe extern "C" fn sscc_kinetic_impacts(
 }
 
 /// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused with SSCC_STATUS_BUSY.
 ///
 /// Threads: one call at a time for each kinetic query.
 ///

@@ -21,8 +21,8 @@ impl Handle for sscc_model {
     const NAME: &'static str = "model";
 }
 
-/// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. The
-/// arrays are copied.
+/// Creates a model of a mesh (positions V x 3, faces F x 3) and its modes (3V x r): the shape at q is `positions + modes * q`. Its
+/// metric is SSCC_METRIC_DISPLACEMENT. The arrays are copied.
 ///
 /// Threads: any.
 ///
@@ -66,8 +66,12 @@ pub unsafe fn mesh(positions: &sscc_matrix, faces: &sscc_index_matrix) -> Result
     Ok(TriMesh::new(positions, faces.triples())?)
 }
 
-/// Loads a model from a file of any format that the program reads: a *.model.safetensors, a glTF file with morph targets, or a
-/// mesh with a file of modes. Paths are UTF-8; `modes_path` is NULL for files that contain modes.
+/// Loads a model from a file of any format that the command reads: a *.model.safetensors, a glTF file with morph targets, a complete
+/// .npz, or a mesh or a solid with a file of modes or a folder of target meshes. `FILE#NAME` names one of several meshes of a glTF
+/// file. Paths are UTF-8; `modes_path` is NULL for files that contain modes. Warnings about the file, names of modes and default
+/// weights are not returned.
+///
+/// Errors: SSCC_STATUS_FILE for a file that cannot be read or is malformed.
 ///
 /// Threads: any.
 ///
@@ -92,6 +96,8 @@ pub unsafe extern "C" fn sscc_model_load(
 }
 
 /// Writes a model to a *.model.safetensors file, which appears whole or not at all.
+///
+/// Errors: SSCC_STATUS_FILE if the file cannot be written.
 ///
 /// Threads: any.
 ///
@@ -154,7 +160,9 @@ pub unsafe extern "C" fn sscc_model_triangle_count(model: *const sscc_model) -> 
     unsafe { borrow(model) }.map_or(0, |model| model.model.mesh().faces().len())
 }
 
-/// Copies the faces, three vertices for each triangle, counted from 0. `count` is the number of triangles.
+/// Copies the faces: 3 F numbers, three vertices for each triangle, counted from 0. `count` is F.
+///
+/// Errors: SSCC_STATUS_ARGUMENT if `count` is not the number of triangles.
 ///
 /// Threads: any.
 ///
@@ -177,8 +185,10 @@ pub unsafe extern "C" fn sscc_model_faces(
     })
 }
 
-/// Computes the positions at q, bit for bit those to which all answers refer: x, y, z of each vertex. `count` is the number of
-/// vertices.
+/// Computes the positions at q (`rank` numbers), bit for bit those to which all answers refer: 3 V numbers, x, y, z of each vertex.
+/// `count` is V.
+///
+/// Errors: SSCC_STATUS_ARGUMENT if `count` is not the number of vertices.
 ///
 /// Threads: any.
 ///

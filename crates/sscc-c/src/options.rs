@@ -67,7 +67,7 @@ const _: () = assert!(size_of::<sscc_filter>() == 5 * size_of::<usize>() + 4 * s
 // SAFETY: zeros are valid, the size is first, there is no padding.
 unsafe impl Versioned for sscc_filter {}
 
-/// The metric in which radii are measured, |z| = |S q|.
+/// The metric in which radii are measured, |z| = |S (q - center)|.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_metric {
@@ -104,7 +104,7 @@ pub struct sscc_certify_options {
     /// The largest radius, in units of the paper's global radius: finite, at least 1; 0 means 1. It has no effect with
     /// SSCC_SCHEME_PAPER.
     pub reach: f64,
-    /// The q from which radii are measured. NULL, with `center_count` 0, means q = 0.
+    /// The q from which radii are measured, r numbers. NULL, with `center_count` 0, means q = 0.
     pub center: *const f64,
     /// Number of entries of `center`.
     pub center_count: usize,
@@ -114,9 +114,9 @@ pub struct sscc_certify_options {
     pub scales_count: usize,
     /// Which pairs count; NULL means the default of the mesh.
     pub filter: *const sscc_filter,
-    /// Memory of the pair tree, in bytes for each triangle; 0 means 64.
+    /// Memory of the pair tree, in bytes for each triangle; 0 means 64. SSCC_SCHEME_PAPER stores none.
     pub budget: usize,
-    /// Memory of local certificates, in bytes for each triangle; 0 means 64.
+    /// Memory of local certificates, in bytes for each triangle; 0 means 64. SSCC_SCHEME_PAPER stores none.
     pub local_budget: usize,
     /// The largest number of exceptions (pairs that collide at the centre); 0 means half the number of triangles,
     /// rounded up. If more pairs collide there, none is an exception, and nodes that contain one have radius 0.

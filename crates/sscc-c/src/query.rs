@@ -39,7 +39,9 @@ impl Handle for sscc_query {
     }
 }
 
-/// Creates a query of a model and its certificates, which must be of this model. It shares both, which may be freed.
+/// Creates a query of a model and its certificates. It shares both, which may be freed.
+///
+/// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
 ///
 /// Threads: any.
 ///
@@ -61,7 +63,7 @@ pub unsafe extern "C" fn sscc_query_new(
     })
 }
 
-/// Creates a copy for another thread. Copies share the data that does not change.
+/// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -83,6 +85,8 @@ pub unsafe extern "C" fn sscc_query_clone(
 
 /// Frees a query. NULL is ignored.
 ///
+/// Errors: SSCC_STATUS_BUSY in a callback of a call with the query, which is then not freed.
+///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
@@ -94,7 +98,8 @@ pub unsafe extern "C" fn sscc_query_free(query: *mut sscc_query) -> sscc_status 
 }
 
 /// Sets a function that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED; NULL removes it. The function
-/// and `user` must remain valid as long as the query has them. A copy has no such function.
+/// and `user` must remain valid as long as the query has them. A copy has no such function. Set it once, not for each answer: the
+/// call copies the state of the query. Short answers may end without a call of the function.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -117,6 +122,8 @@ pub unsafe extern "C" fn sscc_query_set_cancel(
 /// Finds all colliding pairs at q (`rank` numbers); `count` receives their number. 0 pairs prove that the shape is free.
 /// sscc_query_pairs copies the pairs.
 ///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
+///
 /// Threads: one call at a time for each query.
 ///
 /// # Safety
@@ -131,15 +138,17 @@ pub unsafe extern "C" fn sscc_query_discrete(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
-        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         out.write(state.answer.set_pairs(state.query.discrete(q)?));
         Ok(())
     })
 }
 
-/// Finds at most `limit` colliding pairs at q; which ones is not fixed. If the limit ended the search,
+/// Finds at most `limit` colliding pairs at q (`rank` numbers); which ones is not fixed. If the limit ended the search,
 /// `complete` of the statistics is 0.
+///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs, if `limit` is larger than this number.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -156,15 +165,15 @@ pub unsafe extern "C" fn sscc_query_discrete_at_most(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
-        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         state.answer.forget();
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         out.write(state.answer.set_pairs(state.query.discrete_at_most(q, limit)?));
         Ok(())
     })
 }
 
-/// Finds one colliding pair at q, and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair if there
-/// is one; `pair` may be NULL.
+/// Finds one colliding pair at q (`rank` numbers), and stops there; which one is not fixed. `count` receives 0 or 1, `pair` the pair
+/// if there is one; `pair` may be NULL.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -181,9 +190,9 @@ pub unsafe extern "C" fn sscc_query_first(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        state.answer.forget();
         let (q, out) = unsafe { (slice(q, rank, "q")?, output(count, "count")?) };
         let pair = unsafe { optional_output(pair, "pair") }?;
-        state.answer.forget();
         let first = state.query.first(q)?;
         if let (Some(out), Some(first)) = (pair, first) {
             out.write(first.into());
@@ -195,6 +204,8 @@ pub unsafe extern "C" fn sscc_query_first(
 
 /// Finds all pairs that collide while every vertex moves on a straight line from its position at `q_t0` to that at `q_t1` (`rank`
 /// numbers each, which may be the same array); `count` receives their number. sscc_query_impacts copies pairs and times.
+///
+/// Errors: SSCC_STATUS_TOO_MANY for more than 67,108,864 pairs.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -211,16 +222,17 @@ pub unsafe extern "C" fn sscc_query_continuous(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
+        state.answer.forget();
         let (t0, t1) = unsafe { (slice(q_t0, rank, "q_t0")?, slice(q_t1, rank, "q_t1")?) };
         let out = unsafe { output(count, "count") }?;
-        state.answer.forget();
         out.write(state.answer.set_impacts(state.query.continuous(t0, t1)?));
         Ok(())
     })
 }
 
-/// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s]; 0 if the
-/// shape collides at the centre, infinite if no vertex moves. It takes longer than an answer, and allocates.
+/// Computes a scale s such that the shape is proven free at `center + t (q - center)` for all t in [0, s], with q of `rank` numbers.
+/// It is 0 if the shape collides at the centre, else infinite if q is the centre or the global radius, up to which radii are
+/// computed, is infinite. It is at most the scale at which |z| reaches that radius. It takes longer than an answer, and allocates.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -236,15 +248,16 @@ pub unsafe extern "C" fn sscc_query_safe_scale(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(query) }?.0.lock()?;
-        let (q, out) = unsafe { (slice(q, rank, "q")?, output(scale, "scale")?) };
         state.answer.forget();
+        let (q, out) = unsafe { (slice(q, rank, "q")?, output(scale, "scale")?) };
         out.write(state.query.safe_scale(q)?);
         Ok(())
     })
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-/// pairs of the answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -263,7 +276,10 @@ pub unsafe extern "C" fn sscc_query_pairs(
     })
 }
 
-/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is as for sscc_query_pairs.
+/// Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
+/// into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more impacts. Then nothing is copied.
 ///
 /// Threads: one call at a time for each query.
 ///
@@ -283,7 +299,7 @@ pub unsafe extern "C" fn sscc_query_impacts(
 }
 
 /// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused.
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this query are refused with SSCC_STATUS_BUSY.
 ///
 /// Threads: one call at a time for each query.
 ///

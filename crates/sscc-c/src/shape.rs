@@ -38,6 +38,8 @@ impl Handle for sscc_shape {
 /// Creates a shape at q = 0 in its own axes. `certificates` may be NULL; only their hierarchy is used. The shape shares
 /// both, which may be freed.
 ///
+/// Errors: SSCC_STATUS_OTHER_MODEL if the certificates are of another model.
+///
 /// Threads: any.
 ///
 /// # Safety
@@ -62,7 +64,7 @@ pub unsafe extern "C" fn sscc_shape_new(
     })
 }
 
-/// Creates a copy for another thread. Copies share the data that does not change.
+/// Creates a copy for another thread, with the last answer. Copies share the data that does not change.
 ///
 /// Threads: one call at a time for each shape.
 ///
@@ -83,6 +85,8 @@ pub unsafe extern "C" fn sscc_shape_clone(
 }
 
 /// Frees a shape. NULL is ignored.
+///
+/// Errors: SSCC_STATUS_BUSY in a callback of a call with the shape, which is then not freed.
 ///
 /// Threads: one call at a time for each shape.
 ///
@@ -112,9 +116,9 @@ pub unsafe extern "C" fn sscc_shape_place(
     guard(|| {
         // SAFETY: by the caller's guarantee, here and below.
         let state = &mut *unsafe { borrow(shape) }?.0.lock()?;
+        state.answer.forget();
         let (q, pose) = unsafe { (slice(q, rank, "q")?, optional(pose, "pose")?) };
         let out = unsafe { optional_output(bounds, "bounds") }?;
-        state.answer.forget();
         let Aabb { lower, upper } = state.shape.place(q, &pose.map(rust_pose).unwrap_or_default())?;
         if let Some(out) = out {
             out.write(sscc_box { lower: lower.to_array(), upper: upper.to_array() });
@@ -132,6 +136,9 @@ fn rust_pose(pose: sscc_pose) -> Pose {
 /// `shape` stores the answer. `bounds` is a finite AABB that contains all compared shapes, or NULL; it affects only the
 /// time. `other` must be a different shape.
 ///
+/// Errors: SSCC_STATUS_OVERLAP for the same shape twice; SSCC_STATUS_ARGUMENT if `bounds` is not finite; SSCC_STATUS_TOO_MANY for
+/// more than 67,108,864 pairs.
+///
 /// Threads: one call at a time for each of both shapes.
 ///
 /// # Safety
@@ -144,16 +151,17 @@ pub unsafe extern "C" fn sscc_shape_against(
     count: *mut usize,
 ) -> sscc_status {
     guard(|| {
-        if shape == other && !other.is_null() {
+        let is_same = shape == other;
+        // SAFETY: by the caller's guarantee, here and below.
+        let State { shape, found, answer } = &mut *unsafe { borrow(shape) }?.0.lock()?;
+        answer.forget();
+        if is_same {
             let message = "shape and other are the same: use a copy";
             return Err(Failure::new(sscc_status::Overlap, message));
         }
-        // SAFETY: by the caller's guarantee, here and below.
-        let State { shape, found, answer } = &mut *unsafe { borrow(shape) }?.0.lock()?;
         let other = &mut unsafe { borrow(other) }?.0.lock()?.shape;
         let (bounds, out) = unsafe { (optional(bounds, "bounds")?, output(count, "count")?) };
         let bounds = bounds.map_or(Ok(Aabb::EMPTY), rust_box)?;
-        answer.forget();
         found.clear();
         shape.colliding(other, bounds, found)?;
         out.write(answer.set_pairs(found));
@@ -169,8 +177,9 @@ fn rust_box(bounds: sscc_box) -> Result<Aabb> {
     Err(Failure::argument("bounds are not finite"))
 }
 
-/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array, at least the number of
-/// pairs of the answer.
+/// Copies the pairs of the last answer, sorted. `capacity` is the number of pairs that fit into the array.
+///
+/// Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 ///
 /// Threads: one call at a time for each shape.
 ///
@@ -190,7 +199,7 @@ pub unsafe extern "C" fn sscc_shape_pairs(
 }
 
 /// Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
-/// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused.
+/// SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused with SSCC_STATUS_BUSY.
 ///
 /// Threads: one call at a time for each shape.
 ///

@@ -19,7 +19,7 @@ pub enum sscc_status {
     Cancelled = 1,
     /// A pointer that must not be NULL is NULL.
     Null = 2,
-    /// A pointer is not a multiple of the size of the numbers to which it points.
+    /// An address is not a multiple of the alignment of its type.
     Misaligned = 3,
     /// Two arrays overlap, elements of a matrix overlap or are interleaved, or two handles that must differ are the same.
     Overlap = 4,
@@ -28,7 +28,7 @@ pub enum sscc_status {
     Argument = 5,
     /// The pointer is not a live handle of this type. Only libraries with debug assertions detect this.
     Handle = 6,
-    /// The handle is in use: by the function that called the callback, or by another thread.
+    /// The handle is in use: by the function that called the callback; with debug assertions also by another thread.
     Busy = 7,
     /// The array is too small for the answer.
     Capacity = 8,

@@ -26,11 +26,11 @@ pub struct sscc_impact {
     pub time: f64,
 }
 
-/// The kind of proof of an answer, exceptions apart.
+/// The kind of proof of an answer, apart from exceptions.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sscc_proof {
-    /// A search of the hierarchy.
+    /// A traversal of the hierarchy.
     Search = 0,
     /// The root's radius: one comparison.
     Radius = 1,
@@ -84,8 +84,8 @@ pub struct sscc_pose {
 pub type sscc_progress_fn = Option<extern "C" fn(user: *mut c_void, done: usize, total: usize) -> c_int>;
 
 /// Returns another value than 0 to cancel. It is called often, so it should be fast. A computation calls it from
-/// threads of the library, never from two at a time; a query or a detector calls it from the thread of the call. It
-/// must not throw, and must not free the handles of the computation, the query or the detector.
+/// threads of the library, never from two at a time; a query, a kinetic query or a detector calls it from the thread of
+/// the call. It must not throw, and must not free the handles of the computation or of the call.
 pub type sscc_cancel_fn = Option<extern "C" fn(user: *mut c_void) -> c_int>;
 
 /// Receives one pair of an answer. It returns another value than 0 to end the visit. It must not throw.

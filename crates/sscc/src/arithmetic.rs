@@ -6,6 +6,10 @@
 //! searches of queries each time. Only a query that the root's radius answers does not check it: that query stays one
 //! comparison.
 
+// Results in memory round twice there, which the check below does not see.
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!("sscc needs SSE2: x87 arithmetic rounds twice");
+
 use std::hint::black_box;
 
 use crate::Error;

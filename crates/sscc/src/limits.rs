@@ -13,6 +13,9 @@ pub const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
 /// [`LARGEST`].
 pub(crate) const SMALLEST: f64 = f64::from_bits((1023 - 200) << 52);
 
+/// Maximum number of modes. Sums of so many terms round by less than 2^-32 of their magnitudes, which margins of 1e-9 cover.
+pub(crate) const MAX_MODES: usize = 1 << 20;
+
 /// Whether all three coordinates are finite and at most [`LARGEST`] in magnitude.
 pub fn contains(x: DVec3) -> bool {
     x.abs().cmple(DVec3::splat(LARGEST)).all()

@@ -89,7 +89,8 @@ fn printed_fields(line: &str) -> String {
     line.split(",\"opened\"").next().unwrap_or_default().to_owned() + "}"
 }
 
-/// Checks that the example `check_mesh` answers like the command, for a mesh that is free and for one that collides.
+/// Checks that the example `check_mesh` answers like the command, for a mesh that is free and for one that collides, and that it
+/// refuses a face of four corners.
 fn meshes(checks: &Checks) -> Result<(), String> {
     let crossing = checks.folder.join("crossing.obj");
     let text = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 2\nv 2 1 2\nv 0 1 1\nv 4 1 1\nv 1 2 1\n\
@@ -110,7 +111,14 @@ fn meshes(checks: &Checks) -> Result<(), String> {
             ));
         }
     }
-    Ok(())
+    let square = checks.folder.join("square.obj");
+    fs::write(&square, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").map_err(|e| e.to_string())?;
+    let check_mesh = checks.root.join("target/c/check_mesh");
+    let outcome = checks.succeed(&checks.root, &check_mesh, &[&square.to_string_lossy()]);
+    match outcome {
+        Err(text) if text.ends_with("square.obj: a face is not a triangle\n") => Ok(()),
+        other => Err(format!("a face of four corners was not refused: {other:?}")),
+    }
 }
 
 /// Checks that matrices in both orders of storage have the same answer.

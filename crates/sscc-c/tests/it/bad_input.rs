@@ -307,6 +307,77 @@ fn detectors_and_shapes_refuse_invalid_arrays() {
     assert_eq!(count, 9);
 }
 
+/// Checks that each of these calls is refused and leaves no pairs, although the call before it had an answer with pairs.
+fn leave_no_pairs(
+    answer: &dyn Fn() -> sscc_status,
+    pairs: &dyn Fn() -> sscc_status,
+    calls: &[&dyn Fn() -> sscc_status],
+) {
+    for (i, call) in calls.iter().enumerate() {
+        done(answer());
+        assert_eq!(pairs(), Capacity, "call {i}");
+        assert_ne!(call(), sscc_status::Ok, "call {i}");
+        done(pairs());
+    }
+}
+
+#[test]
+fn a_refused_call_leaves_no_pairs() {
+    let all = Handles::new();
+    let (query, kinetic, detector, shape) = (all.query, all.kinetic, all.detector, all.shape);
+    let (q, met) = (&1.0, all.positions(1.0));
+    let (x, none) = (matrix(&met, 3), null_mut());
+    let (mut count, mut other, mut copy) = (0, null_mut(), null_mut());
+    let n = &raw mut count;
+    unsafe {
+        leave_no_pairs(
+            &|| sscc_query_discrete(query, q, 1, n),
+            &|| sscc_query_pairs(query, null_mut(), 0),
+            &[
+                &|| sscc_query_discrete(query, q, 1, none),
+                &|| sscc_query_discrete_at_most(query, q, 1, 1, none),
+                &|| sscc_query_first(query, q, 1, null_mut(), none),
+                &|| sscc_query_continuous(query, q, q, 1, none),
+                &|| sscc_query_safe_scale(query, q, 1, null_mut()),
+            ],
+        );
+        leave_no_pairs(
+            &|| sscc_kinetic_discrete(kinetic, q, 1, n),
+            &|| sscc_kinetic_pairs(kinetic, null_mut(), 0),
+            &[&|| sscc_kinetic_discrete(kinetic, q, 1, none), &|| {
+                sscc_kinetic_continuous(kinetic, q, q, 1, none)
+            }],
+        );
+        done(sscc_detector_clone(detector, &mut other));
+        leave_no_pairs(
+            &|| sscc_detector_discrete(detector, x, n),
+            &|| sscc_detector_pairs(detector, null_mut(), 0),
+            &[
+                &|| sscc_detector_discrete(detector, x, none),
+                &|| sscc_detector_discrete_at_most(detector, x, 1, none),
+                &|| sscc_detector_first(detector, x, null_mut(), none),
+                &|| sscc_detector_continuous(detector, x, x, none),
+                &|| sscc_detector_against(detector, x, other, x, none),
+                &|| sscc_detector_against(detector, x, detector, x, n),
+                &|| sscc_detector_continuous_against(detector, x, x, other, x, x, none),
+                &|| sscc_detector_continuous_against(detector, x, x, detector, x, x, n),
+            ],
+        );
+        done(sscc_detector_free(other));
+        done(sscc_shape_clone(shape, &mut copy));
+        leave_no_pairs(
+            &|| sscc_shape_against(shape, copy, null(), n),
+            &|| sscc_shape_pairs(shape, null_mut(), 0),
+            &[
+                &|| sscc_shape_against(shape, copy, null(), none),
+                &|| sscc_shape_against(shape, shape, null(), n),
+                &|| sscc_shape_place(shape, null(), 1, null(), null_mut()),
+            ],
+        );
+        done(sscc_shape_free(copy));
+    }
+}
+
 #[test]
 fn invalid_arrays_for_answers_are_refused() {
     let all = Handles::new();

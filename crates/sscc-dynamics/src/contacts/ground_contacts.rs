@@ -53,6 +53,8 @@ pub(crate) struct GroundContacts {
     chunk_limits: Vec<f64>,
     /// The skin of the last update.
     pub(super) skin: f64,
+    /// A bound of the rounding of a gap in the last update.
+    pub(super) rounding: f64,
     /// Vertices within the skin, ascending, each with its gap, in the state of the last update.
     pub(super) touching: Vec<(u32, f64)>,
     /// Vertices within the skin at the beginning of this step, with their gaps.
@@ -142,7 +144,7 @@ impl GroundContacts {
             let near = if wanted <= MAX_MARGIN * shape.radius() { wanted } else { 0.0 };
             self.search(body, ground, skin, near.max(MIN_MARGIN * shape.radius()), rounding)?;
         }
-        self.skin = skin;
+        (self.skin, self.rounding) = (skin, rounding);
         self.touching.clear();
         let (rest, modes) = (shape.model().mesh().rest_positions(), shape.model().modes());
         let chunks = self.limits.chunks_mut(CHUNK).zip(self.vertices.chunks(CHUNK));

@@ -69,13 +69,15 @@ impl GroundContacts {
     }
 
     /// Returns the fraction of the step after which the first vertex is below the ground in the current state, which is the
-    /// state of the last update; None if all stay above. Vertices that begin below do not count.
+    /// state of the last update; None if all stay above. A vertex that begins below must not sink further, but for rounding: a
+    /// vertex on the ground may begin below by the rounding of its gap, and that of the test of the first state.
     pub fn sinks_after(&self) -> Option<f64> {
         let mut first = None;
         for &(vertex, gap) in self.touching.iter().filter(|(_, gap)| *gap < 0.0) {
             // Vertices that began beyond the skin have at least this gap at the beginning.
             let start = self.start_gap(vertex);
-            if start >= 0.0 {
+            if start >= 0.0 || gap < start.min(-2.0 * self.rounding) {
+                let start = start.max(0.0);
                 let share = start / (start - gap);
                 first = Some(first.map_or(share, |other: f64| other.min(share)));
             }
@@ -92,5 +94,28 @@ impl GroundContacts {
     /// Returns the index of a vertex's point, or the index at which it would be inserted.
     pub fn find(&self, vertex: u32) -> Result<usize, usize> {
         self.points.binary_search_by_key(&vertex, |point| point.vertex)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_vertex_sinks_further() {
+        let sinks_after = |start: f64, gap: f64| {
+            let mut contacts = GroundContacts::default();
+            (contacts.skin, contacts.rounding) = (1.0, 1e-15);
+            (contacts.touching_at_start, contacts.touching) = (vec![(3, start)], vec![(3, gap)]);
+            contacts.sinks_after()
+        };
+        assert_eq!(sinks_after(0.5, 0.1), None);
+        assert_eq!(sinks_after(0.5, -0.5), Some(0.5));
+        assert_eq!(sinks_after(0.0, -0.5), Some(0.0));
+        // On the ground, below it by rounding: at rest, and on the way down.
+        assert_eq!(sinks_after(-1e-16, -1.5e-15), None);
+        assert_eq!(sinks_after(-1e-16, -1e-3), Some(0.0));
+        assert_eq!(sinks_after(-0.2, -0.1), None);
+        assert_eq!(sinks_after(-0.2, -0.3), Some(0.0));
     }
 }

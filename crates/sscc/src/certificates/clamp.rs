@@ -2,6 +2,7 @@
 
 use super::Certificates;
 use crate::Error;
+use crate::arithmetic::check_arithmetic;
 
 /// The maximum number of steps towards the centre: a few compensate for rounding, about a thousand for a norm that overflows.
 const MAX_STEPS: usize = 4096;
@@ -13,7 +14,8 @@ impl Certificates {
     /// its rings may collide.
     ///
     /// # Errors
-    /// When the length of q is not the number of modes, or an entry is not finite.
+    /// When the length of q is not the number of modes, an entry is not finite, or this thread's arithmetic is not that of
+    /// IEEE 754 ([`Error::Arithmetic`]).
     pub fn clamp(&self, q: &[f64]) -> Result<Option<Vec<f64>>, Error> {
         let center = self.center();
         if q.len() != center.len() {
@@ -22,6 +24,7 @@ impl Certificates {
         if let Some(index) = q.iter().position(|x| !x.is_finite()) {
             return Err(Error::CoordinatesValue { index, value: q[index] });
         }
+        check_arithmetic()?;
         let root = self.root_radius();
         let has_exceptions = with_mutant!(!self.exceptions().is_empty(), ClampedWithExceptions, false);
         let has_clearance = with_mutant!(self.clearance().is_some(), ClampedWithClearance, false);

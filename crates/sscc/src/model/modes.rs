@@ -17,11 +17,14 @@ impl Modes {
     /// Creates modes from displacements in vertex-major order: `displacements[vertex * rank + mode]`.
     ///
     /// # Errors
-    /// When `rank` is 0, the number of displacements is not a multiple of it, or an entry is not finite or larger in
+    /// When `rank` is 0 or more than 2^20, the number of displacements is not a multiple of it, or an entry is not finite or larger in
     /// magnitude than [`limits::LARGEST`].
     pub fn new(rank: usize, displacements: Vec<DVec3>) -> Result<Self, Error> {
         if rank == 0 {
             return Err(Error::RankZero);
+        }
+        if rank > limits::MAX_MODES {
+            return Err(Error::TooManyModes { rank });
         }
         if !displacements.len().is_multiple_of(rank) {
             return Err(Error::ModesLength { len: displacements.len(), rank });

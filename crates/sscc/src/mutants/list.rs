@@ -262,6 +262,8 @@ mutants! {
     HalfSpaceExact: CaughtBy("lib posed::half_space::tests::vertices_just_below_a_plane_are_found");
     /// All vertices of a node are displaced like their mean.
     DisplacementsOfMeans: CaughtBy("lib posed::posed_shape::tests::displacements_are_within_their_bound");
+    /// Bounds of displacements omit the rounding of sums that cancel.
+    DisplacementsExact: CaughtBy("lib posed::posed_shape::tests::displacements_that_cancel_are_within_their_bound");
     /// The minimum of two numbers has the smaller one of their errors.
     SmallerErrorOfTwo: CaughtBy("lib geometry::ccd::number_tests::a_minimum_has_the_larger_error");
     /// The error bound of positions in single precision is a quarter of it.

@@ -14,6 +14,7 @@ use crate::detect::layout::Needs;
 use crate::detect::narrow_phase::DiscreteHits;
 use crate::detect::node_volumes::NodeVolumes;
 use crate::detect::search::{Search, SearchState, Side};
+use crate::detect::vertex_motion::rounding_bound;
 use crate::geometry::Aabb;
 use crate::hierarchy::Hierarchy;
 use crate::{Certificates, ContactFilter, Detector, Error, Pair, ReducedModel};
@@ -134,7 +135,11 @@ impl PosedShape {
         check_arithmetic()?;
         self.model.metric().check_len(q)?;
         let layout = &self.context.layout;
-        Ok(layout.bd_tree.displacement_bound(layout.buckets.nodes(), q) * (1.0 + 1e-9))
+        let bound = layout.bd_tree.displacement_bound(layout.buckets.nodes(), q);
+        // Sums of means may cancel: each coordinate errs by a bound that is relative to the sum of the magnitudes of its terms. The
+        // root of three is for a vector.
+        let rounding = 1.7321 * rounding_bound(self.model.displacement_bound(q), q.len());
+        Ok((bound + with_mutant!(rounding, DisplacementsExact, 0.0)) * (1.0 + 1e-9))
     }
 
     /// Returns the corners of a triangle in the world, bit for bit those to which all answers refer.
@@ -332,6 +337,18 @@ mod tests {
             }
             assert!(shape.displacement_bound(&[f64::NAN, 0.0]).unwrap().is_nan());
         }
+    }
+
+    /// `3 fl(1/3)` rounds to 1, but is less by 2^-54: in f64 the two displacements cancel.
+    #[test]
+    fn displacements_that_cancel_are_within_their_bound() {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let modes = (0..3).flat_map(|_| [DVec3::X / 3.0, DVec3::X]).collect();
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(2, modes).unwrap()).unwrap();
+        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+        let bound = PosedShape::new(&model, &certificates).unwrap().displacement_bound(&[3.0, -1.0]).unwrap();
+        assert!((2.0_f64.powi(-54)..1e-12).contains(&bound), "{bound}");
     }
 
     #[test]

@@ -156,7 +156,7 @@ fn residual(model: &PatchModel<'_>, factors: &[f64], (map, shift): (DMat3, DVec3
         most = larger_or_nan(most, left);
     }
     // Displacements in units of the largest one are at most 1 along each axis, and have errors of two units in the last place, as have
-    // their products and sums.
+    // their products and sums: r + 3 roundings, by the root of three for the length.
     let terms: f64 = factors.iter().map(|f| f.abs()).sum::<f64>() + norm(&map) + shift.length();
     let rounding = 8.0 * f64::EPSILON * (factors.len() + 16) as f64 * terms;
     (most + with_mutant!(rounding, LocalAffineFitExact, 0.0)) * ROUND_UP

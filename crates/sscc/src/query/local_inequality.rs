@@ -1,4 +1,9 @@
 //! The inequality of local certificates at the configurations of a search, and the bound of the ratios that it allows.
+//!
+//! A motion is proven at its two ends: the factors f, the map F and the image `W f` of the residual are linear along it, so that
+//! `kappa |W f|` and the error terms are convex, at most the interpolation of their values at the ends; the bounds of
+//! [`stretches_between`] are concave. In a region of radius b around the segment, F changes by at most `map b`, `W f` by `strain b` and
+//! the sum of the factors by `sum b`: each is added to its own term. For a flat patch the image of the direction across errs as F does.
 
 use glam::{DMat3, DVec3};
 
@@ -15,8 +20,18 @@ const DIAGONAL: f64 = 1.7321;
 /// The affine part of a motion is subtracted if less than this share of the factors remains.
 const MOST_LEFT: f64 = 0.5;
 
-/// Rounds a sum of a handful of non-negative numbers up.
+/// Rounds sums of non-negative numbers up, at most as many as the modes of a certificate. The sum over all modes may round by more
+/// (2^-32 for 2^20 modes), but only scales error terms, of which each has half of its size in reserve.
 const ROUND_UP: f64 = 1.0 + 1e-12;
+
+/// Rounding of positions in the units of certificates: a difference and a product, two units u = 2^-53 each of at most 1 along each axis,
+/// for two vertices in any direction: 7 u of 128. The rounding of factors and of scaled displacements (5 u of each term), and modes
+/// whose size underflows to 0 (less than 2^-51 each), are within the rounding bound of positions, which allows `8 r + 128`
+/// units where positions need `2 (r + 1)`.
+const UNITS_ERROR: f64 = 64.0 * f64::EPSILON;
+
+/// Underflow in single precision: at most 200 factors lose 2^-150 each, times a column below 1e12: less than 2e-31.
+const UNDERFLOW: f64 = 1e-30;
 
 /// The factors of one motion, and the error of its positions.
 #[derive(Clone)]
@@ -87,7 +102,7 @@ impl<const E: usize> LocalInequality<E> {
         }
         let FactorScales { sizes, scale, reach } = &tables.scales;
         let rounding = motion.rounding() + rounding_bound(*reach, sizes.len());
-        let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + 64.0 * f64::EPSILON;
+        let error = 2.0 * DIAGONAL * ROUND_UP * rounding * scale + UNITS_ERROR;
         self.error = with_mutant!(error, LocalPositionsExact, 0.0, LocalErrorAlongAxes, error / DIAGONAL);
         self.error.is_finite() && is_near
     }
@@ -146,7 +161,7 @@ impl<const E: usize> LocalInequality<E> {
                     *g = factors[*k as usize];
                     local += f64::from(g.abs());
                 }
-                sum = sum.min((local + exact.error) * (1.0 + 1e-6) + 1e-30);
+                sum = sum.min((local + exact.error) * (1.0 + 1e-6) + UNDERFLOW);
                 &gathered[..modes.len().next_multiple_of(LANES)]
             };
             sum += more_sum;
@@ -157,14 +172,14 @@ impl<const E: usize> LocalInequality<E> {
                 + rounding
                 + with_mutant!(bounds.widest * exact.error, LocalAffineStrainExact, 0.0)
                 + more_strain
-                + 1e-30;
+                + UNDERFLOW;
             let error = bounds.per_factor * sum
                 + bounds.per_error
                     * (self.error + with_mutant!(exact.length, LocalAffineLengthForgotten, 0.0))
                 + with_mutant!(single * bounds.steepest * sum, LocalMapExact, 0.0)
                 + with_mutant!(bounds.steepest * exact.error + exact.map_error, LocalAffineMapExact, 0.0)
                 + more_map
-                + 1e-30;
+                + UNDERFLOW;
             let affine = with_mutant!(exact.map, LocalAffineMapForgotten, DMat3::ZERO);
             (DMat3::IDENTITY + affine + gradient, strain * ROUND_UP, error * ROUND_UP)
         };

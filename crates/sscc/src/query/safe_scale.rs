@@ -22,7 +22,8 @@ impl Query {
     /// the root's radius is reached, rounded down. It is close to the largest possible one, and at most the scale at
     /// which radii are capped ([`Certificates::global_radius`]). Nodes and node pairs are bounded by their certified
     /// radii and local certificates, and triangle pairs beyond these by conservative advancement along the line. The
-    /// scale is 0 if the shape collides at the centre (ignored pairs apart), and infinite if no vertex moves.
+    /// scale is 0 if the shape collides at the centre (ignored pairs apart), else infinite if q is the
+    /// centre or the global radius is infinite.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///

@@ -4,10 +4,22 @@ use glam::DMat3;
 
 use crate::model::rounding::larger_or_nan;
 
+/// Error of a Gram matrix relative to the sum of the magnitudes of its entries, in units u = 2^-53: its products and sums, 3 of the
+/// trace in the Frobenius norm; the factorisation, at most 4 (size + 3 |shift|); the shift, 3; the sum that made the map, 4.
+/// Less than 30 of 900.
+const GRAM_ERROR: f64 = 1e-13;
+
+/// The same for the symmetric part of a matrix.
+const SYMMETRIC_ERROR: f64 = 1e-12;
+
+/// Error of a turned map over its Frobenius norm: the product with a rotation (5.2 u), its symmetric part (1 u), and a rotation whose
+/// columns have the length 1 up to 3 u and are orthogonal up to [`ORTHOGONAL`] (12 u). Less than 20 u of 90.
+const TURN_ERROR: f64 = 1e-14;
+
 /// Returns a lower bound of the smallest singular value of a matrix; 0 for a matrix with NaN.
 pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
     let gram = map.transpose() * *map;
-    smallest_eigenvalue_of(&gram, 1e-13).max(0.0).sqrt() * (1.0 - 1e-12)
+    smallest_eigenvalue_of(&gram, GRAM_ERROR).max(0.0).sqrt() * (1.0 - 1e-12)
 }
 
 /// Returns a lower bound of the smallest eigenvalue of the symmetric part of a matrix. This eigenvalue is at most the
@@ -15,9 +27,8 @@ pub(super) fn smallest_stretch(map: &DMat3) -> f64 {
 /// holds between them. Callers have multiplied the matrix by a rotation that is orthogonal up to rounding; the share of
 /// the norm covers this rounding.
 pub(super) fn smallest_eigenvalue(map: &DMat3) -> f64 {
-    let least = smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), 1e-12);
-    // The symmetric part is rounded, too.
-    let lost = 1e-14 * norm(map);
+    let least = smallest_eigenvalue_of(&((*map + map.transpose()) * 0.5), SYMMETRIC_ERROR);
+    let lost = TURN_ERROR * norm(map);
     if lost.is_finite() { least - lost } else { f64::NEG_INFINITY }
 }
 

@@ -17,6 +17,10 @@ use crate::vectors::{InstructionSet, LANES};
 use crate::{Error, Neighbours, Progress, ReducedModel};
 use glam::DVec3;
 
+/// Error of the difference of two residuals, relative to displacements and images of offsets: along each axis 4 units u = 2^-53 of
+/// displacements and 5 u of the image of an offset, for two vertices and three axes: less than 18 u.
+const RESIDUAL_ERROR: f64 = 64.0 * (f64::EPSILON / 2.0);
+
 /// Maximum number of vertices to which the ellipsoid is fitted.
 const VERTEX_BLOCKS: usize = 16;
 
@@ -187,8 +191,7 @@ impl Builder<'_> {
         let (steepest, widest) = (patch.steepest(), ellipsoid.largest_column());
         let per_error = (1.0 + 1e-12) / search.smallest_gap.min(1.0);
         // The error of residuals, then that of their images.
-        let unit = f64::EPSILON / 2.0;
-        let of_residuals = 64.0 * unit * (2.0 + steepest * patch.longest()) * per_error;
+        let of_residuals = RESIDUAL_ERROR * (2.0 + steepest * patch.longest()) * per_error;
         let of_images = 2.0 * ellipsoid.defect() * patch.largest_residual() * per_error;
         let bounds = LocalBounds {
             ratio: f64::from(ratio),

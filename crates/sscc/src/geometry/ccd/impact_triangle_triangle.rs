@@ -12,7 +12,7 @@ use crate::limits;
 /// Returns the time of impact of two triangles whose corners move linearly. None proves that they have no point in common at any
 /// t in [0, 1]. Otherwise the result is a time t with two guarantees:
 /// - t is never later than the true time of impact.
-/// - At t, their distance is at most `tolerance` times their size, up to 1e-15 of their size for rounding, unless the
+/// - At t, their distance is at most `tolerance` times their size, up to 4e-15 of their size for rounding, unless the
 ///   limit of steps (below) ended the search. Tolerances below 6e-14 count as 6e-14. The size is the largest
 ///   difference, at either end and in any coordinate, of a corner from the first one of a.
 ///
