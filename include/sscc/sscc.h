@@ -611,9 +611,7 @@ sscc_status sscc_kinetic_continuous(struct sscc_kinetic *kinetic,
 // Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each kinetic query.
-sscc_status sscc_kinetic_pairs(const struct sscc_kinetic *kinetic,
-                               struct sscc_pair *pairs,
-                               size_t capacity);
+sscc_status sscc_kinetic_pairs(const struct sscc_kinetic *kinetic, struct sscc_pair *pairs, size_t capacity);
 
 // Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
 // into the array.
@@ -795,9 +793,7 @@ sscc_status sscc_query_safe_scale(struct sscc_query *query,
 // Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each query.
-sscc_status sscc_query_pairs(const struct sscc_query *query,
-                             struct sscc_pair *pairs,
-                             size_t capacity);
+sscc_status sscc_query_pairs(const struct sscc_query *query, struct sscc_pair *pairs, size_t capacity);
 
 // Copies the impacts of the last answer, sorted by pair; a discrete answer has none. `capacity` is the number of impacts that fit
 // into the array.
@@ -872,9 +868,7 @@ sscc_status sscc_shape_against(struct sscc_shape *shape,
 // Errors: SSCC_STATUS_CAPACITY if the answer has more pairs. Then nothing is copied.
 //
 // Threads: one call at a time for each shape.
-sscc_status sscc_shape_pairs(const struct sscc_shape *shape,
-                             struct sscc_pair *pairs,
-                             size_t capacity);
+sscc_status sscc_shape_pairs(const struct sscc_shape *shape, struct sscc_pair *pairs, size_t capacity);
 
 // Calls `visit` with each pair of the last answer, in order. If it returns another value than 0, the visit ends with
 // SSCC_STATUS_CANCELLED. During the visit other calls with this shape are refused with SSCC_STATUS_BUSY.
