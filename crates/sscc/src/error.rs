@@ -86,10 +86,7 @@ pub enum Error {
     #[error("the model has no modes (rank 0): at least one is needed")]
     RankZero,
     /// Too many modes for the rounding bounds.
-    #[error(
-        "the model has {rank} modes: at most {} are supported; leave out the weakest",
-        crate::limits::MAX_MODES
-    )]
+    #[error("the model has {rank} modes: at most 2^20 (1,048,576) are supported; leave out the weakest")]
     TooManyModes {
         /// Number of modes.
         rank: usize,
