@@ -85,12 +85,6 @@ pub enum Error {
     /// No modes.
     #[error("the model has no modes (rank 0): at least one is needed")]
     RankZero,
-    /// Too many modes for the rounding bounds.
-    #[error("the model has {rank} modes: at most 2^20 (1,048,576) are supported; leave out the weakest")]
-    TooManyModes {
-        /// Number of modes.
-        rank: usize,
-    },
     /// A number of displacements that is not a multiple of the rank.
     #[error("{len} displacements are not a multiple of the {rank} modes")]
     ModesLength {

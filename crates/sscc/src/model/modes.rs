@@ -24,7 +24,8 @@ impl Modes {
             return Err(Error::RankZero);
         }
         if rank > limits::MAX_MODES {
-            return Err(Error::TooManyModes { rank });
+            let wanted = "at most 2^20 (1,048,576)";
+            return Err(Error::Option { name: "the number of modes", value: rank as f64, wanted });
         }
         if !displacements.len().is_multiple_of(rank) {
             return Err(Error::ModesLength { len: displacements.len(), rank });
