@@ -38,7 +38,7 @@ pub(crate) struct ScaledModel {
 impl ScaledModel {
     pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self, Refusal> {
         let rank = model.rank;
-        let (columns, delta) = inverse(scope, rank)?;
+        let (columns, delta) = inverse(scope, rank, is_cancelled)?;
         let mut used = vec![false; model.positions.len()];
         model.faces.as_flattened().iter().for_each(|i| used[*i as usize] = true);
         let center: Vec<Dyadic> = scope.center.iter().map(|x| Dyadic::of(*x)).collect();
@@ -111,7 +111,11 @@ impl ScaledModel {
 type Column = Vec<(usize, Dyadic)>;
 
 /// Returns the columns of T, and delta.
-fn inverse(scope: &Scope, rank: usize) -> Result<(Vec<Column>, Dyadic), Refusal> {
+fn inverse(
+    scope: &Scope,
+    rank: usize,
+    is_cancelled: &IsCancelled<'_>,
+) -> Result<(Vec<Column>, Dyadic), Refusal> {
     let digits = DIGITS[usize::from(scope.is_dense)];
     let entry = |i: usize, j: usize| match scope.is_dense {
         true => Dyadic::of(scope.factor[i * rank + j]),
@@ -121,18 +125,20 @@ fn inverse(scope: &Scope, rank: usize) -> Result<(Vec<Column>, Dyadic), Refusal>
     let first = |l: usize| if scope.is_dense { 0 } else { l };
     let (mut columns, mut error) = (Vec::new(), Dyadic::default());
     for l in 0..rank {
-        // Solves S t = e_l by back substitution.
-        let mut t = vec![Dyadic::default(); rank];
-        for i in (first(l)..=l).rev() {
-            let known: Dyadic = (i + 1..=l).map(|j| &entry(i, j) * &t[j]).sum();
+        check_cancelled(is_cancelled)?;
+        // Solves S t = e_l by back substitution. The column has entries from its first row to its l-th.
+        let first = first(l);
+        let mut t = vec![Dyadic::default(); l + 1 - first];
+        for i in (first..=l).rev() {
+            let known: Dyadic = (i + 1..=l).map(|j| &entry(i, j) * &t[j - first]).sum();
             let wanted = &Dyadic::new(i64::from(i == l), 0) - &known;
-            t[i] = wanted.divided_by(&entry(i, i), digits);
+            t[i - first] = wanted.divided_by(&entry(i, i), digits);
         }
-        for i in first(l)..=l {
-            let product: Dyadic = (i..=l).map(|j| &entry(i, j) * &t[j]).sum();
+        for i in first..=l {
+            let product: Dyadic = (i..=l).map(|j| &entry(i, j) * &t[j - first]).sum();
             error = &error + &(&product - &Dyadic::new(i64::from(i == l), 0)).square();
         }
-        let column = t.into_iter().enumerate().filter(|(_, t)| !t.is_zero());
+        let column = (first..).zip(t).filter(|(_, t)| !t.is_zero());
         columns.push(column.collect());
     }
     let delta = error.root_up();

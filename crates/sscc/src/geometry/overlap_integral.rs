@@ -23,7 +23,8 @@ pub(crate) struct OverlapIntegral {
 
 /// Returns the term of a pair of triangles.
 pub(crate) fn overlap_integral(a: &[DVec3; 3], b: &[DVec3; 3]) -> OverlapIntegral {
-    let (plane_a, plane_b) = (Plane::new(a), Plane::new(b));
+    let reach = a.iter().chain(b).map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let (plane_a, plane_b) = (Plane::new(a, reach), Plane::new(b, reach));
     let mut polygon = Polygon::of(b);
     if plane_b.area < 0.0 {
         polygon.points[..3].reverse();
@@ -35,28 +36,26 @@ pub(crate) fn overlap_integral(a: &[DVec3; 3], b: &[DVec3; 3]) -> OverlapIntegra
         polygon = polygon.clip(|p| turn * edge.perp_dot(p - from));
     }
     let area = polygon.integral(|_| 1.0);
-    let error = error([&plane_a, &plane_b], area.abs());
+    let error = error([&plane_a, &plane_b], reach, area.abs());
     if plane_a.area == 0.0 || plane_b.area == 0.0 {
         return OverlapIntegral { value: 0.0, error };
     }
     let (height_a, height_b) = (|p| plane_a.height(p), |p| plane_b.height(p));
     let is_below = |p: DVec2| height_b(p) - height_a(p);
-    let sides = polygon.points[..polygon.len].iter().map(|p| is_below(*p));
-    let (least, most) = sides.fold((0.0_f64, 0.0_f64), |(least, most), d| (least.min(d), most.max(d)));
-    let integral = if least >= 0.0 {
-        polygon.integral(height_a)
-    } else if most <= 0.0 {
-        polygon.integral(height_b)
-    } else {
+    // `min(z_a, z_b) = z_a + min(z_b - z_a, 0)`. For triangles in one plane the difference is a rounding error of any sign, so the clip
+    // may be any part of the polygon; but the integral of that rounding error is within the bound.
+    let under = polygon.clip(|p| -is_below(p)).integral(is_below);
+    let integral = with_mutant!(
+        polygon.integral(height_a) + under,
+        OnePlaneCutInTwo,
         polygon.clip(is_below).integral(height_a) + polygon.clip(|p| -is_below(p)).integral(height_b)
-    };
+    );
     OverlapIntegral { value: turn * plane_b.area.signum() * integral, error }
 }
 
 /// Bounds the rounding error of a term whose projections have an area in common. A clip moves the border of the polygon by a few
 /// rounding errors of its coordinates. The height of a plane may be off by the same share as its projected area.
-fn error(planes: [&Plane; 2], area: f64) -> f64 {
-    let reach = planes.iter().map(|plane| plane.reach).fold(0.0, f64::max);
+fn error(planes: [&Plane; 2], reach: f64, area: f64) -> f64 {
     let width = planes.iter().map(|plane| plane.width).fold(f64::INFINITY, f64::min);
     let height = planes.iter().map(|plane| plane.z.0.abs().max(plane.z.1.abs())).fold(0.0, f64::max);
     let steep = |plane: &Plane| {
@@ -76,28 +75,34 @@ struct Plane {
     area: f64,
     from: DVec3,
     slope: DVec2,
-    /// Whether the slope was beyond the range of numbers, and is replaced by 0.
+    /// Whether heights by the slope were beyond the range of numbers; then the slope is replaced by 0.
     is_vague: bool,
     /// The heights of the lowest and of the highest corner.
     z: (f64, f64),
     /// Diameter of the projection.
     width: f64,
-    /// The largest magnitude of a coordinate.
-    reach: f64,
 }
 
 impl Plane {
-    fn new(corners: &[DVec3; 3]) -> Self {
+    /// Creates the plane; `reach`: the largest magnitude of a coordinate of points at which its height is wanted.
+    fn new(corners: &[DVec3; 3], reach: f64) -> Self {
         let [p, q, r] = *corners;
         let normal = (q - p).cross(r - p);
         let z = (p.z.min(q.z).min(r.z), p.z.max(q.z).max(r.z));
         let flat = corners.map(DVec3::truncate);
         let width = (0..3).map(|k| flat[k].distance(flat[(k + 1) % 3])).fold(0.0, f64::max);
-        let reach = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let slope = -normal.truncate() / normal.z;
-        let is_vague = with_mutant!(!slope.is_finite(), SlopeBeyondRangeKept, false);
+        // Products with differences of points must not overflow, since the sum of two may be NaN.
+        let largest = slope.abs().max_element() * (8.0 * reach);
+        let is_vague = with_mutant!(
+            !(slope.is_finite() && largest.is_finite()),
+            SlopeBeyondRangeKept,
+            false,
+            SlopeOfInfiniteHeightsKept,
+            !slope.is_finite()
+        );
         let slope = if is_vague { DVec2::ZERO } else { slope };
-        Self { area: 0.5 * normal.z, from: p, slope, is_vague, z, width, reach }
+        Self { area: 0.5 * normal.z, from: p, slope, is_vague, z, width }
     }
 
     /// Returns the height at a point of the projection. It is between the corners, whatever the slope.

@@ -376,6 +376,10 @@ mutants! {
     VolumeWithoutClipError: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
     /// The error of a shared volume omits that of the heights of steep planes.
     VolumeWithoutSteepError: Covered("the error of clips is at least a quarter of it, and the factor of both has room for more");
+    /// Two triangles in one plane are cut along the line in which rounding makes them cross.
+    OnePlaneCutInTwo: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
+    /// A slope with which heights are beyond the range of numbers is used.
+    SlopeOfInfiniteHeightsKept: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
     /// A slope beyond the range of numbers is used.
     SlopeBeyondRangeKept: CaughtBy("lib geometry::overlap_integral::tests::terms_are_within_their_error");
     /// A ball around a point outside of a body counts as inside.

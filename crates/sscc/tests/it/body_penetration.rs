@@ -127,6 +127,65 @@ fn rotated_bodies_have_the_same_penetration() {
     }
 }
 
+/// Two boxes that touch in a face, or are moved along it, so that triangles of both are in one tilted plane.
+#[test]
+fn faces_in_one_tilted_plane_share_what_they_do() {
+    let mut random = Random::new(11);
+    for (shift, volume) in [(DVec3::new(0.3, 0.4, 1.0), 0.0), (DVec3::new(0.3, 0.4, 0.0), 0.7 * 0.6)] {
+        let (a, b) = (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(shift, shift + DVec3::ONE));
+        for _ in 0..200 {
+            let mut number = || 2.0 * random.uniform() - 1.0;
+            let turn = DQuat::from_xyzw(number(), number(), number(), number()).normalize();
+            let moved = |mesh: &TriMesh| {
+                let positions = mesh.rest_positions().iter().map(|p| turn * *p).collect();
+                TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
+            };
+            let found = penetration(&moved(&a), &moved(&b));
+            // Positions are rounded, too.
+            assert!((found.volume - volume).abs() <= found.volume_error + 1e-14, "{turn}: {found:?}");
+        }
+    }
+}
+
+/// Bodies of any size have the same penetration in units of their size.
+#[test]
+fn sizes_change_nothing() {
+    let (a, b) = (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::new(0.5, 0.25, 0.75), DVec3::splat(1.75)));
+    let plain = penetration(&a, &b);
+    for exponent in [-60, -150, -300] {
+        let size = 2.0_f64.powi(exponent);
+        let scaled = |mesh: &TriMesh| {
+            let positions = mesh.rest_positions().iter().map(|p| *p * size).collect();
+            TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
+        };
+        let found = penetration(&scaled(&a), &scaled(&b));
+        assert!((found.depth / size - plain.depth).abs() < 1e-9, "{exponent}: {found:?}");
+        assert!((found.volume / size / size / size - plain.volume).abs() < 1e-9, "{exponent}: {found:?}");
+    }
+    let tiny = |mesh: &TriMesh| {
+        let positions = mesh.rest_positions().iter().map(|p| *p * 2.0_f64.powi(-1000)).collect();
+        TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
+    };
+    let found = penetration(&tiny(&a), &tiny(&b));
+    assert!((found.depth * 2.0_f64.powi(1000) - plain.depth).abs() < 1e-9, "{found:?}");
+    assert!(found.volume == 0.0 && found.volume_error > 0.0, "{found:?}");
+}
+
+/// A part that faces inward, joined with the rest in one vertex, is no inside.
+#[test]
+fn parts_that_meet_in_a_vertex_face_one_way() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * 2.0);
+    let other = [DVec3::ZERO, -DVec3::X, -DVec3::Y, -DVec3::Z];
+    let outward = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let positions = corners.into_iter().chain(other[1..].iter().copied()).collect();
+    let number = |v: u32| if v == 0 { 0 } else { v + 3 };
+    // The mirror image of a tetrahedron that faces outward faces inward.
+    let inward = outward.map(|face| face.map(number));
+    let mesh = TriMesh::new(positions, [outward, inward].concat()).unwrap();
+    let around = cuboid(DVec3::splat(-1.5), DVec3::splat(-1e-3));
+    assert!(matches!(find(&mesh, &around), Err(Error::OpenMesh(_))));
+}
+
 #[test]
 fn tetrahedra_and_balls() {
     // A tetrahedron and its mirror image in a point share an octahedron of half its volume.

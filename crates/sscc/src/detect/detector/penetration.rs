@@ -40,8 +40,47 @@ pub fn body_penetration(
 ) -> Result<BodyPenetration, Error> {
     one.check([positions])?;
     two.check([other_positions])?;
-    let penetration = penetration([&mut *one, two], [positions, other_positions]);
-    one.statistics.finish(penetration)
+    let found = penetration_of_any_size([&mut *one, two], [positions, other_positions]);
+    one.statistics.finish(found)
+}
+
+/// Lengths are scaled by this factor while all coordinates are smaller than [`SMALL`].
+const SCALE: f64 = f64::from_bits((1023 + 300) << 52);
+
+/// 2^-100: fourth powers of lengths at this size do not underflow.
+const SMALL: f64 = f64::from_bits((1023 - 100) << 52);
+
+/// Returns the penetration as [`body_penetration`], at positions that were checked. Very small meshes are scaled by a power of two, since
+/// products of their lengths would underflow.
+fn penetration_of_any_size(
+    detectors: [&mut Detector; 2],
+    positions: [&[DVec3]; 2],
+) -> Result<BodyPenetration, Error> {
+    let mut largest = positions.iter().copied().flatten().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let mut scalings = 0;
+    while largest > 0.0 && largest < SMALL {
+        largest *= SCALE;
+        scalings += 1;
+    }
+    if scalings == 0 {
+        return penetration(detectors, positions);
+    }
+    let times = |x: f64, factor: f64, count: u32| (0..count).fold(x, |x, _| x * factor);
+    let scaled = positions.map(|x| {
+        let scale = |p: &DVec3| DVec3::from_array(p.to_array().map(|x| times(x, SCALE, scalings)));
+        x.iter().map(scale).collect::<Vec<_>>()
+    });
+    let found = penetration(detectors, scaled.each_ref().map(Vec::as_slice))?;
+    // Results may underflow: their errors are rounded up.
+    let (length, volume) =
+        (|x: f64| times(x, 1.0 / SCALE, scalings), |x: f64| times(x, 1.0 / SCALE, 3 * scalings));
+    let least = f64::from_bits(1);
+    Ok(BodyPenetration {
+        volume: volume(found.volume),
+        volume_error: volume(found.volume_error) + least,
+        depth: length(found.depth),
+        depth_error: length(found.depth_error) + least,
+    })
 }
 
 /// Returns the penetration as [`body_penetration`], at positions that were checked.

@@ -13,7 +13,7 @@ const PAIRS_PER_CHECK: usize = 1 << 10;
 /// otherwise 1.
 ///
 /// # Errors
-/// When the token cancels.
+/// When the token cancels; when the sum is negative, because parts that face inward are joined with others in single vertices.
 pub(super) fn shared_volume(
     meshes: [&[[DVec3; 3]]; 2],
     sign: f64,
@@ -52,7 +52,11 @@ pub(super) fn shared_volume(
         own.push(span);
         if is_of_a { at_a += 1 } else { at_b += 1 }
     }
-    Ok(((sign * sum).max(0.0), error))
+    let volume = sign * sum;
+    if volume < -error {
+        return Err(Error::OpenMesh("first or the second"));
+    }
+    Ok((volume.max(0.0), error))
 }
 
 /// A triangle relative to the centre, with its AABB.

@@ -100,6 +100,11 @@ fn terms_are_within_their_error() {
         // Some triangles have a common edge, as in touching bodies.
         let b = if case % 5 == 0 { [a[0], a[1], b[2]] } else { b };
         found += check(&a, &b);
+        // Two triangles in one plane, whose heights differ by rounding alone.
+        let at = |s: f64, t: f64| a[0] + (a[1] - a[0]) * s + (a[2] - a[0]) * t;
+        let mut share = || 2.0 * next_uniform(random) - 0.5;
+        let same_plane = [(); 3].map(|()| at(share(), share()));
+        check(&a, &same_plane);
     }
     assert!(found > cases(800) / 8, "{found}");
     let steep = [DVec3::new(0.0, 0.0, -1.0), DVec3::new(1e-310, 1.0, -1.0), DVec3::new(0.0, 1.0, 1.0)];
@@ -109,6 +114,9 @@ fn terms_are_within_their_error() {
         check(&steep, other);
         check(other, &steep);
     }
+    let almost_vertical = [DVec3::ZERO, DVec3::new(4.0, 4.0, 0.0), DVec3::new(0.0, 1e-308, 1.0)];
+    check(&almost_vertical, &level[1]);
+    check(&level[1], &almost_vertical);
     // Level triangles in the plane of the centre have no volume below them, and no steep part.
     let flat = level[1];
     check(&flat, &flat.map(|p| p * 0.7 + DVec3::new(0.1, 0.2, 0.3)));
