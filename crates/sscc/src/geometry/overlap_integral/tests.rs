@@ -117,6 +117,12 @@ fn terms_are_within_their_error() {
     let almost_vertical = [DVec3::ZERO, DVec3::new(4.0, 4.0, 0.0), DVec3::new(0.0, 1e-308, 1.0)];
     check(&almost_vertical, &level[1]);
     check(&level[1], &almost_vertical);
+    for corners in [&steep, &almost_vertical] {
+        let plane = Plane::new(corners, 4.0);
+        for p in [DVec2::ZERO, DVec2::Y, DVec2::splat(4.0)] {
+            assert!(plane.height(p).is_finite(), "{corners:?} {p}");
+        }
+    }
     // Level triangles in the plane of the centre have no volume below them, and no steep part.
     let flat = level[1];
     check(&flat, &flat.map(|p| p * 0.7 + DVec3::new(0.1, 0.2, 0.3)));
