@@ -92,6 +92,7 @@ fn searches_in_another_mode_are_refused() {
     refused("batch", || query.batch(&[[1.0]], Some(1), &()));
     refused("safe scale", || query.safe_scale(&[1.0]));
     refused("sweep", || query.sweep(&[0.0], 0, 2.0));
+    refused("clamp", || certificates.clamp(&[1.0]));
     refused("resolve", || query.resolve(&[1.0], &sscc::ResolveOptions::default()));
     let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
     refused("kinetic", || kinetic.discrete(&[1.0]).map(<[_]>::len));

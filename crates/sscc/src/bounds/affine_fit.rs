@@ -109,7 +109,8 @@ impl AffineFit {
     ///
     /// Rounding of the residuals is relative to the scaled modes and to `|G| |p_i - p_0|`. Corners of sub-triangles are
     /// themselves rounded, which moves both the offsets here and the directions in the bound. The roundings of two residuals and their
-    /// offsets are below 14 units of 2^-53 of 32; the four times rest positions hold two corners, each at most twice.
+    /// offsets are below 14 units of 2^-53 of 32. The difference of two offsets and a direction of the bound are gaps of two corners
+    /// each, whose rounding is at most `at_rest`: two of the four.
     pub(super) fn residual_up(&self, squared_residual: f64, rounding: &RoundingBound) -> f64 {
         let moved = 16.0 * f64::EPSILON * self.longest + 4.0 * rounding.at_rest(DVec3::ONE);
         norm_up(squared_residual, 3 * self.row_len)

@@ -23,7 +23,7 @@ impl Modes {
         if rank == 0 {
             return Err(Error::RankZero);
         }
-        if rank > limits::MAX_MODES {
+        if with_mutant!(rank > limits::MAX_MODES, ModesWithoutLimit, false) {
             let wanted = "at most 2^20 (1,048,576)";
             return Err(Error::Option { name: "the number of modes", value: rank as f64, wanted });
         }

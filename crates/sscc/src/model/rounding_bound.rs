@@ -43,7 +43,7 @@ impl LeastGap {
 }
 
 /// Roundings that the bound allows in addition to the r roundings of positions: those of scaling, differences, midpoints, dot
-/// products and norms in the bounds. The longest chain, that of the gap of two nodes, has 11 roundings.
+/// products and norms in the bounds. The longest chain that was counted, of the gap of two nodes, has 11.
 const EXTRA_ROUNDINGS: usize = 96;
 
 impl RoundingBound {

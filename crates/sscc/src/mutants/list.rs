@@ -390,6 +390,16 @@ mutants! {
     BallCornersShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
     /// The largest ball is bounded by half the mean of two distances.
     BallMeanShrunk: CaughtBy("it body_penetration::the_largest_ball_is_that_of_all_planes");
+    /// Products of the lengths of very small bodies underflow.
+    SmallBodiesNotScaled: CaughtBy("it body_penetration::sizes_change_nothing");
+    /// A negative shared volume is none.
+    NegativeVolumeIsNone: CaughtBy("it body_penetration::parts_that_meet_in_a_vertex_face_one_way");
+    /// Flat parts of a body face as rounding decides.
+    FlatPartsFace: CaughtBy("it body_penetration::flat_parts_do_not_count");
+    /// Heights that overflow in the frame of the search exclude all vertices.
+    HalfSpaceOverflow: Covered("only a plane far below all vertices overflows downwards, and none is below it");
+    /// Models have any number of modes.
+    ModesWithoutLimit: CaughtBy("it resolve::invalid_input_is_refused");
     /// Parts of a body may face inward and outward.
     PartsFaceAnyWay: CaughtBy("it body_penetration::parts_face_one_way");
     /// With certificates triangles nearer than a clearance are separated as if there were no clearance.

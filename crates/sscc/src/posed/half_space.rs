@@ -46,7 +46,8 @@ impl PosedShape {
             + with_mutant!(error, HalfSpaceExact, 0.0)
             + with_mutant!(rounding, HalfSpaceFrameExact, 0.0);
         // A height that overflows in the frame may leave NaN, which would exclude all vertices.
-        let limit = if limit.is_nan() { f64::INFINITY } else { limit };
+        let limit =
+            with_mutant!(if limit.is_nan() { f64::INFINITY } else { limit }, HalfSpaceOverflow, limit);
         let along = |x: Vec4| normal.dot(x.truncate().as_dvec3());
         let spread = |x: Vec4| normal.abs().dot(x.truncate().as_dvec3());
         self.below.clear();

@@ -91,6 +91,9 @@ fn has_cholesky_factor(matrix: &DMat3, shift: f64) -> bool {
     first > 0.0 && second > 0.0 && third > 0.0
 }
 
+/// Error of the mean of maps over its Frobenius norm, beside their distances from it: a sum and a product, less than 4 u of 90.
+const MEAN_ERROR: f64 = 1e-14;
+
 /// A motion is short if its maps are at most this far from their mean, in the Frobenius norm.
 const SHORT: f64 = 1.0 / 16.0;
 
@@ -103,7 +106,7 @@ pub(super) fn stretches_between<const E: usize>(maps: &[DMat3; E]) -> [f64; E] {
     let mean = maps.iter().fold(DMat3::ZERO, |sum, map| sum + *map) * (1.0 / E as f64);
     let distance = maps.iter().map(|map| norm(&(*map - mean))).fold(0.0, larger_or_nan);
     if distance <= SHORT {
-        let rounding = 1e-14 * norm(&mean);
+        let rounding = MEAN_ERROR * norm(&mean);
         let lost = with_mutant!(distance * (1.0 + 1e-12) + rounding, LocalMotionForgotten, rounding);
         return [(smallest_stretch(&mean) - lost).max(0.0); E];
     }

@@ -171,6 +171,21 @@ fn sizes_change_nothing() {
     assert!(found.volume == 0.0 && found.volume_error > 0.0, "{found:?}");
 }
 
+/// A flat part, closed by two triangulations of one tilted rectangle, has a volume of any sign by rounding.
+#[test]
+fn flat_parts_do_not_count() {
+    let mut random = Random::new(5);
+    let body = cuboid(DVec3::ZERO, DVec3::ONE);
+    for _ in 0..50 {
+        let [x, y, from] = [(); 3].map(|()| random.vector());
+        let flat = [from, from + x, from + x + y, from + y].map(|p| p + DVec3::splat(5.0));
+        let faces = [[8, 9, 10], [8, 10, 11], [8, 11, 9], [9, 11, 10]];
+        let positions = [body.rest_positions(), &flat].concat();
+        let mesh = TriMesh::new(positions, [body.faces(), &faces].concat()).unwrap();
+        check(&mesh, &cuboid(DVec3::splat(0.5), DVec3::splat(1.5)), 0.125, 0.5);
+    }
+}
+
 /// A part that faces inward, joined with the rest in one vertex, is no inside.
 #[test]
 fn parts_that_meet_in_a_vertex_face_one_way() {

@@ -29,7 +29,7 @@ pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option
     }
     let direction = if volumes.iter().map(|[volume, _]| volume).sum::<f64>() < 0.0 { -1 } else { 1 };
     for (&(triangle, point), [volume, error]) in from.iter().zip(volumes) {
-        if volume.abs() <= error {
+        if volume.abs() <= with_mutant!(error, FlatPartsFace, 0.0) {
             continue;
         }
         let own = components.of_triangle(triangle);

@@ -58,7 +58,7 @@ fn penetration_of_any_size(
 ) -> Result<BodyPenetration, Error> {
     let mut largest = positions.iter().copied().flatten().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let mut scalings = 0;
-    while largest > 0.0 && largest < SMALL {
+    while largest > 0.0 && with_mutant!(largest < SMALL, SmallBodiesNotScaled, false) {
         largest *= SCALE;
         scalings += 1;
     }

@@ -53,7 +53,7 @@ pub(super) fn shared_volume(
         if is_of_a { at_a += 1 } else { at_b += 1 }
     }
     let volume = sign * sum;
-    if volume < -error {
+    if with_mutant!(volume < -error, NegativeVolumeIsNone, false) {
         return Err(Error::OpenMesh("first or the second"));
     }
     Ok((volume.max(0.0), error))
