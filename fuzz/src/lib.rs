@@ -1,6 +1,8 @@
 //! Code that all fuzz targets share: bounds of time and memory, errors of one line, containers with correct digests.
 
 pub mod arrays;
+pub mod numbers;
+pub mod questions;
 
 use std::fmt::Display;
 use std::time::Duration;

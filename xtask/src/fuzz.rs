@@ -2,13 +2,19 @@
 //!
 //! The targets are compiled with the coverage of libFuzzer and the address sanitizer, by the stable compiler, which takes
 //! these options with `RUSTC_BOOTSTRAP=1`; cargo-fuzz is not needed. Small valid files are the first inputs. The fuzzer keeps
-//! further inputs in `target/fuzz`, and also writes each input that breaks a bound there.
+//! further inputs in `target/fuzz`, and also writes each input that breaks a bound there. `--write` adds the run to the record
+//! that documents show.
 
 use std::fs;
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::{Command, ExitCode, Stdio};
+use std::time::Instant;
 
+use crate::fuzz_record::{self, Ran};
 use crate::program::{cargo, exit_code, root, succeed, usage};
+
+const USAGE: &str = "fuzz [--seconds N] [--write] [targets]    (N at least 1)";
 
 /// Options of the compiler: edge coverage and compared values for the fuzzer, and the address sanitizer.
 const FLAGS: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
@@ -26,23 +32,24 @@ const LIMITS: [&str; 3] = ["-rss_limit_mb=2048", "-malloc_limit_mb=512", "-timeo
 
 /// Compiles the targets and runs all of them, or those named.
 pub fn run(arguments: &[String]) -> ExitCode {
-    let mut seconds = 10_u32;
+    let (mut seconds, mut writes) = (10_u32, false);
     let mut names = Vec::new();
     let mut arguments = arguments.iter();
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--seconds" => match arguments.next().and_then(|text| text.parse().ok()) {
                 Some(count) if count > 0 => seconds = count,
-                _ => return usage("fuzz [--seconds N] [targets]    (N at least 1)"),
+                _ => return usage(USAGE),
             },
-            name if name.starts_with('-') => return usage("fuzz [--seconds N] [targets]"),
+            "--write" => writes = true,
+            name if name.starts_with('-') => return usage(USAGE),
             name => names.push(name.to_owned()),
         }
     }
-    exit_code(fuzz(seconds, &names))
+    exit_code(fuzz(seconds, writes, &names))
 }
 
-fn fuzz(seconds: u32, names: &[String]) -> Result<(), String> {
+fn fuzz(seconds: u32, writes: bool, names: &[String]) -> Result<(), String> {
     let all = targets()?;
     if let Some(name) = names.iter().find(|name| !all.contains(name)) {
         return Err(format!("no target has the name '{name}'; the targets are: {}", all.join(", ")));
@@ -58,9 +65,31 @@ fn fuzz(seconds: u32, names: &[String]) -> Result<(), String> {
         program.arg(format!("-max_total_time={seconds}"));
         program.arg(format!("-artifact_prefix={}/failed-", folder.display()));
         program.arg(&folder).arg(root().join("fuzz/seeds").join(name)).current_dir(root());
-        succeed(&mut program, &format!("{name}: an input breaks a bound; it is in {}", folder.display()))?;
+        let (ran, is_good) = watch(&mut program).map_err(|error| format!("{name}: {error}"))?;
+        if writes {
+            fuzz_record::add(name, ran, !is_good)?;
+        }
+        if !is_good {
+            return Err(format!("{name}: an input breaks a bound; it is in {}", folder.display()));
+        }
     }
     Ok(())
+}
+
+/// Runs a target, whose messages it forwards. Returns what it ran, and whether no input failed.
+fn watch(program: &mut Command) -> io::Result<(Ran, bool)> {
+    let start = Instant::now();
+    let mut child = program.stderr(Stdio::piped()).spawn()?;
+    let mut inputs = 0;
+    if let Some(messages) = child.stderr.take() {
+        for line in BufReader::new(messages).split(b'\n') {
+            let line = String::from_utf8_lossy(&line?).into_owned();
+            inputs = fuzz_record::inputs_of(&line).unwrap_or(inputs);
+            writeln!(io::stderr(), "{line}")?;
+        }
+    }
+    let is_good = child.wait()?.success();
+    Ok((Ran { inputs, seconds: start.elapsed().as_secs() }, is_good))
 }
 
 /// Returns the names of all targets.

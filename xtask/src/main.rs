@@ -8,6 +8,7 @@ mod digests;
 mod environment;
 mod extension;
 mod fuzz;
+mod fuzz_record;
 mod kept_list;
 mod layers;
 mod lemmas;
@@ -68,7 +69,7 @@ const TASKS: &[Task] = &[
         "[--hours H] [--seed S] [--quick] [--write]: compares random answers with exact arithmetic",
         soundness::run,
     ),
-    ("fuzz", "[--seconds N] [targets]: runs readers with inputs of a fuzzer", fuzz::run),
+    ("fuzz", "[--seconds N] [--write] [targets]: runs readers with inputs of a fuzzer", fuzz::run),
     (
         "digests",
         "[--write]: checks that certificates and answers are the same bytes on every machine",

@@ -1,6 +1,6 @@
 //! Disjoint sets, which contacts or common corners unite.
 
-/// Disjoint sets of the numbers below a count (a union-find forest). The smallest number identifies a set.
+/// Disjoint sets of the numbers below a count (a union-find forest). The smallest number identifies a set. Other numbers panic.
 #[derive(Clone, Debug, Default)]
 pub struct DisjointSets {
     parents: Vec<u32>,

@@ -41,6 +41,19 @@ fn on_pool<T: Send>(
     }
 }
 
+/// Whether work of this thread may use a pool: the one that it belongs to, or the global one if the system allowed its threads.
+#[cfg(all(feature = "parallel", not(target_family = "wasm")))]
+fn has_threads() -> bool {
+    use std::error::Error;
+    /// Whether the global pool has threads, which is asked once. Otherwise rayon panics when it is used.
+    static HAS_GLOBAL: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| {
+        let built = rayon::ThreadPoolBuilder::new().build_global();
+        // An error without a source says that the pool was built before.
+        built.err().is_none_or(|error| error.source().is_none())
+    });
+    !IS_ALONE.get() && (rayon::current_thread_index().is_some() || *HAS_GLOBAL)
+}
+
 /// Maps items on the threads of the current pool. The results are in the order of the items.
 pub(crate) fn map<I: Send, R: Send>(
     items: impl IntoIterator<Item = I>,
@@ -57,7 +70,7 @@ pub(crate) fn map_with<I: Send, S, R: Send>(
     f: impl Fn(&mut S, I) -> R + Sync + Send,
 ) -> Vec<R> {
     #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
-    if !IS_ALONE.get() {
+    if has_threads() {
         use rayon::prelude::*;
         let items: Vec<I> = items.into_iter().collect();
         return items.into_par_iter().with_max_len(grain).map_init(scratch, f).collect();
@@ -69,7 +82,7 @@ pub(crate) fn map_with<I: Send, S, R: Send>(
 /// Runs two functions, at the same time where there are threads.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
-    if !IS_ALONE.get() {
+    if has_threads() {
         return rayon::join(a, b);
     }
     (a(), b())
@@ -105,5 +118,27 @@ mod tests {
             }
         };
         thread::spawn(calls).join().unwrap();
+    }
+
+    /// A process whose address space does not suffice for the stacks of the global pool.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn this_thread_does_all_work_if_the_system_refuses_the_global_pool() {
+        const IS_LIMITED: &str = "SSCC_TEST_OF_A_REFUSED_POOL";
+        if std::env::var_os(IS_LIMITED).is_some() {
+            let all: HashSet<ThreadId> = map(0..1000, |_| thread::current().id()).into_iter().collect();
+            assert_eq!(all, HashSet::from([thread::current().id()]));
+            assert_eq!(join(|| 1, || 2), (1, 2));
+            return;
+        }
+        let name = "parallel::tests::this_thread_does_all_work_if_the_system_refuses_the_global_pool";
+        let output = std::process::Command::new("sh")
+            .args(["-c", "ulimit -v 500000; exec \"$0\" --exact \"$1\""])
+            .args([std::env::current_exe().unwrap().as_os_str(), name.as_ref()])
+            .envs([(IS_LIMITED, "1"), ("RAYON_NUM_THREADS", "600")])
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && text.contains("1 passed"), "{text}");
     }
 }

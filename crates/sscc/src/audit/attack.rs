@@ -60,7 +60,9 @@ struct Queries {
 impl Attack<'_> {
     /// Makes all attacks.
     pub(super) fn run(&self) -> Result<Attacks, Error> {
-        let is_any_claimed = self.certificates.parts().node_radii.iter().any(|r| *r > 0.0);
+        let parts = self.certificates.parts();
+        let is_any_claimed = parts.node_radii.iter().chain(&parts.root_pair_radii).any(|r| *r > 0.0)
+            || parts.pair_tree.limit() > 0.0;
         let Self { certificates, minimum, collisions, .. } = *self;
         let local = &LocalAttack { certificates, minimum, collisions };
         if !is_any_claimed && !local.is_possible() {
@@ -117,6 +119,9 @@ impl Attack<'_> {
     /// Makes one attack. None if no configuration can be drawn or tested, else the violation found, if any.
     fn attack(&self, sample: usize, random: &mut Random, queries: &mut Queries) -> Option<Option<String>> {
         let claim = self.draw_claim(sample, random);
+        if claim.radius <= 0.0 {
+            return None;
+        }
         let q = self.draw_configuration(claim, sample, random)?;
         let query = if claim.nodes == (0, 0) { &mut queries.root } else { &mut queries.part };
         let pairs = match self.minimum.clearance {
@@ -131,7 +136,7 @@ impl Attack<'_> {
         Some(pairs.find_map(|faces| self.claims.violation(faces, norm, &q)))
     }
 
-    /// Returns the claim that a sample attacks.
+    /// Returns the claim that a sample attacks; its radius is 0 if none with a positive radius was drawn.
     fn draw_claim(&self, sample: usize, random: &mut Random) -> Claim {
         let hierarchy = &self.certificates.parts().hierarchy;
         let nodes = hierarchy.nodes();
@@ -156,7 +161,7 @@ impl Attack<'_> {
                 return claim;
             }
         }
-        // Radii grow towards the leaves, and some leaf has a positive one: draw nodes until one has a positive radius.
+        // Radii grow towards the leaves: draw nodes until one has a positive radius.
         let mut n = random.below(nodes.len());
         for _ in 0..1000 {
             if self.claims.node(n as u32).radius > 0.0 {

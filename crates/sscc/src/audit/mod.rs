@@ -30,8 +30,8 @@ pub use options::AuditOptions;
 /// The results of an audit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditReport {
-    /// Number of attacks made, each at one configuration or two. 0 if nothing is claimed: every radius is 0, and there are no
-    /// local certificates.
+    /// Number of attacks made, each at one configuration or two. 0 if nothing is claimed: every radius of a node or a pair is 0, and
+    /// there are no local certificates.
     pub samples: usize,
     /// The number of these attacks that were on local certificates: about half if there are any, all if every radius is 0.
     pub local_samples: usize,

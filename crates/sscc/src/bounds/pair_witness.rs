@@ -35,6 +35,9 @@ pub(crate) struct WitnessList {
 
 /// Number of directions of the list that are tried for a pair: the last ones among the first [`MAX_DIRECTIONS`].
 const DIRECTIONS_TRIED: usize = 6;
+/// Maximum number of parts of two triangles. The search of a radius divides a pair at most 500 times into four; only a radius that is
+/// nearer to the exact one than any search comes needs more.
+const MAX_PARTS: usize = 1 << 14;
 /// Maximum number of directions to which witnesses refer by their numbers.
 const MAX_DIRECTIONS: usize = 251;
 
@@ -44,7 +47,8 @@ impl PairRefiner<'_> {
     pub(crate) fn prove(&mut self, a: [u32; 3], b: [u32; 3], radius: f64, list: &mut WitnessList) -> bool {
         let pair = PairCorners::of(self.model, a, b);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
-        let is_proven = self.prove_part(&pair, SubPair::UNDIVIDED, radius, list, &mut corner_modes);
+        let most = list.witnesses.len() + MAX_PARTS;
+        let is_proven = self.prove_part(&pair, SubPair::UNDIVIDED, radius, list, most, &mut corner_modes);
         self.corner_modes = corner_modes;
         is_proven
     }
@@ -55,8 +59,12 @@ impl PairRefiner<'_> {
         part: SubPair,
         radius: f64,
         list: &mut WitnessList,
+        most: usize,
         corner_modes: &mut [f64],
     ) -> bool {
+        if list.witnesses.len() >= most {
+            return false;
+        }
         let is_whole = part.depth_a == 0 && part.depth_b == 0;
         let corners = if is_whole { *pair } else { part.corners(pair, corner_modes) };
         if let Some(witness) = self.witness(&corners, radius, &list.directions) {
@@ -72,7 +80,7 @@ impl PairRefiner<'_> {
         }
         list.witnesses.push(PairWitness::Quarters { is_first });
         let mut parts = part.subdivide(is_first).into_iter();
-        parts.all(|part| self.prove_part(pair, part, radius, list, corner_modes))
+        parts.all(|part| self.prove_part(pair, part, radius, list, most, corner_modes))
     }
 
     /// Returns a witness for these corners without subdivision.

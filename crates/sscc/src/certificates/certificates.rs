@@ -33,7 +33,7 @@ pub struct CertificateParts {
     pub epsilon: f64,
     /// The radius at which radii are capped: the paper's `R_global` (section 5.2), or the radius up to which the pair tree
     /// was built, if that is larger ([`CertifyOptions::reach`](crate::CertifyOptions::reach)); infinite if no mode moves a
-    /// vertex, or all vertices are at one point at the centre.
+    /// vertex, or all vertices are at one point at the centre, or within about 1e-162 of it.
     pub global_radius: f64,
     /// `R_n` of each node: below it no two triangles of the node collide. It is at most that of any child. A node inside a bucket
     /// ([`Node::fits_in_bucket`](crate::parts::Node::fits_in_bucket)) has the bucket's radius.

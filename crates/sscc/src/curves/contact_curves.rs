@@ -10,6 +10,7 @@ use super::mesh_feature::MeshFeature;
 use super::pair_contact::PairContact;
 use super::polylines::{Polyline, Segment, join_segments};
 use super::surface::Surface;
+use crate::arithmetic::check_arithmetic;
 use crate::geometry::{Intersection, IntersectionPoint};
 use crate::{Error, Pair};
 
@@ -63,7 +64,8 @@ pub struct CurvePoint {
 ///
 /// # Errors
 /// If a pair names a triangle, or a face a vertex, that does not exist, a position is not finite or beyond
-/// [`limits::LARGEST`](crate::limits::LARGEST), or there are more than `u32::MAX` pairs.
+/// [`limits::LARGEST`](crate::limits::LARGEST), there are more than `u32::MAX` pairs, or this thread's arithmetic is not that of
+/// IEEE 754 ([`Error::Arithmetic`]).
 ///
 /// ```
 /// use glam::DVec3;
@@ -85,6 +87,7 @@ pub fn contact_curves(
     positions: &[DVec3],
     pairs: &[Pair],
 ) -> Result<ContactCurves, Error> {
+    check_arithmetic()?;
     let surface = Surface { faces, positions };
     surface.check()?;
     ContactCurves::of([surface; 2], pairs, |mut features| {
@@ -103,6 +106,7 @@ pub fn contact_curves_between(
     y: Surface<'_>,
     pairs: &[Pair],
 ) -> Result<ContactCurves, Error> {
+    check_arithmetic()?;
     x.check()?;
     y.check()?;
     ContactCurves::of([x, y], pairs, |features| features)

@@ -200,6 +200,9 @@ impl TriangleGroups {
     }
 
     /// Whether two triangles count, by their groups.
+    ///
+    /// # Panics
+    /// When there are no groups of such triangles.
     #[inline]
     pub fn is_pair_counted(&self, a: u32, b: u32) -> bool {
         self.is_counted(self.of_triangle[a as usize], self.of_triangle[b as usize])

@@ -63,6 +63,9 @@ impl Modes {
     }
 
     /// Returns the r displacements of one vertex, mode 0 first.
+    ///
+    /// # Panics
+    /// When there is no such vertex.
     pub fn of_vertex(&self, vertex: u32) -> &[DVec3] {
         &self.displacements[vertex as usize * self.rank..][..self.rank]
     }

@@ -69,6 +69,9 @@ impl ReducedModel {
     }
 
     /// Returns the position of a vertex at `q` (model unit): see [`deformed_position`].
+    ///
+    /// # Panics
+    /// When the mesh has no such vertex.
     pub fn position(&self, vertex: u32, q: &[f64]) -> DVec3 {
         deformed_position(self.0.mesh.rest_positions()[vertex as usize], self.0.modes.of_vertex(vertex), q)
     }

@@ -68,6 +68,8 @@ mutants! {
     SweepExact: CaughtBy("it sweep::rounding_between_two_weights_is_not_forgotten");
     /// Steps of sweeps along features omit the slack.
     FeaturesWithoutSlack: CaughtBy("lib geometry::ccd::free_until::tests::directions_along_features_leave_room_for_the_slack");
+    /// The ends of a narrow interval are in the order in which they were found.
+    IntervalsUnordered: CaughtBy("it sweep_intervals::an_interval_narrower_than_the_tolerance_has_ordered_ends");
     /// There is no sweep between free samples.
     IntervalsBySamples: CaughtBy("it sweep_intervals::a_contact_at_one_weight_is_an_interval");
     /// The end of an interval is not searched.
@@ -248,6 +250,8 @@ mutants! {
     GapRoundedOnce: Covered("the roundings that the bound grants to evaluation are more than the other position's");
     /// A capsule is widened by one of five rounding bounds.
     CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
+    /// A safe scale may be too small for the search to advance.
+    SmallestScalesSearched: CaughtBy("it safe_scale::the_smallest_scales_end");
     /// Scales at which a radius is reached are rounded to nearest.
     SafeScaleToNearest: Covered("norms are rounded up by more");
     /// A swept shape that was never placed is nowhere.
@@ -393,7 +397,11 @@ mutants! {
     /// Products of the lengths of very small bodies underflow.
     SmallBodiesNotScaled: CaughtBy("it body_penetration::sizes_change_nothing");
     /// A negative shared volume is none.
-    NegativeVolumeIsNone: CaughtBy("it body_penetration::parts_that_meet_in_a_vertex_face_one_way");
+    NegativeVolumeIsNone: CaughtBy("it body_penetration::parts_that_meet_in_an_edge_face_one_way");
+    /// Parts of a body that meet in a vertex face as their sum does.
+    PartsJoinInVertices: CaughtBy("it body_penetration::parts_that_meet_in_a_vertex_face_one_way");
+    /// The point that tells where a part is may be on another part.
+    PointsAtCorners: CaughtBy("it body_penetration::parts_that_touch_face_one_way");
     /// Flat parts of a body face as rounding decides.
     FlatPartsFace: CaughtBy("it body_penetration::flat_parts_do_not_count");
     /// Heights that overflow in the frame of the search exclude all vertices.

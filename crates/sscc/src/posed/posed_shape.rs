@@ -89,6 +89,7 @@ impl PosedShape {
     /// When q has the wrong length or an entry is not finite, the shape leaves the range of numbers, or this thread's
     /// arithmetic is not that of IEEE 754.
     pub fn place(&mut self, q: &[f64], pose: &Pose) -> Result<Aabb, Error> {
+        check_arithmetic()?;
         let is_same_pose = with_mutant!(self.motion.pose[0] == *pose, PlacedByCoordinatesAlone, true);
         if self.motion.q[0] == q && is_same_pose {
             return Ok(self.whole);
@@ -143,6 +144,9 @@ impl PosedShape {
     }
 
     /// Returns the corners of a triangle in the world, bit for bit those to which all answers refer.
+    ///
+    /// # Panics
+    /// When the mesh has no such triangle.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let face = self.model.mesh().faces()[triangle as usize];
         face.map(|v| self.motion.pose[0].apply(self.model.position(v, &self.motion.q[0])))

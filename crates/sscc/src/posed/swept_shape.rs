@@ -142,6 +142,9 @@ impl SweptShape {
     }
 
     /// Returns the corners of a triangle in the world at both ends.
+    ///
+    /// # Panics
+    /// When the mesh has no such triangle.
     pub fn corners(&self, triangle: u32) -> [[DVec3; 3]; 2] {
         let face = self.model.mesh().faces()[triangle as usize];
         let PosedMotion { q, pose, .. } = &self.motion;

@@ -40,7 +40,10 @@ impl<'a> LocalScales<'a> {
         let root_scale = context.certificates.as_ref().map_or(0.0, Certificates::root_radius) / norm;
         let mut scale = largest;
         let mut proofs = Vec::new();
-        while proofs.len() < MOST_SCALES && scale > root_scale && scale.is_finite() {
+        let is_cancelled = || context.detect.is_cancelled();
+        // A smaller scale would not become smaller for ever.
+        let is_normal = |scale: f64| scale.is_finite() && scale >= f64::MIN_POSITIVE;
+        while proofs.len() < MOST_SCALES && scale > root_scale && is_normal(scale) && !is_cancelled() {
             let end: Vec<f64> = center.iter().zip(q).map(|(c, q)| c + scale * (q - c)).collect();
             if let Ok(configuration) = check.measure(context, &end) {
                 // This reach bounds the rounding at both ends, and at points between them.

@@ -22,8 +22,9 @@ impl Query {
     /// the root's radius is reached, rounded down. It is close to the largest possible one, and at most the scale at
     /// which radii are capped ([`Certificates::global_radius`]). Nodes and node pairs are bounded by their certified
     /// radii and local certificates, and triangle pairs beyond these by conservative advancement along the line. The
-    /// scale is 0 if the shape collides at the centre (ignored pairs apart), else infinite if q is the
-    /// centre or the global radius is infinite.
+    /// scale is 0 if the shape collides at the centre (ignored pairs apart), if triangles are closer there than rounding errors, or
+    /// if a coordinate there is beyond half of [`limits::LARGEST`](crate::limits::LARGEST); else infinite if q is the centre. Where no
+    /// vertex moves it is infinite with certificates of collisions, but may be finite without.
     ///
     /// Takes as long as 5 to 30 traditional queries (much longer without certificates), and allocates.
     ///
@@ -60,6 +61,10 @@ impl Query {
         waiting.push(MinHeapEntry { key: self.certified_scale(0).max(local), order: (0, 0), item: NONE });
         // In best-first order a pair is advanced only a little farther than the scale up to which all others are free.
         while let Some(MinHeapEntry { key: lower, order: (n, m), item: index }) = waiting.pop() {
+            // Shares of a smaller scale may round to 0, so that a leaf would return with the same key for ever.
+            if with_mutant!(best < f64::MIN_POSITIVE, SmallestScalesSearched, false) {
+                best = 0.0;
+            }
             if lower >= best {
                 break;
             }

@@ -199,6 +199,49 @@ fn parts_that_meet_in_a_vertex_face_one_way() {
     let mesh = TriMesh::new(positions, [outward, inward].concat()).unwrap();
     let around = cuboid(DVec3::splat(-1.5), DVec3::splat(-1e-3));
     assert!(matches!(find(&mesh, &around), Err(Error::OpenMesh(_))));
+    // Also where the other mesh shares more with the part that faces outward.
+    let [large, small] = [[0.0, 2.0], [-1.0, 0.0]].map(|[a, b]| cuboid(DVec3::splat(a), DVec3::splat(b)));
+    let number = |v: u32| if v == 7 { 0 } else { v + 8 };
+    let inward = small.faces().iter().map(|[a, b, c]| [*a, *c, *b].map(number));
+    let faces = large.faces().iter().copied().chain(inward).collect();
+    let positions = [large.rest_positions(), small.rest_positions()].concat();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    assert_eq!(find(&mesh, &cuboid(DVec3::splat(-0.5), DVec3::ONE)), Err(Error::OpenMesh("first")));
+}
+
+/// Two parts with a common edge count as one, whose volume cannot be negative within another mesh.
+#[test]
+fn parts_that_meet_in_an_edge_face_one_way() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X * 0.5, -DVec3::Y * 0.5];
+    let outward = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let inward = outward.map(|[a, b, c]| [a, c, b].map(|v| [0, 4, 5, 3][v as usize]));
+    let mesh = TriMesh::new(corners.map(|p| p * 2.0).to_vec(), [outward, inward].concat()).unwrap();
+    let around = cuboid(DVec3::new(-1.5, -1.5, -0.5), DVec3::new(-1e-3, -1e-3, 2.5));
+    assert!(matches!(find(&mesh, &around), Err(Error::OpenMesh(_))));
+}
+
+/// A part whose first corner is on another part is inside or outside of it, as the rest of the part is.
+#[test]
+fn parts_that_touch_face_one_way() {
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+    // The first corner is on a face of the cube; the others are below it by 1.
+    let with_tetrahedron = |z: f64| {
+        let others = [[0.5, 0.5], [1.5, 0.5], [1.0, 1.5]].map(|[x, y]| DVec3::new(x, y, z - 1.0));
+        let positions = [cube.rest_positions(), &[DVec3::new(1.0, 1.0, z)], &others].concat();
+        let inward = [[8, 10, 9], [8, 11, 10], [8, 9, 11], [9, 10, 11]];
+        TriMesh::new(positions, [cube.faces(), &inward].concat()).unwrap()
+    };
+    let below = cuboid(DVec3::new(0.5, 0.5, -1.0), DVec3::new(1.5, 1.5, 1.0));
+    assert_eq!(find(&with_tetrahedron(0.0), &below), Err(Error::OpenMesh("first")));
+    let around = cuboid(DVec3::splat(-1.0), DVec3::splat(3.0));
+    let found = penetration(&with_tetrahedron(2.0), &around);
+    assert!((found.volume - (8.0 - 1.0 / 6.0)).abs() <= found.volume_error + 1e-12, "{found:?}");
+    // Equal parts have no point that is on one of them alone.
+    let positions = [cube.rest_positions(), cube.rest_positions()].concat();
+    let again = cube.faces().iter().map(|face| face.map(|v| v + 8));
+    let twice = TriMesh::new(positions, cube.faces().iter().copied().chain(again).collect());
+    let found = penetration(&twice.unwrap(), &around);
+    assert!((found.volume - 16.0).abs() <= found.volume_error + 1e-12, "{found:?}");
 }
 
 #[test]

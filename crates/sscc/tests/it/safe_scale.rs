@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sscc::parts::{CertificateParts, PairTree, Scope};
-use sscc::{Certificates, CertifyOptions, Error, Method, Modes, Query, ReducedModel, TriMesh};
+use sscc::{Certificates, CertifyOptions, Error, Method, Metric, Modes, Query, ReducedModel, TriMesh};
 use sscc_testing::{cases, threshold};
 
 use crate::common::{Random, after, at, random_model, random_options, winding_strip};
@@ -54,6 +54,22 @@ fn shapes_up_to_the_safe_scale_are_free() {
             && stopped > threshold(30),
         "{tried} {larger} {tight} {stopped}"
     );
+}
+
+/// A scale that is a subnormal number does not keep the search from its end.
+#[test]
+fn the_smallest_scales_end() {
+    let small = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 1e-14);
+    let positions = [small, small.map(|p| p + DVec3::Z * 1e-14)].concat();
+    let moved = |v: u32| if v < 3 { [DVec3::ZERO; 2] } else { [DVec3::NEG_Z, DVec3::NEG_Z * 1e-300] };
+    let modes = Modes::new(2, (0..6).flat_map(moved).collect()).unwrap();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::with_metric(mesh, modes, Metric::identity(2)).unwrap();
+    let options = CertifyOptions::default().local_budget(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(after(1000));
+    let scale = query.safe_scale(&[0.0, 1e308]).unwrap();
+    assert!((0.0..1e-322).contains(&scale), "{scale:e}");
 }
 
 /// Radii of pairs of nodes are further proofs; conservative advancement then begins at another scale, which changes its end by

@@ -138,6 +138,24 @@ fn a_contact_at_one_weight_is_an_interval() {
     assert!(find(ModeRange { mode: 7, ..range }, 5).contains("there is no mode 7"));
 }
 
+/// Sweeps from both sides find collisions on the other side of the exact contact, because positions are rounded: the triangles are in
+/// one plane at about 500 weights.
+#[test]
+fn an_interval_narrower_than_the_tolerance_has_ordered_ends() {
+    let at = |z: f64| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + DVec3::Z * z);
+    let mesh = TriMesh::new([at(1000.0), at(1000.3)].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let lowered = (0..6).map(|v| if v < 3 { DVec3::ZERO } else { DVec3::NEG_Z }).collect();
+    let model = ReducedModel::new(mesh, Modes::new(1, lowered).unwrap()).unwrap();
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let query = Query::new(&model, &certificates).unwrap();
+    let range = ModeRange { mode: 0, low: 0.27, high: 0.33 };
+    let found = query.sweep_intervals(&[0.27], &[range], 2, Some(1), &()).unwrap();
+    let [interval] = &found[0].intervals[..] else { panic!("{found:?}") };
+    assert!(interval.from < interval.to && interval.pairs == 1, "{interval:?}");
+    let oracle = &mut Query::without_certificates(&model, Scope::of(&model), Method::BruteForce).unwrap();
+    check(&found[0], &model, &[0.27], oracle, 1000);
+}
+
 #[test]
 fn brute_force_finds_nothing_outside_of_intervals() {
     let (mut found_intervals, mut hits, mut many) = (0, 0, 0);

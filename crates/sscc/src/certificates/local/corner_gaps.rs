@@ -75,11 +75,16 @@ pub(super) struct CornerGaps<'g> {
 /// tables would not fit into the memory (docs/notes/local-certificates.md#near-leaves).
 const MAX_NEAR_SHARE: usize = 256;
 
+/// The largest memory of all tables for each triangle of the mesh (bytes), and a memory that is always allowed. Real meshes have 10 to 14
+/// near pairs for each leaf, which take at most 2.6 kB a triangle.
+const MAX_BYTES_PER_TRIANGLE: usize = 4096;
+const ALLOWED_BYTES: usize = 1 << 28;
+
 /// Tables between two checks for cancellation; one takes some microseconds.
 const TABLES_PER_CHECK: usize = 1 << 12;
 
 impl<'g> CornerGaps<'g> {
-    /// Computes all tables. None if more pairs of leaves are near than [`MAX_NEAR_SHARE`] allows.
+    /// Computes all tables. None if more pairs of leaves are near than [`MAX_NEAR_SHARE`] allows, or their tables are too large.
     ///
     /// # Errors
     /// When `progress` cancels.
@@ -114,6 +119,14 @@ impl<'g> CornerGaps<'g> {
         gaps.spheres = gaps.node_spheres();
         let leaves = nodes.iter().filter(|node| node.is_leaf()).count();
         let Some(mut near) = gaps.near_leaves(MAX_NEAR_SHARE * leaves) else { return Ok(None) };
+        let bytes = |(n, m): &NodePair| {
+            let [rows, columns] = [*n, *m].map(|n| gaps.vertices(n).len());
+            size_of::<Option<GapTable>>() + size_of::<f32>() * rows * (columns + 1)
+        };
+        let most = ALLOWED_BYTES.max(MAX_BYTES_PER_TRIANGLE * filter.faces().len());
+        if near.iter().map(bytes).sum::<usize>() > most {
+            return Ok(None);
+        }
         near.sort_unstable();
         let mut tables: Vec<Option<GapTable>> = Vec::with_capacity(near.len());
         for pairs in near.chunks(TABLES_PER_CHECK) {

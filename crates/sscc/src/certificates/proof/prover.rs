@@ -100,14 +100,11 @@ impl Prover {
             hierarchy: &self.certificates.parts().hierarchy,
             scratch: NodePairScratch::new(self.scaled.row_len),
             refiner: PairRefiner::new(&self.scaled),
+            progress,
+            number: 0,
             out: Vec::new(),
         };
-        let prove = |prover: &mut EntryProver<'_>, number: usize| {
-            if progress.is_cancelled() {
-                return Err(Error::Cancelled);
-            }
-            prover.prove(number)
-        };
+        let prove = |prover: &mut EntryProver<'_>, number: usize| prover.prove(number);
         let numbers = numbers.iter().copied();
         let entries = parallel::on_threads(threads, || parallel::map_with(numbers, GRAIN, scratch, prove));
         Ok(entries.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
@@ -120,28 +117,36 @@ struct EntryProver<'a> {
     hierarchy: &'a Hierarchy,
     scratch: NodePairScratch,
     refiner: PairRefiner<'a>,
+    progress: &'a dyn Progress,
+    /// The number of the entry.
+    number: usize,
     out: Vec<u8>,
 }
 
 impl EntryProver<'_> {
     /// Returns the number of an entry, the length of its witnesses, and the witnesses, as bytes.
     fn prove(&mut self, number: usize) -> Result<Vec<u8>, Error> {
-        let unproven = |what: String| Error::Unproven(format!("entry {number} has no proof: {what}"));
-        let entry = self.prover.entries.get(number).ok_or_else(|| unproven("it does not exist".into()))?;
+        self.number = number;
+        let entry =
+            self.prover.entries.get(number).ok_or_else(|| self.unproven("it does not exist".into()))?;
         self.out.clear();
-        if entry.radius > 0.0
-            && let Err((a, b)) = self.nodes(entry.nodes, entry.radius)
-        {
-            let cause = format!("no witness for triangles {a} and {b} below the radius {:e}", entry.radius);
-            return Err(unproven(cause));
+        if entry.radius > 0.0 {
+            self.nodes(entry.nodes, entry.radius)?;
         }
-        let length = u32::try_from(self.out.len()).map_err(|_| unproven("it is too long".into()))?;
+        let length = u32::try_from(self.out.len()).map_err(|_| self.unproven("it is too long".into()))?;
         let head = [&(number as u64).to_le_bytes()[..], &length.to_le_bytes()].concat();
         Ok([head, std::mem::take(&mut self.out)].concat())
     }
 
-    /// Appends the witnesses of two nodes, or of a leaf. The error is a pair of triangles without a witness.
-    fn nodes(&mut self, nodes: NodePair, radius: f64) -> Result<(), (u32, u32)> {
+    fn unproven(&self, what: String) -> Error {
+        Error::Unproven(format!("entry {} has no proof: {what}", self.number))
+    }
+
+    /// Appends the witnesses of two nodes, or of a leaf.
+    fn nodes(&mut self, nodes: NodePair, radius: f64) -> Result<(), Error> {
+        if self.progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
         let Prover { scaled, filter, nodes: bounds, groups, .. } = self.prover;
         let (n, m) = nodes;
         if !groups.can_count(filter, nodes) {
@@ -169,7 +174,7 @@ impl EntryProver<'_> {
         }
     }
 
-    fn triangles(&mut self, (n, m): NodePair, radius: f64) -> Result<(), (u32, u32)> {
+    fn triangles(&mut self, (n, m): NodePair, radius: f64) -> Result<(), Error> {
         let filter = &self.prover.filter;
         let [x, y] = [n, m].map(|n| self.hierarchy.triangles(&self.hierarchy.nodes()[n as usize]));
         let mut list = WitnessList::default();
@@ -178,9 +183,14 @@ impl EntryProver<'_> {
                 if filter.is_excluded(a, b) {
                     continue;
                 }
+                if self.progress.is_cancelled() {
+                    return Err(Error::Cancelled);
+                }
                 for SimplexPair { a: x, b: y } in filter.simplex_pairs(a, b) {
                     if !self.refiner.prove(x, y, radius, &mut list) {
-                        return Err((a, b));
+                        let what =
+                            format!("no witness for triangles {a} and {b} below the radius {radius:e}");
+                        return Err(self.unproven(what));
                     }
                 }
             }

@@ -10,6 +10,8 @@ pub(super) struct Components {
     /// For each triangle the number of its component.
     of_triangles: Vec<u32>,
     all: Vec<Component>,
+    /// For each triangle the number of its part: parts are joined by edges, and components by vertices as well.
+    parts: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
@@ -49,12 +51,28 @@ impl Components {
             })
             .collect();
         edges.sort_unstable();
+        let mut along_edges = DisjointSets::new(corners.len());
         for same in edges.chunk_by(|x, y| x.0 == y.0) {
+            same.windows(2).for_each(|pair| along_edges.unite(pair[0].2, pair[1].2));
             let component = of_triangles[same[0].2 as usize] as usize;
             let is_balanced = same.iter().map(|edge| edge.1).sum::<i32>() == 0;
             all[component].is_closed &= with_mutant!(is_balanced, OpenIsClosed, true);
         }
-        Self { of_triangles, all }
+        let mut parts: Vec<u32> = Vec::with_capacity(corners.len());
+        let mut count = 0;
+        for triangle in 0..corners.len() as u32 {
+            let first = along_edges.find(triangle);
+            let number = if first == triangle { count } else { parts[first as usize] };
+            count += u32::from(first == triangle);
+            parts.push(number);
+        }
+        Self { of_triangles, all, parts }
+    }
+
+    /// Returns for each triangle the number of its part. Parts consist of triangles that common edges join, directly or through
+    /// others. A part of a closed component is closed.
+    pub fn parts(&self) -> &[u32] {
+        with_mutant!(&self.parts, PartsJoinInVertices, &self.of_triangles)
     }
 
     pub fn count(&self) -> usize {

@@ -5,35 +5,62 @@ use glam::DVec3;
 use super::enclosed::Side;
 use crate::Error;
 
-/// Error of a term of a component's volume, over the product of its three lengths: differences, a cross and a dot product, less than 12
+/// Error of a term of a part's volume, over the product of its three lengths: differences, a cross and a dot product, less than 12
 /// units of 2^-53 of 16.
 const ERROR: f64 = 8.0 * f64::EPSILON;
 
+/// The number of triangles of a part at which a point is looked for that is on no other part. Parts that touch have more triangles
+/// that do not; parts that are equal have none.
+const TRIANGLES_TRIED: usize = 16;
+
+/// A part of a mesh, whose triangles common edges join.
+struct Part {
+    /// A corner. Volumes are relative to it.
+    origin: DVec3,
+    /// Six times the volume, and a bound of its rounding errors.
+    volume: [f64; 2],
+    /// Its first triangles.
+    triangles: Vec<u32>,
+}
+
 /// Returns 1 for a mesh that faces outward, -1 for one that faces inward. Returns `None` if the winding number about some points has
-/// the opposite sign, so that the mesh has no inside. Components without volume do not count. The sign of its volume determines how
-/// a component that crosses itself faces. `triangles`: the corners of all triangles.
+/// the opposite sign, so that the mesh has no inside. Parts without volume do not count. The sign of its volume determines how
+/// a part that crosses itself faces. `triangles`: the corners of all triangles of the closed mesh.
 ///
 /// # Errors
 /// When the token cancels.
 pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option<i32>, Error> {
-    let components = side.components;
-    let from: Vec<(u32, DVec3)> = components.triangles().map(|t| (t, triangles[t as usize][0])).collect();
-    // For each component six times its volume, and a bound of its rounding errors.
-    let mut volumes = vec![[0.0_f64; 2]; from.len()];
-    for (triangle, corners) in triangles.iter().enumerate() {
-        let component = components.of_triangle(triangle as u32);
-        let [a, b, c] = corners.map(|p| p - from[component].1);
-        let [volume, error] = &mut volumes[component];
+    let of_triangles = side.components.parts();
+    let mut parts: Vec<Part> = Vec::new();
+    for (triangle, (corners, number)) in triangles.iter().zip(of_triangles).enumerate() {
+        if *number as usize == parts.len() {
+            parts.push(Part { origin: corners[0], volume: [0.0; 2], triangles: Vec::new() });
+        }
+        let part = &mut parts[*number as usize];
+        let [a, b, c] = corners.map(|p| p - part.origin);
+        let [volume, error] = &mut part.volume;
         *volume += a.dot(b.cross(c));
         *error += ERROR * (a.length() * b.length() * c.length()) + f64::EPSILON * volume.abs();
+        if part.triangles.len() < TRIANGLES_TRIED {
+            part.triangles.push(triangle as u32);
+        }
     }
-    let direction = if volumes.iter().map(|[volume, _]| volume).sum::<f64>() < 0.0 { -1 } else { 1 };
-    for (&(triangle, point), [volume, error]) in from.iter().zip(volumes) {
+    let direction = if parts.iter().map(|part| part.volume[0]).sum::<f64>() < 0.0 { -1 } else { 1 };
+    for (number, part) in parts.iter().enumerate() {
+        let [volume, error] = part.volume;
         if volume.abs() <= with_mutant!(error, FlatPartsFace, 0.0) {
             continue;
         }
-        let own = components.of_triangle(triangle);
-        let outside = side.winding_number_of(point, |t| components.of_triangle(t) != own)?;
+        let is_of_others = |t: u32| of_triangles[t as usize] as usize != number;
+        let mut point = part.origin;
+        for t in &part.triangles {
+            let [a, b, c] = triangles[*t as usize];
+            point = with_mutant!((a + b + c) / 3.0, PointsAtCorners, part.origin);
+            if !side.is_on(point, is_of_others)? {
+                break;
+            }
+        }
+        let outside = side.winding_number_of(point, is_of_others)?;
         let inside = outside + if volume < 0.0 { -1 } else { 1 };
         if with_mutant!(outside * direction < 0 || inside * direction < 0, PartsFaceAnyWay, false) {
             return Ok(None);

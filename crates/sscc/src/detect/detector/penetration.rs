@@ -56,7 +56,9 @@ fn penetration_of_any_size(
     detectors: [&mut Detector; 2],
     positions: [&[DVec3]; 2],
 ) -> Result<BodyPenetration, Error> {
-    let mut largest = positions.iter().copied().flatten().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let used = detectors.each_ref().map(|detector| detector.context.filter.faces().as_flattened());
+    let corners = used.iter().zip(positions).flat_map(|(used, x)| used.iter().map(|v| x[*v as usize]));
+    let mut largest = corners.map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let mut scalings = 0;
     while largest > 0.0 && with_mutant!(largest < SMALL, SmallBodiesNotScaled, false) {
         largest *= SCALE;

@@ -60,6 +60,9 @@ const MIN_SAMPLES: usize = 2;
 const MAX_SAMPLES: usize = 1 << 20;
 
 /// Returns the largest penetration depth (model unit) of these pairs of triangles of a model at q; 0 where they only touch.
+///
+/// # Panics
+/// When the mesh has no such triangles.
 pub fn largest_depth(model: &ReducedModel, q: &[f64], pairs: &[Pair]) -> f64 {
     let corners = |t: u32| model.mesh().faces()[t as usize].map(|v| model.position(v, q));
     let depth = |(a, b): &Pair| penetration_triangle_triangle(&corners(*a), &corners(*b));
@@ -194,7 +197,9 @@ impl Progress for Steps<'_> {
 
 /// Returns the interval between two ends.
 fn interval([begin, end]: [End; 2], samples: &[WeightSample]) -> WeightInterval {
-    let (from, to) = (begin.sample().weight, end.sample().weight);
+    // Sweeps from both sides of a narrow interval each find a collision within their tolerance, which may be beyond the other one.
+    let ends = [begin, end].map(|end| end.sample().weight);
+    let (from, to) = (ends[0].min(ends[1]), with_mutant!(ends[0].max(ends[1]), IntervalsUnordered, ends[1]));
     let found = [begin, end].into_iter().filter_map(|end| end.found());
     let counted = samples.iter().copied().chain(found).filter(|sample| (from..=to).contains(&sample.weight));
     let deeper = |x: WeightSample, y: WeightSample| {
