@@ -66,6 +66,18 @@ pub fn integers<'py>(any: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonly
     borrow(require(&array, "int64")?.cast::<PyArrayDyn<i64>>()?, name)
 }
 
+/// Returns the floats of an argument as a new array, for functions that are written in Python.
+#[pyfunction]
+pub fn _numbers<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    floats(given, name)?.as_any().call_method0("copy")
+}
+
+/// Returns the integers of an argument as a new array, for functions that are written in Python.
+#[pyfunction]
+pub fn _integers<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    integers(given, name)?.as_any().call_method0("copy")
+}
+
 /// Returns a copy of the entries of an array in C order; `name` is the argument's.
 pub fn copied(array: &PyReadonlyArrayDyn<'_, f64>, name: &str) -> PyResult<Vec<f64>> {
     let entries = array.as_slice()?;

@@ -16,7 +16,7 @@ use crate::clearance::{self, NearArrays, near_arrays};
 use crate::errors::{file, refused, value};
 use crate::hierarchy::Hierarchy;
 use crate::impacts::Impacts;
-use crate::interrupt::answer;
+use crate::interrupt::{answer, run_detachable};
 use crate::kinetic::KineticQuery;
 use crate::metric::factor;
 use crate::model::Model;
@@ -33,7 +33,7 @@ pub struct Certificates {
 impl Certificates {
     fn with(model: &Bound<'_, Model>, certificates: sscc::Certificates, name: &str) -> PyResult<Self> {
         let loaded = Arc::clone(&model.get().loaded);
-        let pool = model.py().detach(|| Pool::of(CertifiedModel { loaded, certificates }));
+        let pool = run_detachable(model.py(), move || Pool::of(CertifiedModel { loaded, certificates }))?;
         let pool = pool.map_err(|error| refused(&error, name))?;
         Ok(Self { model: model.clone().unbind(), pool: Arc::new(pool) })
     }
@@ -63,8 +63,9 @@ impl Certificates {
         model: &Bound<'_, Model>,
     ) -> PyResult<Self> {
         let path = self::path(path, "path")?;
-        let read = py.detach(|| read_certificates(&path)).map_err(|error| file(&error))?;
-        Self::with(model, read, &path.to_string_lossy())
+        let name = path.to_string_lossy().escape_debug().to_string();
+        let read = run_detachable(py, move || read_certificates(&path))?.map_err(|error| file(&error))?;
+        Self::with(model, read, &name)
     }
 
     fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {

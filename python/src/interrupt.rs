@@ -155,7 +155,24 @@ pub fn run<T: Send + 'static, E: Send + 'static>(
     label: &str,
     work: impl FnOnce(&dyn Progress) -> Result<T, E> + Send + 'static,
 ) -> PyResult<Result<T, E>> {
-    let reporter = Reporter::of(py, progress, label)?;
+    run_reporting(py, &Reporter::of(py, progress, label)?, work)
+}
+
+/// Like [`run`] without progress, for work that cannot be cancelled. After an exception of a signal handler it continues
+/// detached, and its result is dropped.
+pub fn run_detachable<T: Send + 'static, E: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, E> + Send + 'static,
+) -> PyResult<Result<T, E>> {
+    run_reporting(py, &Reporter(None), move |_| work())
+}
+
+/// Runs work as [`run`] does, and reports to `reporter`.
+fn run_reporting<T: Send + 'static, E: Send + 'static>(
+    py: Python<'_>,
+    reporter: &Reporter,
+    work: impl FnOnce(&dyn Progress) -> Result<T, E> + Send + 'static,
+) -> PyResult<Result<T, E>> {
     let result = py.detach(|| {
         let monitor = Arc::new(Monitor::default());
         let (finished, waiting) = channel();

@@ -42,6 +42,8 @@ mod _sscc {
     #[pymodule_export]
     use super::answer::{_answer, Answer};
     #[pymodule_export]
+    use super::arrays::{_integers, _numbers};
+    #[pymodule_export]
     use super::batch::{_batch, Batch};
     #[pymodule_export]
     use super::certificates::{_certificates, Certificates};

@@ -1,5 +1,7 @@
 //! The methods of `sscc.Model`.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
@@ -14,10 +16,11 @@ use sscc_tasks::text::{counted, grouped};
 
 use crate::answer::Reduction;
 use crate::arguments::{check_ending, path};
-use crate::arrays::{floats, line, table, vector};
+use crate::arrays::{floats, frozen, line, table, vector};
 use crate::certificates::Certificates;
 use crate::certify;
 use crate::errors::{file, kind, refused, room, value, warn};
+use crate::interrupt::run_detachable;
 use crate::metric::{factor, read_metric};
 use crate::model::{LoadedModel, Model, mesh, points};
 
@@ -70,7 +73,10 @@ impl Model {
     ) -> PyResult<Self> {
         let path = self::path(path, "path")?;
         let modes = modes.map(|modes| self::path(modes, "modes")).transpose()?;
-        let read = py.detach(|| load_model_with(&path, &LoadOptions::new(modes.as_deref(), mesh_name)));
+        let (of_worker, mesh_name) = (path.clone(), mesh_name.map(str::to_owned));
+        let read = run_detachable(py, move || {
+            load_model_with(&of_worker, &LoadOptions::new(modes.as_deref(), mesh_name.as_deref()))
+        })?;
         let read = read.map_err(|error| file(&error))?;
         let name = path.to_string_lossy().escape_debug().to_string();
         warn(py, &read.warnings.iter().map(|warning| format!("{name}: {warning}")).collect::<Vec<_>>())?;
@@ -159,19 +165,20 @@ impl Model {
                 return Err(value(format!("gravity has {} numbers: 3 were expected", other.len())));
             }
         };
-        let LoadedModel { model, info, .. } = &*self.loaded;
-        let found = py.detach(|| static_answer(model, info, &forces, gravity));
+        let loaded = Arc::clone(&self.loaded);
+        let found = run_detachable(py, move || static_answer(&loaded.model, &loaded.info, &forces, gravity))?;
         Ok(line(py, found.map_err(|error| value(error.to_string()))?.q))
     }
 
     /// Returns the q whose shape is nearest to positions, and the share of the displacements that remains.
     fn fit<'py>(&self, py: Python<'py>, positions: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, f64)> {
         let mut displacements = self.of_vertices(positions, "positions")?;
-        let found = py.detach(|| {
-            let rest_positions = self.core().mesh().rest_positions();
+        let loaded = Arc::clone(&self.loaded);
+        let found = run_detachable(py, move || {
+            let rest_positions = loaded.model.mesh().rest_positions();
             displacements.iter_mut().zip(rest_positions).for_each(|(x, rest)| *x -= *rest);
-            DisplacementFit::new(self.core().modes())?.fit(&displacements)
-        });
+            DisplacementFit::new(loaded.model.modes())?.fit(&displacements)
+        })?;
         let found = found.map_err(|error| value(format!("positions: {error}")))?;
         Ok((line(py, found.q), found.residual))
     }
@@ -237,6 +244,11 @@ impl Model {
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(elasticity) = &self.loaded.info.elasticity else { return Ok(None) };
         table(py, self.core().rank(), elasticity.stiffness().entries().to_vec()).map(Some)
+    }
+
+    #[getter]
+    fn deviations<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.loaded.info.deviations.clone().map(|deviations| frozen(line(py, deviations))).transpose()
     }
 
     #[getter]

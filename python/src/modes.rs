@@ -18,7 +18,7 @@ use sscc_tasks::{
 use crate::arguments::{choice, count, number};
 use crate::arrays::{floats, integers};
 use crate::errors::{file, kind, room, value, warn};
-use crate::interrupt::run;
+use crate::interrupt::{run, run_detachable};
 use crate::model::{LoadedModel, Model, mesh, mesh_of, points};
 use crate::pool;
 use crate::watching::Phases;
@@ -262,7 +262,8 @@ pub fn _pca(
         if faces.is_some() {
             return Err(value("faces: the meshes of a folder have their own: leave faces out"));
         }
-        let frames = py.detach(|| read_frames(&folder)).map_err(|error| file(&error))?;
+        let of_worker = folder.clone();
+        let frames = run_detachable(py, move || read_frames(&of_worker))?.map_err(|error| file(&error))?;
         let first = frames.paths.first().unwrap_or(&folder).to_string_lossy().escape_debug().to_string();
         warn(py, &frames.warnings.iter().map(|warning| format!("{first}: {warning}")).collect::<Vec<_>>())?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -287,9 +288,10 @@ pub fn _pca(
 fn read_shapes(any: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<DVec3>>> {
     let array = floats(any, "shapes")?;
     let entries = match *array.shape() {
-        [_, _, 3] => array.shape()[1] * 3,
+        // Shapes without vertices would need memory without any input.
+        [_, vertices, 3] if vertices > 0 => vertices * 3,
         // (V, 3) is one shape, not V shapes of one vertex.
-        [_, entries] if entries % 3 == 0 && entries != 3 => entries,
+        [_, entries] if entries % 3 == 0 && entries > 3 => entries,
         _ => {
             return Err(value(format!(
                 "shapes has shape {:?}: (n, V, 3) or (n, 3V) was expected",
@@ -298,7 +300,7 @@ fn read_shapes(any: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<DVec3>>> {
         }
     };
     let mut shapes = room(array.shape()[0], "shapes")?;
-    for shape in array.as_slice()?.chunks_exact(entries.max(1)) {
+    for shape in array.as_slice()?.chunks_exact(entries) {
         let mut points = room(entries / 3, "shapes")?;
         points.extend(shape.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)));
         shapes.push(points);

@@ -58,6 +58,10 @@ impl Frames {
             let hint = if shape.len() == 2 { "; for one frame use check" } else { "" };
             return Err(value(format!("frames has shape {shape:?}: (T, {expected}, 3) was expected{hint}")));
         }
+        // The slices of frames without vertices would need memory without any input.
+        if shape[0] > 0 && shape[1] == 0 {
+            return Err(value(format!("frames has shape {shape:?}: at least one vertex was expected")));
+        }
         let entries = array.as_slice()?;
         let mut points = room(entries.len() / 3, "frames")?;
         points.extend(entries.as_chunks::<3>().0.iter().map(|x| DVec3::from_array(*x)));

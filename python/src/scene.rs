@@ -17,7 +17,7 @@ use crate::arguments::{self, choice, count, neighbours_by_name, number, switch};
 use crate::arrays::{frozen, line, pairs, vector};
 use crate::certify::rest_rings;
 use crate::errors::{file, refused_task, room, value, warn};
-use crate::interrupt::run_borrowing;
+use crate::interrupt::{answer, run_borrowing, run_detachable, signals};
 use crate::pool;
 use crate::watching::{Phases, Watching};
 
@@ -65,21 +65,23 @@ pub fn _scene_positions<'py>(
     let node = &scene.find_mesh_nodes(Some(node)).map_err(in_file)?[0];
     let vertices = node.rest_positions().len();
     let mut all: Vec<f64> = room(times.len().saturating_mul(3 * vertices), "positions")?;
-    let found = py.detach(|| {
+    let found = answer(py, || -> Result<(), FormatError> {
         let mut positions = Vec::new();
-        times.iter().try_for_each(|time| {
+        // After a cancellation, `answer` returns the exception of the signal handler.
+        for time in times.iter().take_while(|_| !signals().is_cancelled()) {
             scene.pose(number, *time)?.positions(node.node(), SkinWeights::Normalized, &mut positions)?;
             all.extend(positions.iter().flat_map(|x| x.to_array()));
-            Ok(())
-        })
-    });
+        }
+        Ok(())
+    })?;
     found.map_err(in_file)?;
     let array = numpy::PyArray1::from_vec(py, all).reshape([times.len(), vertices, 3])?;
     Ok(array.cast_into::<PyArray3<f64>>()?.into_any())
 }
 
 fn read(py: Python<'_>, path: &Path) -> PyResult<AnimatedScene> {
-    py.detach(|| read_scene(path)).map_err(|error| file(&error))
+    let of_worker = path.to_owned();
+    run_detachable(py, move || read_scene(&of_worker))?.map_err(|error| file(&error))
 }
 
 /// Returns the times of the arguments `times` and `fps`.

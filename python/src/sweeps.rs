@@ -34,7 +34,7 @@ impl<'py> SweepArguments<'_, 'py> {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyList>> {
         let loaded = &*pool.certified.loaded;
-        let (q, modes) = self.ways(pool)?;
+        let (q, modes) = self.ways(py, pool)?;
         let threads = threads(self.threads)?;
         let swept = run_borrowing(py, progress, "sweeping", |progress| {
             pool.first().sweep_modes(&q, &modes, threads, progress)
@@ -61,7 +61,7 @@ impl<'py> SweepArguments<'_, 'py> {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyList>> {
         let samples = count(samples, "samples", 2..=1 << 20)?.unwrap_or(SAMPLES);
-        let (q, modes) = self.ways(pool)?;
+        let (q, modes) = self.ways(py, pool)?;
         let threads = threads(self.threads)?;
         let found = run_borrowing(py, progress, "sweeping", |progress| {
             pool.first().sweep_intervals(&q, &modes, samples, threads, progress)
@@ -93,12 +93,12 @@ impl<'py> SweepArguments<'_, 'py> {
     }
 
     /// Returns the q at the start, and the modes to sweep with their ranges.
-    fn ways(&self, pool: &Pool) -> PyResult<(Vec<f64>, Vec<ModeRange>)> {
+    fn ways(&self, py: Python<'py>, pool: &Pool) -> PyResult<(Vec<f64>, Vec<ModeRange>)> {
         let certified = &pool.certified;
         let (loaded, center) = (&*certified.loaded, certified.certificates.center());
         let q = self.q.map_or_else(|| Ok(center.to_vec()), |q| vector(q, "q"))?;
         loaded.model.check_coordinates(&q).map_err(|error| refused(&error, "q"))?;
-        let ranges = self.ranges(loaded, &q)?;
+        let ranges = self.ranges(py, loaded, &q)?;
         let modes = self.modes(loaded)?.into_iter().map(|mode| {
             let [low, high] = ranges[mode];
             ModeRange { mode, low, high }
@@ -107,10 +107,10 @@ impl<'py> SweepArguments<'_, 'py> {
     }
 
     /// Returns the range of each mode.
-    fn ranges(&self, loaded: &LoadedModel, q: &[f64]) -> PyResult<Vec<[f64; 2]>> {
+    fn ranges(&self, py: Python<'py>, loaded: &LoadedModel, q: &[f64]) -> PyResult<Vec<[f64; 2]>> {
         let Some(range) = self.range else {
             let range = SweepRange::of_modes(&loaded.mode_names, loaded.info.deviations.as_deref());
-            return Ok(range.ends(&loaded.model, q));
+            return Ok(py.detach(|| range.ends(&loaded.model, q)));
         };
         let array = floats(range, "range")?;
         let entries = copied(&array, "range")?;

@@ -153,6 +153,9 @@ class Model:
     @property
     def stiffness(self) -> _F64 | None:
         """The reduced stiffness at rest (r, r); None if unknown."""
+    @property
+    def deviations(self) -> _F64 | None:
+        """The standard deviation of each entry of q (r,), for principal components; read-only. None if unknown."""
 
 @final
 class Certificates:
@@ -715,6 +718,8 @@ def _simulate(
     cache: _Path | None,
     threads: int | None,
 ) -> tuple[str, str, list[str]]: ...
+def _numbers(given: ArrayLike, name: str) -> _F64: ...
+def _integers(given: ArrayLike, name: str) -> _I64: ...
 def _triangulated(
     place: str, counts: ArrayLike, corners: ArrayLike, positions: ArrayLike
 ) -> tuple[_U32, list[str]]: ...

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from sscc import _progress
+from sscc._files import escaped
 from sscc._seal import unseal
 from sscc._sscc import (
     Batch,
@@ -198,15 +199,18 @@ def check(
     futures = [_submit(client, check_chunk, held, part, limit) for part in chunks]
     try:
         for count, _ in enumerate(as_completed(futures), 1):
-            if shown:
+            if shown and count < len(futures):
                 shown[0](count / len(futures))
         answers = client.gather(futures)
+        keys = (key_of_chunk(content, part, limit) for part in chunks)
+        joined = _joined([pickle.loads(unseal(of, sealed)) for of, sealed in zip(keys, answers)])
+        if shown:
+            shown[0](1.0)
+        return joined
     finally:
         _drop(client, [held, *futures])
         if shown:
             shown[1]()
-    keys = (key_of_chunk(content, part, limit) for part in chunks)
-    return _joined([pickle.loads(unseal(of, sealed)) for of, sealed in zip(keys, answers)])
 
 
 def _hold(client: Client, data: object) -> Future:
@@ -247,20 +251,20 @@ def _named(models: Any) -> dict[str, Any]:
         for given, model in models.items():
             name = str(given)
             if name in named:
-                raise ValueError(f"models: {given!r} is {name} again: each name may occur once")
+                raise ValueError(f"models: {given!r} is {escaped(name)} again: each name may occur once")
             named[name] = model
         return named
     for place, model in enumerate(models):
         name = os.fspath(model) if isinstance(model, (str, os.PathLike)) else f"models[{place}]"
         if name in named:
-            raise ValueError(f"models[{place}] is {name} again: each name may occur once")
+            raise ValueError(f"models[{place}] is {escaped(name)} again: each name may occur once")
         named[name] = model
     return named
 
 
 def _named_error(name: str, error: Exception) -> Exception:
     """Returns the same error with a message that begins with the name."""
-    text = str(error)
+    text, name = str(error), escaped(name)
     if text.startswith(name):
         return error
     made: Exception

@@ -28,9 +28,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sscc._affine import affine_modes
-from sscc._arrays import check_finite, numbers
+from sscc._arrays import check_finite
 from sscc._progress import Report
-from sscc._sscc import Model, _elastic, _pca, _polynomial
+from sscc._sscc import Model, _elastic, _numbers, _pca, _polynomial
 
 __all__ = ["linear", "nonlinear", "pca", "polynomial", "skinning", "skinning_q"]
 
@@ -131,8 +131,8 @@ def skinning(vertices: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
     Answers are exact for every q. But a usual motion of one bone is a large q, so certificates prove only small motions
     about their centre free (docs/python.md has measurements). For poses of an animation, ``Detector`` is faster.
     """
-    x = numbers(vertices, "vertices")
-    w = numbers(weights, "weights")
+    x = _numbers(vertices, "vertices")
+    w = _numbers(weights, "weights")
     if x.ndim != 2 or x.shape[1] != 3:
         raise ValueError(f"vertices has shape {list(x.shape)}: (V, 3) was expected")
     if w.ndim != 2 or w.shape[0] != len(x) or w.shape[1] == 0:
@@ -157,7 +157,7 @@ def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
 
     Leading axes are poses: (n, B, 4, 4) gives Q (n, 12 B). The last row of a 4 x 4 matrix must be (0, 0, 0, 1).
     """
-    m = numbers(matrices, "matrices")
+    m = _numbers(matrices, "matrices")
     if m.ndim < 3 or m.shape[-2:] not in ((3, 4), (4, 4)):
         raise ValueError(f"matrices has shape {list(m.shape)}: (B, 3, 4) or (B, 4, 4) was expected")
     check_finite(m, "matrices")
@@ -169,4 +169,4 @@ def skinning_q(matrices: ArrayLike) -> NDArray[np.float64]:
             "matrices that multiply row vectors must be transposed"
         )
     rows: NDArray[np.float64] = m[..., :3, :] - np.eye(3, 4)
-    return rows.reshape(*m.shape[:-3], -1)
+    return rows.reshape(*m.shape[:-3], 12 * m.shape[-3])

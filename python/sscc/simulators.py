@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sscc._affine import affine_modes
-from sscc._arrays import as_array, check_finite, numbers
-from sscc._sscc import Model
+from sscc._arrays import check_finite
+from sscc._files import check_regular, escaped
+from sscc._sscc import Model, _integers, _numbers
 from sscc._text import quoted
 
 __all__ = ["from_mujoco", "from_simplicits", "from_sofa"]
@@ -81,7 +82,7 @@ def from_simplicits(vertices: ArrayLike, faces: ArrayLike, weights: ArrayLike) -
     transforms T (H, 3, 4) are 0 at rest. q (12 H,) has their entries, row by row; in Kaolin it is
     ``scene.get_object_transforms(i)[:, :3].ravel()``, for weights that are not normalized.
     """
-    x, w = numbers(vertices, "vertices"), numbers(weights, "weights")
+    x, w = _numbers(vertices, "vertices"), _numbers(weights, "weights")
     _check_points(x)
     if w.ndim != 2 or w.shape[0] != len(x) or w.shape[1] == 0:
         raise ValueError(f"weights has shape {list(w.shape)}: ({len(x)}, H) was expected, a row for each vertex")
@@ -173,18 +174,18 @@ def _flex_faces(model: Any, flex: int, shown: str) -> NDArray[np.int32]:
     return faces
 
 
-def _boundary(faces: ArrayLike, vertices: int) -> ArrayLike:
+def _boundary(faces: ArrayLike, vertices: int) -> NDArray[np.int64]:
     """Returns triangles unchanged, and for tetrahedra the triangles that belong to only one tetrahedron."""
-    cells = as_array(faces)
-    if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
-        return faces
+    cells = _integers(faces, "faces")
+    if cells.ndim != 2 or cells.shape[1] != 4:
+        return cells
     outside = ((cells < 0) | (cells >= vertices)).any(axis=1)
     if outside.any():
         cell = int(np.argmax(outside))
         raise ValueError(f"faces[{cell}] is {cells[cell].tolist()}: vertices has {vertices}, counted from 0")
     triangles = cells[:, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]].reshape(-1, 3)
     _, firsts, counts = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True, return_counts=True)
-    boundary: NDArray[np.integer] = triangles[np.sort(firsts[counts == 1])]
+    boundary: NDArray[np.int64] = triangles[np.sort(firsts[counts == 1])]
     return boundary
 
 
@@ -193,30 +194,39 @@ def _check_points(x: _F64) -> None:
         raise ValueError(f"vertices has shape {list(x.shape)}: (V, 3) was expected")
 
 
+def _number(word: str) -> float:
+    """Returns the number that a word of a text file states."""
+    # Python also reads "1_0" as 10, and the digits of other scripts.
+    if "_" in word or not word.isascii():
+        raise ValueError(word)
+    return float(word)
+
+
 def _matrix(given: ArrayLike | str | PathLike[str], name: str, *, has_size: bool) -> _F64:
     """Returns the numbers of an array, or of a text file with a row in each line.
 
     In a file that ``has_size``, line 1 has the numbers of rows and columns.
     """
     if not isinstance(given, str | PathLike):
-        return numbers(given, name)
-    path = Path(given)
+        return _numbers(given, name)
+    check_regular(given)
+    place = escaped(given)
     rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(errors="replace").rstrip().splitlines(), 1):
+    for number, line in enumerate(Path(given).read_text(errors="replace").rstrip().splitlines(), 1):
         try:
-            row = [float(word) for word in line.split()]
+            row = [_number(word) for word in line.split()]
         except ValueError:
-            raise ValueError(f"{path}: line {number}: numbers were expected") from None
+            raise ValueError(f"{place}: line {number}: numbers were expected") from None
         if number > 1 + has_size and len(row) != len(rows[-1]):
-            raise ValueError(f"{path}: line {number} has {len(row)} numbers: {len(rows[-1])} were expected")
+            raise ValueError(f"{place}: line {number} has {len(row)} numbers: {len(rows[-1])} were expected")
         rows.append(row)
     size = rows.pop(0) if has_size and rows else None
     if not rows:
-        raise ValueError(f"{path}: the file has no rows of numbers")
+        raise ValueError(f"{place}: the file has no rows of numbers")
     matrix = np.array(rows)
     if size is None:
         return matrix
     if len(size) != 2 or size[0] != len(rows) or not 1 <= size[1] <= matrix.shape[1]:
-        raise ValueError(f"{path}: line 1: '{len(rows)} {matrix.shape[1]}' was expected, the size of the matrix")
+        raise ValueError(f"{place}: line 1: '{len(rows)} {matrix.shape[1]}' was expected, the size of the matrix")
     # SOFA ignores further columns, which its own files may have.
     return matrix[:, : int(size[1])]

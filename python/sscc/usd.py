@@ -10,6 +10,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import NDArray
 
+from sscc._files import check_regular, escaped
 from sscc._sscc import _triangulated
 from sscc._text import counted, quoted
 
@@ -53,11 +54,12 @@ def from_usd(path: str | PathLike[str], prim: str | None = None) -> UsdMesh:
         from pxr import Usd, UsdGeom, UsdSkel
     except ImportError as missing:
         raise ImportError("sscc.from_usd needs usd-core, which is not installed: pip install usd-core") from missing
-    place = fspath(path)
-    with open(place, "rb"):
+    check_regular(path)
+    with open(path, "rb"):
         pass
+    place = escaped(path)
     try:
-        stage = Usd.Stage.Open(place)
+        stage = Usd.Stage.Open(fspath(path))
     except Exception as error:
         causes = re.findall(r": '(.*)'", str(error)) or ["it is malformed"]
         raise ValueError(f"{place}: USD cannot read it: {causes[-1]}") from error

@@ -248,11 +248,19 @@ def test_results_of_another_build_are_refused(client: Any, certs: sscc.Certifica
         client.run(pretend, "0.0.0 elsewhere")
         library = within(lambda: sscc.batch.certify([model], client))
         assert "another build" in str(library.failures["models[0]"])
+        shares: list[float] = []
         with pytest.raises(ValueError, match="another build"):
-            within(lambda: sscc.batch.check(certs, samples(10, 6, 1.0), client))
+            within(lambda: sscc.batch.check(certs, samples(10, 6, 1.0), client, progress=shares.append))
+        # Only work without an error reports the share 1.
+        assert shares == []
     finally:
         client.run(pretend, here)
     assert within(lambda: sscc.batch.certify([model], client)).failures == {}
+
+
+def test_errors_name_a_model_once_and_on_one_line() -> None:
+    for text in ("a\\nb.obj: not found", "not found"):
+        assert str(sscc.batch._named_error("a\nb.obj", OSError(text))) == "a\\nb.obj: not found"
 
 
 def test_damaged_and_foreign_results_are_refused() -> None:
@@ -322,12 +330,17 @@ def test_the_client_refuses_bad_arguments(client: Any, certs: sscc.Certificates)
         in_shards([model], client)
 
 
-def test_only_the_client_reports_progress(client: Any, model: sscc.Model, capfd: Any) -> None:
+def test_only_the_client_reports_progress(
+    client: Any, model: sscc.Model, certs: sscc.Certificates, capfd: Any
+) -> None:
     shares: list[float] = []
     within(lambda: sscc.batch.certify_in_shards(model, client, progress=shares.append))
     assert shares == sorted(shares) and shares[0] == 0 and shares[-1] == 1
     shares.clear()
     within(lambda: sscc.batch.certify([model, model], client, progress=shares.append))
+    assert shares == [0.5, 1]
+    shares.clear()
+    within(lambda: sscc.batch.check(certs, samples(10, 6, 1.0), client, chunk=5, progress=shares.append))
     assert shares == [0.5, 1]
     assert "certifying" not in capfd.readouterr().err
 

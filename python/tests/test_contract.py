@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -184,6 +185,19 @@ def test_meshes_with_modes_are_loaded(tmp_path: Path) -> None:
     model = sscc.Model.load(tmp_path / "two.obj", tmp_path / "two.npy")
     assert np.array_equal(model.vertices, vertices) and np.array_equal(model.modes, modes)
     assert model.provenance == "mesh two.obj, modes two.npy"
+
+
+def test_principal_components_have_standard_deviations(tmp_path: Path) -> None:
+    vertices, faces, modes = two_triangles()
+    components = np.zeros((2, 18))
+    components[0, 3] = components[1, 7] = 1
+    path = tmp_path / "a.npz"
+    np.savez(path, mean=vertices, components=components, faces=faces, explained_variance=np.array([4.0, 0.25]))
+    model = sscc.Model.load(path)
+    for same in (model, pickle.loads(pickle.dumps(model))):
+        assert same.deviations.dtype == float and same.deviations.tolist() == [2, 0.5]
+        assert not same.deviations.flags.writeable
+    assert sscc.Model(vertices, faces, modes).deviations is None
 
 
 def test_result_arrays_are_read_only(certs: sscc.Certificates) -> None:

@@ -559,6 +559,16 @@ def test_invalid_options_are_refused() -> None:
         check_refused(call, error, message)
 
 
+def test_frames_without_vertices_take_no_memory() -> None:
+    shape = "frames has shape [1099511627776, 0, 3]: "
+    for detector, expected in [
+        (sscc.Detector(FACES), "at least one vertex was expected"),
+        (sscc.Detector(FACES, X), "(T, 6, 3) was expected"),
+    ]:
+        check_refused(lambda: detector.check_many(np.empty((2**40, 0, 3))), ValueError, shape + expected)
+    assert len(sscc.Detector(FACES).check_many(np.empty((0, 2**40, 3)))) == 0
+
+
 def test_bodies_share_a_volume() -> None:
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
     quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -201,6 +202,15 @@ def test_arrays_beyond_memory_raise_memory_error(certs: sscc.Certificates) -> No
         model(modes=np.broadcast_to(0.0, (40, 3, 10**12)))
     with pytest.raises(MemoryError):
         model(vertices=np.broadcast_to(0.0, (10**13, 3)))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names of files cannot have line breaks")
+def test_paths_in_messages_are_on_one_line(tmp_path: Path, certs: sscc.Certificates) -> None:
+    path = tmp_path / "a\nb.sscc.safetensors"
+    certs.save(path)
+    with pytest.raises(ValueError, match=r"a\\nb\.sscc\.safetensors: the certificates are of another model") as error:
+        sscc.Certificates.load(path, sscc.Model(*two_triangles()))
+    assert "\n" not in str(error.value)
 
 
 def test_errors_of_files_name_the_file(tmp_path: Path, certs: sscc.Certificates) -> None:

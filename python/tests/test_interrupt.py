@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import threading
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 import sscc
+from scenes import character
 from shapes import samples, torus
 
 #: Maximum time until work stops, in processor time of all cores, so that other work on the machine does not count.
@@ -108,6 +110,28 @@ def test_builders_of_modes_stop_on_ctrl_c() -> None:
     assert seconds_until_stopped(lambda: sscc.modes.linear((vertices, faces), 100, resolution=60)) < MAX_SECONDS
     with pytest.raises(ZeroDivisionError):
         sscc.modes.linear((vertices, faces), 8, resolution=20, progress=lambda share: 1 / 0)
+
+
+def test_positions_of_scenes_stop_on_ctrl_c(tmp_path: Path) -> None:
+    path = character(tmp_path)
+    content = json.loads(path.read_text())
+    content["nodes"] += [{"name": "light"}] * 5000
+    path.write_text(json.dumps(content))
+    scene, times = sscc.Scene.load(path), np.linspace(0, 1, 400_000)
+    assert seconds_until_stopped(lambda: scene.positions("shirt", "wave", times=times)) < MAX_SECONDS
+
+
+def test_reading_of_folders_ends_on_ctrl_c(tmp_path: Path) -> None:
+    """All files are the same one: a triangle with many copies, which is read slowly and takes little memory."""
+    first = tmp_path / "0.obj"
+    first.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 150_000)
+    for number in range(1, 500):
+        os.link(first, tmp_path / f"{number}.obj")
+    assert seconds_until_stopped(lambda: sscc.modes.pca(tmp_path)) < MAX_SECONDS
+    assert seconds_until_stopped(lambda: sscc.Model.load(first, tmp_path)) < MAX_SECONDS
+    # The work in the background ends at the next file.
+    for path in tmp_path.iterdir():
+        path.unlink()
 
 
 def test_queries_work_after_an_interruption(certs: sscc.Certificates) -> None:

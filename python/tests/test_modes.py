@@ -84,6 +84,7 @@ def test_principal_components_span_the_shapes() -> None:
         assert np.abs(matrix @ q - rest).max() < 1e-12
         assert np.allclose(q.std(axis=1, ddof=1), 1)
     assert model.provenance == "mean and principal components of 20 shapes in memory"
+    assert model.deviations is not None and model.deviations.tolist() == [1] * 4
     assert sscc.modes.pca(shapes, faces).rank <= 4
 
 
@@ -127,6 +128,8 @@ def test_errors_name_the_argument_or_the_file(tmp_path: Path, surface: Surface) 
         (lambda: sscc.modes.pca(vertices[None]), TypeError, "^faces is missing"),
         (lambda: sscc.modes.pca(np.zeros((0, 4, 3)), faces), ValueError, "^shapes is empty"),
         (lambda: sscc.modes.pca(np.full((3, 96, 3), np.nan), faces), ValueError, "^shapes: "),
+        (lambda: sscc.modes.pca(np.empty((2**40, 0, 3)), faces), ValueError, r"^shapes has shape \[1099511627776, 0, 3\]"),
+        (lambda: sscc.modes.pca(np.empty((2**40, 0)), faces), ValueError, r"^shapes has shape \[1099511627776, 0\]"),
         (lambda: sscc.modes.pca(tmp_path / "none"), FileNotFoundError, "not found$"),
         (lambda: sscc.modes.pca(tmp_path, faces), ValueError, "^faces: the meshes of a folder have their own"),
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -200,7 +201,8 @@ SIMPLICITS: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"weights": W.T}, ValueError, "weights has shape [2, 128]: (128, H) was expected, a row for each vertex"),
     ({"weights": W[:, :0]}, ValueError, "weights has shape [128, 0]: (128, H) was expected"),
     ({"weights": np.where(np.eye(128, 2), np.nan, W)}, ValueError, "weights[0, 0] is nan: every entry must be finite"),
-    ({"weights": "many"}, TypeError, "weights is a str of <U4: an array of numbers was expected"),
+    ({"weights": "many"}, TypeError, "weights is a str: an array of numbers was expected"),
+    ({"weights": [np.ma.masked_array(row) for row in W]}, TypeError, "weights is a masked array: fill it first"),
 ]
 
 
@@ -249,6 +251,8 @@ SOFA: list[tuple[dict[str, Any], type[Exception], str]] = [
     ({"faces": TETRAHEDRA - 1}, ValueError, "faces[0] is [-1, 3, 5, 6]: vertices has 8, counted from 0"),
     ({"faces": TETRAHEDRA[:, :2]}, ValueError, "faces has shape [6, 2]: (F, 3) was expected"),
     ({"faces": TETRAHEDRA / 2}, TypeError, "faces is an array of float64: integers were expected"),
+    ({"faces": np.ma.masked_array(TETRAHEDRA)}, TypeError, "faces is a masked array: fill it first"),
+    ({"modes": np.full((24, 1), 2**53 + 1)}, ValueError, "modes: the integer 9007199254740993 is beyond 2^53"),
     ({"modes": MODES[:-1]}, ValueError, "modes has shape [23, 4]: (24, r) was expected, 3 rows for each vertex"),
     ({"modes": MODES.ravel()}, ValueError, "modes has shape [96]: (24, r) was expected"),
     ({"modes": MODES * np.nan}, ValueError, "modes: mode 0 of vertex 0 (both counted from 0)"),
@@ -270,6 +274,7 @@ FILES = [
     ("3 2\n1 2\n3 4\n", "line 1: '2 2' was expected, the size of the matrix"),
     ("1 3\n1 2\n", "line 1: '1 2' was expected, the size of the matrix"),
     ("1 2 3\n1 2 3\n", "line 1: '1 3' was expected, the size of the matrix"),
+    ("1 2\n1_0 2\n", "line 2: numbers were expected"),
     ("\0\xff", "line 1: numbers were expected"),
 ]
 
@@ -281,6 +286,26 @@ def test_refused_files_of_modes(tmp_path: Path, content: str, message: str) -> N
     refused(ValueError, f"{path}: {message}", lambda: sscc.from_sofa(CUBE, TETRAHEDRA, path))
     with pytest.raises(FileNotFoundError):
         sscc.from_sofa(CUBE, TETRAHEDRA, tmp_path / "no.txt")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with names")
+def test_folders_pipes_and_devices_are_refused(tmp_path: Path) -> None:
+    pipe, device = tmp_path / "pipe\n.txt", Path("/dev/zero")
+    os.mkfifo(pipe)
+    for path, shown, found in [
+        (tmp_path, str(tmp_path), "a directory"),
+        (pipe, f"{tmp_path}/pipe\\n.txt", "a device or pipe"),
+        (device, "/dev/zero", "a device or pipe"),
+    ]:
+        refused(OSError, f"{shown}: is {found}, a file was expected", lambda: sscc.from_sofa(CUBE, TETRAHEDRA, path))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names of files cannot have line breaks")
+def test_paths_in_messages_are_on_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "a\nb.txt"
+    path.write_text("1 2\n1 x\n")
+    message = f"{tmp_path}/a\\nb.txt: line 2: numbers were expected"
+    refused(ValueError, message, lambda: sscc.from_sofa(CUBE, TETRAHEDRA, path))
 
 
 def refused(kind: type[Exception], message: str, call: Callable[[], Any]) -> None:

@@ -100,6 +100,11 @@ def test_weights_are_normalized() -> None:
     assert np.array_equal(sscc.modes.skinning([[0, 0, 0]], [[1, 0]]), sscc.modes.skinning([[0, 0, 0]], [[0.995, 0]]))
 
 
+def test_no_vertices_and_no_poses_have_modes_and_q_of_the_usual_shapes() -> None:
+    assert sscc.modes.skinning(np.empty((0, 3)), np.empty((0, 2))).shape == (0, 3, 24)
+    assert sscc.modes.skinning_q(np.empty((0, 2, 4, 4))).shape == (0, 24)
+
+
 W = np.full((4, 2), 0.5)
 V = np.arange(12.0).reshape(4, 3)
 
@@ -120,9 +125,13 @@ REFUSED: list[tuple[Any, Any, type[Exception], str]] = [
     (V, put(W, (2, 1), 0.6), ValueError, "weights[2] sums to 1.1: 1 was expected; to normalize, pass weights / "),
     (V, W * 0, ValueError, "weights[0] sums to 0: 1 was expected"),
     (V, [[0.5, 0.5], [1]], ValueError, "weights: an array of numbers was expected: "),
-    (V, W.astype(complex), TypeError, "weights is a ndarray of complex128: an array of numbers was expected"),
-    ("mesh.glb", W, TypeError, "vertices is a str of <U8: an array of numbers was expected"),
-    (np.ma.masked_array(V), W, TypeError, "vertices is a MaskedArray of float64"),
+    (V, W.astype(complex), TypeError, "weights is an array of complex128: float64, float32 or integers were expected"),
+    ("mesh.glb", W, TypeError, "vertices is a str: an array of numbers was expected"),
+    (np.ma.masked_array(V), W, TypeError, "vertices is a masked array: fill it first, as by vertices.filled(0)"),
+    ([*V[:3], np.ma.masked_array(V[3])], W, TypeError, "vertices is a masked array"),
+    (V.astype(np.longdouble), W, TypeError, "vertices is an array of float128"),
+    (put(V.astype(np.int64), (2, 1), 2**53 + 1), W, ValueError, "vertices: the integer 9007199254740993 is beyond 2^53"),
+    (V, [[2**64, 0]] * 4, ValueError, "weights has an integer of more than 64 bits"),
 ]
 
 
@@ -137,7 +146,7 @@ MATRICES: list[tuple[Any, type[Exception], str]] = [
     (np.zeros((2, 4, 3)), ValueError, "matrices has shape [2, 4, 3]: (B, 3, 4) or (B, 4, 4) was expected"),
     (put(np.zeros((2, 3, 4)), (1, 2, 0), np.inf), ValueError, "matrices[1, 2, 0] is inf: every entry must be finite"),
     (np.stack([np.eye(4), np.diag([1, 1, 1, 2.0])]), ValueError, "matrices[1] has the last row [0.0, 0.0, 0.0, 2.0]"),
-    (np.zeros((2, 3, 4)).astype(bool), TypeError, "matrices is a ndarray of bool: an array of numbers was expected"),
+    (np.zeros((2, 3, 4)).astype(bool), TypeError, "matrices is an array of bool: float64, float32 or integers were"),
 ]
 
 

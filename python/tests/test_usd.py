@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +64,8 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
         sscc.from_usd(write(tmp_path, "#usda 1.0\ndef Mesh {", "bad.usda"))
     with pytest.raises(ValueError, match=r"empty\.usda: the file has no prim of type Mesh"):
         sscc.from_usd(write(tmp_path, "#usda 1.0\n", "empty.usda"))
+    with pytest.raises(OSError, match="is a directory, a file was expected"):
+        sscc.from_usd(tmp_path)
     for bad, message in [
         (CLOTH.replace("[4, 3]", "[4, 4]"), "more corners than are given"),
         (CLOTH.replace("[4, 3]", "[5, 2]"), "needs at least 3 corners"),
@@ -72,6 +75,13 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
     ]:
         with pytest.raises(ValueError, match=message):
             sscc.from_usd(write(tmp_path, bad, "b.usda"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names of files cannot have line breaks")
+def test_paths_in_messages_are_on_one_line(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"a\\nb\.usda: ") as error:
+        sscc.from_usd(write(tmp_path, "#usda 1.0\n", "a\nb.usda"))
+    assert "\n" not in str(error.value)
 
 
 def test_concave_polygons_have_their_own_surface(tmp_path: Path) -> None:

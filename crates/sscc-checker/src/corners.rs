@@ -7,6 +7,10 @@ use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
+/// The largest number of values that a direction keeps: a list of triangles within two leaves has fewer, and a proof made to
+/// exhaust memory cannot make it keep more.
+const MAX_KEPT: usize = 1 << 14;
+
 /// A point of a triangle: its position at the centre and its modes (three rows).
 #[derive(Clone)]
 pub(crate) struct Corner {
@@ -66,6 +70,11 @@ impl Direction {
     /// Whether the direction separates two simplices below a radius, that is, all nine pairs of their corners. Results
     /// are kept, so all calls on one direction must have the same radius.
     pub(crate) fn separates(&mut self, model: &ScaledModel, [x, y]: Simplices, radius: &Radius) -> bool {
+        let rank = self.vertices.values().next().map_or(0, |(_, row)| row.len());
+        if self.vertices.len() * (rank + 1) > MAX_KEPT || self.apart.len() > MAX_KEPT {
+            self.vertices.clear();
+            self.apart.clear();
+        }
         for i in x.into_iter().chain(y) {
             self.vertices.entry(i).or_insert_with(|| Corner::of(model, i).along(&self.dir));
         }

@@ -12,7 +12,13 @@ use crate::refusal::{Refusal, input};
 /// # Errors
 /// When the system reports an error.
 pub fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
-    fs::read(path).or_else(|cause| input(format!("{}: {cause}", path.display())))
+    fs::read(path).or_else(|cause| input(format!("{}: {cause}", shown(path))))
+}
+
+/// Returns a path on one line, with control characters escaped.
+fn shown(path: &Path) -> String {
+    let path = path.to_string_lossy();
+    if path.chars().any(char::is_control) { path.escape_debug().to_string() } else { path.into_owned() }
 }
 
 impl Model {
@@ -23,7 +29,7 @@ impl Model {
     pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self, Refusal> {
         let bytes = read(mesh)?;
         let named = |path: &Path| {
-            let name = path.display().to_string();
+            let name = shown(path);
             move |refusal: Refusal| refusal.of(&name)
         };
         let Some(path) = modes else { return Self::from_container(&bytes).map_err(named(mesh)) };

@@ -1,7 +1,8 @@
 //! `sscc-checker [--sample] MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds for all entries (with
-//! `--sample`: for those that it has), 1 if not, 2 on other errors.
+//! `--sample`: for those that it has), 1 if not, 2 on other errors, also if the answer cannot be written.
 
 use std::env;
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread;
@@ -12,8 +13,11 @@ const USAGE: &str = "usage: sscc-checker [--sample] MODEL.model.safetensors CERT
        sscc-checker [--sample] MESH.obj MODES.npy CERTIFICATES PROOF
 
 --sample: a proof of some of the entries suffices.
-Exit codes: 0 confirmed, 1 not confirmed (also a damaged proof), 2 a file cannot be read or is of another model, or the
-model or the certificates are damaged";
+Exit codes: 0 confirmed, 1 not confirmed (also a damaged proof), 2 a file cannot be read or is of another model, the
+model or the certificates are damaged, or the answer cannot be written";
+
+/// The exit code of errors.
+const ERROR: u8 = 2;
 
 fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
     let (mesh, modes, certificates, proof): (&Path, Option<&Path>, _, _) = match paths {
@@ -26,22 +30,30 @@ fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
     if takes_sample { Ok(confirmed) } else { confirmed.of_all_entries() }
 }
 
-#[expect(clippy::print_stdout, clippy::print_stderr, reason = "this is the program")]
+/// Writes a line. Returns the exit code of the answer if that succeeds or the reader has closed the pipe, else that of
+/// errors.
+fn write(mut stream: impl Write, line: &str, code: u8) -> u8 {
+    match writeln!(stream, "{line}").and_then(|()| stream.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => ERROR,
+        _ => code,
+    }
+}
+
 fn main() -> ExitCode {
     let words: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
     if words == [Path::new("--help")] {
-        println!("{USAGE}");
-        return ExitCode::SUCCESS;
+        return write(io::stdout(), USAGE, 0).into();
     }
     let takes_sample = words.first().is_some_and(|word| word == Path::new("--sample"));
-    let refusal = match run(&words[usize::from(takes_sample)..], takes_sample) {
-        Ok(confirmed) => {
-            let Confirmed { entries, proven, left_out } = confirmed;
-            println!("confirmed: {proven} of {entries} entries; left out: {left_out}");
-            return ExitCode::SUCCESS;
+    let code = match run(&words[usize::from(takes_sample)..], takes_sample) {
+        Ok(Confirmed { entries, proven, left_out }) => {
+            let line = format!("confirmed: {proven} of {entries} entries; left out: {left_out}");
+            write(io::stdout(), &line, 0)
         }
-        Err(refusal) => refusal,
+        Err(refusal) => {
+            let code = if matches!(refusal, Refusal::Proof(_)) { 1 } else { ERROR };
+            write(io::stderr(), &format!("error: {refusal}"), code)
+        }
     };
-    eprintln!("error: {refusal}");
-    ExitCode::from(if matches!(refusal, Refusal::Proof(_)) { 1 } else { 2 })
+    code.into()
 }

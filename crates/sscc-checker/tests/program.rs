@@ -16,6 +16,7 @@ fn invalid_files_are_refused_with_one_line() {
     fs::write(folder.join("u.npy"), npy.concat()).unwrap();
     for (args, cause) in [
         (&["missing.obj", "u.npy", "a.obj", "a.obj"][..], "missing.obj: "),
+        (&["two\nlines.obj", "u.npy", "a.obj", "a.obj"], r"two\nlines.obj: "),
         (&["polygon.obj", "u.npy", "a.obj", "a.obj"], "polygon.obj: line 4: "),
         (&["a.obj", "a.obj", "a.obj", "a.obj"], "a.obj: not an .npy file"),
         (&["a.obj", "u.npy", "a.obj", "a.obj"], "certificates: not a file written by sscc"),
@@ -37,4 +38,26 @@ fn invalid_files_are_refused_with_one_line() {
     let help = Command::new(env!("CARGO_BIN_EXE_sscc-checker")).arg("--help").output().unwrap();
     assert_eq!((help.status.code(), help.stderr.len()), (Some(0), 0));
     assert!(help.stdout.starts_with(b"usage: sscc-checker "));
+}
+
+#[test]
+fn a_closed_pipe_leaves_the_exit_code() {
+    for (args, code) in [(&["--help"][..], 0), (&[], 2)] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sscc-checker"));
+        command.args(args).stdout(writer.try_clone().unwrap()).stderr(writer);
+        assert_eq!(command.status().unwrap().code(), Some(code), "{args:?}");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_answer_that_cannot_be_written_is_an_error() {
+    for args in [&["--help"][..], &[]] {
+        let full = || fs::File::options().write(true).open("/dev/full").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sscc-checker"));
+        command.args(args).stdout(full()).stderr(full());
+        assert_eq!(command.status().unwrap().code(), Some(2), "{args:?}");
+    }
 }

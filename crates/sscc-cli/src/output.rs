@@ -61,13 +61,16 @@ impl Output {
     }
 
     fn check_pipe(&mut self, written: io::Result<()>) -> anyhow::Result<()> {
-        match written {
-            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
-                self.is_closed = true;
-                Ok(())
-            }
-            written => written.context("standard output cannot be written"),
-        }
+        self.is_closed |= !is_written(written)?;
+        Ok(())
+    }
+}
+
+/// Returns whether text was written to standard output; false if the reader has closed the pipe. Other errors are returned.
+pub fn is_written(written: io::Result<()>) -> anyhow::Result<bool> {
+    match written {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+        written => written.map(|()| true).context("standard output cannot be written"),
     }
 }
 
@@ -76,12 +79,17 @@ pub fn write_stderr(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Writes a note about the result to standard error.
+/// Writes a note about the result to standard error, on one line.
 pub fn note(text: impl Display) {
-    write_stderr(format_args!("note: {text}"));
+    write_stderr(format_args!("note: {}", one_line(&text.to_string())));
 }
 
-/// Writes a warning about a file to standard error.
+/// Writes a warning about a file to standard error, on one line.
 pub fn warn(path: &Path, warning: impl Display) {
-    write_stderr(format_args!("warning: {}: {warning}", path.display()));
+    warn_line(format_args!("{}: {warning}", path.display()));
+}
+
+/// Writes a warning that names its file to standard error, on one line.
+pub fn warn_line(warning: impl Display) {
+    write_stderr(format_args!("warning: {}", one_line(&warning.to_string())));
 }

@@ -78,7 +78,7 @@ impl Watch for Stages {
     }
 
     fn warn(&self, warning: &str) {
-        self.write(|| output::write_stderr(format_args!("warning: {warning}")));
+        self.write(|| output::warn_line(warning));
     }
 
     fn name(&self, setting: Setting) -> String {

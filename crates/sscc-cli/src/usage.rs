@@ -1,19 +1,24 @@
 //! Reports invalid command lines, on one line like every other error.
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 
 use crate::outcome::EXIT_ERROR;
-use crate::output::{one_line, write_stderr};
+use crate::output::{is_written, one_line, write_stderr};
 
 /// Prints help and version as they are, and an invalid command line as one line. Returns the exit code.
 pub fn report(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // A closed pipe is no error.
-            let _ = error.print();
-            ExitCode::SUCCESS
+            match is_written(error.print().and_then(|()| io::stdout().flush())) {
+                Ok(_) => ExitCode::SUCCESS,
+                Err(error) => {
+                    write_stderr(one_line(&format!("error: {error:#}")));
+                    ExitCode::from(EXIT_ERROR)
+                }
+            }
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             let _ = error.print();

@@ -36,6 +36,15 @@ pub struct NamedGroups {
 /// The name of the group of triangles that have no group.
 pub(crate) const DEFAULT: &str = "default";
 
+/// Returns the name of a group for the name of a part. A name in the form of the numbers of unnamed parts (`#0`) gets one
+/// more `#`, so that the two differ.
+pub(crate) fn own_name(name: &str) -> String {
+    let number = name.trim_start_matches('#');
+    let is_number = number.len() < name.len() && !number.is_empty();
+    let looks_unnamed = is_number && number.bytes().all(|byte| byte.is_ascii_digit());
+    if looks_unnamed { format!("#{name}") } else { name.to_owned() }
+}
+
 impl NamedGroups {
     /// Returns the group of this name.
     ///
@@ -147,6 +156,15 @@ mod tests {
         assert_eq!(found.pair("a,b,a,b"), Ok((1, 1)));
         assert!(found.pair("a,x").unwrap_err().contains("in a group 'x'"));
         assert!(found.pair("a").unwrap_err().contains("A,B"));
+    }
+
+    #[test]
+    fn names_that_look_like_numbers_differ_from_numbers() {
+        for (name, expected) in
+            [("#0", "##0"), ("##12", "###12"), ("0", "0"), ("#", "#"), ("#x", "#x"), ("#1a", "#1a"), ("", "")]
+        {
+            assert_eq!(own_name(name), expected, "{name}");
+        }
     }
 
     #[test]

@@ -107,7 +107,7 @@ pub fn stiffness_eigenvalues(stiffness: &Stiffness) -> Result<Vec<f64>, ModesErr
 
 /// Returns ascending eigenvalues and orthonormal eigenvectors (the columns of a row-major matrix) of a symmetric
 /// matrix, the largest component of each positive.
-pub(crate) fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
+fn eigen(rank: usize, matrix: &[f64]) -> Result<(Vec<f64>, Vec<f64>), ModesError> {
     let matrix = Mat::from_fn(rank, rank, |i, j| matrix[i * rank + j]);
     let (values, mut vectors) = symmetric_eigen(matrix.as_ref())?;
     fix_signs(&mut vectors);

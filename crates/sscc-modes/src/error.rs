@@ -239,6 +239,19 @@ pub enum ModesError {
         /// Number of frames.
         found: usize,
     },
+    /// An animation has too many frames of too many coordinates.
+    #[error(
+        "{frames} frames of {coordinates} coordinates (three for each vertex of a face) are too many for principal components: use at most {max} frames, or a mesh of at most {} vertices",
+        .max / 3
+    )]
+    TooManyFrames {
+        /// Number of frames.
+        frames: usize,
+        /// Number of coordinates of each frame, without unused vertices.
+        coordinates: usize,
+        /// Maximum of one of the two numbers; the other may then be larger.
+        max: usize,
+    },
     /// A frame belongs to another mesh.
     #[error(
         "frame {frame} (counted from 0) has {found} vertices, the mesh {expected}: all frames must be of the same mesh"

@@ -7,7 +7,9 @@ use sscc_io::Setting;
 use sscc_tasks::{Cache, Watch, available_threads, make_folder, models_folder};
 
 use crate::error::{At, Result, SimError};
-use crate::run::{FinishedRun, PreparedScene, RunOutcome, Summary, announcement, run, traditional_costs};
+use crate::run::{
+    FinishedRun, PreparedScene, RunOutcome, Summary, announcement, check_log_size, run, traditional_costs,
+};
 use crate::scenes::{Scene, read_scene};
 
 /// Request for a simulation.
@@ -64,7 +66,8 @@ fn finish(
 ) -> Result<FinishedRun> {
     let in_scene = || scene.name.clone();
     let prepared = PreparedScene::get(&scene, models, cache, watch).at(in_scene)?;
-    let lines = announcement(&scene, &prepared).at(in_scene)?;
+    check_log_size(&scene, &prepared, steps).at(in_scene)?;
+    let lines = announcement(&scene, &prepared, watch).at(in_scene)?;
     let RunOutcome { history, processor_seconds, failure } =
         run(&scene, &prepared, &folder, steps, again, &lines, watch).at(in_scene)?;
     if history.is_empty() {

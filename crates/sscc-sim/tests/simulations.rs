@@ -235,6 +235,59 @@ fn a_damaged_model_is_made_anew_with_a_note() {
     assert_eq!(fs::read(&model).unwrap(), bytes);
 }
 
+/// Returns a scene without sound of this number of rings in a row in the ground, each with another shake.
+fn shaken_rings(name: &str, count: usize, steps_per_second: &str, duration: &str) -> Request {
+    let text = SCENE.replace("8000", steps_per_second).replace("0.05", duration);
+    let mut text = text.split_once("[[bodies]]").unwrap().0.to_owned();
+    for n in 1..=count {
+        let _ = writeln!(text, "[[bodies]]\nmodel = \"ring\"\nposition = [{}, 0, 0]\nshake = [{n}]", 3 * n);
+    }
+    let path = SHARED.path().join(name);
+    fs::write(&path, text).unwrap();
+    Request { scene: path, ..request(&SHARED.path().join(format!("{name} out"))) }
+}
+
+/// Their vibrations would take 200 times 10^9 steps.
+#[test]
+fn too_many_steps_are_refused_before_the_shakes_are_described() {
+    let error = simulate(&shaken_rings("long.toml", 200, "1e9", "1"), &()).err().unwrap().to_string();
+    assert_eq!(error, "long: 1000000000 steps need 19288 GB: choose fewer with steps");
+}
+
+/// Cancels by a token.
+struct CancelledBy(CancelToken);
+
+impl Progress for CancelledBy {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn cancel_token(&self) -> Option<&CancelToken> {
+        Some(&self.0)
+    }
+}
+
+impl Watch for CancelledBy {
+    fn begin(&self, _stage: Stage) {}
+
+    fn note(&self, _note: &str) {}
+}
+
+#[test]
+fn the_description_of_each_shake_can_be_cancelled() {
+    // The rings are in the ground, so that the simulation ends after the description.
+    let run = |count: usize, limit: usize| {
+        let request = shaken_rings(&format!("rings{count}-{limit}.toml"), count, "8000", "0.05");
+        let checks = Arc::new(AtomicUsize::new(0));
+        let seen = Arc::clone(&checks);
+        let token = CancelToken::when(move || seen.fetch_add(1, Ordering::Relaxed) >= limit);
+        let error = simulate(&request, &CancelledBy(token)).err().unwrap();
+        (error.is_cancelled(), checks.load(Ordering::Relaxed))
+    };
+    let (is_cancelled, checks) = run(1, usize::MAX);
+    assert!(!is_cancelled);
+    assert_eq!(run(20, usize::MAX), (false, checks + 19));
+    assert_eq!(run(20, checks + 18), (true, checks + 19));
+}
+
 #[test]
 fn refusals_name_the_file_and_the_way_out() {
     let folder = tempfile::tempdir().unwrap();

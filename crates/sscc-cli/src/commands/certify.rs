@@ -82,7 +82,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
     let seconds = start.elapsed().as_secs_f64();
     let bytes = certificates_to_bytes(&certificates).context("certificates")?;
     let draw = |path: &PathBuf| {
-        let drawn = Picture::draw(model, &certificates, &loaded.mode_names);
+        let drawn = Picture::draw_until(model, &certificates, &loaded.mode_names, interrupt::token());
+        interrupt::check()?;
         drawn.with_context(|| path.display().to_string())
     };
     let picture = args.picture.as_ref().map(draw).transpose()?;

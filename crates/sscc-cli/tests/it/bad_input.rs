@@ -299,6 +299,19 @@ fn forged_certificates_are_refused() {
 }
 
 #[test]
+#[cfg(unix)]
+fn warnings_are_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    write(folder, "two\nlines.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
+    for command in ["check", "info"] {
+        let run = sscc(folder, &[command, "two\nlines.obj"]);
+        assert!(run.stderr.starts_with(r"warning: two\nlines.obj: 1 of the 1 faces"), "{run:?}");
+        assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
+    }
+}
+
+#[test]
 fn outputs_that_cannot_be_written_are_refused() {
     let directory = strips();
     let folder = directory.path();

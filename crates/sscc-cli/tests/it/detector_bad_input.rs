@@ -139,6 +139,7 @@ fn files_of_curves_that_cannot_be_written_are_refused() {
         (&["--against=lower.obj", "--curves=lower.obj"], "lower.obj: the output is an input"),
         (&["lower.obj", "--curves=lower.obj"], "lower.obj: the output is an input"),
         (&["--pose=c.obj", "--curves=c.obj"], "--pose and --curves name the same file"),
+        (&["--pose=./c.obj", "--curves=frames/../c.obj"], "--pose and --curves name the same file"),
         (&["--frames=frames", "--continuous", "--curves=c.obj"], "cannot be used with"),
         (&["--frames=frames", "--continuous", "--depths"], "cannot be used with"),
         (&["--first", "--curves=c.obj"], "cannot be used with"),

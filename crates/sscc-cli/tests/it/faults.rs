@@ -301,6 +301,15 @@ fn a_system_that_refuses_threads_is_an_error_of_one_line() {
 }
 
 #[test]
+fn help_that_cannot_be_written_is_an_error() {
+    for args in [&["--help"][..], &["--version"], &["check", "--help"]] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let run = Run::of(command(Path::new("."), args).stdout(full));
+        assert!(run.refusal().starts_with("error: standard output cannot be written: "), "{run:?}");
+    }
+}
+
+#[test]
 fn commands_whose_reader_closes_the_pipe_do_not_panic() {
     let directory = folder();
     let folder = directory.path();

@@ -28,6 +28,8 @@ const MAX_TRIANGLE_CELLS: f64 = 8.0;
 /// Grid of signed distances from a surface.
 #[derive(Clone, Debug)]
 pub struct DepthField {
+    /// Position of the first grid point. All else is relative to it: far from 0, the spacing may be less than the
+    /// rounding of a position.
     origin: DVec3,
     spacing: f64,
     /// Number of grid points along each axis.
@@ -99,9 +101,14 @@ impl DepthField {
         (k * self.size[1] + j) * self.size[0] + i
     }
 
-    /// Returns the position of a grid point.
+    /// Returns the position of a grid point, relative to the origin.
     fn point(&self, [i, j, k]: [usize; 3]) -> DVec3 {
-        self.origin + DVec3::new(i as f64, j as f64, k as f64) * self.spacing
+        DVec3::new(i as f64, j as f64, k as f64) * self.spacing
+    }
+
+    /// Returns the rest positions of the corners of a triangle, relative to the origin.
+    fn corners(&self, mesh: &TriMesh, triangle: u32) -> [DVec3; 3] {
+        mesh.faces()[triangle as usize].map(|v| mesh.rest_positions()[v as usize] - self.origin)
     }
 
     /// Computes the distances of all grid points: first in the band, then inwards.
@@ -119,17 +126,19 @@ impl DepthField {
         let mut nearest = vec![(f32::INFINITY, u32::MAX); self.size.iter().product()];
         let mut parts = Vec::new();
         for t in 0..mesh.faces().len() as u32 {
-            let triangle = corners(mesh, t);
-            parts.push(triangle);
+            let triangle = self.corners(mesh, t);
+            // In cells, the halves of a part always differ from it: coordinates are at most about 200, so that no
+            // midpoint rounds to an end and no length underflows.
+            parts.push(triangle.map(|p| p / self.spacing));
             while let Some([a, b, c]) = parts.pop() {
                 let [low, high] = [a.min(b).min(c), a.max(b).max(c)];
                 // The AABB of a large triangle is mostly empty; those of its halves are smaller.
-                if (high - low).max_element() > MAX_TRIANGLE_CELLS * self.spacing {
+                if (high - low).max_element() > MAX_TRIANGLE_CELLS {
                     parts.extend(halves([a, b, c]));
                     continue;
                 }
-                let from = ((low - self.origin) / self.spacing - BAND).ceil().max(DVec3::ZERO);
-                let to = ((high - self.origin) / self.spacing + BAND).floor();
+                let from = (low - BAND).ceil().max(DVec3::ZERO);
+                let to = (high + BAND).floor();
                 let from = from.to_array().map(|x| x as usize);
                 let to: [usize; 3] = std::array::from_fn(|n| (to[n] as usize).min(self.size[n] - 1) + 1);
                 grid(from, to).for_each(|at| {
@@ -161,7 +170,7 @@ impl DepthField {
             if t == u32::MAX {
                 continue;
             }
-            let (y, feature) = nearest_point_triangle(x, corners(mesh, t));
+            let (y, feature) = nearest_point_triangle(x, self.corners(mesh, t));
             let is_outside = (x - y).dot(normals.of(t, feature)) >= 0.0;
             self.distances[index] = (x.distance(y) * if is_outside { 1.0 } else { -1.0 }) as f32;
             if self.distances[index] < 0.0 {
@@ -195,7 +204,7 @@ impl DepthField {
                     continue;
                 }
                 // A point that is reached from several neighbours keeps the minimum distance.
-                let distance = nearest_point_triangle(x, corners(mesh, t)).0.distance(x) as f32;
+                let distance = nearest_point_triangle(x, self.corners(mesh, t)).0.distance(x) as f32;
                 if distance < self.distances[index].abs() {
                     self.distances[index] = -distance;
                     nearest[index].1 = t;
@@ -209,11 +218,6 @@ impl DepthField {
 fn grid(from: [usize; 3], to: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     let plane = move |k| (from[1]..to[1]).flat_map(move |j| (from[0]..to[0]).map(move |i| [i, j, k]));
     (from[2]..to[2]).flat_map(plane)
-}
-
-/// Returns the rest positions of the corners of a triangle.
-fn corners(mesh: &TriMesh, triangle: u32) -> [DVec3; 3] {
-    mesh.faces()[triangle as usize].map(|v| mesh.rest_positions()[v as usize])
 }
 
 /// Splits a triangle at the midpoint of its longest edge.
@@ -235,13 +239,18 @@ mod tests {
     use super::*;
     use sscc_modes::shapes;
 
-    #[test]
-    fn distances_of_a_box_are_exact_up_to_the_spacing() {
+    /// Returns a box by its corner of the smallest coordinates and its sides.
+    fn cuboid(low: DVec3, sides: DVec3) -> TriMesh {
         let corner =
-            |n: u32| DVec3::new(f64::from(n & 1), f64::from(n >> 1 & 1) * 2.0, f64::from(n >> 2) * 3.0) + 5.0;
+            |n: u32| low + sides * DVec3::new(f64::from(n & 1), f64::from(n >> 1 & 1), f64::from(n >> 2));
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let faces = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
-        let field = DepthField::new(&TriMesh::new((0..8).map(corner).collect(), faces).unwrap());
+        TriMesh::new((0..8).map(corner).collect(), faces).unwrap()
+    }
+
+    #[test]
+    fn distances_of_a_box_are_exact_up_to_the_spacing() {
+        let field = DepthField::new(&cuboid(DVec3::splat(5.0), DVec3::new(1.0, 2.0, 3.0)));
         let mut seen = [0; 2];
         for n in 0..4000 {
             let cell =
@@ -268,6 +277,28 @@ mod tests {
             }
         }
         assert!(seen[0] > 30 && seen[1] > 500, "{seen:?}");
+    }
+
+    #[test]
+    fn a_box_of_a_few_roundings_of_its_position_has_its_depths() {
+        for offset in [1e9_f64, 1e16] {
+            let unit = offset.next_up() - offset;
+            let (low, sides) = (DVec3::splat(offset), unit * DVec3::new(16.0, 2.0, 2.0));
+            let field = DepthField::new(&cuboid(low, sides));
+            for (inside, expected) in [(1.0, -unit), (2.0, 0.0)] {
+                let x = low + unit * DVec3::new(8.0, 1.0, inside);
+                let found = field.at(x).unwrap().distance;
+                assert!((found - expected).abs() < field.spacing, "{offset}: {found}, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn shapes_whose_squared_sides_underflow_are_computed() {
+        for side in [5e-324, 1e-300, 1e-170] {
+            let field = DepthField::new(&cuboid(DVec3::ZERO, DVec3::new(16.0 * side, side, side)));
+            assert!(field.distances.iter().all(|x| *x == 0.0 || x.is_infinite()), "{side}");
+        }
     }
 
     #[test]

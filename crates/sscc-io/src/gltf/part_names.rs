@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::json::{or_default, parse_parts};
 use crate::FormatError;
-use crate::named_groups::{DEFAULT, GroupsBy};
+use crate::named_groups::{DEFAULT, GroupsBy, own_name};
 
 /// Names of nodes and materials, and the material of each primitive.
 #[derive(Deserialize)]
@@ -67,7 +67,7 @@ impl PartNames {
     /// because materials do not change the shape: it is named by its number.
     pub fn group(&self, by: GroupsBy, node: Option<usize>, mesh: usize, primitive: usize) -> String {
         let numbered = |name: Option<&Box<str>>, number: usize| {
-            name.map_or_else(|| format!("#{number}"), |name| own(name))
+            name.map_or_else(|| format!("#{number}"), |name| own_name(name))
         };
         let shape = self.meshes.get(mesh);
         let mesh_name = || numbered(shape.and_then(|shape| shape.name.as_ref()), mesh);
@@ -89,15 +89,6 @@ impl PartNames {
             }
         }
     }
-}
-
-/// Returns the name of a group for the name of a part. A name in the form of the numbers of unnamed parts (`#0`) gets one
-/// more `#`, so that the two differ.
-fn own(name: &str) -> String {
-    let number = name.trim_start_matches('#');
-    let is_number = number.len() < name.len() && !number.is_empty();
-    let looks_unnamed = is_number && number.bytes().all(|byte| byte.is_ascii_digit());
-    if looks_unnamed { format!("#{name}") } else { name.to_owned() }
 }
 
 impl<'de> Deserialize<'de> for NodeNames {
@@ -136,12 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_that_look_like_numbers_differ_from_numbers() {
-        for (name, expected) in
-            [("#0", "##0"), ("##12", "###12"), ("0", "0"), ("#", "#"), ("#x", "#x"), ("#1a", "#1a"), ("", "")]
-        {
-            assert_eq!(own(name), expected, "{name}");
-        }
+    fn names_of_parts_differ_from_their_numbers() {
         let names = PartNames::parse(
             br##"{"nodes": [{"mesh": 0}, {"mesh": 1, "name": "#0"}], "materials": [{"name": "#1"}],
             "meshes": [{"primitives": [{"material": 0}]}, {"name": "a", "primitives": [{}]}]}"##,

@@ -9,7 +9,7 @@ use glam::DVec3;
 use sscc::TriMesh;
 
 use crate::error::quoted;
-use crate::named_groups::{DEFAULT, GroupCollector, GroupsBy, NamedGroups};
+use crate::named_groups::{DEFAULT, GroupCollector, GroupsBy, NamedGroups, own_name};
 use crate::polygons::{Polygons, Soup};
 use crate::text::{Lines, decoded, number, split_word, without_comment};
 use crate::{FormatError, Place};
@@ -19,7 +19,7 @@ use crate::{FormatError, Place};
 ///
 /// A weight or colour after `v x y z` is skipped. Corners in `f` lines have the form `a`, `a/b`, `a//c` or `a/b/c`, where
 /// `a` counts from 1, or backwards from -1, the last vertex so far. A `v` or `f` line that ends in a backslash continues
-/// on the next line.
+/// on the next line. `#` begins a comment.
 ///
 /// # Errors
 /// When a line is malformed, an index is 0 or names no vertex, a face has fewer than 3 corners, there are no vertices or
@@ -30,7 +30,8 @@ pub fn parse(bytes: &[u8]) -> Result<TriMesh, FormatError> {
 }
 
 /// Parses the groups of an OBJ file's triangles. Names are those of the lines, without spaces at their ends; bytes that
-/// are not UTF-8 are replaced.
+/// are not UTF-8 are replaced. A `#` after the keyword belongs to the name (`Material #1`). A name in the form of the
+/// numbers of unnamed parts of glTF files (`#0`) gets one more `#`.
 ///
 /// # Errors
 /// As [`parse`]; when there are more than 65,536 groups.
@@ -45,7 +46,7 @@ pub fn groups(bytes: &[u8], by: GroupsBy) -> Result<NamedGroups, FormatError> {
         if found == keyword {
             collector.extend_to(triangles, &name)?;
             let next = String::from_utf8_lossy(arguments.trim_ascii());
-            name = if next.is_empty() { DEFAULT.to_owned() } else { next.into_owned() };
+            name = if next.is_empty() { DEFAULT.to_owned() } else { own_name(&next) };
         }
         Ok(())
     })?;
@@ -58,8 +59,8 @@ pub(super) fn soup(bytes: &[u8]) -> Result<Soup, FormatError> {
     read(bytes, |_, _, _| Ok(()))
 }
 
-/// Reads `v` and `f` lines. `on_other` receives the keyword of each other line, the text after it, and the number of
-/// triangles before it.
+/// Reads `v` and `f` lines. `on_other` receives the keyword of each other line, the text after it with its comment, and
+/// the number of triangles before it.
 fn read(
     bytes: &[u8],
     mut on_other: impl FnMut(&[u8], &[u8], usize) -> Result<(), FormatError>,
@@ -68,9 +69,9 @@ fn read(
     let mut polygons = Polygons::new(1);
     let mut corners = Vec::new();
     let mut lines = Lines::new(bytes)?;
-    while let Some((line, text)) = lines.next() {
-        let text = without_comment(text).trim_ascii_end();
-        let (keyword, other) = split_word(text.strip_suffix(b"\\").unwrap_or(text));
+    while let Some((line, whole)) = lines.next() {
+        let text = without_comment(whole).trim_ascii_end();
+        let (keyword, _) = split_word(text.strip_suffix(b"\\").unwrap_or(text));
         match keyword {
             b"v" => {
                 let statement = joined(text, &mut lines);
@@ -92,7 +93,11 @@ fn read(
                 let cause = "other files and commands are not read: put their lines into this file";
                 return Err(of_keyword(keyword, cause, line));
             }
-            _ => on_other(keyword, other, polygons.triangle_count())?,
+            _ => {
+                let whole = whole.trim_ascii();
+                let other = &whole.strip_suffix(b"\\").unwrap_or(whole)[keyword.len()..];
+                on_other(keyword, other, polygons.triangle_count())?;
+            }
         }
     }
     polygons.finish(positions)
@@ -248,7 +253,7 @@ mod tests {
 
     #[test]
     fn groups_follow_their_lines() {
-        let lines = b"f 1 2 3\ng a # first\nusemtl red\nf 1 2 3 4\ng b\ng  b c \no x\nf 1 2 3\ng a\nf 2 3 4\ng\nusemtl \xff\n\
+        let lines = b"f 1 2 3\ng a\nusemtl red\nf 1 2 3 4\ng b\ng  b c \no x\nf 1 2 3\ng a\nf 2 3 4\ng\nusemtl \xff\n\
             f 1 3 4\no unused";
         let text = [SQUARE.as_bytes(), lines].concat();
         let of = |by| {
@@ -267,6 +272,16 @@ mod tests {
             let triangles = parse(cut).map(|mesh| mesh.faces().len());
             assert_eq!(groups(cut, by).map(|found| found.of_triangle.len()), triangles);
         }
+    }
+
+    /// 3ds Max numbers materials so: cut names would be one group.
+    #[test]
+    fn names_may_have_number_signs() {
+        let lines = "#g no\nusemtl Material #1\nf 1 2 3\nusemtl Material #2 \\\nf 1 3 4 # usemtl no\n \
+            # usemtl no\nf 2 3 4\nusemtl #3\nf 1 2 4\nusemtl\nf 1 2 3\n";
+        let found = groups(format!("{SQUARE}{lines}").as_bytes(), GroupsBy::Material).unwrap();
+        assert_eq!(found.names, ["Material #1", "Material #2", "##3", "default"]);
+        assert_eq!(found.of_triangle, [0, 1, 1, 2, 3]);
     }
 
     #[test]

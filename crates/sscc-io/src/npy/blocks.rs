@@ -1,13 +1,13 @@
 //! Reads an array of numbers block by block, so that files larger than memory can be read.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::array::{check_size, floats, parse};
 use super::header::{Header, Item, NumberKind};
-use crate::file::{check_content, open_regular, read_error, read_whole};
+use crate::file::{check_content, open_regular, read_error};
 use crate::{FormatError, IoError};
 
 /// Headers are read in full up to this size in bytes; NumPy writes at most a few hundred bytes for arrays of numbers.
@@ -37,10 +37,15 @@ impl Blocks {
     /// When the file cannot be read or is a Git LFS pointer, its header is malformed, longer than 1 MiB or has another
     /// type, or its length differs from the header; when it is in Fortran order and larger than 1 GiB.
     pub fn open(path: &Path) -> Result<Self, IoError> {
-        let (mut file, size) = open_regular(path)?;
+        let (file, size) = open_regular(path)?;
+        Self::of_file(path, file, size)
+    }
+
+    /// As [`Blocks::open`], for an open file of this size. The path may name another file meanwhile.
+    fn of_file(path: &Path, mut file: File, size: u64) -> Result<Self, IoError> {
+        let refused = |cause| read_error(path, cause);
         let mut start = Vec::new();
-        let read = (&mut file).take(MAX_HEADER.min(size)).read_to_end(&mut start);
-        read.map_err(|cause| read_error(path, cause))?;
+        (&mut file).take(MAX_HEADER.min(size)).read_to_end(&mut start).map_err(refused)?;
         check_content(&start).map_err(|error| error.of(path))?;
         let header = Header::parse(&start, NumberKind::Floats).map_err(|error| error.of(path))?;
         let Header { item, fortran, shape, body } = header;
@@ -55,8 +60,14 @@ impl Blocks {
             return Err(FormatError::whole(cause).of(path));
         }
         let body = if fortran {
-            let array = parse(&read_whole(path)?).map_err(|error| error.of(path))?;
-            Body::Memory(array.to_c_order())
+            // The rest of the same file follows the same header, so the array has the shape that was checked.
+            let mut whole = start;
+            let rest = size - whole.len() as u64;
+            if whole.try_reserve_exact(rest as usize).is_err() {
+                return Err(refused(io::Error::from(ErrorKind::OutOfMemory)));
+            }
+            file.take(rest).read_to_end(&mut whole).map_err(refused)?;
+            Body::Memory(parse(&whole).map_err(|error| error.of(path))?.to_c_order())
         } else {
             Body::File { file: Mutex::new(file), start: body as u64, item }
         };
@@ -97,6 +108,36 @@ impl Blocks {
 mod tests {
     use super::*;
     use crate::npy::write::to_bytes;
+
+    /// Returns a file of f64 in Fortran order: 0, 1, 2, ...
+    fn fortran(shape: &str, count: usize) -> Vec<u8> {
+        let text = format!("{{'descr': '<f8', 'fortran_order': True, 'shape': {shape}, }}\n");
+        let numbers = (0..count).flat_map(|i| (i as f64).to_le_bytes());
+        let start = [b"\x93NUMPY\x01\x00", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat();
+        start.into_iter().chain(numbers).collect()
+    }
+
+    /// A program may replace or shorten a file of frames while it is read.
+    #[test]
+    fn a_file_in_fortran_order_is_opened_once() {
+        let directory = tempfile::tempdir().unwrap();
+        let [path, other] = ["x.npy", "y.npy"].map(|name| directory.path().join(name));
+        // 1.5 MiB: more than is read with the header.
+        std::fs::write(&path, fortran("(65536, 1, 3)", 3 << 16)).unwrap();
+        let (file, size) = open_regular(&path).unwrap();
+        std::fs::write(&other, fortran("(1, 1, 3)", 3)).unwrap();
+        std::fs::rename(&other, &path).unwrap();
+        let blocks = Blocks::of_file(&path, file, size).unwrap();
+        assert_eq!(blocks.shape(), [65536, 1, 3]);
+        let last = [65535.0, 131_071.0, 196_607.0];
+        assert_eq!(blocks.read(3 * 65535, 3).unwrap(), last);
+        assert_eq!(Blocks::open(&path).unwrap().shape(), [1, 1, 3]);
+
+        let (file, size) = open_regular(&path).unwrap();
+        std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(size - 8).unwrap();
+        let message = Blocks::of_file(&path, file, size).err().unwrap().to_string();
+        assert!(message.ends_with("but 16 bytes follow: is the file cut off?"), "{message}");
+    }
 
     #[test]
     fn blocks_are_parts_of_the_whole() {

@@ -11,7 +11,7 @@ use super::overlap::{Block, SLACK};
 use super::pieces::{SampleSet, for_each_piece};
 use super::probe::Probe;
 use super::surface::Surface;
-use crate::cancel::check_cancelled;
+use crate::cancel::TestCounter;
 use crate::interpolation::OCTANTS;
 
 /// Minimum filled share of an octant. It gives every cube mass and stiffness, and bounds the ratio of the stiffness of
@@ -61,10 +61,9 @@ impl Copies {
             });
         }
         let mut weights = vec![[1.0 / 3.0; 3]; cells.len()];
+        let mut tests = TestCounter::new(progress);
         for cell in (0..cells.len()).filter(|c| !cells.triangles(*c).is_empty()) {
-            if cell.is_multiple_of(1024) {
-                check_cancelled(progress)?;
-            }
+            tests.add(cells.triangles(cell).len())?;
             join_patches(grid, cells, surface, points, cell, &mut sets);
             let (low, block) = (grid.cell(cells.keys[cell]), block_of(grid, cells, cell));
             let corners_of = |t: &u32| surface.faces[*t as usize].map(|v| points[v as usize]);
@@ -80,7 +79,7 @@ impl Copies {
                 samples: samples[cell],
                 pierced: &pierced,
             };
-            probe.join(&mut sets);
+            probe.join(&mut sets, &mut tests)?;
         }
         drop(pierced);
 

@@ -15,6 +15,11 @@ const MAX_CELLS: f64 = 5e6;
 /// Maximum number of cells that the surface touches. Each has 64 samples and up to 48 pieces of lines.
 const MAX_SURFACE_CELLS: f64 = 1e6;
 
+/// Maximum number of incidences of triangles and cells, of which each takes 16 bytes: 1 GiB. Surfaces of more than 2^24
+/// triangles may have four for each, but at most 2^28: at the worst place of the grid they are eight times as many,
+/// which are then numbered below 2^32.
+const MAX_INCIDENCES: f64 = (1 << 26) as f64;
+
 /// Excess of the grid's length over the longest side of the surface, in cells.
 const MARGIN: f64 = 0.3;
 
@@ -36,15 +41,20 @@ pub(super) struct Grid {
 
 impl Grid {
     /// Creates a grid with this number of cells along the longest side of the surface; None gives about
-    /// [`DEFAULT_CELLS`] cells that the solid touches.
+    /// [`DEFAULT_CELLS`] cells that the solid touches, or fewer if triangles meet too many of them.
     ///
     /// # Errors
     /// When the number is 0 or too large.
     pub fn around(surface: &Surface, cells: Option<usize>) -> Result<Self, ModesError> {
         let longest = surface.extent.max_element();
-        let limit = finest(|n| touched(surface, n) <= MAX_CELLS && touched_by_surface(surface, n));
+        let max_incidences = (4.0 * surface.faces.len() as f64).clamp(MAX_INCIDENCES, 4.0 * MAX_INCIDENCES);
+        let limit = finest(|n| {
+            touched(surface, n) <= MAX_CELLS
+                && touched_by_surface(surface, n)
+                && incidences(surface, n) <= max_incidences
+        });
         let along = match cells {
-            None => finest(|n| touched(surface, n) <= DEFAULT_CELLS),
+            None => finest(|n| touched(surface, n) <= DEFAULT_CELLS).min(limit),
             Some(n) if n >= 1 && n as f64 - MARGIN <= limit => n as f64 - MARGIN,
             Some(cells) => return Err(ModesError::Resolution { cells, max: (limit + MARGIN) as usize }),
         };
@@ -103,6 +113,12 @@ fn touched(surface: &Surface, n: f64) -> f64 {
 /// Whether the surface touches few enough cells.
 fn touched_by_surface(surface: &Surface, n: f64) -> bool {
     1.5 * surface.area * n * n <= MAX_SURFACE_CELLS
+}
+
+/// Returns the number of incidences of triangles and cells, with n cells along the longest side: the mean over all places
+/// of the grid, which is the volume of the Minkowski sums of triangles and a cell.
+pub(super) fn incidences(surface: &Surface, n: f64) -> f64 {
+    surface.faces.len() as f64 + surface.triangle_extents * n + surface.triangle_projections * n * n
 }
 
 /// Returns the largest number for which a monotone condition holds.

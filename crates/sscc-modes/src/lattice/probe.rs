@@ -7,11 +7,13 @@
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
+use sscc::Error;
 use sscc::parts::DisjointSets;
 
 use super::cells::{CELL_SAMPLES, Cells};
 use super::crossings::{SAMPLES, cross, sample_at};
 use super::pieces::SampleSet;
+use crate::cancel::TestCounter;
 
 /// A cell with triangles.
 pub(super) struct Probe<'a> {
@@ -32,8 +34,11 @@ pub(super) struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// Joins pieces that probes show to be connected.
-    pub fn join(&self, sets: &mut DisjointSets) {
+    /// Joins pieces that probes show to be connected. A cell of n patches costs up to 65 n tests of each triangle.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn join(&self, sets: &mut DisjointSets, tests: &mut TestCounter) -> Result<(), Error> {
         let triangles = self.corners.len();
         let element = |i: usize| self.cells.triangle_element(self.cell, i);
         let mut patches: Vec<(u32, usize)> = (0..triangles).map(|i| (sets.find(element(i)), i)).collect();
@@ -43,16 +48,23 @@ impl Probe<'_> {
             let largest =
                 patch.iter().map(|part| part.1).reduce(|i, j| if area(j) > area(i) { j } else { i });
             let Some(own) = largest.filter(|i| area(*i) > 0.0) else { continue };
-            self.join_samples(own, sets);
+            self.join_samples(own, sets, tests)?;
+            tests.add(triangles)?;
             let is_met = patch.iter().any(|part| self.pierced[element(part.1) as usize]);
             if !is_met && let Some(other) = self.opposite(own) {
                 sets.unite(element(own), element(other));
             }
         }
+        Ok(())
     }
 
     /// Joins a triangle with the samples that are visible inward from its centroid.
-    fn join_samples(&self, own: usize, sets: &mut DisjointSets) {
+    fn join_samples(
+        &self,
+        own: usize,
+        sets: &mut DisjointSets,
+        tests: &mut TestCounter,
+    ) -> Result<(), Error> {
         let (start, area) = self.parts[own];
         let first = self.cells.first_element(self.cell);
         for number in (0..CELL_SAMPLES).filter(|k| self.samples >> k & 1 == 1) {
@@ -62,12 +74,16 @@ impl Probe<'_> {
             }
             let place = [number % SAMPLES, number / SAMPLES % SAMPLES, number / (SAMPLES * SAMPLES)];
             let sample = self.low + DVec3::from_array(place.map(sample_at));
-            let is_visible = (sample - start).dot(area) < 0.0
-                && (0..self.corners.len()).all(|i| i == own || !blocks(self.corners[i], start, sample));
-            if is_visible {
+            let is_inward = (sample - start).dot(area) < 0.0;
+            if !is_inward {
+                continue;
+            }
+            tests.add(self.corners.len())?;
+            if (0..self.corners.len()).all(|i| i == own || !blocks(self.corners[i], start, sample)) {
                 sets.unite(of, first + number);
             }
         }
+        Ok(())
     }
 
     /// Returns the triangle at which a line inward from the centroid of a triangle leaves the solid within the cell.

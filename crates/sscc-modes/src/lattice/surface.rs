@@ -25,6 +25,11 @@ pub(super) struct Surface {
     pub volume: f64,
     /// Area, as a share of the square of the longest side.
     pub area: f64,
+    /// Sum of the sides of the bounding boxes of all triangles, as a share of the longest side.
+    pub triangle_extents: f64,
+    /// Sum of the areas of the projections of all triangles along the three axes, as a share of the square of the
+    /// longest side.
+    pub triangle_projections: f64,
 }
 
 impl Surface {
@@ -42,12 +47,16 @@ impl Surface {
         let low = used().fold(DVec3::INFINITY, DVec3::min);
         let extent = used().fold(DVec3::NEG_INFINITY, DVec3::max) - low;
         let (middle, longest) = (low + 0.5 * extent, extent.max_element());
-        // Area and volume in the unit of the longest side.
+        // All in the unit of the longest side.
         let (mut volume, mut area) = (0.0, 0.0);
+        let (mut triangle_extents, mut triangle_projections) = (0.0, 0.0);
         for face in mesh.faces() {
             let [a, b, c] = face.map(|v| (p[v as usize] - middle) / longest);
+            let normal = (b - a).cross(c - a);
             volume += a.dot(b.cross(c)) / 6.0;
-            area += (b - a).cross(c - a).length() / 2.0;
+            area += normal.length() / 2.0;
+            triangle_extents += (a.max(b).max(c) - a.min(b).min(c)).element_sum();
+            triangle_projections += normal.abs().element_sum() / 2.0;
         }
         // Volume of a flat surface by rounding.
         let noise = f64::EPSILON * area;
@@ -60,7 +69,17 @@ impl Surface {
             faces.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
             surface_across.iter_mut().for_each(|[ab, _, ca]| std::mem::swap(ab, ca));
         }
-        Ok(Self { faces, across: surface_across, is_split, middle, extent, volume: volume.abs(), area })
+        Ok(Self {
+            faces,
+            across: surface_across,
+            is_split,
+            middle,
+            extent,
+            volume: volume.abs(),
+            area,
+            triangle_extents,
+            triangle_projections,
+        })
     }
 }
 

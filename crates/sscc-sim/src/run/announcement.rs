@@ -5,7 +5,7 @@ use sscc_dynamics::{Damping, LinearOscillator};
 use sscc_modes::{diagonalize, natural_frequencies};
 use sscc_solid::Stiffness;
 use sscc_tasks::text::{counted, length, size_and_mass};
-use sscc_tasks::{ModesSpec, Recipe, Shape, longest_side};
+use sscc_tasks::{ModesSpec, Recipe, Shape, Watch, check_cancelled, longest_side};
 
 use super::prepared::{PreparedModel, PreparedScene};
 use crate::error::{At, Result};
@@ -14,8 +14,11 @@ use crate::scenes::{Scene, Shake};
 /// Time of the free vibration that a line describes (s).
 const FIRST: f64 = 1.0;
 
-/// Returns the lines of a scene.
-pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<String>> {
+/// Returns the lines of a scene. The cost does not depend on its number of steps.
+///
+/// # Errors
+/// When a shake does not fit its model, or `watch` cancels.
+pub fn announcement(scene: &Scene, prepared: &PreparedScene, watch: &dyn Watch) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     for (spec, model) in scene.models.iter().zip(&prepared.models) {
         let name = &model.certified.name;
@@ -38,12 +41,13 @@ pub fn announcement(scene: &Scene, prepared: &PreparedScene) -> Result<Vec<Strin
         }
     }
     for (model, shake, bodies) in shaken {
+        check_cancelled(watch)?;
         let PreparedModel { certified, shape, .. } = &prepared.models[model];
         let rates = shake.rates(shape.reach())?;
         let seconds = FIRST.min(scene.steps as f64 * scene.step);
         let damping = scene.models[model].damping;
         let stiffness = shape.elasticity().stiffness();
-        let farthest = farthest(shape.model(), stiffness, &rates, damping, scene.step, seconds)?;
+        let farthest = farthest(shape.model(), stiffness, &rates, damping, seconds)?;
         let energy: f64 = rates.iter().map(|v| v * v / 2.0).sum();
         let share = 100.0 * farthest / longest_side(shape.model().mesh().rest_positions());
         let who = match bodies[..] {
@@ -80,18 +84,17 @@ fn farthest(
     stiffness: &Stiffness,
     rates: &[f64],
     damping: Damping,
-    step: f64,
     seconds: f64,
 ) -> Result<f64> {
     if stiffness.is_diagonal() {
         let eigenvalues: Vec<f64> = stiffness.diagonal().collect();
-        return of_vibrations(model.modes(), &eigenvalues, rates, damping, step, seconds);
+        return of_vibrations(model.modes(), &eigenvalues, rates, damping, seconds);
     }
     let found = diagonalize(model.modes(), stiffness)?;
     let rank = rates.len();
     let rotated: Vec<f64> =
         (0..rank).map(|k| (0..rank).map(|i| found.rotation[i * rank + k] * rates[i]).sum()).collect();
-    of_vibrations(&found.modes, &found.eigenvalues, &rotated, damping, step, seconds)
+    of_vibrations(&found.modes, &found.eigenvalues, &rotated, damping, seconds)
 }
 
 fn of_vibrations(
@@ -99,20 +102,37 @@ fn of_vibrations(
     eigenvalues: &[f64],
     rates: &[f64],
     damping: Damping,
-    step: f64,
     seconds: f64,
 ) -> Result<f64> {
-    let rank = rates.len();
-    let oscillator = LinearOscillator::new(eigenvalues, damping, step).at(|| "shake")?;
-    let (mut q, mut v, mut peaks) = (vec![0.0; rank], rates.to_vec(), vec![0.0_f64; rank]);
-    let no_forces = vec![0.0; rank];
-    for _ in 0..(seconds / step).ceil() as usize {
-        oscillator.advance(&mut q, &mut v, &no_forces);
-        peaks.iter_mut().zip(&q).for_each(|(peak, q)| *peak = peak.max(q.abs()));
+    // Checks all eigenvalues, so that an error names the mode.
+    LinearOscillator::new(eigenvalues, damping, seconds).at(|| "shake")?;
+    let mut peaks = Vec::with_capacity(rates.len());
+    for (eigenvalue, rate) in eigenvalues.iter().zip(rates) {
+        let time = peak_time(*eigenvalue, damping.of(*eigenvalue)).min(seconds);
+        // A single step is exact, however long it is.
+        let oscillator = LinearOscillator::new(&[*eigenvalue], damping, time).at(|| "shake")?;
+        let (mut q, mut v) = ([0.0], [*rate]);
+        oscillator.advance(&mut q, &mut v, &[0.0]);
+        peaks.push(q[0].abs());
     }
     let displacement =
         |of: &[glam::DVec3]| -> f64 { of.iter().zip(&peaks).map(|(u, peak)| u.length() * peak).sum() };
-    Ok(modes.displacements().chunks_exact(rank).map(displacement).fold(0.0, f64::max))
+    Ok(modes.displacements().chunks_exact(rates.len()).map(displacement).fold(0.0, f64::max))
+}
+
+/// Returns the time (s) at which the free vibration from q = 0 is farthest from there; infinite if it moves away for
+/// ever. Later peaks are lower.
+fn peak_time(eigenvalue: f64, damping: f64) -> f64 {
+    let a = damping / 2.0;
+    let d = eigenvalue - a * a;
+    let root = d.abs().sqrt();
+    if d > 0.0 {
+        libm::atan2(root, a) / root
+    } else if d < 0.0 {
+        libm::atanh(root / a) / root
+    } else {
+        1.0 / a
+    }
 }
 
 #[cfg(test)]
@@ -122,13 +142,35 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_peak_is_the_largest_displacement_of_short_steps() {
+        let modes = Modes::new(1, vec![DVec3::ZERO, DVec3::Y, DVec3::ZERO]).unwrap();
+        // Underdamped, critically damped and overdamped modes, and modes without stiffness.
+        let cases =
+            [(100.0, 0.0), (100.0, 3.0), (100.0, 20.0), (100.0, 50.0), (1e-9, 1e3), (0.0, 3.0), (0.0, 0.0)];
+        for (eigenvalue, mass) in cases {
+            let damping = Damping { mass, stiffness: 0.0 };
+            for seconds in [0.01, 1.0] {
+                let found = of_vibrations(&modes, &[eigenvalue], &[-0.1], damping, seconds).unwrap();
+                let oscillator = LinearOscillator::new(&[eigenvalue], damping, seconds / 1e4).unwrap();
+                let (mut q, mut v, mut largest) = ([0.0], [-0.1], 0.0_f64);
+                for _ in 0..10_000 {
+                    oscillator.advance(&mut q, &mut v, &[0.0]);
+                    largest = largest.max(q[0].abs());
+                }
+                let case = (eigenvalue, mass, seconds);
+                assert!((found / largest - 1.0).abs() < 1e-6, "{case:?}: {found}, not {largest}");
+            }
+        }
+    }
+
+    #[test]
     fn the_displacement_is_the_peak_of_the_vibration() {
         // One vertex moves by 2 along x for a unit of the mode of 3 Hz.
         let u = [DVec3::ZERO, 2.0 * DVec3::X, DVec3::ZERO];
         let (modes, rate) = (Modes::new(1, u.to_vec()).unwrap(), 6.0 * std::f64::consts::PI);
         let of = |damping: f64, seconds: f64| {
             let damping = Damping { mass: damping, stiffness: 0.0 };
-            of_vibrations(&modes, &[rate * rate], &[0.1], damping, 1e-4, seconds).unwrap()
+            of_vibrations(&modes, &[rate * rate], &[0.1], damping, seconds).unwrap()
         };
         assert!((of(0.0, 1.0) / (0.2 / rate) - 1.0).abs() < 1e-6);
         assert!(of(20.0, 1.0) < 0.7 * of(0.0, 1.0));
@@ -146,7 +188,7 @@ mod tests {
             sscc::TriMesh::new([0.0, 1.0, 2.0].map(|x| DVec3::new(x, x * x, 0.0)).to_vec(), vec![[0, 1, 2]]);
         let model = ReducedModel::new(mesh.unwrap(), Modes::new(2, u).unwrap()).unwrap();
         let stiffness = Stiffness::new(2, vec![2.0, -1.0, -1.0, 2.0]).unwrap();
-        let found = farthest(&model, &stiffness, &[0.1, 0.1], Damping::default(), 1e-3, 10.0).unwrap();
+        let found = farthest(&model, &stiffness, &[0.1, 0.1], Damping::default(), 10.0).unwrap();
         assert!((found - 0.1).abs() < 1e-6, "{found}");
     }
 }

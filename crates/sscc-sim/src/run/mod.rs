@@ -17,6 +17,6 @@ pub use finished::FinishedRun;
 pub use history::{BodyRecord, History, STEP_PARTS, StateLayout, StepRecord};
 pub use log::StateLog;
 pub use prepared::{PreparedModel, PreparedScene};
-pub use steps::{RunOutcome, run};
+pub use steps::{RunOutcome, check_log_size, run};
 pub use summary::{ModelSummary, Summary};
 pub use traditional::{TraditionalCost, traditional_costs};

@@ -54,16 +54,11 @@ pub fn run(
     announcement: &[String],
     watch: &dyn Watch,
 ) -> Result<RunOutcome, SimError> {
+    check_log_size(scene, prepared, steps)?;
     let mut world = world(scene, prepared)?;
     let mut sounds: Vec<Option<SoundBank>> =
         scene.bodies.iter().map(|body| prepared.models[body.model].sound.clone()).collect();
-    let rank = |model: usize| prepared.models[model].certified.model.rank();
-    let layout = StateLayout::new(scene.bodies.iter().map(|body| rank(body.model)));
-    let bytes = 8.0 * steps as f64 * layout.width() as f64;
-    if bytes > MAX_LOG_BYTES {
-        let place = format!("{steps} steps need {:.0} GB", bytes / 1e9);
-        return Err(SimError::refused(place, "choose fewer with " + Setting::Steps));
-    }
+    let layout = state_layout(scene, prepared);
     let (mut log, checkpoint) = StateLog::open(folder, prepared.digest(scene), layout.clone(), again)?;
     if again {
         remove_outputs(folder)?;
@@ -108,6 +103,24 @@ pub fn run(
         log.write_checkpoint(&stepper.memory())?;
     }
     Ok(RunOutcome { history: log.history()?.first(steps), processor_seconds, failure })
+}
+
+/// Checks the size of the log.
+///
+/// # Errors
+/// When the states of so many steps would take more than 4 GB.
+pub fn check_log_size(scene: &Scene, prepared: &PreparedScene, steps: usize) -> Result<(), SimError> {
+    let bytes = 8.0 * steps as f64 * state_layout(scene, prepared).width() as f64;
+    if bytes > MAX_LOG_BYTES {
+        let place = format!("{steps} steps need {:.0} GB", bytes / 1e9);
+        return Err(SimError::refused(place, "choose fewer with " + Setting::Steps));
+    }
+    Ok(())
+}
+
+fn state_layout(scene: &Scene, prepared: &PreparedScene) -> StateLayout {
+    let rank = |model: usize| prepared.models[model].certified.model.rank();
+    StateLayout::new(scene.bodies.iter().map(|body| rank(body.model)))
 }
 
 /// Returns the error of a diverging motion with its step, body and energy.

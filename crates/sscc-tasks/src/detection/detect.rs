@@ -31,9 +31,9 @@ use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 ///
 /// # Errors
 /// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when
-/// it cannot be read or does not fit its mesh or the request; when a mesh would be compared with itself; when a
-/// position is not finite or is beyond [`sscc::limits::LARGEST`]; when a query has more than
-/// [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
+/// it cannot be read or does not fit its mesh or the request; when the nodes of a scene have more than 2^25 triangles or
+/// vertices together; when a mesh would be compared with itself; when a position is not finite or is beyond
+/// [`sscc::limits::LARGEST`]; when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
 pub fn detect<E: From<TaskError>>(
     request: &Detection,
     watch: &dyn Watch,
@@ -222,7 +222,7 @@ fn answer<'a>(
         ShapeInMotion { file, mesh, x_t0, x_t1 }
     };
     let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
-    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));
+    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, &**positions));
     DetectionAnswer {
         file: mesh.file,
         mesh: mesh.mesh,

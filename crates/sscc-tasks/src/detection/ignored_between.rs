@@ -25,6 +25,7 @@ impl IgnoredBetween {
         sides.iter_mut().try_for_each(|side| side.read(0, false))?;
         let boxes = boxes(&sides);
         for b in 1..sides.len() {
+            sides[b].mesh.check_cancelled()?;
             let (before, from_b) = sides.split_at_mut(b);
             for (a, x) in
                 before.iter_mut().enumerate().filter(|(a, _)| !are_apart(&boxes[*a], &boxes[b], 0.0))

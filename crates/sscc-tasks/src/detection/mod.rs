@@ -16,6 +16,7 @@ mod node_boxes;
 mod node_pairs;
 mod request;
 mod rows;
+mod scene_size;
 mod sides;
 mod times;
 mod weld_classes;

@@ -12,6 +12,7 @@ use sscc_io::{FormatError, FrameReader, IoError};
 
 use super::mesh_source::{MAX_WEIGHT_ERROR, MeshSource};
 use super::request::{AnimationMotion, Detection, MeshMotion};
+use super::scene_size::check_scene_size;
 use super::weld_classes::WeldClasses;
 use crate::LeftOut;
 use crate::error::{At, Result};
@@ -127,6 +128,10 @@ impl<'w> MovingMesh<'w> {
     }
 
     /// Loads the nodes of an animation, or of a scene at rest.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or does not fit the request; when its nodes have too many triangles or vertices; when
+    /// `watch` cancels.
     pub fn animated(
         file: &Path,
         animated: &AnimationMotion,
@@ -152,8 +157,10 @@ impl<'w> MovingMesh<'w> {
         let times: Arc<[f64]> =
             times.map_err(|cause| crate::TaskError::refused(file.display(), cause))?.into();
         let nodes = scene.find_mesh_nodes(animated.node.as_deref()).map_err(|error| in_file(error, file))?;
+        check_scene_size(file, nodes, request)?;
         let groups = request.groups.of_nodes(file, nodes, compares_nodes(request))?;
         let mesh = |(node, groups): (&MeshNode, Option<TriangleGroups>)| {
+            check_cancelled(watch)?;
             let weights = animated.weights;
             if weights == SkinWeights::Normalized && node.largest_weight_error() > MAX_WEIGHT_ERROR {
                 let place = format!("{}: node {}", file.display(), node.node());
@@ -188,6 +195,11 @@ impl<'w> MovingMesh<'w> {
             Ok(Self { file: file.to_owned(), node, name, mesh, detector, left_out, motion, watch })
         };
         nodes.iter().zip(groups).map(mesh).collect()
+    }
+
+    /// Returns an error if the caller cancels.
+    pub fn check_cancelled(&self) -> Result<()> {
+        check_cancelled(self.watch)
     }
 
     /// Returns the number of frames, at least 1.

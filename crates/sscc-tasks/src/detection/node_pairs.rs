@@ -2,12 +2,20 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::ignored_between::IgnoredBetween;
 use super::moving_mesh::MovingMesh;
 use super::node_boxes::{are_apart, boxes};
 use super::request::Detection;
 use super::worker::{QueryResult, Side, query};
+use crate::TaskError;
 use crate::error::{At, Result};
+use crate::text::grouped;
+
+/// Maximum number of pairs of nodes that collide at one time: their answers take less than a GiB, unless they have many pairs of
+/// triangles each.
+const MAX_COLLIDING: usize = 1 << 20;
 
 /// A detector for each mesh, and its positions at one frame. Positions are evaluated once for all pairs.
 pub(super) struct NodePairs<'m, 'w> {
@@ -31,8 +39,10 @@ impl<'m, 'w> NodePairs<'m, 'w> {
         sides.iter_mut().try_for_each(|side| side.read(frame, request.is_continuous))?;
         let boxes = boxes(sides);
         let reach = request.clearance.map_or(0.0, |clearance| clearance.distance());
+        let mut positions: Vec<Option<Arc<[Vec<DVec3>; 2]>>> = vec![None; sides.len()];
         let mut found = Vec::new();
         for b in 1..sides.len() {
+            sides[b].mesh.check_cancelled()?;
             let (before, from_b) = sides.split_at_mut(b);
             for a in 0..b {
                 if are_apart(&boxes[a], &boxes[b], reach) {
@@ -47,14 +57,95 @@ impl<'m, 'w> NodePairs<'m, 'w> {
                 if result.pairs.is_empty() {
                     continue;
                 }
+                if found.len() == MAX_COLLIDING {
+                    let cause = format!(
+                        "more than {} pairs of nodes collide at one time: name one node, as in FILE#NODE",
+                        grouped(MAX_COLLIDING as u64)
+                    );
+                    return Err(TaskError::refused(mesh.place(frame), cause));
+                }
                 if request.has_positions {
-                    let sides = [&before[a], &from_b[0]];
-                    result.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).into();
+                    let mut shared = |node: usize, side: &Side<'_, '_>| {
+                        Arc::clone(positions[node].get_or_insert_with(|| Arc::new(side.positions())))
+                    };
+                    result.positions = vec![shared(a, &before[a]), shared(b, &from_b[0])];
                 }
                 found.push(([a, b], result));
             }
         }
         found.sort_by_key(|(nodes, _)| *nodes);
         Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use sscc::{CancelToken, Progress};
+
+    use super::*;
+    use crate::detection::AnimationMotion;
+    use crate::{Stage, Watch};
+
+    /// Cancels at the fourth poll and later.
+    struct CancelledAtFourth {
+        token: CancelToken,
+        polls: Arc<AtomicUsize>,
+    }
+
+    impl CancelledAtFourth {
+        fn new() -> Self {
+            let polls = Arc::new(AtomicUsize::new(0));
+            let counter = Arc::clone(&polls);
+            let token = CancelToken::when(move || counter.fetch_add(1, Ordering::Relaxed) >= 3);
+            Self { token, polls }
+        }
+    }
+
+    impl Progress for CancelledAtFourth {
+        fn report(&self, _done: usize, _total: usize) {}
+
+        fn cancel_token(&self) -> Option<&CancelToken> {
+            Some(&self.token)
+        }
+    }
+
+    impl Watch for CancelledAtFourth {
+        fn begin(&self, _stage: Stage) {}
+
+        fn note(&self, _note: &str) {}
+    }
+
+    /// No query is answered that could poll: the three nodes are apart.
+    #[test]
+    fn cancellation_ends_the_loading_and_the_comparison_of_nodes() {
+        let (folder, watch) = (tempfile::tempdir().unwrap(), CancelledAtFourth::new());
+        let file = folder.path().join("three.gltf");
+        let write = |nodes: usize| {
+            let nodes = (0..nodes).map(|x| format!(r#"{{"mesh":0,"translation":[{x},0,0]}}"#));
+            let nodes = nodes.collect::<Vec<_>>().join(",");
+            let text = format!(
+                r#"{{"asset":{{"version":"2.0"}},"accessors":[{{"componentType":5126,"count":3,"type":"VEC3"}}],
+                "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"nodes":[{nodes}]}}"#
+            );
+            std::fs::write(&file, text).unwrap();
+        };
+        let request = Detection { between_nodes: true, ..Detection::default() };
+        let load = || {
+            watch.polls.store(0, Ordering::Relaxed);
+            MovingMesh::animated(&file, &AnimationMotion::at_rest(), &request, &watch)
+        };
+        write(4);
+        assert!(load().err().unwrap().is_cancelled());
+        write(3);
+        let mut meshes = load().unwrap();
+        watch.polls.store(0, Ordering::Relaxed);
+        let at_rest = Detection { ignore_rest: Some(0), ..request.clone() };
+        assert!(IgnoredBetween::find(&at_rest, &mut meshes).err().unwrap().is_cancelled());
+        let meshes: Vec<Arc<MovingMesh<'_>>> = meshes.into_iter().map(Arc::new).collect();
+        let ignored = IgnoredBetween::default();
+        watch.polls.store(0, Ordering::Relaxed);
+        assert!(NodePairs::new(&request, &meshes, &ignored).answer(0).err().unwrap().is_cancelled());
     }
 }

@@ -1,5 +1,6 @@
 //! Answers single queries, one worker for each thread.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -42,8 +43,9 @@ pub(super) struct QueryResult {
     pub is_complete: bool,
     pub microseconds: f64,
     pub statistics: Statistics,
-    /// Positions of the mesh and of the other mesh, at the start and the end; empty unless the request requires them.
-    pub positions: Vec<[Vec<DVec3>; 2]>,
+    /// Positions of the mesh and of the other mesh, at the start and the end; empty unless the request requires them. Results of
+    /// pairs of nodes share them.
+    pub positions: Vec<Arc<[Vec<DVec3>; 2]>>,
 }
 
 impl QueryResult {
@@ -112,7 +114,7 @@ impl<'m, 'w> Worker<'m, 'w> {
         }
         if self.request.has_positions {
             let sides = [&self.side].into_iter().chain(&self.other);
-            found.positions = sides.map(|side| [side.x_t0.clone(), side.x_t1.clone()]).collect();
+            found.positions = sides.map(|side| Arc::new(side.positions())).collect();
         }
         Ok(found)
     }
@@ -212,8 +214,15 @@ impl<'m, 'w> Side<'m, 'w> {
         Surface { faces: self.mesh.mesh.faces(), positions: &self.x_t0 }
     }
 
-    /// Reads the positions at a frame; for a motion, also at the next frame.
+    /// Returns the positions at the start and the end.
+    pub fn positions(&self) -> [Vec<DVec3>; 2] {
+        [self.x_t0.clone(), self.x_t1.clone()]
+    }
+
+    /// Reads the positions at a frame; for a motion, also at the next frame. Each node of an animation evaluates all
+    /// transforms, so cancellation is checked.
     pub fn read(&mut self, frame: usize, is_continuous: bool) -> Result<()> {
+        self.mesh.check_cancelled()?;
         self.mesh.positions(frame, &mut self.x_t0)?;
         if is_continuous {
             self.mesh.positions(frame + 1, &mut self.x_t1)?;

@@ -40,6 +40,8 @@ pub struct MeshReport {
     /// The pairs of different nodes of a scene.
     node_pairs: Vec<NodePairs>,
     left_out: LeftOut,
+    /// Size of the pairs and segments of all bodies and node pairs (bytes).
+    contact_bytes: usize,
     /// Size in the report of the positions that are recorded and of those still to be recorded (bytes).
     planned_bytes: u64,
 }
@@ -72,14 +74,19 @@ impl MeshReport {
         // The size is checked before the pairs are copied.
         let impact_bytes = if self.is_continuous { 4 } else { 0 };
         self.check_size((8 + impact_bytes) * answer.pairs.len())?;
+        let before = self.bodies[first].contact_bytes();
         self.bodies[first].push_pairs(answer);
+        self.contact_bytes += self.bodies[first].contact_bytes() - before;
         let center = self.center;
         for pairs in answer.pairs.chunks(MAX_CONTACTS) {
-            let segments = &mut self.bodies[first].segments;
-            contact_segments(surface(shape), answer.other.map(surface), pairs, |ends| {
+            let body = &mut self.bodies[first];
+            let before = body.contact_bytes();
+            let found = contact_segments(surface(shape), answer.other.map(surface), pairs, |ends| {
                 let [a, b] = ends.map(|p| (p - center).as_vec3().to_array());
-                segments.push([a[0], a[1], a[2], b[0], b[1], b[2]]);
-            })?;
+                body.segments.push([a[0], a[1], a[2], b[0], b[1], b[2]]);
+            });
+            self.contact_bytes += body.contact_bytes() - before;
+            found?;
             self.check_size(0)?;
         }
         self.bodies[first].segments.end_frame();
@@ -111,13 +118,15 @@ impl MeshReport {
             })?;
             self.check_size(12 * answer.pairs.len() + size_of_val(&segments[..]))?;
         }
-        self.node_pairs.push(NodePairs {
+        let pairs = NodePairs {
             frame: answer.index,
             bodies: [a, b],
             pairs: answer.pairs.to_vec(),
             impacts: answer.times.into_iter().flatten().map(|time| *time as f32).collect(),
             segments,
-        });
+        };
+        self.contact_bytes += pairs.bytes();
+        self.node_pairs.push(pairs);
         self.microseconds[answer.index] += answer.microseconds;
         Ok(())
     }
@@ -150,10 +159,8 @@ impl MeshReport {
 
     /// Returns an error if the report would be too large with `more` further bytes.
     fn check_size(&self, more: usize) -> Result<(), ViewError> {
-        let contacts = more
-            + self.bodies.iter().map(RecordedBody::contact_bytes).sum::<usize>()
-            + self.node_pairs.iter().map(NodePairs::bytes).sum::<usize>();
-        let bytes = (PAGE.len() as u64 + in_base64(contacts as u64)).saturating_add(self.planned_bytes);
+        let contacts = (more + self.contact_bytes) as u64;
+        let bytes = (PAGE.len() as u64 + in_base64(contacts)).saturating_add(self.planned_bytes);
         if bytes > MAX_REPORT_BYTES { Err(ViewError::TooLarge) } else { Ok(()) }
     }
 
@@ -162,6 +169,9 @@ impl MeshReport {
     /// # Errors
     /// If it exceeds [`MAX_REPORT_BYTES`].
     pub fn html(self) -> Result<String, ViewError> {
+        let of_bodies: usize = self.bodies.iter().map(RecordedBody::contact_bytes).sum();
+        let of_pairs: usize = self.node_pairs.iter().map(NodePairs::bytes).sum();
+        debug_assert_eq!(self.contact_bytes, of_bodies + of_pairs, "the running sum is the sum");
         let frames = self.microseconds.len() + usize::from(self.is_continuous);
         let recording = Recording {
             center: self.center,

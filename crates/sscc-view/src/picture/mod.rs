@@ -9,7 +9,7 @@ mod panel;
 mod raster;
 
 use glam::DVec3;
-use sscc::{Certificates, ReducedModel};
+use sscc::{Certificates, Progress, ReducedModel};
 
 use crate::error::{ViewError, check_certificates};
 use camera::Camera;
@@ -41,6 +41,19 @@ impl Picture {
         model: &ReducedModel,
         certificates: &Certificates,
         names: &[String],
+    ) -> Result<Self, ViewError> {
+        Self::draw_until(model, certificates, names, &())
+    }
+
+    /// Draws as [`Picture::draw`], until `progress` cancels. It receives no reports.
+    ///
+    /// # Errors
+    /// As [`Picture::draw`]; if `progress` cancels.
+    pub fn draw_until(
+        model: &ReducedModel,
+        certificates: &Certificates,
+        names: &[String],
+        progress: &dyn Progress,
     ) -> Result<Self, ViewError> {
         check_certificates(model, certificates)?;
         let root = certificates.root_radius();
@@ -80,7 +93,7 @@ impl Picture {
             let amounts: Vec<f64> = (0..shape.len() as u32).map(amount).collect();
             let faces = model.mesh().faces();
             Panel { faces, positions: shape, normals: &normals(faces, shape), amounts: &amounts }
-                .draw(&camera)
+                .draw(&camera, progress)
         };
         let [width, height] = camera.size();
         let name = |k: usize| match names.get(k) {
@@ -93,13 +106,14 @@ impl Picture {
         let [rows, footer] = if modes > 0 { [2, LINE] } else { [1, 0] };
         let row = height + LINE;
         let mut image = Image::new((1 + modes) * width, heading + rows * row + footer);
-        let mut put = |view: &View, left: usize, top: usize| {
-            image.put(left, top, width, &panel(&view.positions));
+        let mut put = |view: &View, left: usize, top: usize| -> Result<(), ViewError> {
+            image.put(left, top, width, &panel(&view.positions)?);
             label::draw(&mut image, &view.caption, left, width, top + height);
+            Ok(())
         };
-        put(&center, 0, heading + (rows - 1) * row / 2);
+        put(&center, 0, heading + (rows - 1) * row / 2)?;
         for (at, view) in deformed.iter().enumerate() {
-            put(view, (1 + at % modes) * width, heading + at / modes * row);
+            put(view, (1 + at % modes) * width, heading + at / modes * row)?;
         }
         for (k, lines) in headings.iter().enumerate() {
             for (line, text) in lines.iter().enumerate() {

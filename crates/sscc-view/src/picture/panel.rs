@@ -1,6 +1,7 @@
 //! One view of one shape, as pixels.
 
 use glam::DVec3;
+use sscc::{Error, Progress};
 
 use super::camera::Camera;
 use super::color::{BACKGROUND, Linear, Palette, mean};
@@ -26,12 +27,18 @@ pub struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// Returns the pixels (RGB), row by row.
-    pub fn draw(&self, camera: &Camera) -> Vec<u8> {
+    /// Returns the pixels (RGB), row by row. Each triangle may fill the view, so cancellation is checked at each.
+    ///
+    /// # Errors
+    /// If `progress` cancels.
+    pub fn draw(&self, camera: &Camera, progress: &dyn Progress) -> Result<Vec<u8>, Error> {
         let mut raster = Raster::new(camera.size().map(|n| n * SAMPLES), Linear::of(BACKGROUND));
         let palette = Palette::new();
         let seen: Vec<DVec3> = self.positions.iter().map(|p| camera.project(*p, SAMPLES)).collect();
         for (face, normals) in self.faces.iter().zip(self.normals) {
+            if progress.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
             let corners = face.map(|v| v as usize);
             // Both sides are drawn alike. The triangle decides which side is visible: along outlines averaged normals
             // point away too early.
@@ -43,7 +50,7 @@ impl Panel<'_> {
                 palette.lit((na * a + nb * b + nc * c).normalize_or_zero(), ta * a + tb * b + tc * c)
             });
         }
-        raster.blocks(SAMPLES).flat_map(|block| mean(block).to_bytes()).collect()
+        Ok(raster.blocks(SAMPLES).flat_map(|block| mean(block).to_bytes()).collect())
     }
 }
 
@@ -76,7 +83,26 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use sscc::CancelToken;
+
     use super::*;
+
+    #[test]
+    fn cancellation_ends_the_drawing() {
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let faces = [[0, 1, 2]];
+        let panel = Panel {
+            faces: &faces,
+            positions: &positions,
+            normals: &normals(&faces, &positions),
+            amounts: &[0.0; 3],
+        };
+        let (camera, token) = (Camera::around(positions.into_iter()), CancelToken::new());
+        let [width, height] = camera.size();
+        assert_eq!(panel.draw(&camera, &token).unwrap().len(), 3 * width * height);
+        token.cancel();
+        assert_eq!(panel.draw(&camera, &token), Err(Error::Cancelled));
+    }
 
     #[test]
     fn bent_surfaces_are_smooth_and_folds_are_not() {

@@ -1,13 +1,14 @@
 //! Writes shapes (`--pose`) and contact curves (`--curves`).
 
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail, ensure};
 use glam::DVec3;
 use sscc::{Pair, TriMesh};
 use sscc_io::{
-    LoadedModel, VtkFramesWriter, is_collection, split_mesh_name, write_obj_curves, write_obj_pose,
+    LoadedModel, VtkFramesWriter, folder, is_collection, split_mesh_name, write_obj_curves, write_obj_pose,
     write_ply_curves, write_ply_pose, write_vtu_pose,
 };
 use sscc_tasks::{ContactOptions, DetectionAnswer};
@@ -51,8 +52,17 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
         };
         load::check_output(path, ending, &inputs)?;
     }
-    ensure!(args.pose.is_none() || args.pose != args.curves, "--pose and --curves name the same file");
+    let is_one = args.pose.as_deref().map(real) == args.curves.as_deref().map(real);
+    ensure!(args.pose.is_none() || !is_one, "--pose and --curves name the same file");
     Ok(())
+}
+
+/// Returns the path of an output with the real path of its folder; as it is if the folder does not exist.
+fn real(output: &Path) -> PathBuf {
+    match (fs::canonicalize(folder(output)), output.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => output.to_owned(),
+    }
 }
 
 /// Returns the data that the queries compute in addition to pairs.

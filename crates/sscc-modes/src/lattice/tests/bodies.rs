@@ -82,6 +82,21 @@ pub fn folded_plate(layers: i32, height: f64) -> TriMesh {
     rod(&(0..path.len()).map(section).collect::<Vec<_>>())
 }
 
+/// Returns a cylinder about the x axis, of length 1, radius 1e-5 and a number of sides.
+pub fn needle(sides: u32) -> TriMesh {
+    let point = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i / 2) / f64::from(sides);
+        DVec3::new(f64::from(i % 2), 1e-5 * libm::cos(angle), 1e-5 * libm::sin(angle))
+    };
+    let [left, right] = [2 * sides, 2 * sides + 1];
+    let side = |k: u32| {
+        let [a, b] = [2 * k, 2 * ((k + 1) % sides)];
+        [[a, b, b + 1], [a, b + 1, a + 1], [left, b, a], [right, a + 1, b + 1]]
+    };
+    let positions = (0..left).map(point).chain([DVec3::ZERO, DVec3::X]).collect();
+    mesh(positions, (0..sides).flat_map(side).collect())
+}
+
 /// Returns the unit sphere: a subdivided octahedron.
 pub fn sphere(splits: u32) -> TriMesh {
     let mut positions = [DVec3::AXES, DVec3::AXES.map(|p| -p)].concat();

@@ -1,10 +1,16 @@
 //! Errors for invalid surfaces and resolutions.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::DVec3;
-use sscc::{CancelToken, TriMesh};
+use sscc::{CancelToken, Progress, TriMesh};
 
 use super::super::Lattice;
-use super::bodies::{cuboid, inverted, joined, mesh, moved, sphere};
+use super::super::cells::Cells;
+use super::super::crossings::intervals;
+use super::super::grid::{Grid, incidences};
+use super::super::surface::Surface;
+use super::bodies::{cuboid, folded_plate, inverted, joined, mesh, moved, needle, sphere};
 use crate::ModesError;
 
 fn refusal(mesh: &TriMesh, cells: Option<usize>) -> ModesError {
@@ -73,8 +79,58 @@ fn resolutions_out_of_range_are_refused() {
     }
 }
 
+/// Each long triangle of a needle meets all cells along it.
+#[test]
+fn resolutions_at_which_triangles_meet_too_many_cells_are_refused() {
+    let needle = needle(4000);
+    let ModesError::Resolution { cells: 12_000, max } = refusal(&needle, Some(12_000)) else { panic!() };
+    // There are 8000 long triangles, and 2^26 incidences are permitted.
+    assert!((8300..8400).contains(&max), "{max}");
+    let surface = Surface::new(&needle).unwrap();
+    let size = |cells: Option<usize>| Grid::around(&surface, cells).unwrap().size[0] as usize;
+    assert_eq!(size(Some(max)), max);
+    assert!((max..=max + 1).contains(&size(None)), "{}", size(None));
+}
+
+#[test]
+fn the_number_of_incidences_is_near_its_mean() {
+    for (mesh, along) in [(sphere(3), 40), (needle(30), 50), (cuboid(DVec3::ZERO, DVec3::ONE), 40)] {
+        let surface = Surface::new(&mesh).unwrap();
+        let grid = Grid::around(&surface, Some(along)).unwrap();
+        let points: Vec<DVec3> = mesh.rest_positions().iter().map(|p| grid.coordinates(*p)).collect();
+        let inside = intervals(0, &points, &surface.faces, &mut Vec::new(), &()).unwrap();
+        let cells = Cells::new(&grid, &points, &surface.faces, &inside, &()).unwrap();
+        let found: usize = (0..cells.len()).map(|cell| cells.triangles(cell).len()).sum();
+        let expected = incidences(&surface, surface.extent.max_element() / grid.spacing);
+        assert!((found as f64 / expected - 1.0).abs() < 0.1, "{along}: {found}, not {expected}");
+    }
+}
+
 #[test]
 fn cancelled_work_is_an_error() {
     let error = Lattice::around(&sphere(2), None, &CancelToken::when(|| true)).err();
+    assert_eq!(error, Some(ModesError::Core(sscc::Error::Cancelled)));
+}
+
+/// Cancels after a number of checks. Queries check nothing, because it has no token.
+struct CancelsAfter {
+    limit: usize,
+    checks: AtomicUsize,
+}
+
+impl Progress for CancelsAfter {
+    fn report(&self, _done: usize, _total: usize) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.checks.fetch_add(1, Ordering::Relaxed) >= self.limit
+    }
+}
+
+/// Hundreds of layers lie in nine cells.
+#[test]
+fn work_within_a_cell_can_be_cancelled() {
+    // All other work has fewer than 30 checks.
+    let progress = CancelsAfter { limit: 100, checks: AtomicUsize::new(0) };
+    let error = Lattice::around(&folded_plate(300, 1e-4), Some(3), &progress).err();
     assert_eq!(error, Some(ModesError::Core(sscc::Error::Cancelled)));
 }
