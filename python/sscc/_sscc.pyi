@@ -194,7 +194,8 @@ class Certificates:
         """Returns the pairs that collide between q0 and q1, and their times of impact. Each vertex moves on a straight line."""
     def safe_scale(self, q: ArrayLike) -> float:
         """Returns a scale s: the shape is proven free at ``center + t (q - center)`` for all t from 0 to s. It is 0 if the shape
-        collides at the centre, else infinite if q is the centre or ``global_radius`` is infinite."""
+        collides at the centre, triangles are closer there than rounding errors, or a coordinate there is beyond half of the
+        range; else infinite if q is the centre or no mode moves a vertex."""
     def sweep(
         self,
         range: ArrayLike | None = None,

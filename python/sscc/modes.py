@@ -112,7 +112,8 @@ def pca(
 ) -> Model:
     """Returns a model with the mean and the principal components of shapes. q is in standard deviations.
 
-    shapes: (n, V, 3) or (n, 3V), with their ``faces`` (F, 3); or a folder of meshes with the same faces.
+    shapes: (n, V, 3) or (n, 3V), with their ``faces`` (F, 3); or a folder of meshes with the same faces. There are at most
+    4,096 shapes, unless their faces have at most 1,365 vertices.
     rank: number of components, less than the number of shapes. None means as many as explain 99.9% of the variance.
     """
     return _pca(shapes, faces, rank, threads, progress)

@@ -7,8 +7,8 @@ use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
-/// The largest number of values that a direction keeps: a list of triangles within two leaves has fewer, and a proof made to
-/// exhaust memory cannot make it keep more.
+/// The number of values that a direction may keep: lists of triangles of usual leaves and ranks have fewer, others are computed again,
+/// and a proof that was made to exhaust memory cannot.
 const MAX_KEPT: usize = 1 << 14;
 
 /// A point of a triangle: its position at the centre and its modes (three rows).

@@ -76,6 +76,8 @@ mod packed_rows;
 mod sound;
 mod state;
 mod step;
+#[cfg(test)]
+mod test_shapes;
 mod world;
 
 pub use bodies::{

@@ -18,7 +18,7 @@ pub struct ContactOptions {
     /// Distance within which surfaces are in contact (model unit); bodies at rest keep half of it. None means a thousandth of the
     /// smallest body's radius.
     pub skin: Option<f64>,
-    /// Maximum number of iterations of the impulse solver.
+    /// Maximum number of iterations of the solver of the springs at intersecting triangles.
     pub iterations: usize,
 }
 

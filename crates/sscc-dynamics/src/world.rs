@@ -101,7 +101,7 @@ impl World {
         self.bodies.iter().map(|body| body.energy_budget).sum()
     }
 
-    /// Returns the impulses of the last step, in the order of contacts.
+    /// Returns the impulses of the last step, in the order of contacts; none if the step failed before they were computed.
     pub fn impulses(&self) -> &[Impulse] {
         &self.impulses
     }
@@ -160,6 +160,7 @@ impl World {
     /// # Errors
     /// When the motion diverges, a number is not finite, or a position is beyond the range of numbers. After an error the world can be read, but not advanced.
     pub fn advance(&mut self, observer: &mut impl Observer) -> Result<Counts, DynamicsError> {
+        self.impulses.clear();
         self.bodies.iter_mut().filter(|body| !body.is_asleep()).for_each(Body::save_start);
         observer.enter(Phase::SelfCollision);
         self.detect_self_collisions()?;
@@ -230,7 +231,6 @@ impl World {
 
     /// Stores the impulses of the step.
     fn record_impulses(&mut self) {
-        self.impulses.clear();
         let soft = self.solver.constraints.iter().map(|one| (&one.points, one.impulse()));
         let rigid = self.limiter.corrections.list.iter().map(|one| (&one.points, one.total_impulse()));
         let contacts = &self.contacts.triangles.list;
@@ -283,5 +283,29 @@ impl World {
         self.step = state.step;
         self.impulses.clear();
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::test_shapes::tetrahedron;
+
+    #[test]
+    fn a_step_that_fails_does_not_repeat_the_last_impulses() {
+        let mut world = World::new(WorldOptions::default()).unwrap();
+        // The lowest vertices are 0.1 mm above the ground.
+        let start = Start { position: Some(DVec3::Y * 0.2501), ..Start::default() };
+        world.add(&tetrahedron(vec![DVec3::ZERO; 4], &[1.0]), &start).unwrap();
+        let is_pushed = (0..100).any(|_| {
+            world.advance(&mut ()).unwrap();
+            !world.impulses().is_empty()
+        });
+        assert!(is_pushed);
+        world.bodies[0].rigid.position = DVec3::NAN;
+        assert!(world.advance(&mut ()).is_err());
+        assert!(world.impulses().is_empty());
     }
 }

@@ -24,7 +24,7 @@ pub struct EmbeddedSurface {
 
 impl EmbeddedSurface {
     /// Creates the lattice with `cells` cubes along the longest side of the surface; None gives about 20,000 cubes in
-    /// all. If the surface is open, vertices of equal position are welded.
+    /// all, or fewer if triangles meet too many cells. If the surface is open, vertices of equal position are welded.
     ///
     /// # Errors
     /// When the surface is open, not consistently oriented, collides with itself, encloses no volume or has several

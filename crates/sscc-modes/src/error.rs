@@ -228,6 +228,14 @@ pub enum ModesError {
         "{_0}: more than a tenth of its size; use a solid that encloses the surface, in the same units and place"
     )]
     OutsideSolid(Outside),
+    /// Elements of the solid in which a surface is embedded overlap too much.
+    #[error(
+        "the elements of the solid overlap so much that vertices of the surface lie in more than {max} of them in all: use a solid whose elements do not overlap"
+    )]
+    OverlappingElements {
+        /// Maximum number of elements, summed over the vertices.
+        max: usize,
+    },
     /// A surface is to be embedded in tetrahedra of second order.
     #[error(
         "a surface can be embedded in tetrahedra of first order only: mesh the solid in first order, or take its own surface"

@@ -11,7 +11,7 @@ pub struct Outside {
     pub of: usize,
     /// The vertex farthest outside, from 0.
     pub vertex: u32,
-    /// Its distance from the nearest element (model unit).
+    /// Its distance from the nearest element (model unit), for sheared or distorted cubes an upper bound.
     pub distance: f64,
     /// That element, from 0, tetrahedra first.
     pub element: u32,

@@ -20,6 +20,9 @@ const ZERO_TOLERANCE: f64 = 1e-12;
 /// Number of rows of frames, or positions of vertices, from one check for cancellation to the next.
 const CHUNK: usize = 1 << 12;
 
+/// Number of products of numbers between two checks for cancellation: less than a second.
+const PRODUCTS_PER_CHECK: usize = 1 << 30;
+
 /// Maximum of the number of frames or that of their coordinates, whichever is smaller. The decomposition of a matrix of
 /// so many rows takes six matrices of 128 MiB, within 1 GiB, and minutes.
 const MAX_ROWS: usize = 1 << 12;
@@ -155,10 +158,11 @@ impl Motion<'_> {
         let (coordinates, frames) = (self.coordinates(), self.frames.len());
         let (size, terms) = if is_covariance { (coordinates, frames) } else { (frames, coordinates) };
         let mut products: Mat<f64> = Mat::zeros(size, size);
-        for begin in (0..terms).step_by(CHUNK) {
+        let chunk = (PRODUCTS_PER_CHECK / (size * size)).clamp(1, CHUNK);
+        for begin in (0..terms).step_by(chunk) {
             progress.report(begin, 2 * terms);
             check_cancelled(progress)?;
-            let part = Mat::from_fn(CHUNK.min(terms - begin), size, |row, column| {
+            let part = Mat::from_fn(chunk.min(terms - begin), size, |row, column| {
                 if is_covariance { self.at(column, begin + row) } else { self.at(begin + row, column) }
             });
             matmul(

@@ -27,7 +27,7 @@ fn main() {
     for body in &scene.bodies {
         let model = &prepared.models[body.model];
         let start = Start {
-            position: body.position.or(Some(DVec3::ZERO)),
+            position: Some(body.place(DVec3::ZERO)),
             orientation: body.orientation * model.upright,
             velocity: body.velocity,
             spin: body.angular_velocity,

@@ -23,7 +23,7 @@ along the surface. Modes of solids are mass-orthonormal, and their default metri
 )]
 pub struct Modes {
     /// A triangle mesh (.obj, .off, .ply, .stl), or a solid of tetrahedra and cubes (.mesh, .veg, .msh, .node, .ele,
-    /// .vtu, .vtk); for pca a folder of meshes with the same faces (the frames)
+    /// .vtu, .vtk); for pca a folder of meshes with the same faces (the frames: at most 4,096, or any number of at most 1,365 vertices)
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The model file to write: *.model.safetensors

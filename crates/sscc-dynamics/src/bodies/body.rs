@@ -263,6 +263,15 @@ impl Body {
         }
     }
 
+    /// Returns the elastic energy.
+    pub(crate) fn elastic_energy(&self) -> f64 {
+        match (&self.oscillator, self.elastic_energy) {
+            (Oscillator::Linear(oscillator), _) => oscillator.elastic_energy(&self.q),
+            (Oscillator::Nonlinear(_), Some(energy)) => energy,
+            (Oscillator::Nonlinear(oscillator), None) => oscillator.elastic_energy(&self.q),
+        }
+    }
+
     /// Returns the total energy at the beginning of the step and now.
     pub(crate) fn energies(&self, gravity: DVec3) -> [f64; 2] {
         let Kinematics { rigid, q, v } = &self.start;

@@ -5,6 +5,7 @@ use sscc::{Impact, Pair};
 
 use super::sleep::wake;
 use crate::bodies::body_set::BodySet;
+use crate::contacts::body_collisions::BodyCollisions;
 use crate::contacts::world_contacts::WorldContacts;
 use crate::{Body, DynamicsError};
 
@@ -68,12 +69,12 @@ impl ImpactContacts {
         impacts: &[([usize; 2], Impact)],
     ) -> Result<(), DynamicsError> {
         let Self { near, gathered } = self;
-        let WorldContacts { laws, collisions, triangles, .. } = contacts;
+        let WorldContacts { laws, triangles, .. } = contacts;
         near.clear();
         for (numbers, _) in impacts {
             if numbers[0] != numbers[1] && !gathered.contains(numbers) {
                 gathered.push(*numbers);
-                collisions.find_near(bodies, *numbers, NEAR_MARGIN * laws.skin, near)?;
+                BodyCollisions::find_near(bodies, *numbers, NEAR_MARGIN * laws.skin, near)?;
             }
         }
         near.extend(

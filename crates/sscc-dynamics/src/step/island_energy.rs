@@ -123,20 +123,8 @@ fn scale(bodies: &mut [Body], members: &[usize], amount: f64, common: CommonMoti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Shape, Start, WorldOptions};
-    use sscc::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
-    use sscc_solid::{Elasticity, MassProperties, Stiffness};
-
-    fn tetrahedron() -> Shape {
-        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-        let mesh = TriMesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
-        let model = ReducedModel::new(mesh, Modes::new(1, vec![DVec3::ZERO; 4]).unwrap()).unwrap();
-        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-        let inertia = DMat3::from_diagonal(DVec3::new(1.0, 2.0, 2.5));
-        let mass = MassProperties { mass: 3.0, center: DVec3::splat(0.25), inertia };
-        let elasticity = Elasticity::Linear(Stiffness::from_diagonal(&[1.0]).unwrap());
-        Shape::new(model, certificates, elasticity, mass).unwrap()
-    }
+    use crate::test_shapes::tetrahedron;
+    use crate::{Start, WorldOptions};
 
     fn momenta(bodies: &[Body]) -> [DVec3; 2] {
         let linear = bodies.iter().map(|body| body.rigid.momentum).sum();
@@ -146,7 +134,7 @@ mod tests {
 
     #[test]
     fn removed_energy_is_that_of_relative_motion_first() {
-        let shape = tetrahedron();
+        let shape = tetrahedron(vec![DVec3::ZERO; 4], &[1.0]);
         let mut bodies = Vec::new();
         for n in 0..3 {
             let x = f64::from(n);

@@ -205,10 +205,12 @@ impl StepLimiter {
         contacts: &mut WorldContacts,
         observer: &mut impl Observer,
     ) -> Result<(), DynamicsError> {
+        let mut at_start: Vec<usize> = Vec::new();
         for halving in 0.. {
             let Self { potential_limit, energies, selected, gravity, .. } = self;
             potential_limit.find_excess(bodies, &mut contacts.islands, *gravity, energies, selected);
-            if self.selected.is_empty() {
+            // At the beginning of the step, an excess is a rounding error.
+            if self.selected.members().all(|n| at_start.contains(&n)) {
                 break;
             }
             let share = if halving < MAX_HALVINGS { 0.5 } else { 0.0 };
@@ -216,9 +218,38 @@ impl StepLimiter {
                 bodies[n].shorten(share);
                 self.shortened_bodies += 1;
             }
+            if share == 0.0 {
+                at_start.extend(self.selected.members());
+            }
             self.impacts.find(bodies, contacts, &self.selected, false, observer)?;
             self.shorten(bodies, contacts, observer)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contacts::contact_laws::ContactLaws;
+    use crate::contacts::ground_contacts::GroundContacts;
+    use crate::test_shapes::tetrahedron;
+    use crate::{Start, WorldOptions};
+
+    /// The energy at the beginning of the step is given too low, as rounding may make it.
+    #[test]
+    fn bodies_at_the_beginning_of_their_step_move_back_no_farther() {
+        let shape = tetrahedron(vec![DVec3::ZERO; 4], &[1.0]);
+        let options = WorldOptions { ground: None, ..WorldOptions::default() };
+        let start = Start { q: vec![1.0], ..Start::default() };
+        let mut bodies = [Body::new(&shape, &start, &options, None).unwrap()];
+        bodies[0].q[0] = 2.0;
+        let mut contacts = WorldContacts::new(ContactLaws::new(&options, 1.0));
+        contacts.ground.push(GroundContacts::default());
+        contacts.islands.reset(1);
+        let mut limiter = StepLimiter::new(DVec3::ZERO);
+        limiter.energies = vec![Some([0.4; 2])];
+        limiter.limit_potential(&mut bodies, &mut contacts, &mut ()).unwrap();
+        assert_eq!((limiter.shortened_bodies, bodies[0].q[0]), (MAX_HALVINGS as usize + 1, 1.0));
     }
 }

@@ -96,6 +96,8 @@ fn read(
             _ => {
                 let whole = whole.trim_ascii();
                 let other = &whole.strip_suffix(b"\\").unwrap_or(whole)[keyword.len()..];
+                // A number sign next to the keyword begins a comment.
+                let other = if other.starts_with(b"#") { &[][..] } else { other };
                 on_other(keyword, other, polygons.triangle_count())?;
             }
         }

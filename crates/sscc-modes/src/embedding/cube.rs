@@ -37,7 +37,8 @@ pub fn local_coordinates(x: DVec3, corners: &[DVec3; 8]) -> DVec3 {
     local
 }
 
-/// Returns a point of the cube near x: x itself inside, else the point of the clamped local coordinates.
+/// Returns a point of the cube near x: x itself inside, else the point of the clamped local coordinates. This is the nearest
+/// point of a cuboid. In a sheared or distorted cube another point may be nearer, so the distance is an upper bound.
 pub fn near_point(x: DVec3, corners: &[DVec3; 8]) -> DVec3 {
     position(local_coordinates(x, corners).clamp(DVec3::ZERO, DVec3::ONE), corners)
 }

@@ -33,7 +33,7 @@ pub struct Candidates {
     /// The elements that contain the point up to a tolerance, ascending; the nearest one alone if there are none.
     /// Elements count from 0, tetrahedra first.
     pub elements: Vec<u32>,
-    /// Distance of the point from the nearest element; 0 inside.
+    /// Distance of the point from the nearest element, for sheared or distorted cubes an upper bound; 0 inside.
     pub distance: f64,
 }
 
@@ -53,7 +53,8 @@ impl<'a> ElementTree<'a> {
         (upper - lower).max_element()
     }
 
-    /// Returns the elements at most `tolerance` away from a point, or the nearest one, the first found of several.
+    /// Returns the elements at most `tolerance` away from a point, or the nearest one, the first found of several. Distances from
+    /// sheared or distorted cubes are upper bounds.
     pub fn candidates(&self, x: DVec3, tolerance: f64) -> Candidates {
         let (mut nearest, mut least, mut inside) = (0, f64::INFINITY, Vec::new());
         let mut stack = vec![(0, distance_aabb(x, &self.nodes[0].bounds))];

@@ -164,3 +164,23 @@ fn parts_that_overlap_stay_separate() {
         );
     }
 }
+
+/// Each of 30 vertices lies in all 20 elements.
+#[test]
+fn elements_that_overlap_too_much_are_refused() {
+    let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]].map(DVec3::from_array);
+    let vertices = (0..20).flat_map(|_| corners).collect();
+    let tets = (0..20).map(|n| [4 * n, 4 * n + 1, 4 * n + 2, 4 * n + 3]).collect();
+    let solid = Solid::uniform(vertices, tets, vec![], Material::default()).unwrap();
+    let tree = ElementTree::new(&solid);
+    let points: Vec<DVec3> = points(0.5, DVec3::ONE).take(30).collect();
+    let found = find_candidates(&tree, &points, 600, &()).unwrap();
+    assert!(found.len() == 30 && found.iter().all(|one| one.elements.len() == 20));
+    let error = find_candidates(&tree, &points, 599, &()).unwrap_err();
+    assert_eq!(error, ModesError::OverlappingElements { max: 599 });
+    assert!(!error.to_string().contains('\n'), "{error}");
+    let token = sscc::CancelToken::new();
+    token.cancel();
+    let cancelled = find_candidates(&tree, &points, 600, &token).unwrap_err();
+    assert_eq!(cancelled, ModesError::Core(sscc::Error::Cancelled));
+}

@@ -58,7 +58,7 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     /// Creates the lattice around the solid within a closed surface, with `cells` cubes along its longest side; None
-    /// gives about 20,000 cubes in all. Cubes are in the order of cells, x fastest, and nodes in the order of first use.
+    /// gives about 20,000 cubes in all, or fewer if triangles meet too many cells. Cubes are in the order of cells, x fastest, and nodes in the order of first use.
     ///
     /// # Errors
     /// When the surface is open, not consistently oriented, without volume, collides with itself or has several pieces;

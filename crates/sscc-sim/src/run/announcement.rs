@@ -121,7 +121,7 @@ fn of_vibrations(
 }
 
 /// Returns the time (s) at which the free vibration from q = 0 is farthest from there; infinite if it moves away for
-/// ever. Later peaks are lower.
+/// ever. No later peak is higher.
 fn peak_time(eigenvalue: f64, damping: f64) -> f64 {
     let a = damping / 2.0;
     let d = eigenvalue - a * a;

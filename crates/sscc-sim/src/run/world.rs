@@ -13,7 +13,7 @@ pub fn world(scene: &Scene, prepared: &PreparedScene) -> Result<World> {
     let mut world = World::new(scene.options())?;
     for (number, body) in scene.bodies.iter().enumerate() {
         let at = || format!("body {number} (counted from 0)");
-        let BodySpec { model, position, orientation, velocity, angular_velocity, shake } = body;
+        let BodySpec { model, orientation, velocity, angular_velocity, shake, .. } = body;
         let model = &prepared.models[*model];
         let is_free = !model.is_held();
         if !is_free && (*velocity != DVec3::ZERO || *angular_velocity != DVec3::ZERO) {
@@ -24,7 +24,7 @@ pub fn world(scene: &Scene, prepared: &PreparedScene) -> Result<World> {
         let v = shake.rates(model.shape.reach()).at(at)?;
         let start = Start {
             is_free,
-            position: position.or_else(|| is_free.then_some(DVec3::ZERO)),
+            position: Some(body.place(if is_free { DVec3::ZERO } else { model.shape.mass().center })),
             orientation: *orientation * model.upright,
             velocity: *velocity,
             spin: *angular_velocity,

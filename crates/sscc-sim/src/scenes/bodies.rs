@@ -16,8 +16,11 @@ const MAX_BODIES: usize = 4096;
 pub struct BodySpec {
     /// Index of its model.
     pub model: usize,
-    /// Position of its centre of mass (m). None means the origin, or for a held body its position in the file.
+    /// Position of the centre of mass (m) of the first body of its grid, or of itself. None means the origin, or for a held body
+    /// its position in the file.
     pub position: Option<DVec3>,
+    /// Displacement from there to its place in a grid (m).
+    pub offset: DVec3,
     /// Rotation from the axes of its model to those of the world.
     pub orientation: DQuat,
     /// Velocity (m/s).
@@ -26,6 +29,13 @@ pub struct BodySpec {
     pub angular_velocity: DVec3,
     /// Rates of the first modes.
     pub shake: Shake,
+}
+
+impl BodySpec {
+    /// Returns the position of the centre of mass (m). `default` replaces a missing position.
+    pub fn place(&self, default: DVec3) -> DVec3 {
+        self.position.unwrap_or(default) + self.offset
+    }
 }
 
 const KEYS: [&str; 9] =
@@ -63,6 +73,7 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
     let first = BodySpec {
         model,
         position: section.vector("position")?,
+        offset: DVec3::ZERO,
         orientation: rotation(section)?,
         velocity: section.vector("velocity")?.unwrap_or(DVec3::ZERO),
         angular_velocity: section.vector("angular_velocity")?.unwrap_or(DVec3::ZERO),
@@ -85,12 +96,11 @@ fn push(section: &Section<'_>, models: &[ModelSpec], bodies: &mut Vec<BodySpec>)
         return Err(section.refused("grid", cause));
     }
     let spacing = section.require("spacing", spacing)?;
-    let corner = first.position.unwrap_or(DVec3::ZERO);
     let [nx, ny, nz] = grid.to_array().map(|x| x as usize);
     for (k, j, i) in (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i)))) {
         let number = i + nx * (j + ny * k);
         bodies.push(BodySpec {
-            position: Some(corner + spacing * DVec3::new(i as f64, j as f64, k as f64)),
+            offset: spacing * DVec3::new(i as f64, j as f64, k as f64),
             // The rotation is about the body's own upright axis. After a rotation about the vertical, all bodies would fall
             // alike.
             orientation: first.orientation * DQuat::from_axis_angle(DVec3::Z, turn * number as f64),

@@ -56,10 +56,10 @@ fn a_scene_has_the_values_of_its_file() {
     assert!(model.is_linear && scene.sound.is_none());
     let [one, .., last] = &scene.bodies[..] else { panic!() };
     assert!((one.orientation * DVec3::X - DVec3::Y).length() < 1e-15 && one.shake.values == [0.1, -2.0]);
-    assert_eq!(
-        (last.position, scene.bodies[1].position),
-        (Some(DVec3::new(1.0, 0.0, 1.0)), Some(DVec3::ZERO))
-    );
+    assert_eq!(one.place(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    // Without a position, the grid begins at the default: of held bodies their position in the file.
+    let default = DVec3::new(5.0, 6.0, 7.0);
+    assert_eq!((scene.bodies[1].place(default), last.place(default)), (default, DVec3::new(6.0, 6.0, 8.0)));
     assert!((last.orientation.to_axis_angle().1.to_degrees() - 50.0).abs() < 1e-12);
 }
 

@@ -32,7 +32,7 @@ use crate::{LeftOut, Stage, TaskError, Watch, available_threads};
 /// # Errors
 /// When a request is contradictory; when `watch` cancels; when `take` fails. `take` receives the errors of a file: when
 /// it cannot be read or does not fit its mesh or the request; when the nodes of a scene have more than 2^25 triangles or
-/// vertices together; when a mesh would be compared with itself; when a position is not finite or is beyond
+/// vertices together, or more than 2^20 pairs of them collide at one time; when a mesh would be compared with itself; when a position is not finite or is beyond
 /// [`sscc::limits::LARGEST`]; when a query has more than [`sscc::Detector::MAX_PAIRS`] pairs and no limit.
 pub fn detect<E: From<TaskError>>(
     request: &Detection,

@@ -3,18 +3,20 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use sscc_io::Message;
 
 use super::ignored_between::IgnoredBetween;
 use super::moving_mesh::MovingMesh;
 use super::node_boxes::{are_apart, boxes};
 use super::request::Detection;
+use super::scene_size::way_out;
 use super::worker::{QueryResult, Side, query};
 use crate::TaskError;
 use crate::error::{At, Result};
 use crate::text::grouped;
 
-/// Maximum number of pairs of nodes that collide at one time: their answers take less than a GiB, unless they have many pairs of
-/// triangles each.
+/// Maximum number of pairs of nodes that collide at one time: the answers of a frame take less than a GiB, unless they have many pairs
+/// of triangles each. A few frames for each thread wait until those before them are written.
 const MAX_COLLIDING: usize = 1 << 20;
 
 /// A detector for each mesh, and its positions at one frame. Positions are evaluated once for all pairs.
@@ -58,11 +60,12 @@ impl<'m, 'w> NodePairs<'m, 'w> {
                     continue;
                 }
                 if found.len() == MAX_COLLIDING {
-                    let cause = format!(
-                        "more than {} pairs of nodes collide at one time: name one node, as in FILE#NODE",
-                        grouped(MAX_COLLIDING as u64)
-                    );
-                    return Err(TaskError::refused(mesh.place(frame), cause));
+                    let cause =
+                        format!("more than {} pairs of nodes collide: ", grouped(MAX_COLLIDING as u64));
+                    return Err(TaskError::refused(
+                        mesh.place(frame),
+                        Message::from(cause) + way_out(request),
+                    ));
                 }
                 if request.has_positions {
                     let mut shared = |node: usize, side: &Side<'_, '_>| {

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::text::{counted, grouped};
 
 /// Maximum number of triangles in all nodes, and of vertices. A triangle with its detector takes about 100 bytes, so that
-/// the nodes take a few GiB; a small file can show a mesh by any number of nodes. A mesh alone is bounded by its file.
+/// the nodes take a few GiB for each thread; a small file can show a mesh by any number of nodes. A mesh alone is bounded by its file.
 const MAX_SIZE: u64 = 1 << 25;
 
 /// Refuses nodes that have too many triangles or vertices together.
@@ -21,17 +21,21 @@ pub(super) fn check_scene_size(file: &Path, nodes: &[MeshNode], request: &Detect
     if nodes.len() == 1 || triangles.max(vertices) <= MAX_SIZE {
         return Ok(());
     }
-    let [triangles, vertices, most] = [triangles, vertices, MAX_SIZE].map(grouped);
+    let [triangles, vertices, limit] = [triangles, vertices, MAX_SIZE].map(grouped);
     let nodes = counted(nodes.len() as u64, "node");
     let cause = format!(
-        "its {nodes} have {triangles} triangles and {vertices} vertices in all, but at most {most} of each are checked \
+        "its {nodes} have {triangles} triangles and {vertices} vertices in all, but at most {limit} of each are checked \
          together: "
     );
-    let way_out = match request.motion {
+    Err(TaskError::refused(file.display(), Message::from(cause) + way_out(request)))
+}
+
+/// Returns how to ask for a single node.
+pub(super) fn way_out(request: &Detection) -> Message {
+    match request.motion {
         MeshMotion::Animation(_) => "select a node by " + Setting::Node,
         _ => "name a node, as in FILE#NODE".into(),
-    };
-    Err(TaskError::refused(file.display(), Message::from(cause) + way_out))
+    }
 }
 
 #[cfg(test)]

@@ -172,7 +172,19 @@ impl Attack<'_> {
         while nodes[n].triangle_count > LARGE && !nodes[n].is_leaf() {
             n = nodes[n].first_child as usize + random.below(nodes[n].child_count as usize);
         }
-        self.claims.node(n as u32)
+        let claim = self.claims.node(n as u32);
+        if claim.radius > 0.0 {
+            return claim;
+        }
+        // Perhaps only pairs of nodes have radii.
+        let pairs: Vec<Claim> = self.claims.root_pairs().filter(|claim| claim.radius > 0.0).collect();
+        if random.below(2) == 0
+            && let Some(claim) = pairs.get(random.below(pairs.len()))
+        {
+            return *claim;
+        }
+        let is_absent = random.below(2) == 0;
+        self.claims.random_pair(random, is_absent).unwrap_or(claim)
     }
 
     /// Returns a q with `|z|` below the radius, mostly just below it. Its direction is that of a known collision or a

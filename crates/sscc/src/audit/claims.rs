@@ -99,16 +99,14 @@ impl<'a> Claims<'a> {
     /// Returns a random claim of the pair tree: about an absent pair if `is_absent` and one is found, else about an
     /// entry. None if the tree has no entries.
     pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
-        if self.entries.is_empty() {
-            return None;
-        }
-        for _ in 0..if is_absent { 100 } else { 0 } {
+        let tries = if is_absent && self.parents_len() > 0 { 100 } else { 0 };
+        for _ in 0..tries {
             let missing = self.absent(random.below(self.parents_len()));
             if !missing.is_empty() {
                 return Some(missing[random.below(missing.len())]);
             }
         }
-        Some(self.stored(random.below(self.entries.len())))
+        (!self.entries.is_empty()).then(|| self.stored(random.below(self.entries.len())))
     }
 
     /// Returns the claim that this triangle pair refutes, if any. The pair counts, and collides or is nearer than the

@@ -47,8 +47,8 @@ impl PairRefiner<'_> {
     pub(crate) fn prove(&mut self, a: [u32; 3], b: [u32; 3], radius: f64, list: &mut WitnessList) -> bool {
         let pair = PairCorners::of(self.model, a, b);
         let mut corner_modes = std::mem::take(&mut self.corner_modes);
-        let most = list.witnesses.len() + MAX_PARTS;
-        let is_proven = self.prove_part(&pair, SubPair::UNDIVIDED, radius, list, most, &mut corner_modes);
+        let limit = list.witnesses.len() + MAX_PARTS;
+        let is_proven = self.prove_part(&pair, SubPair::UNDIVIDED, radius, list, limit, &mut corner_modes);
         self.corner_modes = corner_modes;
         is_proven
     }
@@ -59,10 +59,10 @@ impl PairRefiner<'_> {
         part: SubPair,
         radius: f64,
         list: &mut WitnessList,
-        most: usize,
+        limit: usize,
         corner_modes: &mut [f64],
     ) -> bool {
-        if list.witnesses.len() >= most {
+        if list.witnesses.len() >= limit {
             return false;
         }
         let is_whole = part.depth_a == 0 && part.depth_b == 0;
@@ -80,7 +80,7 @@ impl PairRefiner<'_> {
         }
         list.witnesses.push(PairWitness::Quarters { is_first });
         let mut parts = part.subdivide(is_first).into_iter();
-        parts.all(|part| self.prove_part(pair, part, radius, list, most, corner_modes))
+        parts.all(|part| self.prove_part(pair, part, radius, list, limit, corner_modes))
     }
 
     /// Returns a witness for these corners without subdivision.

@@ -9,9 +9,9 @@ const MAX_STEPS: usize = 4096;
 
 impl Certificates {
     /// Returns q itself if it is inside the root's ellipsoid, else the last point inside it, up to rounding, on the
-    /// line from the centre to q (if `|z|` at q overflows, a point of this line inside it). The root's certificate proves the result free. None if the root's radius is 0, if
-    /// there are exceptions, which no radius covers, or if the certificates have a clearance, since triangles within
-    /// its rings may collide.
+    /// line from the centre to q (if `|z|` at q overflows, some point of this line inside it). The root's certificate
+    /// proves the result free. None if the root's radius is 0, if there are exceptions, which no radius covers, or if
+    /// the certificates have a clearance, since triangles within its rings may collide.
     ///
     /// # Errors
     /// When the length of q is not the number of modes, an entry is not finite, or this thread's arithmetic is not that of

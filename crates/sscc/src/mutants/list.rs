@@ -250,6 +250,8 @@ mutants! {
     GapRoundedOnce: Covered("the roundings that the bound grants to evaluation are more than the other position's");
     /// A capsule is widened by one of five rounding bounds.
     CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
+    /// Local certificates are evaluated at smaller and smaller scales.
+    LocalScalesEndless: CaughtBy("it safe_scale::scales_at_which_nothing_holds_end");
     /// A safe scale may be too small for the search to advance.
     SmallestScalesSearched: CaughtBy("it safe_scale::the_smallest_scales_end");
     /// Scales at which a radius is reached are rounded to nearest.
@@ -400,8 +402,8 @@ mutants! {
     NegativeVolumeIsNone: CaughtBy("it body_penetration::parts_that_meet_in_an_edge_face_one_way");
     /// Parts of a body that meet in a vertex face as their sum does.
     PartsJoinInVertices: CaughtBy("it body_penetration::parts_that_meet_in_a_vertex_face_one_way");
-    /// The point that tells where a part is may be on another part.
-    PointsAtCorners: CaughtBy("it body_penetration::parts_that_touch_face_one_way");
+    /// The points that tell where a part is may be on another part.
+    PointsAtOrigins: CaughtBy("it body_penetration::parts_that_touch_face_one_way");
     /// Flat parts of a body face as rounding decides.
     FlatPartsFace: CaughtBy("it body_penetration::flat_parts_do_not_count");
     /// Heights that overflow in the frame of the search exclude all vertices.

@@ -28,6 +28,32 @@ fn audits_of_any_number_of_samples_can_be_cancelled() {
     }
 }
 
+/// Where triangles of every node collide at rest, radii of pairs of nodes are claims.
+#[test]
+fn radii_of_pairs_alone_are_attacked() {
+    // Four heaps of 32 equal triangles; a mode moves the first two heaps together.
+    let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let heaps = (0..4).flat_map(|heap| (0..32).map(move |_| DVec3::Z * 10.0 * f64::from(heap)));
+    let positions: Vec<DVec3> = heaps.flat_map(|at| triangle.map(|p| p + at)).collect();
+    let faces = (0..128).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let rise = (0..positions.len()).map(|v| if v < 96 { DVec3::Z } else { DVec3::ZERO }).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(1, rise).unwrap()).unwrap();
+    for budget in [0, 64] {
+        let options = CertifyOptions::default().max_exceptions(0).local_budget(0).budget(budget);
+        let certificates = Certificates::compute(&model, &options, &()).unwrap();
+        let parts = certificates.parts();
+        assert!(parts.node_radii.iter().all(|radius| *radius == 0.0));
+        let asked = AuditOptions::default().samples(200).threads(1);
+        let report = audit(&model, &certificates, &asked, &()).unwrap();
+        assert!(report.samples > 100 && report.violations.is_empty(), "{report:?}");
+        let mut wrong = parts.clone();
+        wrong.root_pair_radii.iter_mut().for_each(|radius| *radius *= 3.0);
+        let forged = Certificates::try_from(wrong).unwrap();
+        assert!(!audit(&model, &forged, &asked, &()).unwrap().violations.is_empty());
+    }
+}
+
 /// Right certificates of every scope have no violations. If radii are 1.5 times as large, audits find violations of
 /// nearly all models whose right radii are tight.
 #[test]

@@ -162,13 +162,16 @@ fn sizes_change_nothing() {
         assert!((found.depth / size - plain.depth).abs() < 1e-9, "{exponent}: {found:?}");
         assert!((found.volume / size / size / size - plain.volume).abs() < 1e-9, "{exponent}: {found:?}");
     }
-    let tiny = |mesh: &TriMesh| {
-        let positions = mesh.rest_positions().iter().map(|p| *p * 2.0_f64.powi(-1000)).collect();
-        TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
-    };
-    let found = penetration(&tiny(&a), &tiny(&b));
-    assert!((found.depth * 2.0_f64.powi(1000) - plain.depth).abs() < 1e-9, "{found:?}");
-    assert!(found.volume == 0.0 && found.volume_error > 0.0, "{found:?}");
+    // A vertex of no face changes nothing, wherever it is.
+    for unused in [&[][..], &[DVec3::X]] {
+        let tiny = |mesh: &TriMesh| {
+            let positions = mesh.rest_positions().iter().map(|p| *p * 2.0_f64.powi(-1000));
+            TriMesh::new(positions.chain(unused.iter().copied()).collect(), mesh.faces().to_vec()).unwrap()
+        };
+        let found = penetration(&tiny(&a), &tiny(&b));
+        assert!((found.depth * 2.0_f64.powi(1000) - plain.depth).abs() < 1e-9, "{found:?}");
+        assert!(found.volume == 0.0 && found.volume_error > 0.0, "{found:?}");
+    }
 }
 
 /// A flat part, closed by two triangulations of one tilted rectangle, has a volume of any sign by rounding.
@@ -236,6 +239,18 @@ fn parts_that_touch_face_one_way() {
     let around = cuboid(DVec3::splat(-1.0), DVec3::splat(3.0));
     let found = penetration(&with_tetrahedron(2.0), &around);
     assert!((found.volume - (8.0 - 1.0 / 6.0)).abs() <= found.volume_error + 1e-12, "{found:?}");
+    // In any position, where centroids are not exact.
+    let mut random = Random::new(50);
+    for _ in 0..20 {
+        let turn = DMat3::from_quat(DQuat::from_scaled_axis(random.vector() * 3.0));
+        let turned = |mesh: &TriMesh| {
+            let positions = mesh.rest_positions().iter().map(|p| turn * *p).collect();
+            TriMesh::new(positions, mesh.faces().to_vec()).unwrap()
+        };
+        // A face of the tetrahedron is a part of a face of the cube, except for rounding.
+        assert_eq!(find(&turned(&with_tetrahedron(0.0)), &turned(&below)), Err(Error::OpenMesh("first")));
+        assert!(find(&turned(&with_tetrahedron(2.0)), &turned(&around)).is_ok());
+    }
     // Equal parts have no point that is on one of them alone.
     let positions = [cube.rest_positions(), cube.rest_positions()].concat();
     let again = cube.faces().iter().map(|face| face.map(|v| v + 8));

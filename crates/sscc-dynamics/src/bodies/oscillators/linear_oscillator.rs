@@ -81,6 +81,11 @@ impl LinearOscillator {
     pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.eigenvalues.iter().zip(q).zip(v).map(|((lambda, q), v)| (v * v + lambda * q * q) / 2.0).sum()
     }
+
+    /// Returns the elastic energy.
+    pub(crate) fn elastic_energy(&self, q: &[f64]) -> f64 {
+        self.eigenvalues.iter().zip(q).map(|(lambda, q)| lambda * q * q / 2.0).sum()
+    }
 }
 
 impl Step {

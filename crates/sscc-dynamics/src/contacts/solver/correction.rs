@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::friction_cone::is_mobile;
 use crate::contacts::contact_constraint::ContactPoints;
 
 /// Constraint on the end of a step.
@@ -28,6 +29,11 @@ pub(crate) struct Correction {
 }
 
 impl Correction {
+    /// Whether an impulse along the normal moves the points.
+    pub fn is_mobile(&self) -> bool {
+        is_mobile(self.normal_inverse_mass, &self.inverse_mass)
+    }
+
     /// Returns the impulse on the first body by which the end of the step is displaced.
     pub fn impulse(&self) -> DVec3 {
         self.points.normal * self.normal_impulse + self.friction_impulse

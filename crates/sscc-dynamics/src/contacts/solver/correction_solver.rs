@@ -6,6 +6,9 @@
 //! contact bounds the gap at the end of the step, which is a linear function of w, from below. Friction opposes the
 //! tangential displacement in the step, within Coulomb's cone. The solution is that of projected Gauss-Seidel, which
 //! begins with the impulses of the last step.
+//!
+//! Contacts whose points no impulse along the normal moves, up to rounding, have no impulse. Where other motions make such
+//! points meet, the bodies move only a part of their motion (`step_limiter.rs`).
 
 use glam::{DMat3, DVec3};
 
@@ -98,6 +101,10 @@ impl CorrectionSolver {
                 continue;
             }
             self.add_rigid(n, contact, both, laws);
+        }
+        // These are not solved, so an impulse of the last step must not remain.
+        for one in self.list.iter_mut().filter(|one| !one.is_mobile()) {
+            (one.normal_impulse, one.friction_impulse) = (0.0, DVec3::ZERO);
         }
     }
 
@@ -220,9 +227,8 @@ impl CorrectionSolver {
     /// Gathers the constraints that act on a body of `among`, island by island, with their rows.
     fn gather_islands(&mut self, bodies: &[Body], contacts: &[Contact], among: &BodySet) {
         let Self { list, active, islands, rows, masses, .. } = self;
-        let is_active = |one: &Correction| {
-            one.normal_inverse_mass > 0.0 && one.points.sides().any(|side| among.contains(side.body))
-        };
+        let is_active =
+            |one: &Correction| one.is_mobile() && one.points.sides().any(|side| among.contains(side.body));
         islands.reset(bodies.len());
         for one in list.iter().filter(|one| is_active(one) && one.points.bodies[1] != GROUND) {
             islands.join(one.points.bodies[0] as usize, one.points.bodies[1] as usize);
@@ -267,5 +273,55 @@ impl CorrectionSolver {
                 *w += weight * u.dot(local);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DQuat;
+
+    use super::*;
+    use crate::contacts::nearest_triangles::Nearest;
+    use crate::test_shapes::tetrahedron;
+    use crate::{Start, WorldOptions};
+
+    /// The only mode of two held bodies moves them along the face in contact, and along its normal only by rounding.
+    #[test]
+    fn contacts_have_no_impulse_where_no_mode_moves_their_points_apart() {
+        let shape = tetrahedron(vec![DVec3::new(1.0, -2.0, 0.0); 4], &[1.0]);
+        let options = WorldOptions::default();
+        let laws = ContactLaws::new(&options, 0.1);
+        let mut both = BodySet::default();
+        both.set([true; 2].into_iter());
+        let mut moved_by_rounding = 0;
+        for n in 0..40 {
+            let t = f64::from(n);
+            let orientation =
+                DQuat::from_scaled_axis(DVec3::new(0.3 + 0.1 * t, 0.7 - 0.05 * t, 0.2 * t)).normalize();
+            let mut bodies = [DVec3::new(-0.2, -0.2, 1.01), DVec3::ZERO].map(|offset| {
+                let position = Some(orientation * offset);
+                let start = Start { is_free: false, position, orientation, ..Start::default() };
+                Body::new(&shape, &start, &options, None).unwrap()
+            });
+            // The lowest face of the first body is above the highest vertex of the second.
+            let corners = [bodies[0].start_corners(0, false), bodies[1].start_corners(1, false)];
+            let (normal, vertex) = (orientation * DVec3::Z, corners[1][2]);
+            let nearest = Nearest { points: [vertex + normal * 0.01, vertex], normal, features: 1 };
+            let mut contact = Contact::default();
+            contact.begin_rigid([0, 1], (0, 1), [&bodies[0], &bodies[1]], &corners, &nearest, false);
+            contact.min_gap = contact.gap + 0.01;
+            contact.normal_impulse = 1.0;
+            let contacts = [contact];
+            let mut solver = CorrectionSolver::default();
+            solver.begin(&bodies);
+            solver.gather(&bodies, &[], &contacts, &laws);
+            solver.solve(&mut bodies, &contacts, &laws, &both);
+            let [one] = &solver.list[..] else { panic!("{} constraints", solver.list.len()) };
+            assert!(one.target > 0.0);
+            assert_eq!(one.impulse(), DVec3::ZERO, "{n}");
+            assert!(bodies.iter().all(|body| body.q == [0.0]), "{n}");
+            moved_by_rounding += usize::from(one.normal_inverse_mass > 0.0);
+        }
+        assert!(moved_by_rounding > 4, "{moved_by_rounding}");
     }
 }

@@ -1,4 +1,4 @@
-//! Coulomb's cone: the friction impulses that a contact can exert.
+//! Coulomb's cone: the friction impulses that a contact can exert, and the directions along which an impulse moves its points.
 
 use glam::{DMat3, DVec3};
 
@@ -13,13 +13,19 @@ const MAX_COUPLING: f64 = 0.75;
 /// contact, the mobility along a direction may be 0 up to rounding.
 const MIN_MOBILITY: f64 = 1e-10;
 
+/// Whether an impulse along some direction moves the points of a contact. `mobility` is the change of their velocity along it
+/// by a unit impulse; below the bound it is the rounding error of 0, and impulses divided by it would have no bound.
+pub(crate) fn is_mobile(mobility: f64, inverse_mass: &DMat3) -> bool {
+    let whole = inverse_mass.x_axis.x + inverse_mass.y_axis.y + inverse_mass.z_axis.z;
+    mobility > MIN_MOBILITY * whole
+}
+
 /// Returns the change of the friction impulse that stops points from sliding with a velocity; zero where no impulse along it
 /// moves them. `inverse_mass` is the matrix from impulse to velocity.
 pub(crate) fn stop_sliding(sliding: DVec3, inverse_mass: &DMat3) -> DVec3 {
     let Some(direction) = sliding.try_normalize() else { return DVec3::ZERO };
     let mobility = direction.dot(*inverse_mass * direction);
-    let whole = inverse_mass.x_axis.x + inverse_mass.y_axis.y + inverse_mass.z_axis.z;
-    if mobility > MIN_MOBILITY * whole { direction * (-sliding.length() / mobility) } else { DVec3::ZERO }
+    if is_mobile(mobility, inverse_mass) { direction * (-sliding.length() / mobility) } else { DVec3::ZERO }
 }
 
 /// Returns the friction impulse, shortened into the cone of this normal impulse. `inverse_mass` is the matrix from impulse
@@ -54,6 +60,16 @@ mod tests {
             assert_eq!(stop_sliding(sliding, &one_mode), DVec3::ZERO);
             assert_eq!(stop_sliding(sliding, &DMat3::ZERO), DVec3::ZERO);
         }
+    }
+
+    #[test]
+    fn mobilities_that_are_rounding_errors_count_as_zero() {
+        let one_mode = DMat3::from_diagonal(DVec3::new(2.0, 1e-17, -1e-17));
+        for (mobility, moves) in [(2.0, true), (1e-8, true), (1e-11, false), (1e-17, false), (-1e-17, false)]
+        {
+            assert_eq!(is_mobile(mobility, &one_mode), moves, "{mobility}");
+        }
+        assert!(!is_mobile(0.0, &DMat3::ZERO) && !is_mobile(f64::NAN, &DMat3::ZERO));
     }
 
     #[test]

@@ -99,8 +99,6 @@ impl GaussSeidel<'_> {
 #[cfg(test)]
 mod tests {
     use glam::{DMat3, DQuat};
-    use sscc::{Certificates, CertifyOptions, Modes, ReducedModel, TriMesh};
-    use sscc_solid::{Elasticity, MassProperties, Stiffness};
 
     use super::*;
     use crate::bodies::displacement::displacement;
@@ -109,6 +107,7 @@ mod tests {
     use crate::contacts::solver::contact_rows::RowPoint;
     use crate::contacts::solver::rigid_velocity::{RigidVelocity, modal_inverse_mass};
     use crate::packed_rows::dispatch;
+    use crate::test_shapes::tetrahedron;
     use crate::{Body, Shape, Start, WorldOptions};
 
     /// Returns the next of a fixed sequence of pseudo-random numbers in [-1, 1).
@@ -123,16 +122,9 @@ mod tests {
 
     /// Returns a tetrahedron with random modes.
     fn shape(rank: usize, state: &mut u64) -> Shape {
-        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-        let mesh = TriMesh::new(positions, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
         let modes = (0..4 * rank).map(|_| vector(state)).collect();
-        let model = ReducedModel::new(mesh, Modes::new(rank, modes).unwrap()).unwrap();
-        let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
-        let inertia = DMat3::from_diagonal(DVec3::new(1.0, 2.0, 2.5));
-        let mass = MassProperties { mass: 3.0, center: DVec3::splat(0.25), inertia };
         let stiffness: Vec<f64> = (0..rank).map(|k| 10.0_f64.powi(k as i32 % 7)).collect();
-        let elasticity = Elasticity::Linear(Stiffness::from_diagonal(&stiffness).unwrap());
-        Shape::new(model, certificates, elasticity, mass).unwrap()
+        tetrahedron(modes, &stiffness)
     }
 
     /// Contacts of a few bodies, without geometry: points and modes are arbitrary.

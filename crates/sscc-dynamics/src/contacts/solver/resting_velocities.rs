@@ -19,7 +19,7 @@ use pulp::{Simd, WithSimd};
 use super::contact_rows::ContactRows;
 use super::correction::Correction;
 use super::correction_solver::CorrectionSolver;
-use super::friction_cone::{limit_friction, stop_sliding};
+use super::friction_cone::{is_mobile, limit_friction, stop_sliding};
 use super::rigid_velocity::{RigidVelocity, modal_inverse_mass};
 use crate::Body;
 use crate::bodies::displacement::displacement;
@@ -185,7 +185,7 @@ impl Stopping<'_> {
         let (load, rows) = (&mut self.loads[n], &mut *self.rows);
         let Load { points: ContactPoints { normal, .. }, inverse_mass, friction, .. } = *load;
         let normal_inverse_mass = normal.dot(inverse_mass * normal);
-        if normal_inverse_mass <= 0.0 {
+        if !is_mobile(normal_inverse_mass, &inverse_mass) {
             return 0.0;
         }
         let axes = rows.axes(n);

@@ -77,8 +77,16 @@ const MAX_NEAR_SHARE: usize = 256;
 
 /// The largest memory of all tables for each triangle of the mesh (bytes), and a memory that is always allowed. Real meshes have 10 to 14
 /// near pairs for each leaf, which take at most 2.6 kB a triangle.
-const MAX_BYTES_PER_TRIANGLE: usize = 4096;
-const ALLOWED_BYTES: usize = 1 << 28;
+const MAX_BYTES_PER_TRIANGLE: u64 = 4096;
+const ALLOWED_BYTES: u64 = 1 << 28;
+
+/// The memory of a table beside its gaps, on any machine.
+const BYTES_OF_TABLE: u64 = 64;
+
+/// Returns the largest memory of all tables of a mesh.
+fn max_bytes(triangles: usize) -> u64 {
+    ALLOWED_BYTES.max(MAX_BYTES_PER_TRIANGLE * triangles as u64)
+}
 
 /// Tables between two checks for cancellation; one takes some microseconds.
 const TABLES_PER_CHECK: usize = 1 << 12;
@@ -120,11 +128,10 @@ impl<'g> CornerGaps<'g> {
         let leaves = nodes.iter().filter(|node| node.is_leaf()).count();
         let Some(mut near) = gaps.near_leaves(MAX_NEAR_SHARE * leaves) else { return Ok(None) };
         let bytes = |(n, m): &NodePair| {
-            let [rows, columns] = [*n, *m].map(|n| gaps.vertices(n).len());
-            size_of::<Option<GapTable>>() + size_of::<f32>() * rows * (columns + 1)
+            let [rows, columns] = [*n, *m].map(|n| gaps.vertices(n).len() as u64);
+            BYTES_OF_TABLE + 4 * rows * (columns + 1)
         };
-        let most = ALLOWED_BYTES.max(MAX_BYTES_PER_TRIANGLE * filter.faces().len());
-        if near.iter().map(bytes).sum::<usize>() > most {
+        if near.iter().map(bytes).sum::<u64>() > max_bytes(filter.faces().len()) {
             return Ok(None);
         }
         near.sort_unstable();

@@ -1,7 +1,15 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+
 use super::entries::proof_entries;
 use super::prover::Prover;
 use crate::certificates::test_models::ring;
-use crate::{Certificates, CertifyOptions, Clearance, Error};
+use crate::{
+    CancelToken, Certificates, CertifyOptions, Clearance, Error, Metric, Modes, Progress, ReducedModel,
+    TriMesh,
+};
 
 /// Each pair of triangles is in one entry, with and without a pair tree.
 #[test]
@@ -45,4 +53,52 @@ fn samples_are_ascending_and_spread() {
     let near = CertifyOptions::default().clearance(Clearance::new(1e-3).unwrap());
     let near = Certificates::compute(&model, &near, &()).unwrap();
     assert!(matches!(Prover::new(&model, &near), Err(Error::ClearanceCertificates)));
+}
+
+/// The nearer a radius is to the exact one, the more parts of two triangles need a witness of their own.
+#[test]
+fn the_search_for_witnesses_ends() {
+    // Two triangles at distance 1, and nine modes that map positions linearly: the exact radius is 1.
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let positions = [corners, corners.map(|p| p + DVec3::Z)].concat();
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let modes = |p: &DVec3| p.to_array().map(|x| axes.map(|axis| axis * x)).concat();
+    let modes = Modes::new(9, positions.iter().flat_map(modes).collect()).unwrap();
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::with_metric(mesh, modes, Metric::identity(9)).unwrap();
+    let options = CertifyOptions::default().local_budget(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let prove = |certificates: &Certificates, progress: &dyn Progress| {
+        let prover = Prover::new(&model, certificates).unwrap();
+        let all: Vec<usize> = (0..prover.entries()).collect();
+        prover.prove(&all, Some(1), progress)
+    };
+    assert!(prove(&certificates, &()).is_ok());
+    let mut parts = certificates.parts().clone();
+    parts.node_radii.iter_mut().for_each(|radius| *radius = 0.99);
+    let exact = Certificates::try_from(parts).unwrap();
+    assert!(matches!(prove(&exact, &()), Err(Error::Unproven(_))));
+}
+
+/// Also within entries, which may have many pairs of triangles.
+#[test]
+fn proofs_can_be_cancelled_at_any_time() {
+    let model = ring(300, 3, 1.3);
+    let options = CertifyOptions::default().budget(0).local_budget(0);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    let prover = Prover::new(&model, &certificates).unwrap();
+    let all: Vec<usize> = (0..prover.entries()).collect();
+    let looks_until = |limit: usize| {
+        let looks = Arc::new(AtomicUsize::new(0));
+        let seen = Arc::clone(&looks);
+        let token = CancelToken::when(move || seen.fetch_add(1, Ordering::Relaxed) >= limit);
+        (prover.prove(&all, Some(1), &token).err(), looks.load(Ordering::Relaxed))
+    };
+    let (error, looks) = looks_until(usize::MAX);
+    assert!(error.is_none() && looks > 2 * all.len(), "{looks}");
+    for limit in [0, 1, looks / 2, looks - 1] {
+        // Each further entry looks once.
+        let (error, looks) = looks_until(limit);
+        assert!(error == Some(Error::Cancelled) && looks <= limit + 1 + all.len(), "{error:?} {looks} {limit}");
+    }
 }

@@ -8,7 +8,7 @@ use super::boxes::Boxes;
 use super::components::Components;
 use super::detector::Detector;
 use crate::Error;
-use crate::geometry::{Aabb, crossing, intersect_triangle_triangle};
+use crate::geometry::crossing;
 
 /// The number of connected components of a mesh that lie inside another mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -118,48 +118,14 @@ impl Side<'_> {
         point: DVec3,
         is_counted: impl Fn(u32) -> bool,
     ) -> Result<i32, Error> {
-        let mut winding = 0;
-        self.visit(
-            |aabb| {
-                let is_between =
-                    |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
-                is_between(0)
-                    && is_between(1)
-                    && point.z <= with_mutant!(aabb.upper.z, RaysMissTheirBoxes, aabb.lower.z)
-            },
-            |triangle| {
-                if is_counted(triangle) {
-                    winding += crossing(point, &self.boxes.corners(triangle));
-                }
-            },
-        )?;
-        Ok(winding)
-    }
-
-    /// Whether a point is on a triangle for which `is_counted` holds.
-    ///
-    /// # Errors
-    /// When the token cancels.
-    pub(super) fn is_on(&self, point: DVec3, is_counted: impl Fn(u32) -> bool) -> Result<bool, Error> {
-        let mut is_on = false;
-        self.visit(
-            |aabb| aabb.lower.cmple(point).all() && point.cmple(aabb.upper).all(),
-            |triangle| {
-                is_on |= is_counted(triangle)
-                    && intersect_triangle_triangle(&[point; 3], &self.boxes.corners(triangle));
-            },
-        )?;
-        Ok(is_on)
-    }
-
-    /// Visits the triangles of all leaves whose AABBs, and those of the nodes above them, are chosen.
-    ///
-    /// # Errors
-    /// When the token cancels.
-    fn visit(&self, is_chosen: impl Fn(&Aabb) -> bool, mut visit: impl FnMut(u32)) -> Result<(), Error> {
-        let mut open = vec![0];
+        let (mut open, mut winding) = (vec![0], 0);
         while let Some(n) = open.pop() {
-            if !is_chosen(&self.boxes.of_nodes[n as usize]) {
+            let aabb = &self.boxes.of_nodes[n as usize];
+            let is_between = |axis: usize| aabb.lower[axis] <= point[axis] && point[axis] <= aabb.upper[axis];
+            if !(is_between(0)
+                && is_between(1)
+                && point.z <= with_mutant!(aabb.upper.z, RaysMissTheirBoxes, aabb.lower.z))
+            {
                 continue;
             }
             if !self.boxes.is_leaf(n) {
@@ -169,8 +135,9 @@ impl Side<'_> {
             if self.boxes.context.is_cancelled() {
                 return Err(Error::Cancelled);
             }
-            self.boxes.triangles(n).iter().for_each(|triangle| visit(*triangle));
+            let counted = self.boxes.triangles(n).iter().filter(|t| is_counted(**t));
+            winding += counted.map(|t| crossing(point, &self.boxes.corners(*t))).sum::<i32>();
         }
-        Ok(())
+        Ok(winding)
     }
 }

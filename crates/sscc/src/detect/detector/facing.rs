@@ -9,17 +9,16 @@ use crate::Error;
 /// units of 2^-53 of 16.
 const ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// The number of triangles of a part at which a point is looked for that is on no other part. Parts that touch have more triangles
-/// that do not; parts that are equal have none.
+/// The number of triangles of a part, spread over it, that tell where it is. Rounding decides where triangles are that lie on other
+/// parts, so one triangle would not suffice.
 const TRIANGLES_TRIED: usize = 16;
 
-/// A part of a mesh, whose triangles common edges join.
+/// A part of a mesh: triangles joined by common edges.
 struct Part {
     /// A corner. Volumes are relative to it.
     origin: DVec3,
     /// Six times the volume, and a bound of its rounding errors.
     volume: [f64; 2],
-    /// Its first triangles.
     triangles: Vec<u32>,
 }
 
@@ -41,9 +40,7 @@ pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option
         let [volume, error] = &mut part.volume;
         *volume += a.dot(b.cross(c));
         *error += ERROR * (a.length() * b.length() * c.length()) + f64::EPSILON * volume.abs();
-        if part.triangles.len() < TRIANGLES_TRIED {
-            part.triangles.push(triangle as u32);
-        }
+        part.triangles.push(triangle as u32);
     }
     let direction = if parts.iter().map(|part| part.volume[0]).sum::<f64>() < 0.0 { -1 } else { 1 };
     for (number, part) in parts.iter().enumerate() {
@@ -52,15 +49,16 @@ pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option
             continue;
         }
         let is_of_others = |t: u32| of_triangles[t as usize] as usize != number;
-        let mut point = part.origin;
-        for t in &part.triangles {
+        let step = part.triangles.len().div_ceil(TRIANGLES_TRIED);
+        let mut windings = Vec::with_capacity(TRIANGLES_TRIED);
+        for t in part.triangles.iter().step_by(step) {
             let [a, b, c] = triangles[*t as usize];
-            point = with_mutant!((a + b + c) / 3.0, PointsAtCorners, part.origin);
-            if !side.is_on(point, is_of_others)? {
-                break;
-            }
+            let point = with_mutant!((a + b + c) / 3.0, PointsAtOrigins, part.origin);
+            windings.push(side.winding_number_of(point, is_of_others)?);
         }
-        let outside = side.winding_number_of(point, is_of_others)?;
+        windings.sort_unstable();
+        // All are equal, except for triangles that lie on other parts.
+        let outside = windings[windings.len() / 2];
         let inside = outside + if volume < 0.0 { -1 } else { 1 };
         if with_mutant!(outside * direction < 0 || inside * direction < 0, PartsFaceAnyWay, false) {
             return Ok(None);
