@@ -99,6 +99,9 @@ fn proofs_can_be_cancelled_at_any_time() {
     for limit in [0, 1, looks / 2, looks - 1] {
         // Each further entry looks once.
         let (error, looks) = looks_until(limit);
-        assert!(error == Some(Error::Cancelled) && looks <= limit + 1 + all.len(), "{error:?} {looks} {limit}");
+        assert!(
+            error == Some(Error::Cancelled) && looks <= limit + 1 + all.len(),
+            "{error:?} {looks} {limit}"
+        );
     }
 }
