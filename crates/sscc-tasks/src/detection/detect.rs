@@ -222,7 +222,7 @@ fn answer<'a>(
         ShapeInMotion { file, mesh, x_t0, x_t1 }
     };
     let mut shapes = [mesh].into_iter().chain(other).zip(&found.positions);
-    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, &**positions));
+    let mut next = || shapes.next().map(|(mesh, positions)| shape(mesh, positions));
     DetectionAnswer {
         file: mesh.file,
         mesh: mesh.mesh,
