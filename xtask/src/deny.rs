@@ -1,4 +1,5 @@
-//! `cargo xtask deny`: checks licences and sources of all dependencies by `deny.toml`.
+//! `cargo xtask deny [--advisories]`: checks licences and sources of all dependencies by `deny.toml`, those of `fuzz/` included;
+//! with the flag also whether advisories are known, from a database that is downloaded.
 
 use std::process::{Command, ExitCode, Stdio};
 
@@ -7,17 +8,27 @@ use crate::program::{exit_code, root, succeed, usage};
 /// The checks that need no database from the network.
 const CHECKS: [&str; 3] = ["bans", "licenses", "sources"];
 
+/// The workspaces.
+const MANIFESTS: [&str; 2] = ["Cargo.toml", "fuzz/Cargo.toml"];
+
 /// Runs cargo-deny.
 pub fn run(arguments: &[String]) -> ExitCode {
-    if !arguments.is_empty() {
-        return usage("deny    (checks licences and sources of all dependencies)");
+    match arguments {
+        [] => exit_code(deny(&CHECKS)),
+        [flag] if flag == "--advisories" => exit_code(deny(&["advisories"]).and_then(|()| deny(&CHECKS))),
+        _ => usage("deny [--advisories]    (checks licences and sources of all dependencies)"),
     }
-    let mut deny = Command::new("cargo-deny");
-    let is_installed = deny.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
-    if !is_installed {
-        return exit_code(Err("cargo-deny is not installed: cargo install --locked cargo-deny".to_owned()));
+}
+
+fn deny(checks: &[&str]) -> Result<(), String> {
+    let mut version = Command::new("cargo-deny");
+    if version.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_err() {
+        return Err("cargo-deny is not installed: cargo install --locked cargo-deny".to_owned());
     }
-    let mut deny = Command::new("cargo-deny");
-    deny.args(["check", "--hide-inclusion-graph"]).args(CHECKS).current_dir(root());
-    exit_code(succeed(&mut deny, "a dependency is refused by deny.toml"))
+    for manifest in MANIFESTS {
+        let mut deny = Command::new("cargo-deny");
+        deny.args(["--manifest-path", manifest, "--config", "deny.toml", "check", "--hide-inclusion-graph"]);
+        succeed(deny.args(checks).current_dir(root()), &format!("a dependency of {manifest} is refused"))?;
+    }
+    Ok(())
 }

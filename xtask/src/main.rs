@@ -79,7 +79,7 @@ const TASKS: &[Task] = &[
     ("wheel", "builds and checks the wheel and the source distribution", wheel::run),
     ("extension", "[WHEEL ...]: packs the add-on of Blender", extension::run),
     ("msrv", "checks crates with the oldest versions of Rust that they state", msrv::run),
-    ("deny", "checks licences and sources of dependencies", deny::run),
+    ("deny", "[--advisories]: checks licences and sources of dependencies", deny::run),
     ("help", "prints this list", help),
 ];
 
