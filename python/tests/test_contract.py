@@ -195,8 +195,9 @@ def test_principal_components_have_standard_deviations(tmp_path: Path) -> None:
     np.savez(path, mean=vertices, components=components, faces=faces, explained_variance=np.array([4.0, 0.25]))
     model = sscc.Model.load(path)
     for same in (model, pickle.loads(pickle.dumps(model))):
-        assert same.deviations.dtype == float and same.deviations.tolist() == [2, 0.5]
-        assert not same.deviations.flags.writeable
+        deviations = same.deviations
+        assert deviations is not None and not deviations.flags.writeable
+        assert deviations.dtype == float and deviations.tolist() == [2, 0.5]
     assert sscc.Model(vertices, faces, modes).deviations is None
 
 
