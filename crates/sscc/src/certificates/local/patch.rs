@@ -101,8 +101,7 @@ impl Patch {
 
     /// Returns the largest Frobenius norm of a mode's gradient, rounded up; NaN if one is NaN.
     pub(super) fn steepest(&self) -> f64 {
-        let square = |k: usize| (0..9).map(|e| self.gradient[e * self.row_len + k].powi(2)).sum::<f64>();
-        (0..self.modes.len()).map(square).fold(0.0, larger_or_nan).sqrt() * (1.0 + 1e-12)
+        steepest(&self.gradient, self.row_len, self.modes.len())
     }
 
     /// Returns the largest Frobenius norm of a vertex's residual, rounded up; NaN if one is NaN.
@@ -164,6 +163,12 @@ impl Patch {
     }
 }
 
+/// Returns the largest norm of a column of a gradient (nine rows), among the first ones, rounded up; NaN if one is NaN.
+fn steepest(gradient: &[f64], row_len: usize, columns: usize) -> f64 {
+    let square = |k: usize| (0..9).map(|e| gradient[e * row_len + k].powi(2)).sum::<f64>();
+    (0..columns).map(square).fold(0.0, larger_or_nan).sqrt() * (1.0 + 1e-12)
+}
+
 /// Returns the largest norm of `width` numbers each, rounded up; NaN if one is NaN: it proves nothing.
 fn largest_norm(numbers: &[f64], width: usize) -> f64 {
     let squares = numbers.chunks_exact(width.max(1)).map(|rows| dot(rows, rows));
@@ -210,5 +215,40 @@ impl Kernel for Divide<'_> {
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) {
         self.ellipsoid.divide(self.images);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding terms are proportional to these norms.
+    #[test]
+    fn no_column_is_longer_than_the_steepest() {
+        // Columns of norms 3 and 5, and one that is not asked for.
+        let mut gradient = vec![0.0; 27];
+        gradient.chunks_exact_mut(3).for_each(|row| row.copy_from_slice(&[1.0, 5.0 / 3.0, 100.0]));
+        for (columns, expected) in [(0, 0.0), (1, 3.0), (2, 5.0)] {
+            let found = steepest(&gradient, 3, columns);
+            assert!(found >= expected && found <= expected * (1.0 + 1e-11), "{found} {expected}");
+        }
+        gradient[13] = f64::NAN;
+        assert!(steepest(&gradient, 3, 2).is_nan() && !steepest(&gradient, 3, 1).is_nan());
+    }
+
+    #[test]
+    fn no_norm_is_larger_than_the_largest() {
+        // Lengths of rows are multiples of 8.
+        let row = |x: f64, y: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, y];
+        for (rows, expected) in
+            [([row(3.0, -4.0), row(1.0, 2.0)], 5.0), ([row(0.0, 1.0), row(6.0, 8.0)], 10.0)]
+        {
+            let found = largest_norm(rows.as_flattened(), 8);
+            assert!(found >= expected && found <= expected + 1e-7, "{found} {expected}");
+        }
+        assert_eq!(largest_norm(&[0.0; 16], 8), 0.0);
+        for rows in [[row(f64::NAN, 1.0), row(2.0, 2.0)], [row(2.0, 2.0), row(1.0, f64::NAN)]] {
+            assert!(largest_norm(rows.as_flattened(), 8).is_nan());
+        }
     }
 }
