@@ -250,8 +250,6 @@ mutants! {
     GapRoundedOnce: Covered("the roundings that the bound grants to evaluation are more than the other position's");
     /// A capsule is widened by one of five rounding bounds.
     CapsuleWidenedOnce: Covered("one bound is more than the rounding of all positions together");
-    /// Local certificates are evaluated at smaller and smaller scales.
-    LocalScalesEndless: CaughtBy("it safe_scale::scales_at_which_nothing_holds_end");
     /// A safe scale may be too small for the search to advance.
     SmallestScalesSearched: CaughtBy("it safe_scale::the_smallest_scales_end");
     /// Scales at which a radius is reached are rounded to nearest.

@@ -42,9 +42,7 @@ impl<'a> LocalScales<'a> {
         let mut proofs = Vec::new();
         let is_cancelled = || context.detect.is_cancelled();
         // Division does not make the smallest numbers smaller, so the loop would not end.
-        let is_normal = |scale: f64| {
-            scale.is_finite() && with_mutant!(scale >= f64::MIN_POSITIVE, LocalScalesEndless, true)
-        };
+        let is_normal = |scale: f64| scale.is_finite() && scale >= f64::MIN_POSITIVE;
         while proofs.len() < MOST_SCALES && scale > root_scale && is_normal(scale) && !is_cancelled() {
             let end: Vec<f64> = center.iter().zip(q).map(|(c, q)| c + scale * (q - c)).collect();
             if let Ok(configuration) = check.measure(context, &end) {
