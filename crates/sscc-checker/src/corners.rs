@@ -7,8 +7,8 @@ use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
-/// The number of values that a direction may keep: lists of triangles of usual leaves and ranks have fewer, others are computed again,
-/// and a proof that was made to exhaust memory cannot.
+/// The number of values that a direction may keep. Lists of triangles of usual leaves and ranks have fewer. Values of others are
+/// computed again, so that no proof exhausts the memory.
 const MAX_KEPT: usize = 1 << 14;
 
 /// A point of a triangle: its position at the centre and its modes (three rows).

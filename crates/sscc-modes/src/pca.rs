@@ -17,7 +17,7 @@ const EXPLAINED_SHARE: f64 = 0.999;
 /// Minimum variance of a component, relative to the largest: products of frames leave about 1e-15 for each frame.
 const ZERO_TOLERANCE: f64 = 1e-12;
 
-/// Number of rows of frames, or positions of vertices, from one check for cancellation to the next.
+/// Maximum number of rows of frames, or positions of vertices, from one check for cancellation to the next.
 const CHUNK: usize = 1 << 12;
 
 /// Number of products of numbers between two checks for cancellation: less than a second.

@@ -41,7 +41,8 @@ fn on_pool<T: Send>(
     }
 }
 
-/// Whether work of this thread may use a pool: the one that it belongs to, or the global one if the system allowed its threads.
+/// Whether work of this thread may use a pool: the pool to which the thread belongs, or the global one if the system allowed its
+/// threads.
 #[cfg(all(feature = "parallel", not(target_family = "wasm")))]
 fn has_threads() -> bool {
     use std::error::Error;

@@ -97,7 +97,7 @@ impl<'a> Claims<'a> {
     }
 
     /// Returns a random claim of the pair tree: about an absent pair if `is_absent` and one is found, else about an
-    /// entry. None if the tree has no entries.
+    /// entry. None if neither is found.
     pub(super) fn random_pair(&self, random: &mut Random, is_absent: bool) -> Option<Claim> {
         let tries = if is_absent && self.parents_len() > 0 { 100 } else { 0 };
         for _ in 0..tries {

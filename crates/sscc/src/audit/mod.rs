@@ -33,7 +33,8 @@ pub struct AuditReport {
     /// Number of attacks made, each at one configuration or two. 0 if nothing is claimed: every radius of a node or a pair is 0, and
     /// there are no local certificates.
     pub samples: usize,
-    /// The number of these attacks that were on local certificates: about half if there are any, all if every radius is 0, of pairs, too.
+    /// The number of these attacks that were on local certificates: about half if there are any, all if every radius of a node
+    /// or a pair is 0.
     pub local_samples: usize,
     /// A line for each configuration that refutes a claim, and for each difference between the answers of two methods.
     /// Empty for sound certificates. Of more than 2^22 attacks, some lines may be missing.

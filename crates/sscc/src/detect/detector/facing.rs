@@ -57,7 +57,7 @@ pub(super) fn facing(side: &Side<'_>, triangles: &[[DVec3; 3]]) -> Result<Option
             windings.push(side.winding_number_of(point, is_of_others)?);
         }
         windings.sort_unstable();
-        // All are equal, except for triangles that lie on other parts.
+        // All are equal, except for triangles that lie on other parts or beyond a crossing.
         let outside = windings[windings.len() / 2];
         let inside = outside + if volume < 0.0 { -1 } else { 1 };
         if with_mutant!(outside * direction < 0 || inside * direction < 0, PartsFaceAnyWay, false) {

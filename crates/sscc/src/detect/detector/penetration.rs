@@ -32,8 +32,8 @@ pub struct BodyPenetration {
 /// The token of the first detector cancels it, and so does that of the second, except in the sum of the volume.
 ///
 /// # Errors
-/// As [`Detector::discrete_at_most`], for the positions of both meshes; when a mesh is open, or has parts that face
-/// inward and are not within others, so that it has no inside.
+/// As [`Detector::discrete_at_most`], for the positions of both meshes; when a mesh is open, or has parts (triangles
+/// joined by common edges) that face inward and are not within others, so that it has no inside.
 pub fn body_penetration(
     [one, two]: [&mut Detector; 2],
     [positions, other_positions]: [&[DVec3]; 2],
