@@ -1,5 +1,5 @@
-//! `cargo xtask deny [--advisories]`: checks licences and sources of all dependencies by `deny.toml`, those of `fuzz/` included;
-//! with the flag also whether advisories are known, from a database that is downloaded.
+//! `cargo xtask deny [--advisories]`: checks licences and sources of all dependencies by `deny.toml`, those of `fuzz/` and
+//! `operators/` included; with the flag also whether advisories are known, from a database that is downloaded.
 
 use std::process::{Command, ExitCode, Stdio};
 
@@ -9,7 +9,7 @@ use crate::program::{exit_code, root, succeed, usage};
 const CHECKS: [&str; 3] = ["bans", "licenses", "sources"];
 
 /// The workspaces.
-const MANIFESTS: [&str; 2] = ["Cargo.toml", "fuzz/Cargo.toml"];
+const MANIFESTS: [&str; 3] = ["Cargo.toml", "fuzz/Cargo.toml", "operators/Cargo.toml"];
 
 /// Runs cargo-deny.
 pub fn run(arguments: &[String]) -> ExitCode {

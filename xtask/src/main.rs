@@ -16,6 +16,7 @@ mod lines;
 mod lint;
 mod msrv;
 mod mutants;
+mod operators;
 mod package;
 mod packages;
 mod page;
@@ -64,6 +65,11 @@ const TASKS: &[Task] = &[
         semver::run,
     ),
     ("mutants", "[names]: checks that the tests catch wrong variants of the core", mutants::run),
+    (
+        "operators",
+        "[--count N] [--seed S] [--seconds T] [--write] [paths]: counts changed operators of the core that tests catch",
+        operators::run,
+    ),
     (
         "soundness",
         "[--hours H] [--seed S] [--quick] [--write]: compares random answers with exact arithmetic",

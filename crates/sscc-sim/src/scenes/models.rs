@@ -1,5 +1,6 @@
 //! Reads the models of a scene: `[models.NAME]`.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use sscc_dynamics::{Damping, MATERIALS};
@@ -78,12 +79,12 @@ const SHAPES: [&str; 4] = ["spring", "spring-4k", "bunny", "dragon"];
 
 /// Reads all models of a scene. `folder` is the folder of the scene.
 pub fn read(scene: &Section<'_>, folder: &Path) -> Result<Vec<ModelSpec>> {
-    let mut models: Vec<ModelSpec> = Vec::new();
+    let mut models = Vec::new();
+    let mut names = HashMap::new();
     for (name, section) in scene.named("models", &KEYS)? {
         let model = one(name, &section, folder)?;
-        if let Some(other) = models.iter().find(|other| other.array_name() == model.array_name()) {
-            let cause =
-                format!("'{name}' and '{}' differ by _ and - only: rename one of them", other.recipe.name);
+        if let Some(other) = names.insert(model.array_name(), name) {
+            let cause = format!("'{name}' and '{other}' differ by _ and - only: rename one of them");
             return Err(section.refused("models", cause));
         }
         models.push(model);

@@ -181,3 +181,6 @@ pub(super) fn is_near(differences: &[DVec3; 9], rest_distance: f64) -> bool {
     let farthest = differences.iter().map(|d| d.length_squared()).fold(0.0, f64::max);
     farthest > 4.0 * rest_distance * rest_distance
 }
+
+#[cfg(test)]
+mod tests;

@@ -80,7 +80,8 @@ impl AffineFit {
                 let g = &self.gradient[3 * c * row_len..][..3 * row_len];
                 let e = &mut self.residuals[(3 * i + c) * row_len..][..row_len];
                 for k in 0..row_len {
-                    let affine = offset.x * g[k] + offset.y * g[row_len + k] + offset.z * g[2 * row_len + k];
+                    let across = with_mutant!(g[row_len + k], AffineResidualOfOtherMap, g[k]);
+                    let affine = offset.x * g[k] + offset.y * across + offset.z * g[2 * row_len + k];
                     e[k] = (a[k] - a0[k]) - affine;
                 }
             }

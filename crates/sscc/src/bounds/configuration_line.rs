@@ -137,3 +137,26 @@ impl MovingAabb {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Metric, Modes, TriMesh};
+
+    /// With one mode the rounding bound of a gap is below a thousand units of the reach, and positions stay in range up to the
+    /// largest number over the displacement.
+    #[test]
+    fn margins_of_lines_are_small() {
+        let p = [DVec3::ZERO, DVec3::X, DVec3::Y].to_vec();
+        let mesh = TriMesh::new(p, vec![[0, 1, 2]]).unwrap();
+        for moved in [1e-3, 1.0, 1e6] {
+            let modes = Modes::new(1, vec![DVec3::Z * moved; 3]).unwrap();
+            let model = ReducedModel::with_metric(mesh.clone(), modes, Metric::identity(1)).unwrap();
+            let line = ConfigurationLine::new(&model, &[0.0], &[1.0]);
+            let unit = 1000.0 * f64::EPSILON;
+            assert!(line.at_rest <= unit && line.per_step <= unit * moved, "{moved}");
+            let farthest = limits::LARGEST / 2.0 / moved;
+            assert!((line.farthest / farthest - 1.0).abs() < 1e-12, "{moved}: {:e}", line.farthest);
+        }
+    }
+}

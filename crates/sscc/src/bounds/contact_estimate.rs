@@ -104,3 +104,6 @@ fn is_edge_crossing_edge([p, q, r, s]: &[DVec3; 4]) -> bool {
     let v = (*r - *p).cross(*q - *p).dot(normal) / area;
     [u, 1.0 - u, v, 1.0 - v].into_iter().all(|w| w >= -TOLERANCE)
 }
+
+#[cfg(test)]
+mod tests;

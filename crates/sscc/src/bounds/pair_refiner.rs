@@ -222,3 +222,25 @@ fn inverse_factor(m: DMat3) -> Option<DMat3> {
     let inverse = factor.inverse();
     (inverse.is_finite() && l00 > 0.0 && l11 > 0.0 && l22 > 0.0).then_some(inverse)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::Random;
+
+    /// `L^-1 M L^-T` is the identity.
+    #[test]
+    fn inverse_factors_are_those_of_their_matrix() {
+        let random = &mut Random::new(11);
+        for case in 0..300 {
+            let root = DMat3::from_cols(random.vector(), random.vector(), random.vector());
+            let matrix = root * root.transpose() + DMat3::from_diagonal(DVec3::splat(0.1));
+            let factor = inverse_factor(matrix).unwrap();
+            let product = factor * matrix * factor.transpose();
+            assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-10), "case {case}: {product}");
+        }
+        for diagonal in [DVec3::ZERO, DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, 0.0), DVec3::NAN] {
+            assert!(inverse_factor(DMat3::from_diagonal(diagonal)).is_none(), "{diagonal}");
+        }
+    }
+}

@@ -129,3 +129,18 @@ impl ContactFilter {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_of_another_mesh_are_refused() {
+        let groups = TriangleGroups::new(&[0, 1, 1]).unwrap().between_only();
+        let filter = ContactFilter::default().with_groups(groups);
+        assert!(filter.check_groups(3).is_ok() && ContactFilter::default().check_groups(7).is_ok());
+        for triangles in [2, 4] {
+            assert!(matches!(filter.check_groups(triangles), Err(Error::Groups { .. })), "{triangles}");
+        }
+    }
+}

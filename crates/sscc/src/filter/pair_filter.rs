@@ -255,4 +255,13 @@ mod tests {
             assert_eq!([filter.is_excluded(a, b), filter.is_excluded(b, a)], [(a, b) == (0, 2); 2]);
         }
     }
+
+    /// Two faces whose corners are all welded to one vertex have no other point in common than that vertex.
+    #[test]
+    fn points_at_their_common_vertex_do_not_collide() {
+        let filter = ContactFilter::new(Neighbours::IncludeOneVertex);
+        let filter = PairFilter::with_classes(&[[0, 1, 2], [3, 4, 5]], Some(&[0; 6]), &filter);
+        assert_eq!(filter.relation(0, 1), Relation::SharedVertex(0));
+        assert!(!filter.collide((0, 1), &[DVec3::ONE; 3], &[DVec3::ONE; 3]));
+    }
 }

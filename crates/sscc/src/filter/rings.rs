@@ -144,3 +144,24 @@ impl RingPairs {
         with_mutant!(self.later[start..end].binary_search(&second).is_ok(), RingsOfClearanceForgotten, false)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ContactFilter;
+
+    #[test]
+    fn pairs_are_within_as_many_rings_as_steps_lead_over() {
+        // A strip, and a triangle for itself. Of the strip two triangles share a vertex if their numbers differ by at most 2.
+        let mut faces: Vec<[u32; 3]> = (0..10).map(|i| [i, i + 1, i + 2]).collect();
+        faces.push([20, 21, 22]);
+        let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
+        for rings in 1..4 {
+            let pairs = RingPairs::new(&filter, rings).unwrap();
+            for (a, b) in (0..11).flat_map(|a| (0..11).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+                let expected = a.max(b) < 10 && u32::abs_diff(a, b) <= 2 * rings;
+                assert_eq!(pairs.contain(a, b), expected, "{a} {b}, {rings} rings");
+            }
+        }
+    }
+}

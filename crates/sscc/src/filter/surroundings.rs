@@ -98,3 +98,21 @@ fn collect(
     found.dedup();
     if found.len() > MAX_PAIRS { too_many() } else { Ok(found) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ContactFilter;
+
+    #[test]
+    fn surroundings_are_those_of_both_triangles() {
+        // Two strips of six triangles: of each triangle the next two share a vertex with it.
+        let strip = |first: u32| (first..first + 6).map(|i| [i, i + 1, i + 2]);
+        let faces: Vec<[u32; 3]> = strip(0).chain(strip(20)).collect();
+        let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
+        assert_eq!(surroundings(&filter, &[(6, 0), (0, 6)], 0, None), Ok(vec![(0, 6)]));
+        let expected: Vec<Pair> = (0..3).flat_map(|a| (6..9).map(move |b| (a, b))).collect();
+        assert_eq!(surroundings(&filter, &[(0, 6)], 1, None), Ok(expected.clone()));
+        assert_eq!(surroundings_between([&filter; 2], &[(0, 6)], 1, None), Ok(expected));
+    }
+}

@@ -630,6 +630,12 @@ mutants! {
     LocalTouchingFree: CaughtBy("lib certificates::local::strain_search::tests::triangles_without_a_gap_have_no_ratio");
     /// Gaps along the line between two parts are rounded to nearest.
     LocalComponentsToNearest: Covered("quotients by gaps are rounded up by more");
+    /// Gaps of a table are longer by as much as they should be shorter.
+    LocalTableLonger: CaughtBy("lib certificates::local::corner_gaps::tests::stored_gaps_do_not_exceed_exact_distances");
+    /// A pair of images is skipped though its ratio may be above the largest by the rounding of its distance.
+    LocalLimitsWidened: CaughtBy("lib certificates::local::strain_search::tests::ratios_just_above_the_largest_are_found");
+    /// The residuals of a fit are those of another affine map.
+    AffineResidualOfOtherMap: CaughtBy("lib bounds::affine_fit::tests::residuals_are_those_of_the_gradient");
     /// Gaps in tables are rounded to nearest.
     LocalTableToNearest: Covered("gaps are shortened by a larger share before");
     /// After the last number of a search the marks of the first ones hold again.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use num_traits::ToPrimitive;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use sscc::parts::impact_edge_edge;
 use sscc::{Impact, MovingTriangle, impact_triangle_triangle};
 use sscc_testing::cases;
 use sscc_testing::first_contact;
@@ -77,4 +78,16 @@ fn exact_times_are_right() {
     assert_eq!(time(0.0, 1.0), Some(0.0));
     assert_eq!(time(1.0, 0.0), Some(1.0));
     assert_eq!(time(2.0, 1.0), None);
+}
+
+#[test]
+fn edges_that_cross_meet() {
+    let still = [[DVec3::NEG_X, DVec3::X]; 2];
+    let falling =
+        |depth: f64| [1.0, 1.0 - depth].map(|z| [DVec3::new(0.0, -1.0, z), DVec3::new(0.0, 1.0, z)]);
+    for (a, b) in [(still, falling(2.0)), (falling(2.0), still)] {
+        let t = impact_edge_edge(a, b, 1e-9).unwrap();
+        assert!(t <= 0.5 && t > 0.5 - 1e-8, "{t}");
+    }
+    assert_eq!(impact_edge_edge(still, falling(0.999), 1e-9), None);
 }

@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3};
 use pulp::{Simd, WithSimd};
 
 use super::contact_rows::ContactRows;
-use super::friction_cone::stop_sliding;
+use super::friction_cone::{is_mobile, stop_sliding};
 use super::rigid_velocity::RigidVelocity;
 use crate::Body;
 use crate::bodies::displacement::displacement;
@@ -192,7 +192,7 @@ impl ContactSolver {
         let Self { constraints, coefficients, rows, budgets, velocities_before, .. } = self;
         let constraint = &mut constraints[n];
         let Coefficients { inverse_mass, normal_inverse_mass, compliance, target_velocity } = coefficients[n];
-        if normal_inverse_mass <= 0.0 {
+        if !is_mobile(normal_inverse_mass, &inverse_mass) {
             return 0.0;
         }
         let budget: f64 = constraint.points.sides().map(|side| budgets[side.body]).sum();

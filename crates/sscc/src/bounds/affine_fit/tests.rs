@@ -75,3 +75,66 @@ fn residuals_hold_what_rounding_moves_corners_by() {
     }
     assert!(positive > threshold(3000), "{positive}");
 }
+
+/// Residuals are those of the gradient that the fit returns, whose strain is the rate of the bound: residuals of another map
+/// would prove nothing, even if they are usually larger.
+#[test]
+fn residuals_are_those_of_the_gradient() {
+    for case in 0..200 {
+        let random = &mut Random::new(case);
+        let (count, rank) = (6 + random.below(20), 1 + random.below(12));
+        let row_len = padded_rank(rank);
+        // Some points lie nearly in a plane.
+        let thin = DVec3::new(1.0, if case % 2 == 0 { 1.0 } else { random.power(-6.0, 0.0) }, 1.0);
+        let points: Vec<DVec3> = (0..count).map(|_| random.vector() * thin).collect();
+        let offsets: Vec<DVec3> = points.iter().map(|p| *p - points[0]).collect();
+        let mut modes = vec![vec![0.0; 3 * row_len]; count];
+        for (at, x) in modes.iter_mut().flat_map(|rows| rows.iter_mut().enumerate()) {
+            if at % row_len < rank {
+                *x = random.uniform() - 0.5;
+            }
+        }
+        let mut affine = AffineFit::new(row_len);
+        assert!(affine.fit(&offsets, |i| modes[i].as_slice()));
+        for (i, j) in (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))) {
+            let d = offsets[j] - offsets[i];
+            let mut square = 0.0;
+            for (c, k) in (0..3).flat_map(|c| (0..row_len).map(move |k| (c, k))) {
+                let at = c * row_len + k;
+                let fitted: f64 = (0..3).map(|l| affine.gradient()[(3 * c + l) * row_len + k] * d[l]).sum();
+                square += (modes[j][at] - modes[i][at] - fitted).powi(2);
+            }
+            let found = affine.squared_residual(i, j);
+            assert!(
+                (found - square).abs() <= 1e-9 * square.max(1.0),
+                "case {case}: {i} {j}: {found:e}, not {square:e}"
+            );
+        }
+    }
+}
+
+/// Points of a plane do not determine the gradient across it. It is completed such that turns of the plane have no strain.
+#[test]
+fn planes_turn_without_strain() {
+    for case in 0..50 {
+        let normal = Random::new(case).vector().normalize();
+        let (along, across) = normal.any_orthonormal_pair();
+        let hexagon = (0..6).map(|i| std::f64::consts::FRAC_PI_3 * f64::from(i));
+        let offsets: Vec<DVec3> =
+            hexagon.map(|angle| along * (angle.cos() - 1.0) + across * angle.sin()).collect();
+        // Three modes turn the plane about the axes; rows have four numbers.
+        let modes: Vec<[f64; 12]> = offsets
+            .iter()
+            .map(|p| {
+                let turned = DVec3::AXES.map(|axis| axis.cross(*p));
+                std::array::from_fn(|at| if at % 4 < 3 { turned[at % 4][at / 4] } else { 0.0 })
+            })
+            .collect();
+        let mut affine = AffineFit::new(4);
+        assert!(affine.fit(&offsets, |i| modes[i].as_slice()));
+        let gram = crate::bounds::strain::strain_gram(affine.gradient(), 4);
+        let strain: f64 = (0..6).map(|i| gram[i][i]).sum();
+        let size = dot(affine.gradient(), affine.gradient());
+        assert!(size > 1.0 && strain <= 1e-6 * size, "case {case}: {strain:e} of {size:e}");
+    }
+}

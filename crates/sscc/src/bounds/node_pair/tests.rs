@@ -51,3 +51,24 @@ fn corners_that_cancel_keep_their_rate() {
     }
     assert!(small > 1000, "{small}");
 }
+
+/// Nodes that are apart have a direction: the same one in any unit of the modes. Nodes that touch have none.
+#[test]
+fn directions_do_not_depend_on_the_unit_of_modes() {
+    for unit in [1e-20, 1.0, 1e20] {
+        let node = |x: f64| NodeModes {
+            center: DVec3::X * x,
+            half: DVec3::splat(0.25),
+            residual: DVec3::ZERO,
+            modes: vec![x * unit; 12],
+            gradient: vec![0.0; 36],
+        };
+        let bounds = NodePairBounds { nodes: vec![node(0.0), node(1.0), node(0.4)] };
+        let mut scratch = NodePairScratch::new(4);
+        // The Gram matrix has entries of 4, and 0.012 more on its diagonal.
+        let along = -4.0 / 8.012;
+        let dir = bounds.direction(0, 1, &mut scratch).unwrap();
+        assert!((dir - DVec3::new(1.0, along, along)).length() < 1e-9, "{unit:e}: {dir}");
+        assert_eq!(bounds.direction(0, 2, &mut scratch), None);
+    }
+}

@@ -5,11 +5,16 @@
 use glam::DVec3;
 use sscc_testing::cases;
 
-use super::models::{KINDS, ROOM, all_bounds, node_pair_bound, pair_corners, random_pair, reference};
+use super::models::{
+    KINDS, ROOM, all_bounds, node_pair_bound, pair_corners, random_pair, reference, scaled_keeping,
+};
 use super::random::Random;
+use crate::bounds::affine_bound::{AffineBound, AffinePair};
 use crate::bounds::cone_rate::bound_rate_in_cone;
 use crate::bounds::separating_direction::bound_rest_distance;
 use crate::bounds::strain::StrainGram;
+use crate::bounds::sub_triangle::SubPair;
+use crate::bounds::{PairRefiner, PairWitness, RefinementTarget, WitnessList};
 use crate::geometry::nearest_to_origin;
 use crate::model::{ScaledModel, scale_direction};
 use crate::{Metric, MetricKind, Modes, ReducedModel, TriMesh};
@@ -224,4 +229,128 @@ fn cancelling_modes_keep_node_pair_bounds_finite() {
     for (name, bound) in all_bounds(&model, &mut Random::new(1)) {
         assert!(bound <= truth * ROOM, "{name} {bound:e}");
     }
+}
+
+/// Returns two triangles with these modes of each corner, in the Euclidean metric.
+fn two_triangles(positions: [DVec3; 6], modes: [&[DVec3]; 6]) -> ReducedModel {
+    let mesh = TriMesh::new(positions.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let rank = modes[0].len();
+    ReducedModel::with_metric(mesh, Modes::new(rank, modes.concat()).unwrap(), Metric::identity(rank))
+        .unwrap()
+}
+
+/// One mode lowers the upper triangle: the upper bound is the height, whatever the size of the pair.
+#[test]
+fn rays_find_the_first_contact() {
+    for height in [1e-3, 1.0, 1e3] {
+        let low = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let [x, y, z] = low.map(|p| p + DVec3::Z * height);
+        let (still, down) = ([DVec3::ZERO], [-DVec3::Z]);
+        let modes: [&[DVec3]; 6] = [&still, &still, &still, &down, &down, &down];
+        let model = two_triangles([low[0], low[1], low[2], x, y, z], modes);
+        let scaled = scaled_keeping(&model, 0.0);
+        let mut target =
+            RefinementTarget { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 1e-3, subdivisions: 4 };
+        let lower = PairRefiner::new(&scaled).refine([0, 1, 2], [3, 4, 5], &mut target);
+        assert!(lower <= height && lower >= height * (1.0 - 1e-6), "{lower:e} {height:e}");
+        assert!((target.upper / height - 1.0).abs() < 1e-6, "{:e} {height:e}", target.upper);
+    }
+}
+
+/// Quarters have half of the variation.
+#[test]
+fn the_triangle_whose_modes_vary_more_is_divided() {
+    for (first, second) in [(1.0, 2.0), (2.0, 1.0), (1.0, 1.0), (3.0, 2.0)] {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let [x, y, z] = corners.map(|p| p + DVec3::Z);
+        let (still, one, two) = ([DVec3::ZERO], [DVec3::X * first], [DVec3::X * second]);
+        let modes: [&[DVec3]; 6] = [&still, &one, &still, &still, &two, &still];
+        let model = two_triangles([corners[0], corners[1], corners[2], x, y, z], modes);
+        let scaled = scaled_keeping(&model, 0.0);
+        let pair = pair_corners(&scaled);
+        assert_eq!(SubPair::UNDIVIDED.is_first_divided(&pair), first >= second, "{first} {second}");
+        let [quarter, ..] = SubPair::UNDIVIDED.subdivide(true);
+        assert_eq!(quarter.is_first_divided(&pair), first >= 2.0 * second, "{first} {second}");
+        let [quarter, ..] = SubPair::UNDIVIDED.subdivide(false);
+        assert_eq!(quarter.is_first_divided(&pair), 2.0 * first >= second, "{first} {second}");
+    }
+}
+
+/// Along a fixed direction two triangles of one plane that rotates have a bound of 1, by the affine map of some hundred.
+#[test]
+fn pairs_that_rotate_together_have_an_affine_witness() {
+    let positions = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.0, 0.0], [3.0, 0.0], [2.0, 1.0]]
+        .map(|[x, y]| DVec3::new(x, y, 0.0));
+    let modes = positions.map(|p| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis.cross(p)));
+    let model = two_triangles(positions, modes.each_ref().map(|modes| &modes[..]));
+    let scaled = scaled_keeping(&model, 0.0);
+    let mut list = WitnessList::default();
+    assert!(PairRefiner::new(&scaled).prove([0, 1, 2], [3, 4, 5], 10.0, &mut list));
+    assert!(matches!(list.witnesses[..], [PairWitness::Affine { .. }]), "{list:?}");
+}
+
+/// Two thin layers, which modes lift by their height and by a tilt: all of their points meet at a known z. The fit has hardly a
+/// gradient across such layers, so the residuals hold how they close.
+#[test]
+fn residuals_hold_how_thin_layers_close() {
+    for (normal, tilt) in (0..9).map(|at| (at / 3, at % 3)).filter(|(normal, tilt)| normal != tilt) {
+        let [n, t, w] = [normal, tilt, 3 - normal - tilt].map(|axis| DVec3::AXES[axis]);
+        let layer = [DVec3::ZERO, t, w];
+        let p = [layer, layer.map(|p| p + n * 0.003)].concat();
+        for moving in [0..1, 1..2, 2..3, 3..4, 0..4_usize] {
+            let of_vertex = |p: &DVec3| -> [DVec3; 4] {
+                let lift = n * (p.dot(n) + p.dot(t));
+                std::array::from_fn(|k| if moving.contains(&k) { lift } else { DVec3::ZERO })
+            };
+            let modes = Modes::new(4, p.iter().flat_map(of_vertex).collect()).unwrap();
+            let mesh = TriMesh::new(p.clone(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+            let model = ReducedModel::with_metric(mesh, modes, Metric::identity(4)).unwrap();
+            // Both layers are at height -tilt where the sum of the moving coordinates is -1.
+            let truth = 1.0 / (moving.len() as f64).sqrt();
+            for (name, bound) in all_bounds(&model, &mut Random::new(1)) {
+                assert!(
+                    bound <= truth * ROOM,
+                    "{normal} {tilt} {moving:?}: {name} {bound:e} above {truth:e}"
+                );
+            }
+            let bound = node_pair_bound(&model, 1);
+            assert!(bound <= truth * ROOM, "{normal} {tilt} {moving:?}: node pair {bound:e} above {truth:e}");
+        }
+    }
+}
+
+/// A witness of the affine bound has a rate that proves the radius, and a pyramid that contains the directions with a margin for the
+/// rounding of corners.
+#[test]
+fn affine_witnesses_prove_their_radius() {
+    let (size, radius) = (1e-3, 0.5);
+    let plane = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.0, 0.0], [3.0, 0.0], [2.0, 1.0]];
+    let p = plane.map(|[x, y]| DVec3::new(1000.0 + x * size, y * size, 0.0));
+    // The plane contracts along x: the triangles meet at |z| = 1.
+    let modes = Modes::new(1, plane.map(|[x, _]| DVec3::X * (-x * size)).to_vec()).unwrap();
+    let mesh = TriMesh::new(p.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let model = ReducedModel::with_metric(mesh, modes, Metric::identity(1)).unwrap();
+    let scaled = ScaledModel::new(&model, model.metric(), &[0.0]);
+    let pair = pair_corners(&scaled);
+    let differences = pair.differences();
+    let dir = scale_direction(nearest_to_origin(&differences).point).unwrap();
+    let rest_distance = bound_rest_distance(&differences, dir, &scaled.rounding);
+    let mut affine = AffineBound::new(scaled.row_len);
+    let bound = affine.fit_and_bound(&pair, &differences, rest_distance, 0.0, &scaled);
+    assert!(bound > 0.9 && bound <= ROOM, "{bound}");
+    let residuals = (0..9).map(|ij| affine.squared_residual(ij / 3, 3 + ij % 3));
+    let squared_residual = residuals.fold(0.0, f64::max);
+    let near = AffinePair { differences: &differences, rest_distance, squared_residual };
+    let (rate, pyramid) = affine.witness(near, radius, &scaled).unwrap();
+    let closing = rate * rest_distance + squared_residual.sqrt();
+    assert!(rest_distance >= radius * closing, "{rate}");
+    for (i, u) in pyramid.iter().enumerate() {
+        let side = u.cross(pyramid[(i + 1) % 4]).normalize();
+        let inside = differences.iter().map(|d| side.dot(d.normalize())).fold(f64::INFINITY, f64::min);
+        assert!(inside > 2e-8, "side {i}: {inside:e}");
+        // The rate holds at the edges of the pyramid: along u the plane contracts by u_x^2.
+        assert!(u.x * u.x <= rate * 1.001, "{u} {rate}");
+    }
+    // No rate proves a radius beyond the contact.
+    assert!(affine.witness(near, 1.1, &scaled).is_none());
 }

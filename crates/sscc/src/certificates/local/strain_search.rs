@@ -166,7 +166,8 @@ impl StrainSearch {
     /// Whether the sum of `more` and a distance of images, given by its computed square, is surely at most a limit.
     #[inline(always)]
     fn is_at_most(&self, square: f32, more: f32, limit: f32) -> bool {
-        let left = (limit - (more + self.image_error) * ROUND_UP) * (1.0 / ROUND_UP);
+        let share = with_mutant!(1.0 / ROUND_UP, LocalLimitsWidened, ROUND_UP);
+        let left = (limit - (more + self.image_error) * ROUND_UP) * share;
         left > 0.0 && square <= left * left * (1.0 / ROUND_UP)
     }
 }

@@ -83,3 +83,15 @@ fn groups_out_of_range_are_refused() {
     assert!(message(none().ignoring([[0, 0]])).contains("there are no triangles"));
     assert!(none().between_only().is_all_counted());
 }
+
+#[test]
+fn groups_are_split_between_meshes() {
+    let scene = TriangleGroups::new(&[0, 1, 2, 0, 1]).unwrap().ignoring([[0, 1]]).unwrap();
+    let of_meshes = scene.of_meshes(&[2, 0, 3]).unwrap();
+    let numbers: Vec<Vec<u16>> = of_meshes.iter().map(|groups| groups.of_triangles().to_vec()).collect();
+    assert_eq!(numbers, [vec![0, 1], vec![], vec![2, 0, 1]]);
+    for groups in &of_meshes {
+        assert!(groups.is_common_with(&of_meshes[0]));
+        assert!(!groups.is_counted(0, 1) && groups.is_counted(0, 2));
+    }
+}

@@ -99,3 +99,27 @@ fn find_widest_gap(pair: &MovingPair, t: f64, corners: &TwoTriangles) -> Option<
 fn normalize(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize_or_zero()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ccd::moving_triangle::MovingTriangle;
+
+    /// Edges cross at a distance of 1e-12, so that the direction between the closest points is far too imprecise. Each edge of both
+    /// triangles is the crossing one in turn.
+    #[test]
+    fn narrow_gaps_between_crossing_edges_are_found() {
+        let v = DVec3::new;
+        let below = [v(-1.0, -0.3, 0.0), v(1.1, 0.4, 0.0), v(0.2, 0.1, -1.0)];
+        let above = [v(-0.3, 0.9, 1e-12), v(0.4, -0.8, 1e-12), v(0.1, -0.2, 1.0)];
+        let rests = |mut corners: [DVec3; 3], by: usize| {
+            corners.rotate_left(by);
+            MovingTriangle { t0: corners, t1: corners }
+        };
+        for (i, j) in (0..9).map(|ij| (ij / 3, ij % 3)) {
+            let pair = MovingPair::new(&rests(below, i), &rests(above, j));
+            let direction = ClosestPoints::at(&pair, 0.0).direction;
+            assert!(direction.is_some_and(|dir| dir.gap(0.0) > 0.9e-12), "edges {i} and {j}");
+        }
+    }
+}

@@ -130,4 +130,17 @@ mod tests {
         }
         assert!(bounded > 50 && tight > 10, "{bounded} {tight}");
     }
+
+    /// A point moves from above a face to beside one of its edges, below its plane: no direction of one pair of features separates
+    /// the two all the time, and few steps are needed.
+    #[test]
+    fn the_closest_features_are_determined_again() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let face = MovingTriangle { t0: corners, t1: corners };
+        let point = MovingTriangle::vertex(DVec3::new(0.4, 0.4, 0.1), DVec3::new(3.0, 3.0, -1.0));
+        let pair = MovingPair::new(&face, &point);
+        let mut steps = 1000;
+        assert_eq!(advance_along_features([&face, &point], &pair, 0.0, 1e-12, &mut steps), None);
+        assert!(steps > 900, "{steps}");
+    }
 }

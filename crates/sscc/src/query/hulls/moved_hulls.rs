@@ -268,4 +268,27 @@ mod tests {
             }
         }
     }
+
+    /// Cofactors only turn directions. Their size must not depend on that of the hull: normals that are too short are not tested.
+    #[test]
+    fn the_largest_cofactor_is_1() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::new(2, [DVec3::Z, DVec3::X].repeat(6)).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap();
+        let motion = DeformedMotion::new([&[0.0; 2][..]], 9.0);
+        for factor in [1e-3_f32, 0.1, 1.0, 100.0] {
+            let mut moved = MovedHulls::<1>::new(&hulls);
+            (moved.motion.factors, moved.motion.error, moved.motion.scale) =
+                (vec![[Vec4::splat(factor)]; 3], 1e-6, 1.0);
+            moved.begin();
+            moved.update(&hulls, 0, 0, &motion);
+            let cofactors = moved.hulls[0].cofactors.to_cols_array();
+            let largest = cofactors.into_iter().fold(0.0_f32, |most, x| most.max(x.abs()));
+            assert!((0.999..1.001).contains(&largest), "{factor}: {largest}");
+        }
+    }
 }

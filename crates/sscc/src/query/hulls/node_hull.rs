@@ -120,3 +120,27 @@ impl NodeHull {
         Self { frame, shape: HullShape { core, distance, along, remainder } }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Affine modes leave no residual but that of the regularization, also in a node that is so small that the rounding of its
+    /// centre to single precision is a large part of it.
+    #[test]
+    fn affine_modes_leave_small_residuals() {
+        let corner = |i: usize| DVec3::from_array([1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 }));
+        let along = DVec3::new(0.6, -0.5, 0.4);
+        for size in [0.1, 1e-7] {
+            let positions: Vec<DVec3> =
+                (0..8).map(|i| DVec3::new(0.7, -0.6, 0.8) + corner(i) * size).collect();
+            // Each mode moves the corners by one of their coordinates.
+            let modes: Vec<DVec3> = (0..8).flat_map(|i| corner(i).to_array().map(|x| along * x)).collect();
+            let vertices = Vertices { positions: &positions, modes: &modes, rank: 3 };
+            let hull = NodeHull::fit(&vertices, &[0, 1, 2, 3, 4, 5, 6, 7], &mut Vec::new());
+            for rate in &hull.frame[1..] {
+                assert!(rate[3].x < 1e-3, "{size}: {rate:?}");
+            }
+        }
+    }
+}

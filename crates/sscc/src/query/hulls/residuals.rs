@@ -138,3 +138,18 @@ fn spectral_bound(rows: &[DVec3]) -> f64 {
 pub(super) fn up(x: f64) -> f32 {
     if x <= 0.0 { 0.0 } else { ((x * (1.0 + 1e-12)) as f32).next_up() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mode that moves no vertex is no obstacle to the bound by vectors.
+    #[test]
+    fn still_modes_leave_all_numbers_finite() {
+        let mut residuals = [DVec3::X, DVec3::ZERO, DVec3::NEG_X, DVec3::ZERO];
+        let Residuals { rates, along, remainder } = Residuals::new(&mut residuals, &[0.0; 2]);
+        assert_eq!(rates[1], [0.0; 1 + VECTORS]);
+        assert!(rates.iter().flatten().chain(&along).all(|x| x.is_finite()), "{rates:?} {along:?}");
+        assert!(along[0] >= 0.999 && remainder < 1e-9, "{along:?} {remainder}");
+    }
+}

@@ -239,6 +239,20 @@ fn radii_cover_sums_that_cancel() {
     assert!(farthest > 0.01, "{farthest}");
 }
 
+/// All modes move the corners of a square up and down alternately, so far that the shape at rest is negligible beside it: vertices
+/// are as far from the hull as the sum of all residuals, and of the error bounds only that of sums is left.
+#[test]
+fn radii_cover_sums_of_many_modes() {
+    let rank = 64;
+    let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    let rows = (0..4).flat_map(|v| vec![if v % 2 == 0 { DVec3::Z } else { DVec3::NEG_Z }; rank]);
+    let mesh = TriMesh::new(positions.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(rank, rows.collect()).unwrap()).unwrap();
+    let case = Case::new(model, &vec![0.0; rank]);
+    let (share, _) = case.check_at(&vec![1e4; rank], "equal residuals").unwrap();
+    assert!(share > 0.999, "{share}");
+}
+
 /// With as many core points as vertices and affine modes, radii consist of rounding alone. Modes that cancel make it large.
 #[test]
 fn radii_cover_single_precision() {

@@ -194,3 +194,22 @@ impl RegionControl {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_that_do_not_pay_shrink_and_pause() {
+        let mut control = RegionControl { plain_cost: 100, cost: 1000, ..RegionControl::FIRST };
+        control.begin_search(RegionKind::Ball, false);
+        // It cost as much as six more plain queries; the first pause is twice as long.
+        control.end_region(4);
+        assert_eq!((control.balls.share, control.balls.pause), (FIRST_BALL / 2.0, 12));
+        assert!(!control.has_paid);
+        control.end_region(20);
+        assert_eq!((control.balls.share, control.balls.pause), (FIRST_BALL / 2.0, 0));
+        assert!(control.has_paid);
+        assert_eq!(control.capsules.share, FIRST_CAPSULE);
+    }
+}

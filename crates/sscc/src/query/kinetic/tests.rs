@@ -469,7 +469,32 @@ fn pairs_that_collide_at_rest_are_tested_in_every_step() {
     for _ in 0..8 {
         kinetic.control.plain_cost = 1_000_000;
         assert_eq!(kinetic.discrete(&q).unwrap(), expected);
+        assert_eq!(kinetic.pairs(), expected);
         within += usize::from(kinetic.region_pairs.has_region());
     }
     assert!(within > 2, "{within}");
+}
+
+/// During a pause no region begins, however expensive plain queries are.
+#[test]
+fn no_region_begins_during_a_pause() {
+    let model = three_sheets(4, [-1.2, 0.0, 2.5], false);
+    let certificates = tight_certificates(&model, 0);
+    let mut kinetic = KineticQuery::new(&model, &certificates).unwrap();
+    for is_paused in [true, false] {
+        let mut regions = 0;
+        for i in 0..8 {
+            kinetic.control.plain_cost = 1_000_000;
+            if is_paused {
+                (kinetic.control.balls.pause, kinetic.control.capsules.pause) = (9, 9);
+            } else {
+                (kinetic.control.balls.pause, kinetic.control.capsules.pause) = (0, 0);
+            }
+            // A zigzag, for which there are no capsules.
+            let q = [0.0, 2.0 + 1e-4 * f64::from(i), 1e-4 * f64::from(i % 2)];
+            kinetic.discrete(&q).unwrap();
+            regions += usize::from(kinetic.region_pairs.has_region());
+        }
+        assert_eq!(regions > 0, !is_paused);
+    }
 }

@@ -323,6 +323,10 @@ fn a_budget_of_zero_gives_no_certificates() {
     let some = compute_local_certificates(&model, &hierarchy, &filter, &[0.0], 1 << 20, &()).unwrap();
     assert_eq!((some.nodes.as_slice(), some.modes.as_slice()), (&[0][..], &[0][..]));
     assert!(some.bytes() > 0 && some.bounds[0].per_error >= 1.0);
+    // The ends of both lists of starts.
+    assert_eq!(some.budgeted_bytes(), LocalCertificates::bytes_of(1));
+    assert_eq!(some.bytes() - some.budgeted_bytes(), 8);
+    assert_eq!((none.bytes(), none.budgeted_bytes()), (0, 0));
 }
 
 /// The computation checks for cancellation regularly, and ends with the error if it was cancelled at any of these checks.
@@ -408,4 +412,33 @@ fn certificates_of_few_modes_are_kept_if_they_cover_most() {
     assert_eq!(kept(3 * few + some + all - 1), children);
     assert_eq!(kept(3 * few + some - 1), children[1..]);
     assert!(kept(3 * few - 1).is_empty());
+}
+
+/// The ellipsoid is fitted to residuals of a few vertices over their distances, and to differences of residuals over gaps.
+#[test]
+fn ellipsoids_are_fitted_to_a_few_quotients_of_residuals() {
+    let model = ring(600, 3, 0.4);
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    let filter = PairFilter::new(&model, &ContactFilter::default());
+    let patch_model = PatchModel::new(&model, &[0.0; 3]).unwrap();
+    let gaps = CornerGaps::new(&hierarchy, &filter, &patch_model.positions, &()).unwrap().unwrap();
+    let touching = TouchingNodes::new(&hierarchy, &filter);
+    let builder = Builder { model: &patch_model, gaps: &gaps, touching: &touching };
+    let mut patch = Patch::new(patch_model.positions.len());
+    patch.load(&patch_model, &hierarchy, filter.faces(), [0].into_iter(), MOST_MODES).unwrap();
+    let width = 3 * patch.row_len;
+    let residual = |i: u32| &patch.residuals[width * i as usize..][..width];
+    let tight = builder.tight(0, &patch);
+    assert!(tight.len() > 2 * TIGHT_BLOCKS, "{}", tight.len());
+    let parts = tight.len().div_ceil(tight.len().div_ceil(TIGHT_BLOCKS));
+    let difference = |TightPair { i, j, gap }: TightPair| -> Vec<f64> {
+        residual(i).iter().zip(residual(j)).map(|(x, y)| (y - x) / f64::from(gap)).collect()
+    };
+    let differences: Vec<Vec<f64>> = tight.into_iter().map(|(_, pair)| difference(pair)).collect();
+    let blocks = builder.blocks(0, &patch);
+    let is_difference = |block: &[f64]| differences.iter().any(|difference| difference.as_slice() == block);
+    let of_pairs = blocks.chunks_exact(width).filter(|block| is_difference(block)).count();
+    assert_eq!(of_pairs, parts + TIGHT_BLOCKS / 2);
+    let of_vertices = blocks.len() / width - of_pairs;
+    assert!(of_vertices > VERTEX_BLOCKS / 2 && of_vertices <= VERTEX_BLOCKS, "{of_vertices}");
 }

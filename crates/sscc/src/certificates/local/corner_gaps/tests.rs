@@ -65,3 +65,33 @@ fn meshes_with_too_many_near_leaves_have_no_tables() {
     assert!(is_bounded(3000, 0.01) && is_bounded(200, 10.0));
     assert!(!is_bounded(3000, 10.0));
 }
+
+/// Also as tables store them, in single precision.
+#[test]
+fn stored_gaps_do_not_exceed_exact_distances() {
+    let random = &mut Numbers(17);
+    let mut close = 0;
+    for case in 0..200 {
+        // Two triangles, one above the other: the gaps of opposite corners are their distances.
+        let height = 0.3 + 0.4 * random.signed().abs();
+        let low = [DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.5];
+        let positions = [low, low.map(|p| p + DVec3::Z * height)].concat();
+        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::from_matrix(6, 1, |row, _| (row as f64).sin()).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        let positions = model.mesh().rest_positions();
+        let gaps = CornerGaps::new(&hierarchy, &filter, positions, &()).unwrap().unwrap();
+        let table = gaps.near((0, 0)).unwrap().as_ref().unwrap();
+        let vertices = gaps.vertices(0);
+        let pairs = vertices.iter().flat_map(|i| vertices.iter().map(move |j| (*i, *j)));
+        for ((i, j), gap) in pairs.zip(&table.gaps).filter(|(_, gap)| **gap < f32::INFINITY) {
+            let (d, gap) = (positions[j as usize] - positions[i as usize], f64::from(*gap));
+            let square: Dyadic = d.to_array().iter().map(|x| exact(*x) * exact(*x)).sum();
+            assert!(exact(gap) * exact(gap) <= square, "case {case}: {gap} {d}");
+            close += usize::from(gap > d.length() * (1.0 - 2e-6));
+        }
+    }
+    assert!(close >= 600, "{close}");
+}

@@ -313,3 +313,32 @@ fn triangles_without_a_gap_have_no_ratio() {
         });
     }
 }
+
+/// A pair is skipped only if its ratio is surely not the largest one, also if it is next to the largest.
+#[test]
+fn ratios_just_above_the_largest_are_found() {
+    let width = 3 * LANES;
+    for step in 0..100_u8 {
+        let next = 1.0 + 5e-6 * f32::from(step);
+        let mut images = vec![0.0; 3 * width];
+        (images[width], images[2 * width]) = (1.0, next);
+        let search = StrainSearch { width, images, ..StrainSearch::default() };
+        let mut largest = 0.0;
+        for j in [1, 2] {
+            search.compare(search.image(0), j, 1.0, &mut largest);
+        }
+        assert!(largest >= next, "{largest} {next}");
+    }
+}
+
+/// A sum is at most a limit only with more in hand than its rounding.
+#[test]
+fn limits_are_kept_with_room_for_rounding() {
+    for (distance, more, image_error) in
+        [(1.0_f32, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.5, 0.25, 0.25)]
+    {
+        let search = StrainSearch { image_error, ..StrainSearch::default() };
+        let is_at_most = |limit: f32| search.is_at_most(distance * distance, more, limit);
+        assert!(!is_at_most(1.0 + 9e-5) && is_at_most(1.0 + 3e-4), "{distance} {more} {image_error}");
+    }
+}
