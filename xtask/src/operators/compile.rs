@@ -53,7 +53,8 @@ pub fn compile() -> Result<(Vec<Variant>, Vec<PathBuf>), String> {
 fn copy_workspace(to: &Path) -> Result<(), String> {
     let mut list = Command::new("git");
     list.args(["ls-files", "--cached", "--others", "--exclude-standard"]).current_dir(root());
-    for name in output(&mut list, "the files of the project cannot be listed")?.lines() {
+    let names = output(&mut list, "the files of the project cannot be listed")?;
+    for name in names.lines().filter(|name| !name.starts_with("crates/sscc/src/")) {
         copy(&root().join(name), &to.join(name))?;
     }
     Ok(())
@@ -71,23 +72,26 @@ fn copy(from: &Path, to: &Path) -> Result<(), String> {
 
 /// Puts the variants into the copy of the core. Returns all that are not excluded.
 fn instrument(folder: &Path, workspace: &Path, excluded: &BTreeSet<u32>) -> Result<Vec<Variant>, String> {
-    copy_core(&root().join("crates/sscc/src"), &workspace.join("crates/sscc/src"))?;
+    // Files that are the same as before are not compiled again.
+    let core = folder.join("core");
+    copy_folder(&root().join("crates/sscc/src"), &core)?;
     let (numbers, list) = (folder.join("excluded"), folder.join("variants.tsv"));
     let text = excluded.iter().map(|number| format!("{number}\n")).collect::<String>();
     fs::write(&numbers, text).map_err(|error| format!("{}: {error}", numbers.display()))?;
     let mut tool = cargo();
     tool.args(["run", "--quiet", "--locked", "--manifest-path"]).arg(root().join("operators/Cargo.toml"));
-    tool.arg("--target-dir").arg(folder.join("tool")).arg("--").arg(workspace.join("crates/sscc/src"));
+    tool.arg("--target-dir").arg(folder.join("tool")).arg("--").arg(&core);
     succeed(tool.args([&numbers, &list]).args(FOLDERS), "the variants cannot be made")?;
+    copy_folder(&core, &workspace.join("crates/sscc/src"))?;
     let text = fs::read_to_string(&list).map_err(|error| format!("{}: {error}", list.display()))?;
     text.lines().map(|line| variant(line).ok_or_else(|| format!("not a variant: {line}"))).collect()
 }
 
-fn copy_core(from: &Path, to: &Path) -> Result<(), String> {
+fn copy_folder(from: &Path, to: &Path) -> Result<(), String> {
     let entries = fs::read_dir(from).map_err(|error| format!("{}: {error}", from.display()))?;
     for entry in entries.flatten() {
         let (from, to) = (entry.path(), to.join(entry.file_name()));
-        if from.is_dir() { copy_core(&from, &to)? } else { copy(&from, &to)? }
+        if from.is_dir() { copy_folder(&from, &to)? } else { copy(&from, &to)? }
     }
     Ok(())
 }

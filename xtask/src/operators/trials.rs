@@ -1,7 +1,12 @@
 //! Draws variants at random, runs the tests that reach them, and counts those that a test catches.
+//!
+//! Variants that were caught before are not run again as long as the code around them is the same: then a run with more
+//! seconds tries the others.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write;
+use std::sync::Mutex;
 use std::time::Duration;
 
 use super::compile::Variant;
@@ -10,6 +15,9 @@ use crate::program::root;
 
 /// The record that documents show, relative to the root.
 const RECORD: &str = "docs/records/operators.csv";
+
+/// The variants that a test has caught, relative to the root.
+const CAUGHT: &str = "target/operators/caught.tsv";
 
 const HEADER: &str = "folder,variants,tried,caught,passed,unreached";
 
@@ -37,17 +45,27 @@ enum Verdict {
 
 /// Runs variants, and prints those that no test catches. `writes` states whether the record is replaced.
 pub fn run(variants: &[Variant], tests: &[Test], draw: &Draw, writes: bool) -> Result<(), String> {
-    let chosen = drawn(variants, draw);
-    let verdicts = in_parallel(&chosen, |_, variant| {
+    let before = caught_before(variants);
+    let mut file = File::options().append(true).create(true).open(root().join(CAUGHT));
+    let file = Mutex::new(file.as_mut().map_err(|error| format!("{CAUGHT}: {error}"))?);
+    let verdicts = in_parallel(&drawn(variants, draw), |_, variant| {
+        if let Some(test) = before.get(&variant.number) {
+            return Ok((folder(&variant.file), Verdict::Caught(test.clone())));
+        }
         let verdict = verdict(variant, tests, draw.seconds)?;
-        let Variant { file, line, function, change, .. } = variant;
+        let Variant { file: name, line, function, change, .. } = variant;
         let text = match &verdict {
-            Verdict::Caught(test) => format!("caught by {test}"),
+            Verdict::Caught(test) => {
+                let mut file = file.lock().map_err(|error| error.to_string())?;
+                let written = writeln!(file, "{}\t{test}", line_of(variant));
+                written.map_err(|error| format!("{CAUGHT}: {error}"))?;
+                format!("caught by {test}")
+            }
             Verdict::Passed => "ALL TESTS PASSED".to_owned(),
             Verdict::Unreached => "NO TEST REACHES IT".to_owned(),
         };
-        println!("{file}:{line}  {function}  {change}  {text}");
-        Ok((folder(file), verdict))
+        println!("{name}:{line}  {function}  {change}  {text}");
+        Ok((folder(name), verdict))
     })?;
     let record = counted(variants, &verdicts);
     print!("{record}");
@@ -55,6 +73,19 @@ pub fn run(variants: &[Variant], tests: &[Test], draw: &Draw, writes: bool) -> R
         fs::write(root().join(RECORD), record).map_err(|error| format!("{RECORD}: {error}"))?;
     }
     Ok(())
+}
+
+/// Returns the tests that have caught variants, by the numbers of these.
+fn caught_before(variants: &[Variant]) -> BTreeMap<u32, String> {
+    let all: BTreeMap<String, u32> =
+        variants.iter().map(|variant| (line_of(variant), variant.number)).collect();
+    let text = fs::read_to_string(root().join(CAUGHT)).unwrap_or_default();
+    let lines = text.lines().filter_map(|line| line.rsplit_once('\t'));
+    lines.filter_map(|(variant, test)| Some((*all.get(variant)?, test.to_owned()))).collect()
+}
+
+fn line_of(Variant { number, file, line, function, change }: &Variant) -> String {
+    format!("{number}\t{file}\t{line}\t{function}\t{change}")
 }
 
 /// Returns the variants in the order of random numbers, as many as are wanted.
