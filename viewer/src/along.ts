@@ -17,10 +17,9 @@ export function vibrationName(app: App, mode: number): string {
  */
 export function vibrate(app: App, mode: number): void {
     const name = vibrationName(app, mode);
-    if (app.motion.name === name) {
-        app.motion.stop();
-        return;
-    }
+    const isVibrating = app.motion.name === name;
+    app.takeOver();
+    if (isVibrating) return;
     const { center, limits, frequencies } = app.shape.model;
     const q = app.pose.q.slice();
     const out = q[mode] - center[mode];
@@ -49,7 +48,7 @@ export function vibrate(app: App, mode: number): void {
 let searches = 0;
 
 export async function toFirstCollision(app: App, direction: number[], name: string): Promise<void> {
-    app.motion.stop();
+    app.takeOver();
     app.say(`searching for the first self-collision along ${name}…`);
     const search = ++searches;
     const { serial } = app.pose;

@@ -44,6 +44,8 @@ export interface App {
     recorded: RecordedFrame | null;
     /** Updates the marks of colliding triangles. */
     refreshMarks(): void;
+    /** Ends the motion and pauses the timeline, so that the q that a person chooses stays. */
+    takeOver(): void;
     /** Plays q row by row. */
     playRows(rows: number[][]): void;
     /** Shows a line: a result, or an error. */

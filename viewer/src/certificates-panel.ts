@@ -55,7 +55,9 @@ export class CertificatesPanel {
         );
         this.levelText.textContent = this.level.value;
         if (!live) return;
-        app.checker?.onAnswer(() => this.colouring.value === "searched" && this.paintSearched());
+        app.checker?.onAnswer(() => {
+            if (this.colouring.value === "searched") void attempt(app, () => this.paintSearched());
+        });
         app.pose.onChange(() => this.boxes.checked && this.refreshBoxes());
     }
 
@@ -114,16 +116,25 @@ export class CertificatesPanel {
     }
 
     private load(): Promise<Tree> {
-        this.tree ??= this.app.source.ask<Nodes>("/api/nodes").then(async (nodes) => {
-            const triangles = new Uint32Array(await this.app.source.array(nodes.order));
-            return { ...nodes, triangles };
+        this.tree ??= this.request().catch((error) => {
+            // The next colouring asks again.
+            this.tree = null;
+            throw error;
         });
         return this.tree;
+    }
+
+    private async request(): Promise<Tree> {
+        const nodes = await this.app.source.ask<Nodes>("/api/nodes");
+        const triangles = new Uint32Array(await this.app.source.array(nodes.order));
+        return { ...nodes, triangles };
     }
 
     /** Colours each triangle by the radius of its node at the level, or of its deepest node above the level. */
     private async paintRadius(): Promise<void> {
         const tree = await this.load();
+        // Another colouring may have been chosen meanwhile.
+        if (this.colouring.value !== "radius") return;
         const level = this.level.valueAsNumber;
         const radii = tree.radius.filter((r): r is number => r !== null && r > 0);
         const [low, high] = [

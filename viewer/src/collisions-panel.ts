@@ -7,6 +7,11 @@ const FIRST_ROWS = 100;
 /** The traditional method runs after q has not changed for this time (ms). */
 const REST_TIME = 350;
 
+/** The number of pairs; a limited search knows only a lower bound. */
+function pairsText({ count, complete }: Answer | Traditional): string {
+    return `${complete ? "" : "at least "}${count.toLocaleString("en")}`;
+}
+
 export class CollisionsPanel {
     readonly element: HTMLElement;
     private readonly counters = h("table", { class: "counters" });
@@ -110,7 +115,7 @@ export class CollisionsPanel {
                 answer ? duration(answer.microseconds) : "…",
                 traditional ? duration(traditional.microseconds) : this.compare.checked ? "…" : "",
             ),
-            cells("pairs", number(answer?.count), traditional ? number(traditional.count) : ""),
+            cells("pairs", answer ? pairsText(answer) : "…", traditional ? pairsText(traditional) : ""),
             cells("nodes opened", number(answer?.opened)),
             cells("AABB tests", number(answer?.box_tests)),
             cells("triangle tests", number(answer?.triangle_tests)),
@@ -122,7 +127,7 @@ export class CollisionsPanel {
     private showPairs(answer: Answer | null): void {
         this.heading.textContent = answer
             ? answer.count
-                ? count(answer.count, "colliding pair")
+                ? `${answer.complete ? "" : "At least "}${count(answer.count, "colliding pair")}`
                 : "No pair collides"
             : "Pairs";
         const pairs = answer?.pairs ?? [];
@@ -153,7 +158,7 @@ export class CollisionsPanel {
                 h(
                     "li",
                     { class: "hint" },
-                    `the first ${pairs.length.toLocaleString("en")} of ${answer.count.toLocaleString("en")} pairs are listed`,
+                    `the first ${pairs.length.toLocaleString("en")} of ${pairsText(answer)} pairs are listed`,
                 ),
             );
         this.list.replaceChildren(...rows);

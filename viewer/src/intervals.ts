@@ -88,7 +88,7 @@ function marks(app: App, mode: number, found: Intervals, base: Float64Array): HT
         const at = (100 * (x(from) + x(to))) / 2 / WIDTH;
         const width = Math.max(1, (100 * (x(to) - x(from))) / WIDTH);
         const show = (): void => {
-            app.motion.stop();
+            app.takeOver();
             const q = base.slice();
             q[mode] = deepest;
             app.pose.show(q);

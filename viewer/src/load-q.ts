@@ -38,13 +38,13 @@ export function checkRows(rows: number[][], rank: number): number[][] {
 
 export async function rowsOfFile(file: File, rank: number): Promise<number[][]> {
     if (file.size > 256 * 1024 * 1024) throw new Error(`${file.name} is larger than 256 MiB`);
-    if (file.name.endsWith(".npy")) return checkRows(readNpy(await file.arrayBuffer()), rank);
+    if (file.name.endsWith(".npy")) return checkRows(readNpy(await file.arrayBuffer(), rank), rank);
     return parseRows(await file.text(), rank);
 }
 
 /** Shows one q, or plays several as a trajectory. */
 export function showRows(app: App, rows: number[][]): void {
-    app.motion.stop();
+    app.takeOver();
     if (rows.length === 1) {
         app.pose.show(rows[0]);
         return;

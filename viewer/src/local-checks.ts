@@ -50,9 +50,12 @@ export class LocalChecks {
     ) {}
 
     static async open(data: ChecksData, array: (name: string) => Promise<ArrayBuffer>): Promise<LocalChecks> {
-        const script = document.createElement("script");
-        script.textContent = data.script;
-        document.head.append(script);
+        // The script may have run before an error; it may run only once.
+        if (typeof ssccPackage === "undefined") {
+            const script = document.createElement("script");
+            script.textContent = data.script;
+            document.head.append(script);
+        }
         await ssccPackage({ module_or_path: await inflate(await array(data.module)) });
         const [model, certificates] = await Promise.all(
             [data.model, data.certificates].map(async (name) => new Uint8Array(await inflate(await array(name)))),

@@ -22,6 +22,7 @@ export class ModeRow {
     readonly marks = h("span", { class: "marks" });
     private readonly vibrating: HTMLButtonElement;
     private readonly range: readonly [number, number];
+    private weight = 0;
 
     constructor(shape: Shape, mode: number, actions: RowActions) {
         const name = shape.modeName(mode);
@@ -41,7 +42,11 @@ export class ModeRow {
             type: "number",
             step: "any",
             "aria-label": `${name}, exact value`,
-            onchange: () => actions.set(mode, this.number.valueAsNumber),
+            onchange: () => {
+                const { valueAsNumber } = this.number;
+                if (Number.isFinite(valueAsNumber)) actions.set(mode, valueAsNumber);
+                else this.showNumber();
+            },
         });
         this.vibrating = h(
             "button",
@@ -95,9 +100,9 @@ export class ModeRow {
 
     /** Shows a weight. Beyond the range the slider stays at its end; the number is exact. */
     show(weight: number): void {
+        this.weight = weight;
         this.slider.value = String(weight);
-        if (document.activeElement !== this.number)
-            this.number.value = weight === 0 ? "0" : digits(weight).replaceAll(",", "");
+        if (document.activeElement !== this.number) this.showNumber();
         const isBeyond = weight < this.range[0] || weight > this.range[1];
         if (isBeyond === this.element.classList.contains("beyond")) return;
         this.element.classList.toggle("beyond", isBeyond);
@@ -105,6 +110,10 @@ export class ModeRow {
         this.number.title = isBeyond ? note : "";
         if (isBeyond) this.slider.setAttribute("aria-valuetext", note);
         else this.slider.removeAttribute("aria-valuetext");
+    }
+
+    private showNumber(): void {
+        this.number.value = this.weight === 0 ? "0" : digits(this.weight).replaceAll(",", "");
     }
 
     showVibrating(isVibrating: boolean): void {

@@ -78,12 +78,14 @@ export class ModeSearch<T> {
 
     private async run(): Promise<void> {
         const { app, kind } = this;
-        app.motion.stop();
+        app.takeOver();
         kind.check();
         if (app.pose.q.some((weight, k) => weight !== this.base[k])) this.clear();
         this.base = app.pose.q.slice();
         this.compare();
-        const modes = this.listed().filter((mode) => !this.results.has(mode));
+        // Modes whose search took too long are searched again.
+        const modes = this.listed().filter((mode) => !this.results.get(mode));
+        for (const mode of modes) this.results.delete(mode);
         const running = new AbortController();
         this.running = running;
         let done = 0;

@@ -71,13 +71,13 @@ export class ModesPanel {
     }
 
     reset(): void {
-        this.app.motion.stop();
+        this.app.takeOver();
         this.app.pose.show(this.app.shape.model.center);
     }
 
     random(): void {
         const { app } = this;
-        app.motion.stop();
+        app.takeOver();
         const direction = randomDirection(app.shape, ++this.randoms);
         app.pose.show(direction.map((d, k) => app.shape.model.center[k] + d));
     }
@@ -135,8 +135,7 @@ export class ModesPanel {
     }
 
     private set(mode: number, value: number): void {
-        if (!Number.isFinite(value)) return;
-        this.app.motion.stop();
+        this.app.takeOver();
         this.app.pose.change(mode, value);
     }
 

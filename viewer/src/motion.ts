@@ -28,6 +28,7 @@ export class Motion {
         this.listeners.push(listener);
     }
 
+    /** Ends the motion; a q that was proposed before is not displayed any more. */
     stop(): void {
         this.run++;
         this.name = null;
@@ -51,7 +52,7 @@ export class Motion {
             begin ??= now;
             if (this.waitingSince !== null && now - this.waitingSince < MAX_WAIT) return true;
             const t = Math.min((now - begin) / 1000, seconds);
-            this.propose(path(t), now, () => run === this.run);
+            this.propose(path(t), now);
             if (t < seconds) return true;
             this.name = null;
             for (const listener of this.listeners) listener();
@@ -61,7 +62,8 @@ export class Motion {
     }
 
     /** Displays q when its answer arrives or a later q replaces it; at once if the page cannot check q. */
-    propose(q: ArrayLike<number>, now = performance.now(), wanted: () => boolean = () => true): void {
+    propose(q: ArrayLike<number>, now = performance.now()): void {
+        const { run } = this;
         const serial = this.pose.next();
         if (!this.checker) {
             this.pose.show(q, serial);
@@ -70,7 +72,7 @@ export class Motion {
         this.waitingSince = now;
         void this.checker.check(Float64Array.from(q), serial).then(() => {
             this.waitingSince = null;
-            if (wanted() && serial > this.pose.serial) this.pose.show(q, serial);
+            if (run === this.run && serial > this.pose.serial) this.pose.show(q, serial);
         });
     }
 }

@@ -1,5 +1,10 @@
-/** Reads a .npy file: one or two axes of little-endian float32 or float64, in C or Fortran order. One axis is one row. */
-export function readNpy(buffer: ArrayBuffer): number[][] {
+import { count } from "./dom";
+
+/**
+ * Reads a .npy file with rows of `rank` numbers: one or two axes of little-endian float32 or float64, in C or Fortran order. One
+ * axis is one row.
+ */
+export function readNpy(buffer: ArrayBuffer, rank: number): number[][] {
     const bytes = new Uint8Array(buffer);
     if (bytes.length < 12 || String.fromCharCode(...bytes.subarray(1, 6)) !== "NUMPY")
         throw new Error("this is not a .npy file");
@@ -21,6 +26,11 @@ export function readNpy(buffer: ArrayBuffer): number[][] {
     const [rows, columns] = shape.length === 2 ? shape : [1, shape[0]];
     const size = type === "<f8" ? 8 : 4;
     if (bytes.length - begin !== rows * columns * size) throw new Error("the .npy file is truncated or too long");
+    // The size of the file does not bound the number of rows without numbers.
+    if (columns !== rank)
+        throw new Error(
+            `each row of the .npy file has ${count(columns, "number")}, the model has ${count(rank, "mode")}`,
+        );
     const value = (i: number): number =>
         size === 8 ? view.getFloat64(begin + 8 * i, true) : view.getFloat32(begin + 4 * i, true);
     return Array.from({ length: rows }, (_, r) =>

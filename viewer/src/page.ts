@@ -65,6 +65,10 @@ export async function page(source: Source, layout: Layout): Promise<void> {
         chosen: null,
         recorded: null,
         refreshMarks: () => marks(shared),
+        takeOver: () => {
+            motion.stop();
+            player.timeline?.pause();
+        },
         playRows: (rows) => player.playRows(rows),
         say: (message, wrong) => layout.say(message, wrong),
     };

@@ -13,7 +13,11 @@ const ROWS_PER_SECOND = 30;
 export class Player {
     timeline: Timeline | null = null;
     private recorded: Playback | null = null;
+    /** The frames of the recording. */
+    private recording: Track | null = null;
+    /** Whether the shape of the sliders is displayed, not the recording. */
     private exploring = true;
+    /** Whether the recording itself changes q. */
     private showing = false;
     private up: "y" | "z" = "y";
     private readonly listeners: ((time: number | null) => void)[] = [];
@@ -50,20 +54,21 @@ export class Player {
         const { pairs, since } = this.recorded;
         const { clock, contacts } = data;
         const contact = contacts?.is_between || contacts?.seconds ? "contact" : "self-contact";
-        this.open({ times: data.times, pairs, since, sound, clock, contact, show: (frame) => this.show(frame) });
+        const show = (frame: number): void => this.show(frame);
+        this.recording = { times: data.times, pairs, since, sound, clock, contact, show };
+        this.open(this.recording);
         this.enterPlayback();
     }
 
-    /** Plays loaded rows of q. */
+    /** Plays loaded rows of q in place of the recording. */
     playRows(rows: number[][]): void {
         const { app } = this;
+        this.leave();
         const times = rows.map((_, i) => i / ROWS_PER_SECOND);
         app.motion.track = { q: rows, times };
         const show = (frame: number): void => {
-            this.showing = true;
-            app.recorded = null;
+            this.endMotion();
             app.motion.propose(rows[frame]);
-            this.showing = false;
         };
         this.open({ times, pairs: null, since: null, sound: null, show });
         this.timeline?.seek(0);
@@ -90,16 +95,12 @@ export class Player {
     /** Leaves the recording after a change of q, unless the recording itself changed q. */
     explore(): void {
         if (this.showing || this.exploring) return;
-        this.app.recorded = null;
-        if (this.recorded?.posed) {
-            if (!this.app.checker) this.app.body?.setMarks(0, []);
+        if (!this.recorded?.posed) {
+            this.leave();
             return;
         }
-        this.timeline?.pause();
-        this.exploring = true;
-        this.modeButton.hidden = false;
-        for (const listener of this.listeners) listener(null);
-        this.standAlone();
+        this.app.recorded = null;
+        if (!this.app.checker) this.app.body?.setMarks(0, []);
     }
 
     turnUp(): void {
@@ -109,11 +110,24 @@ export class Player {
         else this.meshes?.look(this.up);
     }
 
+    /** Replaces the recording by the shape of the sliders. */
+    private leave(): void {
+        if (this.exploring) return;
+        this.timeline?.pause();
+        this.exploring = true;
+        this.app.recorded = null;
+        this.modeButton.hidden = false;
+        for (const listener of this.listeners) listener(null);
+        if (!this.recorded?.posed) this.standAlone();
+        else if (!this.app.checker) this.app.body?.setMarks(0, []);
+    }
+
     private open(track: Track): void {
         this.timeline?.close();
         this.timeline = new Timeline(this.app.frames, track);
         this.timeline.onFrame((_, time) => {
-            for (const listener of this.listeners) listener(time);
+            // Times of rows are not those of the plots.
+            for (const listener of this.listeners) listener(track === this.recording ? time : null);
         });
         this.timeline.element.append(this.modeButton);
         this.timeline.element.hidden = track.times.length < 2;
@@ -132,7 +146,8 @@ export class Player {
     }
 
     private enterPlayback(): void {
-        if (!this.recorded || !this.timeline) return;
+        if (!this.recorded || !this.recording) return;
+        if (this.timeline?.track !== this.recording) this.open(this.recording);
         this.exploring = false;
         this.modeButton.hidden = true;
         this.app.motion.stop();
@@ -140,11 +155,17 @@ export class Player {
             this.app.body = null;
             this.recorded.enter(this.up);
         }
-        this.show(this.timeline.frame);
+        this.show(this.timeline!.frame);
+    }
+
+    /** Ends a motion along modes, which would replace the frames of the timeline. */
+    private endMotion(): void {
+        if (this.app.motion.name !== null) this.app.motion.stop();
     }
 
     private show(frame: number): void {
         if (this.exploring) this.enterPlayback();
+        this.endMotion();
         this.showing = true;
         this.recorded?.show(frame);
         this.showing = false;

@@ -8,6 +8,8 @@ const LEFT = 52;
 const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 34;
+/** Largest number of ticks on a linear axis; at the steps used there are at most 6. */
+const MAX_TICKS = 20;
 const DASHES = ["none", "6 3", "2 3", "8 3 2 3", "1 2", "10 4"];
 
 export interface Plot {
@@ -30,7 +32,8 @@ export function scaleOf(values: number[], log: boolean): Scale {
     let high = usable.reduce((a, b) => Math.max(a, b), Number.NEGATIVE_INFINITY);
     if (usable.length === 0) [low, high] = log ? [0.1, 1] : [0, 1];
     if (log) {
-        if (high / low < 4) [low, high] = [low / 2, high * 2];
+        // Neither 0 nor infinity: their logarithms are infinite.
+        if (high / low < 4) [low, high] = [Math.max(low / 2, Number.MIN_VALUE), Math.min(high * 2, Number.MAX_VALUE)];
         const [a, b] = [Math.log10(low), Math.log10(high)];
         const ticks: number[] = [];
         const step = Math.max(1, Math.ceil((b - a) / 6));
@@ -38,7 +41,8 @@ export function scaleOf(values: number[], log: boolean): Scale {
         if (ticks.length < 2) {
             for (let e = Math.floor(a); e <= b; e++) for (const m of [1, 2, 5]) ticks.push(m * 10 ** e);
         }
-        const shown = [...new Set(ticks)].filter((t) => t >= low * 0.999 && t <= high * 1.001).sort((x, y) => x - y);
+        const last = Math.min(high * 1.001, Number.MAX_VALUE);
+        const shown = [...new Set(ticks)].filter((t) => t >= low * 0.999 && t <= last).sort((x, y) => x - y);
         return { low, high, ticks: shown, at: (v) => (Math.log10(v) - a) / (b - a) };
     }
     if (low > 0 && low < high / 2) low = 0;
@@ -47,7 +51,13 @@ export function scaleOf(values: number[], log: boolean): Scale {
     const power = 10 ** Math.floor(Math.log10(raw));
     const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= raw) ?? raw;
     const ticks: number[] = [];
-    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; i++) ticks.push(i * step);
+    const first = Math.ceil(low / step - 1e-9);
+    for (let i = 0; i < MAX_TICKS; i++) {
+        // If the values differ only by rounding, first + i may round to the number before.
+        const tick = (first + i) * step;
+        if (!(tick <= high + step * 1e-9)) break;
+        if (tick !== ticks.at(-1)) ticks.push(tick);
+    }
     return { low, high, ticks, at: (v) => (v - low) / (high - low) };
 }
 

@@ -140,6 +140,7 @@ export interface Answer {
     serial: number;
     norm: number;
     colliding: boolean;
+    /** A lower bound if the answer is not complete. */
     count: number;
     complete: boolean;
     pairs: [number, number][];
@@ -218,5 +219,7 @@ export interface Boxes {
 
 export interface Traditional {
     microseconds: number;
+    /** A lower bound if the answer is not complete. */
     count: number;
+    complete: boolean;
 }

@@ -47,7 +47,11 @@ class ReportSource implements Source {
     async ask<T>(path: string, body?: unknown): Promise<T> {
         const { checks } = this.report;
         if (path !== "/api/check" || !checks) throw new RequestError("a report has no server for this request");
-        this.local ??= LocalChecks.open(checks, (name) => this.array(name));
+        this.local ??= LocalChecks.open(checks, (name) => this.array(name)).catch((error) => {
+            // The next check opens them again.
+            this.local = null;
+            throw error;
+        });
         const { q, serial } = body as { q: number[]; serial: number };
         return (await this.local).check(q, serial) as T;
     }

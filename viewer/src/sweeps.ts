@@ -69,7 +69,7 @@ export class Sweeps {
         const text = free === null ? "at once" : `${digits(hit)}${note === null ? "" : " *"}`;
         const label = `${name} touches at ${digits(hit)}; show it`;
         const show = (): void => {
-            this.app.motion.stop();
+            this.app.takeOver();
             const q = base.slice();
             q[mode] = hit;
             this.app.pose.show(q);

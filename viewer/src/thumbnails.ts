@@ -12,7 +12,7 @@ export function thumbnails(app: App): HTMLElement {
     const pictures = extremal.map(({ name, q }) => {
         const canvas = h("canvas", { width: 2 * WIDTH, height: 2 * HEIGHT, "aria-hidden": "true" });
         const show = (): void => {
-            app.motion.stop();
+            app.takeOver();
             app.pose.show(q);
         };
         const button = h(

@@ -61,8 +61,8 @@ function tone(seconds, rate = 8000) {
 const FRAMES = 60;
 const BODIES = 3;
 
-/** A report; `change` may modify its scene and arrays. With `flight` the bodies fly as many times as far. */
-export function report({ sound = false, playback = true, flight = 1, change = () => {} } = {}) {
+/** A report; `change` may modify its scene and arrays. With `flight` the bodies fly as many times as far. `checks`: see protocol.ts. */
+export function report({ sound = false, playback = true, flight = 1, checks, change = () => {} } = {}) {
     const { positions, faces, modes } = tube();
     const times = Array.from({ length: FRAMES }, (_, t) => t / 30);
     const arrays = { p: base64(positions), f: base64(faces), u: base64(modes) };
@@ -167,7 +167,7 @@ export function report({ sound = false, playback = true, flight = 1, change = ()
         ],
     };
     change(scene, arrays);
-    return { scene, arrays };
+    return { scene, arrays, checks };
 }
 
 /** Inserts a report into the page, as the program does. */

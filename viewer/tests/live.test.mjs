@@ -312,6 +312,97 @@ describe("live", () => {
             assert.match(table, new RegExp(`nodes opened\\s+${answer.opened.toLocaleString("en")}`));
         }));
 
+    test("the numbers of a search that ended at its limit are lower bounds", () =>
+        look(async (page) => {
+            const { q, answer } = fewPairs();
+            const n = answer.count.toLocaleString("en");
+            // Only the answer by certificates is cut off, then only the other one.
+            for (const [cutOff, other] of [
+                ["check", "traditional"],
+                ["traditional", "check"],
+            ]) {
+                await page.unrouteAll();
+                await page.route(`**/api/${cutOff}`, async (route) => {
+                    const response = await route.fetch();
+                    const json = { ...(await response.json()), complete: false };
+                    if (json.pairs) json.pairs = json.pairs.slice(0, 1);
+                    await route.fulfill({ response, json });
+                });
+                const whole = page.waitForResponse(`**/api/${other}`);
+                await show(page, q);
+                assert.equal((await (await whole).json()).complete, true);
+                await answered(page);
+                await page.getByRole("tab", { name: "Collisions" }).click();
+                const [own, traditional] = cutOff === "check" ? [`at least ${n}`, n] : [n, `at least ${n}`];
+                await page.waitForFunction(() => /×/.test(document.querySelector(".counters").textContent));
+                const table = await page.locator(".counters").innerText();
+                assert.match(table, new RegExp(`pairs\\s+${own}\\s+${traditional}`));
+                const heading = await page.getByRole("heading", { name: "colliding pairs" }).innerText();
+                assert.equal(heading, `${cutOff === "check" ? "At least " : ""}${n} colliding pairs`);
+                const rest = page.getByText(`the first 1 of at least ${n} pairs are listed`);
+                assert.equal(await rest.count(), cutOff === "check" ? 1 : 0);
+            }
+        }));
+
+    test("a colouring whose nodes arrive late does not replace a later choice; after an error nodes are requested again", () =>
+        look(
+            async (page) => {
+                await answered(page);
+                const isTinted = () =>
+                    page.evaluate(() => globalThis.sscc.body.group.children[0].material.uniforms.tinted.value);
+                await page.getByRole("tab", { name: "Certificates" }).click();
+                const colours = page.getByLabel("colours");
+                await page.route("**/api/nodes", (route) =>
+                    route.fulfill({ status: 500, json: { error: "no nodes yet" } }),
+                );
+                await colours.selectOption("searched");
+                await page.locator(".message", { hasText: "no nodes yet" }).waitFor();
+                // Each answer asks again.
+                await show(page, fewPairs().q);
+                await answered(page);
+                await page.locator(".message", { hasText: "no nodes yet" }).waitFor();
+                await colours.selectOption("none");
+                await page.unrouteAll();
+                let release;
+                const held = new Promise((done) => {
+                    release = done;
+                });
+                await page.route("**/api/nodes", async (route) => {
+                    await held;
+                    await route.continue();
+                });
+                await colours.selectOption("radius");
+                await colours.selectOption("none");
+                const nodes = page.waitForResponse("**/api/array/**");
+                release();
+                await (await nodes).finished();
+                await settled(page);
+                assert.equal(await isTinted(), false);
+                assert.ok(await page.locator(".ramp-legend").isHidden());
+                await colours.selectOption("radius");
+                await page.locator(".ramp").waitFor();
+                assert.equal(await isTinted(), true);
+            },
+            { allowed: [/status of 500/] },
+        ));
+
+    test("loaded rows make way for a motion to the first self-collision", () =>
+        look(async (page) => {
+            await answered(page);
+            const { rank } = await page.evaluate(() => globalThis.sscc.shape.model);
+            const row = (i) => Array.from({ length: rank }, (_, k) => (k === rank - 1 ? 1e-6 * i : 0));
+            await page.evaluate(
+                (rows) => globalThis.sscc.playRows(rows),
+                Array.from({ length: 3000 }, (_, i) => row(i)),
+            );
+            await page.waitForFunction(() => globalThis.player.timeline.frame > 3);
+            await page.keyboard.press("c");
+            await page.locator(".message", { hasText: /first self-collision along random direction 1 at/ }).waitFor();
+            assert.equal(await page.evaluate(() => globalThis.player.timeline.playing), false);
+            await page.locator(".verdict-text", { hasText: /^COLLIDING/ }).waitFor();
+            assert.equal(await page.evaluate(() => globalThis.sscc.motion.name), null);
+        }));
+
     test("nodes are coloured by radius, and as opened and culled; AABBs are drawn", () =>
         look(async (page) => {
             await show(

@@ -5,8 +5,9 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { deflateSync } from "node:zlib";
 import { builtPage, launch, nameless, open } from "./browser.mjs";
-import { report, withReport } from "./fixture.mjs";
+import { base64, report, withReport } from "./fixture.mjs";
 import { atTime, isBounded, parse } from "./glb.mjs";
 import { drawnBox, expectedBox, orange, pixels, settled } from "./picture.mjs";
 
@@ -156,6 +157,64 @@ describe("the shape", () => {
             const cut = { ...file, buffer: rows.subarray(0, rows.length - 5) };
             await page.locator('.dialog input[type="file"]').setInputFiles(cut);
             await page.getByText("the .npy file is truncated or too long").waitFor();
+            for (const [buffer, columns] of [
+                [npy([0, 0, 0, 0, 0, 0], [2, 3]), 3],
+                // A small file, with a header that promises billions of empty rows.
+                [npy([], [4294967295, 0]), 0],
+            ]) {
+                await page.locator('.dialog input[type="file"]').setInputFiles({ ...file, buffer });
+                await page
+                    .getByText(`each row of the .npy file has ${columns} numbers, the model has 4 modes`)
+                    .waitFor();
+            }
+        }));
+
+    test("a slider, a button and a vibration end the motion of loaded rows", () =>
+        look({ playback: false }, async (page) => {
+            const rows = Array.from({ length: 3000 }, (_, i) => `0 ${(i + 1) / 3000} 0 0`).join("\n");
+            await page.keyboard.press("l");
+            await page.getByRole("textbox", { name: "numbers" }).fill(rows);
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            const state = () =>
+                page.evaluate(() => ({
+                    q: [...globalThis.sscc.pose.q],
+                    playing: globalThis.player.timeline.playing,
+                    motion: globalThis.sscc.motion.name,
+                }));
+            const play = async () => {
+                await page.evaluate(() => globalThis.player.timeline.start());
+                await page.waitForFunction(() => {
+                    globalThis.at ??= globalThis.sscc.pose.q[1];
+                    return globalThis.sscc.pose.q[1] > globalThis.at;
+                });
+                await page.evaluate(() => delete globalThis.at);
+            };
+            const stays = async (q) => {
+                await page.waitForTimeout(200);
+                assert.deepEqual(await state(), { q, playing: false, motion: null });
+            };
+            await play();
+            await page.getByRole("button", { name: "Reset" }).click();
+            await stays([0, 0, 0, 0]);
+            await play();
+            await page.locator('.mode input[type="range"]').nth(1).fill("-0.5");
+            await stays([0, -0.5, 0, 0]);
+            await play();
+            await page.keyboard.press("l");
+            await page.getByRole("textbox", { name: "numbers" }).fill("0.25 -0.25 0 0");
+            await page.getByRole("button", { name: "Show", exact: true }).click();
+            await stays([0.25, -0.25, 0, 0]);
+            await page.getByRole("button", { name: "Reset" }).click();
+            await play();
+            await page.getByRole("button", { name: "vibrate mode 0" }).click();
+            await page.waitForFunction(() => globalThis.sscc.pose.q[0] > 0.05);
+            const { q, playing, motion } = await state();
+            assert.deepEqual([playing, motion], [false, "vibrating mode 0"]);
+            assert.ok(q[1] > 0);
+            // The timeline ends the vibration.
+            await play();
+            await page.waitForFunction(() => globalThis.sscc.motion.name === null);
+            assert.equal((await state()).q[0], 0);
         }));
 });
 
@@ -229,6 +288,21 @@ describe("morph targets", () => {
             await row.locator('input[type="range"]').fill("0.5");
             assert.equal(await q(), 0.5);
             assert.doesNotMatch(await row.getAttribute("class"), /beyond/);
+        }));
+
+    test("keep their weights where a typed text is no number", () =>
+        look({ playback: false, change: targets(names) }, async (page) => {
+            const row = page.locator(".mode").first();
+            const number = row.locator('input[type="number"]');
+            await row.locator('input[type="range"]').fill("0.5");
+            for (const text of ["", "1e", "-"]) {
+                await number.click();
+                await number.fill("");
+                await page.keyboard.type(text);
+                await page.keyboard.press("Enter");
+                assert.equal(await number.inputValue(), "0.5000", text);
+                assert.equal(await page.evaluate(() => globalThis.sscc.pose.q[0]), 0.5, text);
+            }
         }));
 
     test("vibrate within their range", () =>
@@ -461,6 +535,104 @@ describe("playback", () => {
             assert.equal(await page.evaluate(() => globalThis.sscc.stage.bodies[0].instances), 3);
         }));
 
+    const loadRows = async (page, rows) => {
+        await page.keyboard.press("l");
+        await page.getByRole("textbox", { name: "numbers" }).fill(rows.map((row) => row.join(" ")).join("\n"));
+        await page.getByRole("button", { name: "Show", exact: true }).click();
+        await page.locator(".dialog").waitFor({ state: "detached" });
+        await page.evaluate(() => globalThis.player.timeline.pause());
+    };
+
+    test("loaded rows are shown in place of the recording, a button returns to it", () =>
+        look({ sound: true }, async (page) => {
+            const slider = page.getByRole("slider", { name: "frame" });
+            const verdict = page.locator(".verdict-text");
+            const cursor = page.locator(".plot").first().locator(".cursor");
+            const instances = () => page.evaluate(() => globalThis.sscc.stage.bodies[0].instances);
+            await slider.fill("25");
+            assert.equal(await cursor.getAttribute("visibility"), "visible");
+            // More rows than the recording has frames.
+            const rows = Array.from({ length: 90 }, (_, i) => [i < 80 ? 0 : i / 100, 0, 0, 0]);
+            await loadRows(page, rows);
+            for (const [row, text] of [
+                [10, "free: proven by the root's certificate"],
+                [85, "not checked: this is a report"],
+            ]) {
+                await slider.fill(String(row));
+                await settled(page);
+                assert.equal(await verdict.innerText(), text);
+                assert.deepEqual(await page.evaluate(() => [...globalThis.sscc.pose.q]), rows[row]);
+                assert.equal(await instances(), 1);
+                assert.equal(orange(await pixels(page)), 0);
+                assert.equal(await cursor.getAttribute("visibility"), "hidden");
+            }
+            const [drawn, due] = [drawnBox(await pixels(page)), await expectedBox(page)];
+            for (const side of ["top", "bottom"])
+                assert.ok(Math.abs(drawn[side] - due[side]) < 4, `${side}: ${drawn[side]}, ${due[side]}`);
+            // Other rows, and a slider, stay beside the recording.
+            await loadRows(page, rows.slice(80));
+            await page.locator('.mode input[type="range"]').first().fill("0.5");
+            await page.getByRole("button", { name: "back to the recording" }).click();
+            assert.equal(await instances(), 3);
+            assert.equal(await slider.getAttribute("max"), "59");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "free (as recorded)");
+            assert.ok(await page.getByRole("button", { name: "back to the recording" }).isHidden());
+            await slider.fill("25");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "COLLIDING 10 pairs (as recorded)");
+            assert.ok(orange(await pixels(page)) > 30);
+        }));
+
+    /** A recording of one body that only deforms, as that of the demo. */
+    const posed = (scene, arrays) => {
+        const { playback } = scene;
+        playback.bodies = [{ ...playback.bodies[1], rigid: null }];
+        playback.ground = null;
+        const { pairs } = playback.bodies[0];
+        const sizes = pairs.map((count) => (count > 0 ? 40 : 0));
+        let end = 0;
+        arrays.offsets = base64(new Uint32Array([0, ...sizes.map((size) => (end += size))]));
+    };
+
+    test("loaded rows do not have the marks of a recorded shape", () =>
+        look({ change: posed }, async (page) => {
+            const slider = page.getByRole("slider", { name: "frame" });
+            const verdict = page.locator(".verdict-text");
+            const marked = () => page.evaluate(() => globalThis.sscc.body.markedTriangles(0).length);
+            const recorded = async () => {
+                await slider.fill("25");
+                await settled(page);
+                assert.equal(await verdict.innerText(), "COLLIDING 10 pairs (as recorded)");
+                assert.equal(await marked(), 40);
+            };
+            await recorded();
+            const rows = [
+                [0, 0, 0, 0],
+                [0, 0.5, 0, 0],
+            ];
+            await loadRows(page, rows);
+            await slider.fill("1");
+            await settled(page);
+            assert.equal(await verdict.innerText(), "not checked: this is a report");
+            assert.equal(await marked(), 0);
+            assert.deepEqual(await page.evaluate(() => [...globalThis.sscc.pose.q]), rows[1]);
+            await page.getByRole("button", { name: "back to the recording" }).click();
+            await recorded();
+        }));
+
+    test("a slider ends the playback of a recorded shape", () =>
+        look({ change: posed }, async (page) => {
+            await page.evaluate(() => globalThis.player.timeline.start());
+            await page.waitForFunction(() => globalThis.player.timeline.frame > 3);
+            await page.locator('.mode input[type="range"]').nth(1).fill("0.5");
+            const q = await page.evaluate(() => [...globalThis.sscc.pose.q]);
+            assert.equal(q[1], 0.5);
+            assert.ok(!(await page.evaluate(() => globalThis.player.timeline.playing)));
+            await page.waitForTimeout(200);
+            assert.deepEqual(await page.evaluate(() => [...globalThis.sscc.pose.q]), q);
+        }));
+
     test("sound and picture are in sync", () =>
         look({ sound: true }, async (page) => {
             await page.evaluate(() => document.querySelector(".play").click());
@@ -502,6 +674,38 @@ describe("the page", () => {
             await page.getByRole("slider", { name: "frame" }).fill("30");
             assert.equal(await page.locator(".plot").nth(0).locator(".cursor").getAttribute("visibility"), "visible");
         }));
+
+    test("plots numbers that differ only by rounding, and the smallest and largest ones", () => {
+        const values = [
+            [1, 1 + 2 ** -52],
+            [12.5, 12.500000000000002],
+            [-0.1, -0.10000000000000002],
+            [5e-324, 5e-324],
+            [5e-324, 1e-323],
+            [1.5e308, 1.5e308],
+        ];
+        const plots = values.flatMap((y) =>
+            [false, true].map((log) => ({
+                title: `${y} ${log}`,
+                x: { label: "step", log: false },
+                y: { label: "energy", log },
+                series: [{ name: "energy", x: [0, 1], y }],
+            })),
+        );
+        // A range beyond the largest number has no linear axis.
+        const drawn = plots.filter(({ y, series }) => y.log || series[0].y[0] < 1e308);
+        return look({ playback: false, change: (scene) => (scene.plots = drawn) }, async (page) => {
+            await page.getByRole("tab", { name: "Plots" }).click();
+            const ticks = await page
+                .locator(".plot")
+                .evaluateAll((all) => all.map((plot) => plot.querySelectorAll(".tick").length));
+            assert.equal(ticks.length, drawn.length + 1);
+            assert.ok(
+                ticks.every((count) => count > 4 && count < 30),
+                `${ticks}`,
+            );
+        });
+    });
 
     test("shows extremal deformations; a click displays one", () =>
         look({ playback: false }, async (page) => {
@@ -550,6 +754,40 @@ describe("the page", () => {
                 assert.notEqual(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
             });
         }
+    });
+
+    test("opens the core within it again after an error", () => {
+        // A package that cannot be opened at first, and then finds nothing.
+        const script = `
+            var isBroken = true;
+            const ssccPackage = async () => {
+                if (isBroken) throw new Error("the package has no memory");
+            };
+            ssccPackage.Model = { load: () => ({}) };
+            ssccPackage.Certificates = { load: () => ({ rootRadius: 0.1 }) };
+            ssccPackage.Query = class {
+                discreteAtMost() {
+                    return new Uint32Array();
+                }
+                get statistics() {
+                    return { norm: 0.5, rootCertified: false, proof: "search", complete: true, free() {} };
+                }
+            };`;
+        const checks = { script, module: "none", model: "none", certificates: "none" };
+        const change = (_, arrays) => {
+            arrays.none = deflateSync("").toString("base64");
+        };
+        return look({ playback: false, checks, change }, async (page) => {
+            const verdict = page.locator(".verdict-text");
+            const slider = page.locator('.mode input[type="range"]').first();
+            await slider.fill("0.5");
+            await page.getByText("the package has no memory").waitFor();
+            await settled(page);
+            assert.equal(await verdict.innerText(), "unknown: no answer");
+            await page.evaluate(() => (globalThis.isBroken = false));
+            await slider.fill("0.6");
+            await page.getByText("free: proven", { exact: true }).waitFor();
+        });
     });
 
     test("without a shape has only plots, in its whole width", () =>

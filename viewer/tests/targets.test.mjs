@@ -154,6 +154,23 @@ test("one row without a result does not end the search", () =>
             await find(page);
             await page.locator(".hit").waitFor();
             assert.deepEqual(await found(page).allInnerTexts(), ["no result", "↑ 0.2500"]);
+            // The next search is for this row only. After a stop it is empty, as before the first search.
+            const requested = [];
+            let isHeld = true;
+            await page.route("**/api/sweep", (route) => {
+                requested.push(route.request().postDataJSON().mode);
+                if (!isHeld) return route.continue();
+            });
+            await find(page);
+            await page.getByText("0 of 1 modes searched").waitFor();
+            await page.getByRole("button", { name: "Stop" }).click();
+            await page.getByText("stopped after 0 of 1 modes").waitFor();
+            assert.deepEqual(await found(page).allInnerTexts(), ["↑ 0.2500"]);
+            isHeld = false;
+            await find(page);
+            await page.waitForFunction(() => document.querySelectorAll(".hit").length === 2);
+            assert.deepEqual(await found(page).allInnerTexts(), ["↑ 0.5000", "↑ 0.2500"]);
+            assert.deepEqual(requested, [0, 0]);
         },
         { allowed: /status of 400/ },
     ));

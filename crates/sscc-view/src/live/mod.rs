@@ -66,7 +66,10 @@ pub struct At {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraditionalAnswer {
     microseconds: f64,
+    /// The number of colliding pairs; a lower bound if the answer is not complete.
     count: usize,
+    /// Whether the search ended before its limit.
+    complete: bool,
 }
 
 impl Live {
@@ -136,7 +139,8 @@ impl Live {
         };
         let (count, microseconds) =
             check::timed(|| query.discrete_at_most(q, check::MAX_PAIRS).map(<[_]>::len));
-        Ok(TraditionalAnswer { microseconds, count: count? })
+        let count = count?;
+        Ok(TraditionalAnswer { microseconds, count, complete: query.statistics().complete })
     }
 
     /// Returns the safe scale of a direction from the centre, and the first collision along it. The search ends early

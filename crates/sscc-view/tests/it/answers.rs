@@ -1,8 +1,12 @@
 //! Answers of a live page equal those of the core.
 
+use glam::DVec3;
 use serde_json::{Value, json};
-use sscc::{Certificates, CertifyOptions, Clearance, Error, Method, ModeRange, Proof, Query};
-use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Picture, ViewError};
+use sscc::{
+    Certificates, CertifyOptions, Clearance, Error, Method, ModeRange, Modes, Proof, Query, ReducedModel,
+    TriMesh,
+};
+use sscc_view::{Arrays, Live, ModelDetails, ModelScene, Picture, Scene, ViewError};
 
 use crate::common::{Client, scene, strips, with_server};
 
@@ -51,10 +55,34 @@ fn answers_are_those_of_the_query() {
             assert_eq!(opened == 0, statistics.proof == Proof::Radius);
             kinds[if pairs.is_empty() { usize::from(statistics.root_certified) } else { 2 }] += 1;
             let slow = client.post("/api/traditional", &json!({"q": q}).to_string()).json();
-            assert_eq!(slow["count"], json!(pairs.len()));
+            assert_eq!((&slow["count"], &slow["complete"]), (&json!(pairs.len()), &json!(true)));
         }
     });
     assert!(kinds.iter().all(|count| *count > 3), "{kinds:?}");
+}
+
+#[test]
+fn counts_at_the_limit_are_lower_bounds() {
+    // Triangles in planes of constant y, and triangles in planes of constant x, which are 10 away at rest. At q = 1 each of the
+    // first crosses each of the second: 102,400 pairs.
+    const PLANES: usize = 320;
+    let offset = |i: usize| i as f64 / PLANES as f64;
+    let corners = [[-1.0, -1.0], [2.0, -1.0], [0.5, 1.0]];
+    let first = (0..PLANES).flat_map(|i| corners.map(|[u, z]| DVec3::new(u, offset(i), z)));
+    let second = (0..PLANES).flat_map(|i| corners.map(|[u, z]| DVec3::new(10.0 + offset(i), u, z)));
+    let faces = (0..2 * PLANES as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = TriMesh::new(first.chain(second).collect(), faces).unwrap();
+    let is_moved = |row: usize| row / 3 >= 3 * PLANES && row.is_multiple_of(3);
+    let modes = Modes::from_matrix(6 * PLANES, 1, |row, _| if is_moved(row) { -10.0 } else { 0.0 });
+    let model = ReducedModel::new(mesh, modes.unwrap()).unwrap();
+    let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
+    let live = Live::new(&model, &certificates, Scene::new("planes"), Arrays::default(), None).unwrap();
+    let at = json!({"q": [1.0]});
+    let checked = live.check(&serde_json::from_value(at.clone()).unwrap()).unwrap();
+    let traditional = live.traditional(&serde_json::from_value(at).unwrap()).unwrap();
+    for answer in [json!(checked), json!(traditional)] {
+        assert_eq!((&answer["count"], &answer["complete"]), (&json!(100_000), &json!(false)));
+    }
 }
 
 #[test]
