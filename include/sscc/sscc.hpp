@@ -320,8 +320,10 @@ class searching : public answering<Api> {
   }
 
   // Sets a callable that later calls check regularly, and that can end them with SSCC_STATUS_CANCELLED. Copies have no callable.
-  // Set it once, not for each answer: the call copies the state of the object.
+  // Set it once, not for each answer: the call copies the state of the object. An empty callable, as std::function<bool()>() or
+  // nullptr, is none: see never_cancel.
   returns<void> cancel_when(std::function<bool()> ask) {
+    if (!ask) return never_cancel();
     auto next = std::make_unique<canceller>(canceller{std::move(ask), {}});
     const status s = Api::set_cancel(this->handle_.get(), canceller::c_function, next.get());
     if (s == SSCC_STATUS_OK) canceller_ = std::move(next);

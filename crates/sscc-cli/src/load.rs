@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Error, Result, ensure};
+use anyhow::{Context, Error, Result, bail, ensure};
 use sscc::parts::check_models;
 use sscc::{Certificates, CertifyOptions, ReducedModel};
-use sscc_io::{IoError, LoadOptions, LoadedModel, Setting, check_writable, folder};
+use sscc_io::{
+    IoError, LoadOptions, LoadedModel, Setting, check_writable, folder, has_file, is_folder_of_mesh,
+};
 use sscc_tasks::{CertificateRequest, GroupRules, Scheme, TaskError, available_threads, read_configuration};
 
 use crate::output::{note, warn};
@@ -99,8 +101,8 @@ pub fn in_file(error: Error, path: &Path) -> Error {
     if is_named { error } else { error.context(path.display().to_string()) }
 }
 
-/// Refuses an unusable output before any long work: one with another ending, one that is an input or no file, one in a
-/// folder that cannot be written to.
+/// Refuses an unusable output before any long work: one with another ending, one that is an input, a file of an input or no file,
+/// one in a folder that cannot be written to, and a new mesh in the folder of an input, which would be read in the next run.
 pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()> {
     let shown = output.display();
     let file_name = output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -109,9 +111,15 @@ pub fn check_output(output: &Path, ending: &str, inputs: &[&Path]) -> Result<()>
         "{shown}: the name of the output must end in {ending}"
     );
     if let Ok(real) = fs::canonicalize(output) {
-        let is_input = |input: &&Path| fs::canonicalize(input).is_ok_and(|input| input == real);
-        ensure!(!inputs.iter().any(is_input), "{shown}: the output is an input; choose another name");
+        let is_input = inputs.iter().any(|input| has_file(input, &real));
+        ensure!(!is_input, "{shown}: the output is an input; choose another name");
         ensure!(real.is_file(), "{shown}: cannot be written: it is not a file; choose another name");
+    }
+    if let Some(input) = inputs.iter().find(|input| is_folder_of_mesh(input, output)) {
+        bail!(
+            "{shown}: the output would be a mesh of the input folder {}; choose another folder",
+            input.display()
+        );
     }
     check_writable(folder(output)).with_context(|| format!("{shown}: cannot be written"))?;
     Ok(())

@@ -13,10 +13,8 @@ pub(crate) fn list_files(folder: &Path, is_wanted: impl Fn(&Path) -> bool) -> Re
     let refused = |cause| read_error(folder, cause);
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(refused)? {
-        let name = entry.map_err(refused)?.file_name();
-        let path = folder.join(&name);
-        let is_hidden = name.as_encoded_bytes().starts_with(b".");
-        if !is_hidden && is_wanted(&path) && !path.is_dir() {
+        let path = folder.join(entry.map_err(refused)?.file_name());
+        if !is_hidden(&path) && is_wanted(&path) && !path.is_dir() {
             paths.push(path);
         }
     }
@@ -29,4 +27,9 @@ pub(crate) fn list_files(folder: &Path, is_wanted: impl Fn(&Path) -> bool) -> Re
         natural_order::compare(stem_a, stem_b).then_with(|| natural_order::compare(name_a, name_b))
     });
     Ok(paths)
+}
+
+/// Whether the name of a file begins with a dot.
+pub(crate) fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
 }

@@ -40,7 +40,7 @@
 //! | frames of an animation: a folder of meshes | [`read_frames`] |
 //! | frames of a given mesh, one by one: `.npy` of positions, a `.pc2` point cache, VTK's `.vtu`, `.vtk` and `.pvd`, a folder of meshes | [`FrameReader`] |
 //! | the mesh of any file, without modes, at the place that nodes give it; the surface of a solid | [`load_mesh`], [`gltf::read_placed_mesh`] |
-//! | the files of a folder that have a mesh | [`list_mesh_files`] |
+//! | the files of a folder that have a mesh; whether an input has a file | [`list_mesh_files`], [`has_file`], [`is_folder_of_mesh`] |
 //! | mesh and modes: glTF morph targets, `.npz` | [`gltf`], [`npz`] |
 //! | animated characters: glTF nodes, skins, animations | [`gltf::read_scene`] |
 //! | the contents of a glTF file | [`gltf::read_contents`] |
@@ -107,7 +107,7 @@ pub use load::{
     LoadOptions, LoadedMesh, LoadedModel, load_mesh, load_mesh_with_warnings, load_model, load_model_with,
 };
 pub use mesh::{read_mesh, read_mesh_with_warnings};
-pub use mesh_files::list_mesh_files;
+pub use mesh_files::{has_file, is_folder_of_mesh, list_mesh_files};
 pub use mesh_modes::read_modes_for;
 pub use mesh_path::split_mesh_name;
 pub use message::{Message, Setting};

@@ -63,6 +63,10 @@ extern "C" {
     #[wasm_bindgen(js_namespace = ArrayBuffer, js_name = isView)]
     fn is_typed_array(value: &JsValue) -> bool;
 
+    /// Returns the prototype of a value; null for an object without one. Returns an error for null and `undefined`.
+    #[wasm_bindgen(js_namespace = Object, js_name = getPrototypeOf, catch)]
+    fn prototype_of(value: &JsValue) -> Result<JsValue, JsValue>;
+
     /// Returns a plain array of the same items.
     #[wasm_bindgen(js_namespace = Array, js_name = from, catch)]
     fn plain_array(value: &JsValue) -> Result<JsValue, JsValue>;
@@ -77,11 +81,23 @@ pub fn json(options: &JsValue) -> Result<Option<String>, JsError> {
         return Ok(None);
     }
     let refused = |cause: &str| JsError::new(&OptionsError(cause.to_owned()).to_string());
+    if !is_plain(options) {
+        return Err(refused(NO_OBJECT));
+    }
     match stringify(options, &Closure::new(replaced)) {
         Ok(Some(text)) => Ok(Some(text)),
         Ok(None) => Err(refused(NO_OBJECT)),
         Err(error) => Err(refused(error.as_string().as_deref().unwrap_or(NO_OBJECT))),
     }
+}
+
+/// Whether a value is an object without a class: with the prototype of all objects, which has none itself, or without a prototype.
+/// JSON would omit the items of a `Map` or a `Set`, and all that an object inherits.
+fn is_plain(value: &JsValue) -> bool {
+    let is_root = |prototype: JsValue| {
+        prototype.is_null() || prototype_of(&prototype).is_ok_and(|above| above.is_null())
+    };
+    prototype_of(value).is_ok_and(is_root)
 }
 
 /// Returns the replacement of a value in JSON: a plain array for a typed array, else the value.

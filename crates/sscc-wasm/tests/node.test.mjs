@@ -1,14 +1,18 @@
 // Tests of the package in Node. SSCC_PACKAGE is its folder, SSCC_DIGESTS that of the native bytes.
 import assert from "node:assert/strict";
+import { once } from "node:events";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { runInNewContext } from "node:vm";
+import { Worker } from "node:worker_threads";
 import { compare } from "./models.mjs";
 
 const folder = process.env.SSCC_PACKAGE;
 const { exports } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
-const sscc = await import(pathToFileURL(join(folder, exports["."].node)));
+const url = pathToFileURL(join(folder, exports["."].node));
+const sscc = await import(url);
 await sscc.default();
 const { Certificates, Detector, Model, Query } = sscc;
 
@@ -101,6 +105,14 @@ test("a centre may be a typed array", () => {
     assert.notDeepEqual(bytes([0.25]), bytes([0]));
 });
 
+test("options are plain objects of any realm", () => {
+    const bytes = (options) => two().certify(options).toBytes();
+    const moved = bytes({ center: [0.25] });
+    assert.notDeepEqual(moved, bytes());
+    assert.deepEqual(bytes(Object.assign(Object.create(null), { center: [0.25] })), moved);
+    assert.deepEqual(bytes(runInNewContext("({ center: [0.25] })")), moved);
+});
+
 test("a detector needs no modes", () => {
     const detector = new Detector(positions, faces);
     assert.deepEqual([...detector.discrete(positions)], []);
@@ -152,6 +164,12 @@ test("bad input is an error of one line, and the module goes on", () => {
         [() => model.certify(Number.NaN), /options: it is no plain object/],
         [() => model.certify("paper"), /options: it is no plain object/],
         [() => model.certify(() => 1), /options: it is no plain object/],
+        [() => model.certify(null), /options: it is no plain object/],
+        [() => model.certify(new Map([["epsilon", 0.5]])), /options: it is no plain object/],
+        [() => model.certify(new Set(["paper"])), /options: it is no plain object/],
+        [() => model.certify(runInNewContext("new Map([['epsilon', 0.5]])")), /options: it is no plain object/],
+        [() => model.certify(Object.create({ epsilon: 0.5 })), /options: it is no plain object/],
+        [() => new Detector(positions, faces, new Map([["weld", true]])), /options: it is no plain object/],
         [() => new Query(other, model.certify()), /another model|other model/],
         [() => query.discrete([]), /0/],
         [() => query.discrete([Number.NaN]), /NaN/],
@@ -185,4 +203,25 @@ test("memory that is freed is used again", () => {
         detector.free();
     }
     assert.ok(memory.buffer.byteLength <= before + 131_072, `${before} to ${memory.buffer.byteLength} bytes`);
+});
+
+test("each worker has a module of its own", async () => {
+    const program = `
+        import { parentPort, workerData } from "node:worker_threads";
+        const { Detector, initSync } = await import(workerData);
+        const { memory } = initSync();
+        const before = memory.buffer.byteLength;
+        const detectors = Array.from({ length: 8 }, () => new Detector(new Float64Array(900_000), Uint32Array.of(0, 1, 2)));
+        parentPort.postMessage([detectors.length, before, memory.buffer.byteLength]);`;
+    const sizes = async () => {
+        const worker = new Worker(new URL(`data:text/javascript,${encodeURIComponent(program)}`), { workerData: url.href });
+        const [sizes] = await once(worker, "message");
+        await worker.terminate();
+        return sizes;
+    };
+    const own = sscc.initSync().memory.buffer.byteLength;
+    const [first, second] = [await sizes(), await sizes()];
+    assert.ok(first[0] === 8 && first[1] < first[2], `${first}`);
+    assert.deepEqual(second, first);
+    assert.equal(sscc.initSync().memory.buffer.byteLength, own);
 });

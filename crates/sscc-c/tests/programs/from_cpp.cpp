@@ -169,6 +169,13 @@ int main() {
   // After an exception of a callable there is no older answer.
   certified.never_cancel();
   CHECK(certified.discrete(q).size() == wanted);
+  // An empty callable is none.
+  certified.cancel_when([] { return true; });
+  certified.cancel_when(nullptr);
+  CHECK(certified.discrete(q).size() == wanted);
+  certified.cancel_when([] { return true; });
+  certified.cancel_when(std::function<bool()>());
+  CHECK(certified.discrete(q).size() == wanted);
   certified.cancel_when([]() -> bool { throw stopped(); });
   CHECK(is_stopped([&] { certified.discrete(q); }) && certified.pairs().empty());
   certified.never_cancel();

@@ -34,6 +34,9 @@ int main() {
   CHECK(std::string(sscc_error_message()).find("q has 18 entries") != std::string::npos);
   CHECK(!query.value().continuous(q, rest));
   CHECK(query.value().cancel_when([] { return true; }));
+  CHECK(query.value().cancel_when(nullptr));
+  pairs = query.value().discrete(q);
+  CHECK(pairs && pairs.value().size() == 1);
   CHECK(query.value().never_cancel());
   auto missing = sscc::model::load("no such file.obj");
   CHECK(missing.code() == SSCC_STATUS_FILE && missing.value().get() == nullptr);

@@ -25,7 +25,7 @@ pub struct Bench {
     #[arg(value_name = "SCENARIO", required_unless_present = "list")]
     pub scenario: Option<String>,
     /// List the scenarios
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["scenario", "steps", "samples", "only", "quick", "plot", "report"])]
     pub list: bool,
     /// The folder of bunny_14964_closed.obj and dragon_77202_closed.ply [default: SSCC_MODELS; without it embedded
     /// shapes replace them]

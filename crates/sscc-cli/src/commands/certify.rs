@@ -86,6 +86,8 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         interrupt::check()?;
         drawn.with_context(|| path.display().to_string())
     };
+    // Work that may be interrupted comes before the first file is written.
+    let zero_radius = ZeroRadius::find(model, &certificates, &request, interrupt::token())?;
     let picture = args.picture.as_ref().map(draw).transpose()?;
     let proof = args.proof.as_ref().map(|path| write_proof(args, path, model, &certificates)).transpose()?;
     interrupt::check()?;
@@ -116,7 +118,6 @@ pub fn run(args: &Certify) -> anyhow::Result<Outcome> {
         rings: clearance.map(|clearance| clearance.rings()),
         proof,
     };
-    let zero_radius = ZeroRadius::find(model, &certificates, &request, interrupt::token())?;
     let mut out = Output::new();
     if args.json.json {
         out.json(&report)?;

@@ -1,6 +1,7 @@
 //! `sscc sweep`: for each mode the first weight at which the shape touches itself, or all intervals in which it collides;
 //! combinations of two modes.
 
+use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
@@ -26,10 +27,11 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
     let threads = Some(load::threads(&args.options.threads));
     let Sweep { q, range, pose, .. } = args;
     let request = SweepRequest { q: q.clone(), range: range.clone(), pose: pose.clone(), threads };
-    // An unusable report is refused before certificates are computed.
+    // Unusable outputs are refused before certificates are computed.
     if let Some(report) = &args.report {
         load::check_output(report, ".html", &[&args.model.path])?;
     }
+    check_poses(args)?;
     request.prepare(&loaded, &vec![0.0; loaded.model.rank()])?;
     let ranges = request.ranges(&loaded)?;
     let certificates = match &args.certificates {
@@ -73,6 +75,21 @@ pub fn run(args: &Sweep) -> Result<Outcome> {
         ));
     }
     Ok(outcome(rows.iter().all(|row| row.outcome == SweepOutcome::Free)))
+}
+
+/// Refuses poses in the folder of the target meshes: they would be modes of the next run.
+fn check_poses(args: &Sweep) -> Result<()> {
+    let (Some(poses), Some(modes)) = (&args.pose, &args.model.modes) else { return Ok(()) };
+    let is_one = match [poses, modes].map(fs::canonicalize) {
+        [Ok(poses), Ok(modes)] => poses == modes && modes.is_dir(),
+        _ => false,
+    };
+    ensure!(
+        !is_one,
+        "{}: the poses would be target meshes of --modes; choose another folder",
+        poses.display()
+    );
+    Ok(())
 }
 
 /// Writes the page with the model at q, its intervals along the sliders, and the curve of the depth over each weight

@@ -334,6 +334,13 @@ fn invalid_requests_are_refused() {
         (&["figure7", "--only", "bunny"], "--only is for amplitudes"),
         (&["figure7", "--plot", "a.png"], "a.png: the name of the output must end in .svg"),
         (&["growth", "--quick"], "--quick is not for growth"),
+        (&["spring", "--list"], "cannot be used with"),
+        (&["--list", "--steps", "2"], "cannot be used with"),
+        (&["--list", "--samples", "2"], "cannot be used with"),
+        (&["--list", "--only", "spring"], "cannot be used with"),
+        (&["--list", "--quick"], "cannot be used with"),
+        (&["--list", "--plot", "a.svg"], "cannot be used with"),
+        (&["--list", "--report", "a.html"], "cannot be used with"),
         (&[], "SCENARIO"),
     ] {
         let run = bench(folder.path(), args);

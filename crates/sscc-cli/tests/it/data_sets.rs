@@ -172,6 +172,51 @@ fn unreadable_files_do_not_end_the_run() {
     assert_eq!((run.code, run.json()[1]["colliding"].as_bool()), (Some(2), Some(false)), "{run:?}");
 }
 
+/// Names of files may have line breaks and escape sequences. Text has each on one line; JSON has the names as they are, in answers and
+/// in errors.
+#[cfg(unix)]
+#[test]
+fn names_of_files_are_one_line() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path();
+    fs::create_dir(folder.join("set")).unwrap();
+    let names = ["a.obj\nb.obj  12.0 us  free.obj", "b\u{1b}[1m.obj", "c\r.obj"];
+    for (name, text) in names.iter().zip([obj(1.0), obj(0.0), "v 0 0\n".to_owned()]) {
+        fs::write(folder.join("set").join(name), text).unwrap();
+    }
+    let run = sscc(folder, &["check", "set"]);
+    assert_eq!(
+        (run.code, run.stdout.lines().count(), run.stderr.lines().count()),
+        (Some(2), 4, 1),
+        "{run:?}"
+    );
+    assert!(!run.stdout.contains(|c: char| c.is_control() && c != '\n'), "{run:?}");
+    for shown in [
+        r"set/a.obj\nb.obj  12.0 us  free.obj ",
+        r"set/b\u{1b}[1m.obj ",
+        r"set/c\r.obj              ERROR      line 1: ",
+        r"; worst: set/b\u{1b}[1m.obj (1 pair)",
+    ] {
+        assert!(run.stdout.contains(shown), "{shown}: {run:?}");
+    }
+    assert!(run.stderr.starts_with(r"error: set/c\r.obj: line 1: "), "{run:?}");
+    let lines = sscc(folder, &["check", "set", "--json"]).json();
+    let files: Vec<&str> = lines.iter().map(|line| line["file"].as_str().unwrap()).collect();
+    assert_eq!(files, names.map(|name| format!("set/{name}")));
+    assert!(lines[2]["error"].as_str().is_some_and(|error| error.starts_with("line 1: ")), "{lines:?}");
+}
+
+/// An output that is written before an error stays, and is complete.
+#[test]
+fn outputs_before_an_error_stay() {
+    let directory = tempfile::tempdir().unwrap();
+    data_set(directory.path());
+    let run = sscc(directory.path(), &["check", "set/broken.ply", "set/10.obj", "--curves=c.obj"]);
+    assert_eq!((run.code, run.stderr.lines().count()), (Some(2), 1), "{run:?}");
+    let curves = fs::read_to_string(directory.path().join("c.obj")).unwrap();
+    assert!(curves.starts_with("# contact curves: ") && curves.ends_with('\n'), "{curves}");
+}
+
 #[test]
 fn published_models_are_a_data_set() {
     let Some(models) = models("published_models_are_a_data_set") else { return };

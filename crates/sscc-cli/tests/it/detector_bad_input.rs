@@ -4,7 +4,7 @@ use std::fs;
 
 use sscc_io::write_npy;
 
-use crate::common::sscc;
+use crate::common::{files, sscc};
 use crate::detector::{folder, frames, obj};
 
 #[test]
@@ -151,6 +151,46 @@ fn files_of_curves_that_cannot_be_written_are_refused() {
     }
     assert_eq!(fs::read(folder.join("lower.obj")).unwrap(), before);
     assert!(!folder.join("c.obj").exists());
+}
+
+/// The meshes of a folder are inputs, and a new one would be a frame, or a mesh of the data set, of the next run.
+#[test]
+fn meshes_of_input_folders_are_not_replaced_or_added() {
+    let directory = folder();
+    let folder = directory.path();
+    let before = (files(&folder.join("frames")), fs::read(folder.join("frames/2.obj")).unwrap());
+    let replaced = "frames/2.obj: the output is an input; choose another name";
+    let added = |name: &str, input: &str| {
+        format!("{name}: the output would be a mesh of the input folder {input}; choose another folder")
+    };
+    for (args, named) in [
+        (&["mesh.obj", "--frames=frames", "--curves=frames/2.obj"][..], replaced.to_owned()),
+        (&["mesh.obj", "--frames=frames", "--pose=frames/2.obj"], replaced.to_owned()),
+        (
+            &["mesh.obj", "--against=mesh.obj", "--against-frames=frames", "--curves=frames/2.obj"],
+            replaced.to_owned(),
+        ),
+        (&["frames", "--curves=frames/2.obj"], replaced.to_owned()),
+        (&["mesh.obj", "--frames=frames", "--pose=frames/12.ply"], added("frames/12.ply", "frames")),
+        (&["mesh.obj", "--frames=frames/", "--pose=frames/12.vtu"], added("frames/12.vtu", "frames/")),
+        (
+            &["mesh.obj", "--frames=frames", "--curves=./frames/../frames/12.obj"],
+            added("./frames/../frames/12.obj", "frames"),
+        ),
+        (&["frames", "--curves=frames/12.obj"], added("frames/12.obj", "frames")),
+        (&["mesh.obj", "frames", "--curves=frames/12.obj"], added("frames/12.obj", "frames")),
+    ] {
+        let run = sscc(folder, &[&["check"], args].concat());
+        assert_eq!(run.refusal(), format!("error: {named}"));
+    }
+    assert_eq!(before.0, files(&folder.join("frames")));
+    assert_eq!(before.1, fs::read(folder.join("frames/2.obj")).unwrap());
+    // Files that no run reads as frames.
+    let others = ["--frames-out=frames/copy.npy", "--report=frames/report.html"];
+    for _ in 0..2 {
+        let run = sscc(folder, &[&["check", "mesh.obj", "--frames=frames", "--json"], &others[..]].concat());
+        assert_eq!((run.code, run.json().len()), (Some(1), 4), "{run:?}");
+    }
 }
 
 /// Players show a mesh with a scale of zero, so the check continues, with one warning.

@@ -173,6 +173,40 @@ fn weights_have_names() {
     }
 }
 
+/// Poses in the folder of the targets would be modes of the next run.
+#[test]
+fn target_meshes_are_not_replaced_or_added() {
+    let directory = strips();
+    let folder = directory.path();
+    fs::create_dir(folder.join("targets")).unwrap();
+    let mesh = fs::read_to_string(folder.join("mesh.obj")).unwrap();
+    fs::write(folder.join("targets/lower.obj"), mesh.replace(" 1\nv", " -0.5\nv")).unwrap();
+    let model = ["mesh.obj", "--modes", "targets"];
+    let refused = |command: &str, args: &[&str]| {
+        let run = sscc(folder, &[&[command], &model[..], args].concat());
+        run.refusal().to_owned()
+    };
+    let before = (files(&folder.join("targets")), fs::read(folder.join("targets/lower.obj")).unwrap());
+    for poses in ["targets", "targets/", "./targets/../targets"] {
+        let message = refused("sweep", &["--pose", poses]);
+        let cause = "the poses would be target meshes of --modes; choose another folder";
+        assert_eq!(message, format!("error: {poses}: {cause}"));
+    }
+    for (pose, cause) in [
+        ("targets/lower.obj", "the output is an input; choose another name"),
+        ("targets/new.ply", "the output would be a mesh of the input folder targets; choose another folder"),
+    ] {
+        for output in ["--pose", "--curves"] {
+            assert_eq!(refused("check", &["--q=0.5", output, pose]), format!("error: {pose}: {cause}"));
+        }
+    }
+    assert_eq!(before.0, files(&folder.join("targets")));
+    assert_eq!(before.1, fs::read(folder.join("targets/lower.obj")).unwrap());
+    // Folders in the folder of the targets are not searched for targets.
+    let run = sscc(folder, &[&["sweep"], &model[..], &["--pose", "targets/poses"]].concat());
+    assert_eq!((run.code, files(&folder.join("targets/poses")).len()), (Some(1), 1), "{run:?}");
+}
+
 /// Principal components have standard deviations: those of `sscc modes --kind pca`, and of archives with variances.
 #[test]
 fn principal_components_go_to_three_standard_deviations() {

@@ -135,6 +135,12 @@ fn collections_are_frames_with_times() {
     for args in [["again.pvd"].as_slice(), &["again.pvd#"], &["rest.vtu", "--frames=again.pvd"]] {
         assert!(refused(&[args, &["--frames-out=again.pvd"]].concat()).ends_with(input));
     }
+    for args in [
+        ["motion.pvd", "--pose=rest.vtu"].as_slice(),
+        &["result.vtu#", "--frames=motion.pvd", "--pose=rest.vtu"],
+    ] {
+        assert_eq!(refused(args), "error: rest.vtu: the output is an input; choose another name");
+    }
     for args in [["rest.vtu", "--frames=again"], ["again/again_000000.vtu", "--frames=motion.pvd"]] {
         let message = refused(&[&args[..], &["--frames-out=again.pvd"]].concat());
         assert!(message.contains("again.pvd: its folder has files of the input 'again"), "{message}");

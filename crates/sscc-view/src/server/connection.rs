@@ -44,12 +44,13 @@ pub(super) fn serve(
         if number > 0 && buffer.is_empty() {
             buffer.read(&mut within(IDLE_TIMEOUT))?;
         }
-        let (mut close, mut is_known) = (true, false);
+        let (mut close, mut is_known, mut is_head) = (true, false, false);
         let response = match buffer.head(&mut within(HEAD_TIMEOUT)) {
             Ok(head) => {
                 // A connection stays open only for a client with the token. Other clients could otherwise take all
                 // connections.
                 is_known = access.is_known(&head);
+                is_head = head.method == "HEAD";
                 let refusal = refusal(&head, access, content);
                 close = head.close || !is_known || refusal.is_some() && head.length > 0;
                 match refusal {
@@ -64,7 +65,8 @@ pub(super) fn serve(
             Err(BadHead::Refused(status, message)) => Response::error(status, message),
             Err(BadHead::Missing(error)) => return Err(error),
         };
-        response.write(&mut within(if is_known { ANSWER_TIMEOUT } else { HEAD_TIMEOUT }), close)?;
+        let time = if is_known { ANSWER_TIMEOUT } else { HEAD_TIMEOUT };
+        response.write(&mut within(time), close, is_head)?;
         if close {
             stream.shutdown(Shutdown::Write)?;
             let mut rest = within(DRAIN_TIMEOUT);
@@ -119,7 +121,7 @@ fn refusal(head: &Head, access: &Access, content: &Content<'_>) -> Option<Respon
     if let Err(refusal) = access.check(head, content.is_open(&head.path)) {
         return Some(Response::error(403, refusal.message()));
     }
-    content.check(head).err().map(|(status, message)| Response::error(status, message))
+    content.check(head).err()
 }
 
 #[cfg(test)]

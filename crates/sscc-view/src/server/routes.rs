@@ -40,14 +40,14 @@ impl<'a> Content<'a> {
         matches!((self, path), (Self::Live(_), "/"))
     }
 
-    /// Checks a request before its body is read. An error is a status and a message of one line.
-    pub(super) fn check(&self, head: &Head) -> Result<(), (u16, &'static str)> {
-        let route = self.route(&head.path).ok_or((404, NOT_FOUND))?;
+    /// Checks a request before its body is read. An error is the response.
+    pub(super) fn check(&self, head: &Head) -> Result<(), Response<'static>> {
+        let route = self.route(&head.path).ok_or_else(|| Response::error(404, NOT_FOUND))?;
         if route.method != head.method {
-            return Err((405, "this path needs another HTTP method"));
+            return Err(Response::wrong_method(route.method));
         }
         if head.length > route.max_body {
-            Err((413, "the body is larger than this path allows"))
+            Err(Response::error(413, "the body is larger than this path allows"))
         } else {
             Ok(())
         }

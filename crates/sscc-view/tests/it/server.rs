@@ -5,7 +5,7 @@ use std::net::Shutdown;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::common::{Client, next_reply, read_reply, with_server};
+use crate::common::{Client, next_head, next_reply, read_reply, status, with_server};
 
 const CHECK: &str = r#"{"q":[0,0,0],"serial":7}"#;
 
@@ -100,6 +100,46 @@ fn unknown_paths_and_methods_are_refused() {
             assert_eq!(reply.status, status, "{method} {path}");
             reply.error();
         }
+    });
+}
+
+#[test]
+fn refused_methods_name_the_one_that_is_allowed() {
+    with_server(|client| {
+        for (method, path, allowed) in [
+            ("GET", "/api/check", Some("POST")),
+            ("OPTIONS", "/api/glb", Some("POST")),
+            ("POST", "/api/scene", Some("GET")),
+            ("PUT", "/", Some("GET")),
+            ("GET", "/api/scene", None),
+            ("GET", "/nowhere", None),
+        ] {
+            let reply = client.send(&client.request(method, path, "", "")).unwrap();
+            let found = reply.head.lines().find_map(|line| line.strip_prefix("Allow: "));
+            assert_eq!(found, allowed, "{method} {path}");
+        }
+    });
+}
+
+/// Clients of HTTP read no body after `HEAD`: the next answer follows the head.
+#[test]
+fn answers_to_head_have_no_body() {
+    with_server(|client| {
+        let (mut stream, mut bytes) = (client.connect(), Vec::new());
+        for (path, expected) in [("/", 405), ("/api/scene", 405), ("/api/check", 405), ("/nowhere", 404)] {
+            stream.write_all(&client.request("HEAD", path, "", "")).unwrap();
+            stream.write_all(&client.request("POST", "/api/check", "", CHECK)).unwrap();
+            let head = next_head(&mut stream, &mut bytes).unwrap();
+            assert_eq!(status(&head), expected, "{path}");
+            assert!(head.contains("Connection: keep-alive"), "{head}");
+            assert_eq!(next_reply(&mut stream, &mut bytes).unwrap().json()["serial"], 7, "{path}");
+        }
+        // Without the token the connection ends after the head.
+        let mut stream = client.connect();
+        let head = format!("HEAD /api/scene HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", client.port);
+        stream.write_all(head.as_bytes()).unwrap();
+        assert_eq!(status(&next_head(&mut stream, &mut bytes).unwrap()), 403);
+        assert!(bytes.is_empty() && stream.read(&mut [0; 1]).unwrap() == 0);
     });
 }
 

@@ -8,7 +8,7 @@ use sscc_tasks::{DetectionAnswer, LeftOut, Near};
 /// The answer to a discrete query at one q or frame, or to a continuous query from one to the next.
 #[derive(Serialize)]
 pub struct Answer<'a> {
-    /// The mesh, if the run has several.
+    /// The mesh, if the run has several. Its name may have line breaks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// The node, in an animation or a scene; with --against only if several nodes show the mesh.

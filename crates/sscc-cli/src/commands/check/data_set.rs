@@ -23,8 +23,9 @@ pub struct DataSet {
 /// The JSON line of a file that could not be checked.
 #[derive(Serialize)]
 pub struct FileError {
+    /// The file as in answers: its name may have line breaks.
     pub file: String,
-    /// Place and cause, without the file.
+    /// Place and cause on one line, without the file.
     pub error: String,
 }
 
@@ -80,9 +81,9 @@ impl DataSet {
 
 impl FileError {
     fn new(file: &Path, error: &TaskError) -> Self {
-        let file = one_line(&file.display().to_string());
+        let file = file.display().to_string();
         let message = one_line(&flags::message(error));
-        let cause = message.strip_prefix(&file).and_then(|cause| cause.strip_prefix(": "));
+        let cause = message.strip_prefix(&one_line(&file)).and_then(|cause| cause.strip_prefix(": "));
         Self { error: cause.unwrap_or(&message).to_owned(), file }
     }
 }

@@ -22,7 +22,9 @@ pub fn check(args: &Check, meshes: &[PathBuf]) -> Result<()> {
     let Check { model, certificates, at, motion, options, .. } = args;
     let files = [&model.modes, certificates, &at.trajectory, &motion.frames, &motion.against];
     let more = [&motion.against_frames, &options.metric, &options.groups.group_by];
-    let files = files.into_iter().chain(more).flatten().chain(meshes);
+    // Folders of data sets, too: a new mesh there would be checked in the next run.
+    let typed = [&model.path].into_iter().chain(&args.meshes);
+    let files = files.into_iter().chain(more).flatten().chain(typed).chain(meshes);
     let named: Vec<PathBuf> = files.map(|file| split_mesh_name(file).0).collect();
     let inputs: Vec<&Path> = named.iter().map(PathBuf::as_path).collect();
     if let Some(report) = &args.report {

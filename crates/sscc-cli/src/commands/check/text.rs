@@ -32,7 +32,7 @@ impl Answer<'_> {
 
     /// Returns the place of the query: file, node, number, time and norm. `noun` names a query.
     fn place(&self, noun: &str) -> String {
-        let file = self.file.as_ref().map(|file| format!("{file}  ")).unwrap_or_default();
+        let file = self.file.as_ref().map(|file| format!("{}  ", one_line(file))).unwrap_or_default();
         let node = named(self.node, self.names[0]).map(|node| format!("{node:<9} ")).unwrap_or_default();
         let against = named(self.against_node, self.names[1]);
         let against = against.map(|node| format!("against {node:<9} ")).unwrap_or_default();
@@ -189,7 +189,7 @@ fn listed_below(first: String, cost: String, answer: &Answer<'_>) -> Vec<String>
 
 /// Returns the line of a file that could not be checked, beside those of the answers.
 pub fn failure(failed: &FileError) -> String {
-    format!("{}   {:>9}  ERROR      {}", failed.file, "", failed.error)
+    format!("{}   {:>9}  ERROR      {}", one_line(&failed.file), "", failed.error)
 }
 
 /// Counts and times of all queries of a run, and the worst one.
@@ -264,7 +264,8 @@ impl Summary {
         let against = named(answer.against_node, answer.names[1]);
         let against = against.map(|node| format!("against {node}"));
         let nodes: Vec<String> = [query.join(" of ")].into_iter().chain(against).collect();
-        let place = answer.file.iter().cloned().chain([nodes.join(" ").trim().to_owned()]);
+        let file = answer.file.iter().map(|file| one_line(file));
+        let place = file.chain([nodes.join(" ").trim().to_owned()]);
         let place: Vec<String> = place.filter(|part| !part.is_empty()).collect();
         let depth = match (&answer.depths, &answer.near) {
             (Some(_), _) => Some(format!(", deepest {}", length(depth))),

@@ -141,19 +141,28 @@ pub fn read_reply(stream: &mut TcpStream) -> io::Result<Reply> {
 
 /// Reads the next reply; `bytes` are bytes that were read beyond the previous reply.
 pub fn next_reply(stream: &mut TcpStream, bytes: &mut Vec<u8>) -> io::Result<Reply> {
-    let head = loop {
-        if let Some(end) = bytes.windows(4).position(|window| window == b"\r\n\r\n") {
-            break String::from_utf8(bytes.drain(..end + 4).collect()).unwrap();
-        }
-        read_some(stream, bytes)?;
-    };
+    let head = next_head(stream, bytes)?;
     let length = head.lines().find_map(|line| line.strip_prefix("Content-Length: ")).unwrap();
     let length = length.parse().unwrap();
     while bytes.len() < length {
         read_some(stream, bytes)?;
     }
-    let status = head.split(' ').nth(1).unwrap().parse().unwrap();
-    Ok(Reply { status, head, body: bytes.drain(..length).collect() })
+    Ok(Reply { status: status(&head), head, body: bytes.drain(..length).collect() })
+}
+
+/// Reads the head of the next reply, which is all of the reply to `HEAD`.
+pub fn next_head(stream: &mut TcpStream, bytes: &mut Vec<u8>) -> io::Result<String> {
+    loop {
+        if let Some(end) = bytes.windows(4).position(|window| window == b"\r\n\r\n") {
+            return Ok(String::from_utf8(bytes.drain(..end + 4).collect()).unwrap());
+        }
+        read_some(stream, bytes)?;
+    }
+}
+
+/// Returns the status in a head.
+pub fn status(head: &str) -> u16 {
+    head.split(' ').nth(1).unwrap().parse().unwrap()
 }
 
 fn read_some(stream: &mut TcpStream, into: &mut Vec<u8>) -> io::Result<()> {
