@@ -139,3 +139,131 @@ impl<'m> LeafPair<'m> {
         std::array::from_fn(|ij| a[ij / 3] * self.vertices_b.len() + b[ij % 3])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::Random;
+    use crate::{Metric, Modes, ReducedModel, TriMesh};
+
+    /// Triangles of even vertices and of odd ones, and two that are points.
+    const FACES: [[u32; 3]; 8] =
+        [[0, 2, 4], [2, 4, 6], [8, 2, 0], [1, 3, 5], [9, 7, 3], [11, 5, 7], [10, 10, 10], [13, 13, 13]];
+
+    /// Returns a model far from the origin whose odd vertices are to the right of all even ones. Its modes are affine up
+    /// to a fifth.
+    fn two_sides(random: &mut Random) -> ScaledModel {
+        let (rank, far, apart) = (1 + random.below(8), random.vector() * 5.0, random.power(0.35, 0.9));
+        let side = |v: usize| DVec3::X * if v % 2 == 0 { 0.0 } else { apart };
+        let p: Vec<DVec3> = (0..14).map(|v| far + random.vector() + side(v)).collect();
+        let maps: Vec<[DVec3; 3]> = (0..rank).map(|_| [(); 3].map(|()| random.vector())).collect();
+        let mut modes = Vec::new();
+        for p in &p {
+            for [x, y, z] in &maps {
+                modes.push(*x * p.x + *y * p.y + *z * p.z + random.vector() * 0.2);
+            }
+        }
+        let mesh = TriMesh::new(p, FACES.to_vec()).unwrap();
+        let modes = Modes::new(rank, modes).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(rank)).unwrap();
+        ScaledModel::new(&model, model.metric(), &vec![0.0; rank])
+    }
+
+    /// Returns the triangles of each pair of two leaves.
+    fn triangles_of(leaf_a: &[u32], leaf_b: &[u32]) -> Vec<([u32; 3], [u32; 3])> {
+        let face = |a: &u32| FACES[*a as usize];
+        leaf_a.iter().flat_map(|a| leaf_b.iter().map(move |b| (face(a), face(b)))).collect()
+    }
+
+    /// Returns the nine pairs of corners of two triangles.
+    fn corners_of(a: [u32; 3], b: [u32; 3]) -> [(u32, u32); 9] {
+        std::array::from_fn(|ij| (a[ij / 3], b[ij % 3]))
+    }
+
+    /// The bound along a direction is the smallest one of nine pairs of corners, also of triangles that are points.
+    #[test]
+    fn bounds_along_a_direction_are_those_of_the_corners() {
+        let mut positive = 0;
+        for case in 0..100 {
+            let random = &mut Random::new(case);
+            let model = two_sides(random);
+            let row_len = model.row_len;
+            let mut leaves = LeafPair::new(&model);
+            for (leaf_a, leaf_b) in
+                [(&[0, 1, 2][..], &[3, 4, 5][..]), (&[6][..], &[4, 3][..]), (&[0, 1][..], &[7][..])]
+            {
+                leaves.load(leaf_a, leaf_b);
+                let dir = scale_direction(DVec3::X + random.vector() * 1.5).unwrap();
+                leaves.set_direction(dir);
+                let least = model.least_gap(dir);
+                for (a, b) in triangles_of(leaf_a, leaf_b) {
+                    let bounds = corners_of(a, b).map(|(i, j)| {
+                        let gap = dir.dot(model.positions[j as usize] - model.positions[i as usize]);
+                        let along = |k: usize, axis: usize| {
+                            let at = axis * row_len + k;
+                            dir[axis] * (model.modes(j)[at] - model.modes(i)[at])
+                        };
+                        let projected = (0..row_len).map(|k| along(k, 0) + along(k, 1) + along(k, 2));
+                        let rate = projected.map(|rate| rate * rate).sum::<f64>().sqrt();
+                        (gap - least.at_rest).max(0.0) / (rate + least.per_norm)
+                    });
+                    let wanted = bounds.into_iter().fold(f64::INFINITY, f64::min);
+                    let bound = leaves.bound_along_direction(a, b);
+                    let error = (bound - wanted).abs();
+                    assert!(error <= 1e-8 * wanted + 1e-12, "case {case}: {bound:e}, not {wanted:e}");
+                    positive += usize::from(wanted > 0.0);
+                }
+            }
+        }
+        assert!(positive > 500 && positive < 1200, "{positive}");
+    }
+
+    /// One affine map of all vertices serves all pairs. The residuals are those of its gradient, the largest of nine
+    /// counts, and near triangles have a bound over a cone of directions.
+    #[test]
+    fn affine_bounds_are_those_of_the_shared_map() {
+        let mut larger = 0;
+        for case in 0..100 {
+            let random = &mut Random::new(case);
+            let model = two_sides(random);
+            let row_len = model.row_len;
+            let mut leaves = LeafPair::new(&model);
+            let (leaf_a, leaf_b) = ([0, 1, 2], [3, 4, 5]);
+            leaves.load(&leaf_a, &leaf_b);
+            for (a, b) in triangles_of(&leaf_a, &leaf_b) {
+                let bound = leaves.bound_by_affine_map(a, b, 0.0);
+                assert!(bound > 0.0, "case {case}");
+                let difference =
+                    |(i, j): (u32, u32)| model.positions[j as usize] - model.positions[i as usize];
+                let pairs = corners_of(a, b);
+                let gradient = leaves.affine.gradient();
+                let squares = pairs.map(|(i, j)| {
+                    let d = difference((i, j));
+                    let left = |at: usize| {
+                        let (axis, k) = (at / row_len, at % row_len);
+                        let fitted =
+                            (0..3).map(|l| gradient[(3 * axis + l) * row_len + k] * d[l]).sum::<f64>();
+                        model.modes(j)[at] - model.modes(i)[at] - fitted
+                    };
+                    (0..3 * row_len).map(|at| left(at).powi(2)).sum::<f64>()
+                });
+                let squared_residual = squares.into_iter().fold(0.0, f64::max);
+                let differences = pairs.map(difference);
+                let dir = scale_direction(nearest_to_origin(&differences).point).unwrap();
+                let rest_distance = bound_rest_distance(&differences, dir, &model.rounding);
+                for sufficient in [0.0, 1.2 * bound] {
+                    let pair = AffinePair { differences: &differences, rest_distance, squared_residual };
+                    let searched = if is_near(&differences, rest_distance) { sufficient } else { 0.0 };
+                    let wanted = leaves.affine.bound(pair, searched, &model);
+                    let found = leaves.bound_by_affine_map(a, b, sufficient);
+                    assert!(
+                        (found - wanted).abs() <= 1e-9 * wanted,
+                        "case {case}: {found:e}, not {wanted:e}"
+                    );
+                    larger += usize::from(found > bound);
+                }
+            }
+        }
+        assert!(larger > 20, "{larger}");
+    }
+}

@@ -227,6 +227,83 @@ fn inverse_factor(m: DMat3) -> Option<DMat3> {
 mod tests {
     use super::*;
     use crate::bounds::tests::random::Random;
+    use crate::{DISTANCE_ERROR, Metric, Modes, ReducedModel, TriMesh};
+
+    const FAR: RefinementTarget =
+        RefinementTarget { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 0.1, subdivisions: 0 };
+
+    /// Returns two triangles in scaled coordinates, with these displacements of each corner.
+    fn scaled_model(p: &[DVec3; 6], displacements: [[DVec3; 3]; 6]) -> ScaledModel {
+        let mesh = TriMesh::new(p.to_vec(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let modes = Modes::new(3, displacements.concat()).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(3)).unwrap();
+        ScaledModel::new(&model, model.metric(), &[0.0; 3])
+    }
+
+    /// Refinement ends at the cap, or within the tolerance of the upper bound.
+    #[test]
+    fn sufficient_bounds_are_within_the_tolerance() {
+        for (cap, upper, sufficient) in [(2.0, 1.0, 0.75), (0.5, 1.0, 0.5), (2.0, f64::INFINITY, 2.0)] {
+            let target = RefinementTarget { cap, upper, epsilon: 0.25, subdivisions: 0 };
+            assert_eq!(target.sufficient(), sufficient, "{cap} {upper}");
+        }
+    }
+
+    /// Three modes of any speed move one triangle along three axes, by different amounts: the radius is the
+    /// distance in their metric. The first direction would prove much less; the bound and the upper bound are
+    /// those of the best direction.
+    #[test]
+    fn bounds_of_translations_are_the_distance_in_their_metric() {
+        let mut improved = 0;
+        for case in 0..200 {
+            let random = &mut Random::new(case);
+            let p: [DVec3; 6] =
+                std::array::from_fn(|v| random.vector() + DVec3::X * if v > 2 { 2.5 } else { 0.0 });
+            let speed = random.power(-6.0, 6.0);
+            let x = random.vector().normalize();
+            let (y, z) = x.any_orthonormal_pair();
+            // With a clearance all modes move equally fast.
+            let is_keeping = case % 2 == 0;
+            let moved = if is_keeping { [x, y, z] } else { [x, y * 0.3, z * 0.5] }.map(|u| u * speed);
+            let scaled =
+                scaled_model(&p, std::array::from_fn(|v| if v > 2 { moved } else { [DVec3::ZERO; 3] }));
+            let differences = PairCorners::of(&scaled, [0, 1, 2], [3, 4, 5]).differences();
+            let [x, y, z] = moved;
+            let inverse = DMat3::from_cols(x, y, z).inverse();
+            let free = nearest_to_origin(&differences.map(|d| inverse * d)).point.length();
+            let (scaled, truth) = if is_keeping {
+                (scaled.keeping(0.5 * free * speed, DISTANCE_ERROR), 0.5 * free)
+            } else {
+                (scaled, free)
+            };
+            let mut refiner = PairRefiner::new(&scaled);
+            let mut target = FAR;
+            let bound = refiner.bound([0, 1, 2], [3, 4, 5], &mut target);
+            let is_near = |x: f64| (x / truth - 1.0).abs() <= 1e-6;
+            assert!(bound <= truth * (1.0 + 1e-9) && is_near(bound), "case {case}: {bound:e} of {truth:e}");
+            assert!(is_near(target.upper), "case {case}: {:e} of {truth:e}", target.upper);
+            let dir = refiner.best_direction().unwrap();
+            let pair = PairCorners::of(&scaled, [0, 1, 2], [3, 4, 5]);
+            let mut along = |dir: DVec3| {
+                bound_along(&pair, &differences, dir, scaled.least_gap(dir), &mut refiner.projections)
+            };
+            assert!(is_near(along(dir)), "case {case}: {dir}");
+            improved += usize::from(along(nearest_to_origin(&differences).point) < 0.95 * truth);
+        }
+        assert!(improved > 50, "{improved}");
+    }
+
+    /// Two triangles of a plane that turns about all axes are far from each other. Along a fixed direction
+    /// their bound is 3, by the affine map some hundred.
+    #[test]
+    fn affine_maps_are_tried_for_far_triangles_too() {
+        let p = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [4.0, 0.0], [5.0, 0.0], [4.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x, y, 0.0));
+        let scaled = scaled_model(&p, p.map(|p| DVec3::AXES.map(|axis| axis.cross(p))));
+        let mut target = FAR;
+        let bound = PairRefiner::new(&scaled).bound([0, 1, 2], [3, 4, 5], &mut target);
+        assert!(bound > 50.0, "{bound}");
+    }
 
     /// `L^-1 M L^-T` is the identity.
     #[test]

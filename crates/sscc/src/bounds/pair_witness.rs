@@ -117,3 +117,164 @@ impl PairRefiner<'_> {
         Some(PairWitness::Affine { gradient: self.affine.gradient().to_vec(), dir, rate, pyramid })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::Random;
+    use crate::model::ScaledModel;
+    use crate::{Metric, Modes, ReducedModel, TriMesh};
+
+    /// A corner: its position, and its displacements by three modes.
+    type Corner = [DVec3; 4];
+
+    const FACES: [[u32; 3]; 2] = [[0, 1, 2], [3, 4, 5]];
+
+    /// Returns two triangles in scaled coordinates.
+    fn scaled_model(corners: &[[Corner; 3]; 2]) -> ScaledModel {
+        let corners = corners.as_flattened();
+        let mesh = TriMesh::new(corners.iter().map(|c| c[0]).collect(), FACES.to_vec()).unwrap();
+        let modes = Modes::new(3, corners.iter().flat_map(|c| c[1..].to_vec()).collect()).unwrap();
+        let model = ReducedModel::with_metric(mesh, modes, Metric::identity(3)).unwrap();
+        ScaledModel::new(&model, model.metric(), &[0.0; 3])
+    }
+
+    fn target(cap: f64, subdivisions: usize) -> RefinementTarget {
+        RefinementTarget { cap, upper: f64::INFINITY, epsilon: 0.05, subdivisions }
+    }
+
+    /// Checks a list as another program would: parts in their order, with the corners that the quarters have.
+    /// It believes the rates of affine maps.
+    struct Checker<'w> {
+        witnesses: std::slice::Iter<'w, PairWitness>,
+        directions: Vec<DVec3>,
+        radius: f64,
+    }
+
+    impl Checker<'_> {
+        /// Whether the next witnesses prove two triangles apart.
+        fn proves(&mut self, triangles: [[Corner; 3]; 2]) -> bool {
+            let pairs = || (0..9).map(move |ij| (triangles[0][ij / 3], triangles[1][ij % 3]));
+            let dir = match self.witnesses.next().unwrap() {
+                PairWitness::Known(number) => self.directions[*number],
+                PairWitness::Direction(dir) => {
+                    self.directions.push(*dir);
+                    *dir
+                }
+                PairWitness::Quarters { is_first } => {
+                    let side = usize::from(!is_first);
+                    let [p, q, r] = triangles[side];
+                    let middle =
+                        |x: Corner, y: Corner| -> Corner { std::array::from_fn(|i| (x[i] + y[i]) * 0.5) };
+                    let (pq, qr, rp) = (middle(p, q), middle(q, r), middle(r, p));
+                    return [[p, pq, rp], [pq, q, qr], [rp, qr, r], [pq, qr, rp]].into_iter().all(|part| {
+                        let mut parts = triangles;
+                        parts[side] = part;
+                        self.proves(parts)
+                    });
+                }
+                PairWitness::Affine { gradient, dir, rate, .. } => {
+                    let row_len = gradient.len() / 9;
+                    let gap = pairs().map(|(x, y)| dir.dot(y[0] - x[0])).fold(f64::INFINITY, f64::min);
+                    let delta = gap / dir.length();
+                    let residual = |x: Corner, y: Corner| -> f64 {
+                        let left = |k: usize, c: usize| -> f64 {
+                            let fitted: f64 =
+                                (0..3).map(|j| gradient[(3 * c + j) * row_len + k] * (y[0] - x[0])[j]).sum();
+                            (y[1 + k] - x[1 + k])[c] - fitted
+                        };
+                        (0..9).map(|at| left(at / 3, at % 3).powi(2)).sum::<f64>().sqrt()
+                    };
+                    let largest = pairs().map(|(x, y)| residual(x, y)).fold(0.0, f64::max);
+                    return delta >= self.radius * (rate * delta + largest);
+                }
+            };
+            pairs().all(|(x, y)| {
+                let [gap, u, v, w] = std::array::from_fn(|i| dir.dot(y[i] - x[i]));
+                gap >= self.radius * DVec3::new(u, v, w).length()
+            })
+        }
+    }
+
+    /// Whether a list proves two triangles apart, and has no more witnesses.
+    fn is_proven(list: &WitnessList, triangles: [[Corner; 3]; 2], radius: f64) -> bool {
+        let mut checker = Checker { witnesses: list.witnesses.iter(), directions: Vec::new(), radius };
+        checker.proves(triangles) && checker.witnesses.next().is_none()
+    }
+
+    /// Two small triangles, of which one corner moves along x and another along z only: a single direction
+    /// proves 6, while their points meet at nearly `6 sqrt 2`. Parts have directions of their own.
+    #[test]
+    fn divided_triangles_have_a_witness_for_each_part() {
+        let small = [DVec3::ZERO, DVec3::X * 0.01, DVec3::Y * 0.01];
+        let apart = DVec3::new(3.0, 0.0, 3.0);
+        let still = small.map(|p| [p, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO]);
+        let moving = [
+            [small[0] + apart, DVec3::X, DVec3::ZERO, DVec3::Y],
+            [small[1] + apart, DVec3::ZERO, DVec3::Z, DVec3::Y],
+            [small[2] + apart, DVec3::ZERO, DVec3::ZERO, DVec3::Y],
+        ];
+        let scaled = scaled_model(&[still, moving]);
+        for (triangles, [a, b]) in [([still, moving], FACES), ([moving, still], [FACES[1], FACES[0]])] {
+            let mut refiner = PairRefiner::new(&scaled);
+            let whole = refiner.bound(a, b, &mut target(f64::INFINITY, 0));
+            let radius = 0.98 * refiner.refine(a, b, &mut target(f64::INFINITY, 500));
+            assert!(radius > 1.2 * whole && radius < 72.0_f64.sqrt(), "{whole} {radius}");
+            let mut list = WitnessList::default();
+            assert!(refiner.prove(a, b, radius, &mut list));
+            assert!(matches!(list.witnesses[0], PairWitness::Quarters { .. }), "{list:?}");
+            assert!(is_proven(&list, triangles, radius), "{list:?}");
+        }
+    }
+
+    /// Two triangles of a plane turn about all axes, with a little noise. Up to their bound they have
+    /// witnesses, of which the affine ones hold for the residuals of all pairs of corners.
+    #[test]
+    fn affine_witnesses_hold_for_all_corners() {
+        let plane = [[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[2.0, 0.0], [3.0, 0.0], [2.0, 1.0]]];
+        let mut affine = 0;
+        for case in 0..40 {
+            let random = &mut Random::new(case);
+            let triangles = plane.map(|triangle| {
+                triangle.map(|[x, y]| -> Corner {
+                    let p = DVec3::new(x, y, 0.0) + random.vector() * 0.02;
+                    let [u, v, w] = DVec3::AXES.map(|axis| axis.cross(p) + random.vector() * 1e-3);
+                    [p, u, v, w]
+                })
+            });
+            let scaled = scaled_model(&triangles);
+            let mut refiner = PairRefiner::new(&scaled);
+            let [a, b] = FACES;
+            let mut radius = 10.0;
+            while refiner.bound(a, b, &mut target(radius, 0)) >= radius {
+                let mut list = WitnessList::default();
+                assert!(refiner.prove(a, b, radius, &mut list), "case {case}: {radius}");
+                assert!(is_proven(&list, triangles, radius), "case {case}: {radius}");
+                affine += usize::from(matches!(list.witnesses[..], [PairWitness::Affine { .. }]));
+                radius *= 1.1;
+            }
+        }
+        assert!(affine > 100, "{affine}");
+    }
+
+    /// A direction is known where it separates the triangles, and only there.
+    #[test]
+    fn known_directions_are_those_that_separate() {
+        let [x, y, z] = DVec3::AXES;
+        let low = [DVec3::ZERO, x, y].map(|p| [p, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO]);
+        let scaled = scaled_model(&[low, [DVec3::ZERO, x, y].map(|p| [p + z, x, y, z])]);
+        let mut refiner = PairRefiner::new(&scaled);
+        let mut list = WitnessList::default();
+        let [a, b] = FACES;
+        for (x, y) in [(a, b), (a, b), (b, a), (b, a), (a, b)] {
+            assert!(refiner.prove(x, y, 0.9, &mut list));
+        }
+        let [PairWitness::Direction(up), known @ ..] = &list.witnesses[..] else { panic!("{list:?}") };
+        let [PairWitness::Known(0), PairWitness::Direction(down), known @ ..] = known else {
+            panic!("{list:?}")
+        };
+        assert!((*up - z).length() < 1e-9 && (*down + z).length() < 1e-9, "{up} {down}");
+        assert!(matches!(known, [PairWitness::Known(1), PairWitness::Known(0)]), "{list:?}");
+        assert!(!refiner.prove(a, b, 1.0, &mut list));
+    }
+}

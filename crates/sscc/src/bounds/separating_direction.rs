@@ -92,3 +92,75 @@ pub(super) fn bound_rest_distance(differences: &[DVec3; 9], dir: DVec3, rounding
     let gap = differences.iter().map(|d| dir.dot(*d)).fold(f64::INFINITY, f64::min);
     radius_down(gap - rounding.at_rest(dir), dir.length() * ROUND_UP)
 }
+
+#[cfg(test)]
+mod tests {
+    use sscc_testing::Dyadic;
+
+    use super::*;
+    use crate::bounds::tests::random::Random;
+    use crate::geometry::TwoTriangles;
+
+    /// The bound of two points is at most the gap less its part at rest, over the rate and its part per norm, and close
+    /// to it. That of two triangles is the smallest of their corners.
+    #[test]
+    fn bounds_along_a_direction_are_gaps_over_rates() {
+        let mut positive = 0;
+        for case in 0..200 {
+            let random = &mut Random::new(case);
+            let row_len = 4 * (1 + random.below(4));
+            let modes: [Vec<f64>; 6] =
+                std::array::from_fn(|_| (0..3 * row_len).map(|_| random.uniform() - 0.5).collect());
+            let side = DVec3::X * (1.0 + 3.0 * random.uniform());
+            let corners = TwoTriangles {
+                a: std::array::from_fn(|_| random.vector()),
+                b: std::array::from_fn(|_| random.vector() + side),
+            };
+            let [a0, a1, a2, b0, b1, b2] = modes.each_ref().map(Vec::as_slice);
+            let pair = PairCorners { corners, modes_a: [a0, a1, a2], modes_b: [b0, b1, b2] };
+            let dir = DVec3::X + random.vector() * 0.3;
+            let least = LeastGap { at_rest: 0.3 * random.uniform(), per_norm: random.uniform() };
+            let projected = modes.each_ref().map(|modes| -> Vec<f64> {
+                let along = |k: usize, axis: usize| dir[axis] * modes[axis * row_len + k];
+                (0..row_len).map(|k| along(k, 0) + along(k, 1) + along(k, 2)).collect()
+            });
+            let mut smallest = f64::INFINITY;
+            for (i, j) in (0..9).map(|ij| (ij / 3, ij % 3)) {
+                let gap = dir.dot(corners.b[j] - corners.a[i]);
+                let (x, y) = (&projected[i], &projected[3 + j]);
+                let rate = x.iter().zip(y).map(|(x, y)| (y - x) * (y - x)).sum::<f64>().sqrt();
+                let wanted = (gap - least.at_rest).max(0.0) / (rate + least.per_norm);
+                let bound = bound_points_along(gap, x, y, least);
+                assert!(bound <= wanted && bound >= wanted * (1.0 - 1e-12), "case {case}: {bound:e}");
+                smallest = smallest.min(wanted);
+            }
+            let mut projections = CornerProjections::new(row_len);
+            let bound = bound_along(&pair, &pair.differences(), dir, least, &mut projections);
+            let error = (bound - smallest).abs();
+            assert!(error <= 1e-9 * smallest + 1e-12, "case {case}: {bound:e}, not {smallest:e}");
+            positive += usize::from(smallest > 0.0);
+        }
+        assert!(positive > 50 && positive < 190, "{positive}");
+    }
+
+    /// The rest distance is at most the smallest gap over the length of the direction, in exact arithmetic, and close
+    /// to it.
+    #[test]
+    fn rest_distances_are_rounded_down() {
+        let none = RoundingBound::new(DVec3::ZERO, DVec3::ZERO, 1);
+        let exact = Dyadic::new;
+        let larger = exact(1.0 + 1e-14);
+        for case in 0..300 {
+            let random = &mut Random::new(case);
+            // Gaps of so small integers are exact.
+            let mut integers = || (random.vector() * 500.0).round();
+            let dir = integers().abs() + DVec3::X;
+            let differences: [DVec3; 9] = std::array::from_fn(|_| integers().abs() + DVec3::X);
+            let smallest = differences.iter().map(|d| dir.dot(*d)).fold(f64::INFINITY, f64::min);
+            let distance = exact(bound_rest_distance(&differences, dir, &none));
+            let (square, length) = (exact(smallest) * exact(smallest), exact(dir.length_squared()));
+            assert!(&distance * &distance * &length <= square, "case {case}");
+            assert!(&distance * &distance * &length * &larger * &larger >= square, "case {case}");
+        }
+    }
+}

@@ -59,3 +59,86 @@ pub(super) fn bound_rate(gram: &StrainGram, row_len: usize) -> f64 {
 
 /// Covers gradient entries whose squares underflow.
 const UNDERFLOW: f64 = 1e-150;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::Random;
+
+    /// The form of a direction's Mandel components is the squared norm, over the modes, of `u'G u`.
+    #[test]
+    fn forms_of_the_gram_matrix_are_those_of_the_gradient() {
+        let root = std::f64::consts::SQRT_2;
+        for case in 0..300 {
+            let random = &mut Random::new(case);
+            let row_len = 4 * (1 + random.below(5));
+            let gradient: Vec<f64> = (0..9 * row_len).map(|_| random.uniform() - 0.5).collect();
+            let gram = strain_gram(&gradient, row_len);
+            let size: f64 = gradient.iter().map(|g| g * g).sum();
+            for _ in 0..30 {
+                let u = random.vector().normalize();
+                let m =
+                    [u.x * u.x, u.y * u.y, u.z * u.z, u.y * u.z * root, u.x * u.z * root, u.x * u.y * root];
+                let form: f64 = (0..36).map(|ij| m[ij / 6] * gram[ij / 6][ij % 6] * m[ij % 6]).sum();
+                let of_mode = |k: usize| -> f64 {
+                    (0..9).map(|cj| u[cj / 3] * gradient[cj * row_len + k] * u[cj % 3]).sum()
+                };
+                let square: f64 = (0..row_len).map(|k| of_mode(k).powi(2)).sum();
+                assert!((form - square).abs() <= 1e-13 * size, "case {case}: {form} {square}");
+            }
+        }
+    }
+
+    /// The rate is at least the root of the largest eigenvalue, and not much larger.
+    #[test]
+    fn no_direction_is_faster_than_the_rate() {
+        for case in 0..300 {
+            let random = &mut Random::new(case);
+            let speed = random.power(-60.0, 60.0);
+            let strains: Vec<[f64; 6]> = (0..1 + random.below(8))
+                .map(|_| std::array::from_fn(|_| (random.uniform() - 0.5) * speed))
+                .collect();
+            let gram: StrainGram =
+                std::array::from_fn(|i| std::array::from_fn(|j| strains.iter().map(|s| s[i] * s[j]).sum()));
+            // Quotients of the power method are at most the largest eigenvalue.
+            let mut v = [1.0 / 6.0_f64.sqrt(); 6];
+            let mut largest = 0.0_f64;
+            for _ in 0..300 {
+                let image: [f64; 6] = gram.map(|row| row.iter().zip(v).map(|(g, x)| g * x).sum());
+                largest = largest.max(image.iter().zip(v).map(|(y, x)| y * x).sum());
+                let length = image.iter().map(|y| (y / speed / speed).powi(2)).sum::<f64>().sqrt();
+                v = image.map(|y| y / speed / speed / length);
+            }
+            let rate = bound_rate(&gram, 4);
+            assert!(rate >= largest.sqrt() && rate <= 1.13 * largest.sqrt(), "case {case}: {rate:e}");
+        }
+    }
+
+    /// Along the only strain of one mode nothing is left but the margin for rounding.
+    #[test]
+    fn rates_have_their_margins() {
+        for case in 0..200 {
+            let random = &mut Random::new(case);
+            let row_len = [4, 64, 1000][case as usize % 3];
+            let strain: [f64; 6] = std::array::from_fn(|_| random.uniform() - 0.5);
+            let gram = strain.map(|x| strain.map(|y| x * y));
+            let trace: f64 = strain.iter().map(|x| x * x).sum();
+            let margin = bound_rate(&gram, row_len) / trace.sqrt() - 1.0;
+            let units = margin / (512.0 * f64::EPSILON * (row_len as f64 + 64.0));
+            assert!((units - 1.0).abs() < 0.01, "case {case}: {units}");
+        }
+        // Squares of entries below 1e-162 are 0.
+        let still: StrainGram = [[0.0; 6]; 6];
+        let mut slow = still;
+        slow[2][2] = 1e-304;
+        let (still, slow) = (bound_rate(&still, 4), bound_rate(&slow, 4));
+        assert!(
+            (1e-150..2e-150).contains(&still) && (1.005e-150..2e-150).contains(&slow),
+            "{still:e} {slow:e}"
+        );
+        let mut unknown = [[0.0; 6]; 6];
+        unknown[0][1] = f64::NAN;
+        unknown[4][4] = f64::NAN;
+        assert!(bound_rate(&unknown, 4).is_nan());
+    }
+}

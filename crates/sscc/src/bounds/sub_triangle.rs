@@ -82,3 +82,64 @@ fn combine_modes<'m>(corners: &[&[f64]; 3], weights: &Weights, out: &'m mut [f64
     }
     [first, second, third]
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+    use crate::bounds::tests::random::Random;
+
+    /// Each point of a triangle is in one of its quarters, and each of these has a quarter of its area.
+    #[test]
+    fn quarters_cover_their_triangle() {
+        let matrix = |[p, q, r]: Weights| DMat3::from_cols(p, q, r);
+        for case in 0..300 {
+            let random = &mut Random::new(case);
+            let depth = random.below(6);
+            let weights =
+                (0..depth).fold(UNDIVIDED, |weights: Weights, _| quarter(&weights)[random.below(4)]);
+            let (whole, quarters) = (matrix(weights), quarter(&weights).map(matrix));
+            for part in &quarters {
+                let share = part.determinant().abs() / whole.determinant().abs();
+                assert!((share - 0.25).abs() < 1e-9, "case {case}: {share}");
+            }
+            for _ in 0..20 {
+                let point = whole * random.weights();
+                let is_inside = |part: &DMat3| (part.inverse() * point).min_element() > -1e-9;
+                assert!(quarters.iter().any(is_inside), "case {case}: {point}");
+            }
+        }
+    }
+
+    /// Corners of sub-triangles, and their modes, are the combinations that the weights define.
+    #[test]
+    fn corners_are_combinations() {
+        for case in 0..50 {
+            let random = &mut Random::new(case);
+            let corners = [(); 2].map(|()| [(); 3].map(|()| random.vector()));
+            let modes: Vec<Vec<f64>> =
+                (0..6).map(|_| (0..24).map(|_| random.uniform() - 0.5).collect()).collect();
+            let of = |v: usize| modes[v].as_slice();
+            let pair = PairCorners {
+                corners: TwoTriangles { a: corners[0], b: corners[1] },
+                modes_a: [of(0), of(1), of(2)],
+                modes_b: [of(3), of(4), of(5)],
+            };
+            let [a, b] = [(); 2].map(|()| -> Weights { [(); 3].map(|()| random.weights()) });
+            let mut memory = vec![f64::NAN; 6 * 24];
+            let part = SubPair { a, b, depth_a: 1, depth_b: 1 }.corners(&pair, &mut memory);
+            let sides = [(a, part.corners.a, part.modes_a), (b, part.corners.b, part.modes_b)];
+            for (side, (weights, found, found_modes)) in sides.into_iter().enumerate() {
+                for (i, w) in weights.into_iter().enumerate() {
+                    let expected: DVec3 = (0..3).map(|v| corners[side][v] * w[v]).sum();
+                    assert!((found[i] - expected).length() < 1e-14, "case {case}");
+                    for (at, x) in found_modes[i].iter().enumerate() {
+                        let expected: f64 = (0..3).map(|v| modes[3 * side + v][at] * w[v]).sum();
+                        assert!((x - expected).abs() < 1e-14, "case {case}: {at}");
+                    }
+                }
+            }
+        }
+    }
+}

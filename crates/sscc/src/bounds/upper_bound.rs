@@ -103,3 +103,62 @@ impl RelativeModes {
         contact.map(|t| t * farthest)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::tests::random::Random;
+
+    /// Weights of differences define a point of each triangle. The smallest z that brings both together has
+    /// the norm of `B^+ d`.
+    #[test]
+    fn points_meet_at_the_smallest_norm() {
+        const ROW_LEN: usize = 8;
+        for case in 0..300 {
+            let random = &mut Random::new(case);
+            let speed = random.power(-6.0, 6.0);
+            let corners = [(); 2].map(|()| [(); 3].map(|()| random.vector()));
+            let mut modes: Vec<Vec<f64>> = (0..6)
+                .map(|_| (0..3 * ROW_LEN).map(|_| (random.uniform() - 0.5) * speed).collect())
+                .collect();
+            let is_flat = case % 5 == 0;
+            if is_flat {
+                modes.iter_mut().for_each(|rows| rows[2 * ROW_LEN..].fill(0.0));
+            }
+            let of = |v: usize| modes[v].as_slice();
+            let pair = PairCorners {
+                corners: TwoTriangles { a: corners[0], b: corners[1] },
+                modes_a: [of(0), of(1), of(2)],
+                modes_b: [of(3), of(4), of(5)],
+            };
+            // Some points are corners.
+            let [wa, wb] = [3, 4].map(|n| if case % n == 0 { DVec3::Y } else { random.weights() });
+            let weights: [f64; 9] = std::array::from_fn(|ij| wa[ij / 3] * wb[ij % 3]);
+            let relative = |c: usize, k: usize| -> f64 {
+                (0..3)
+                    .map(|v| modes[3 + v][c * ROW_LEN + k] * wb[v] - modes[v][c * ROW_LEN + k] * wa[v])
+                    .sum()
+            };
+            let entry =
+                |c: usize, e: usize| -> f64 { (0..ROW_LEN).map(|k| relative(c, k) * relative(e, k)).sum() };
+            let column = |e: usize| DVec3::new(entry(0, e), entry(1, e), entry(2, e));
+            let gram = DMat3::from_cols(column(0), column(1), column(2));
+            let mut rows = RelativeModes::new(ROW_LEN);
+            let found = rows.gram_at(&pair, &weights);
+            assert!(found.abs_diff_eq(gram, 1e-13 * speed * speed), "case {case}: {found} {gram}");
+            let differences = pair.differences();
+            let bound = rows.bound_at(&pair, &differences, &weights);
+            assert_eq!(rows.can_reach_everywhere(&pair), !is_flat, "case {case}");
+            if is_flat {
+                assert_eq!(bound, f64::INFINITY, "case {case}");
+                continue;
+            }
+            let d: DVec3 = (0..3).map(|v| corners[1][v] * wb[v] - corners[0][v] * wa[v]).sum();
+            let expected = d.dot(gram.inverse() * d).sqrt();
+            assert!((bound / expected - 1.0).abs() < 1e-8, "case {case}: {bound:e}, not {expected:e}");
+            // Points that are together at rest prove nothing about others.
+            let together = [DVec3::ZERO; 9];
+            assert_eq!(rows.bound_at(&pair, &together, &weights), f64::INFINITY, "case {case}");
+        }
+    }
+}

@@ -127,6 +127,71 @@ mod tests {
         assert!(partly > 300, "{partly}");
     }
 
+    /// Normals have any length, shapes any size, and most planes cut off one end of a long strip: its
+    /// vertices are all found, and few buckets are opened.
+    #[test]
+    fn planes_open_the_buckets_below_them_alone() {
+        let random = &mut Random(11);
+        let positions: Vec<DVec3> = (0..602)
+            .map(|i| DVec3::new(f64::from(i / 2) * 0.02, f64::from(i % 2) * 0.03, 0.01 * random.signed()))
+            .collect();
+        let faces = (0..600).map(|i| [i, i + 1, i + 2]).collect();
+        let bend = |p: &DVec3, k: u32| {
+            let angle = 0.05 * f64::from(k) * p.x;
+            DVec3::new(0.2 * angle.sin(), angle.cos(), angle.sin()) * 0.05
+        };
+        let modes = positions.iter().flat_map(|p| (1..6).map(move |k| bend(p, k))).collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(5, modes).unwrap()).unwrap();
+        let mut shape = PosedShape::without_certificates(&model).unwrap();
+        let buckets = shape.context.layout.buckets.count();
+        assert!(buckets > 8, "{buckets}");
+        let (mut partly, mut opened) = (0, 0);
+        for case in 0..240 {
+            let q: Vec<f64> = (0..5).map(|_| random.signed()).collect();
+            let size = [1.0, 0.01][case % 2];
+            let rotation = DMat3::from_quat(DQuat::from_scaled_axis(random.vector() * 3.0)) * size;
+            let pose = Pose { rotation, translation: random.vector() * [0.0, 1.0, 100.0][case / 2 % 3] };
+            shape.place(&q, &pose).unwrap();
+            let length = random.power(-3.0, 3.0);
+            let normal = random.vector().normalize() * length;
+            // The heights as the search computes them.
+            let local = rotation.transpose() * normal;
+            let heights: Vec<f64> = (0..602).map(|v| local.dot(model.position(v, &q))).collect();
+            let mut sorted = heights.clone();
+            sorted.sort_by(f64::total_cmp);
+            let offset = [0.0, 1e-9, 1e-6][case / 6 % 3] * length * size;
+            let height = sorted[[3, 30, 150][case / 18 % 3]] + normal.dot(pose.translation) + offset;
+            let own = height - normal.dot(pose.translation);
+            let expected: Vec<u32> = (0..602).filter(|v| heights[*v as usize] < own).collect();
+            let mut found = Vec::new();
+            shape.vertices_below(normal, height, &mut found).unwrap();
+            assert_eq!(found, expected, "case {case}");
+            partly += usize::from(!found.is_empty() && found.len() < 602);
+            opened += buckets - shape.volumes.closed_buckets();
+        }
+        assert!(partly > 200 && 2 * opened < 240 * buckets, "{partly} {opened} of {buckets}");
+    }
+
+    /// The error has the first component that is out of range.
+    #[test]
+    fn the_component_of_a_normal_that_is_out_of_range_is_reported() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mesh = TriMesh::new(corners.clone(), vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, corners).unwrap()).unwrap();
+        let mut shape = PosedShape::without_certificates(&model).unwrap();
+        for wrong in [f64::NAN, f64::NEG_INFINITY, 1e61] {
+            for axis in 0..3 {
+                let mut normal = DVec3::new(1.0, -2.0, 3.0);
+                normal[axis] = wrong;
+                let error = shape.vertices_below(normal, 0.0, &mut Vec::new()).unwrap_err();
+                let is_named =
+                    matches!(error, Error::Option { value, .. } if value.to_bits() == wrong.to_bits());
+                assert!(is_named, "{error}");
+            }
+        }
+    }
+
     #[test]
     fn invalid_planes_are_refused() {
         let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];

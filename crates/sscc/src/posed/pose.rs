@@ -64,3 +64,72 @@ pub(super) fn finite_or_empty(around: Aabb) -> Aabb {
     let is_finite = around.lower.is_finite() && around.upper.is_finite();
     if with_mutant!(is_finite, PosedFramesOfAnyBox, true) { around } else { Aabb::EMPTY }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::Random;
+
+    /// Returns a pose with any matrix, small or large.
+    fn pose(random: &mut Random) -> Pose {
+        let columns = [(); 3].map(|()| random.vector());
+        let rotation = DMat3::from_cols(columns[0], columns[1], columns[2]) * random.power(-3.0, 3.0);
+        Pose { rotation, translation: random.vector() * random.power(-3.0, 3.0) }
+    }
+
+    /// The smallest AABB of a box in the world is that of its corners.
+    #[test]
+    fn aabbs_are_those_of_all_corners_and_the_rounding() {
+        let random = &mut Random(2);
+        for case in 0..300 {
+            let pose = pose(random);
+            let (a, b) = (random.vector() * random.power(-3.0, 3.0), random.vector());
+            let [lower, upper] = [a.min(b), a.max(b)];
+            let corner = |i: u32| {
+                let of_axis = |axis: usize| if i >> axis & 1 == 0 { lower[axis] } else { upper[axis] };
+                pose.apply(DVec3::new(of_axis(0), of_axis(1), of_axis(2)))
+            };
+            let exact = Aabb::of_points((0..8).map(corner));
+            let rounding = random.power(-6.0, 0.0);
+            let found = pose.apply_to_aabb(Aabb { lower, upper }, rounding);
+            let reach = pose.check_reach(a.abs().max(b.abs()).max_element()).unwrap();
+            let limit = 1e-13 * (reach + rounding);
+            for (found, exact) in
+                [(found.lower, exact.lower - rounding), (found.upper, exact.upper + rounding)]
+            {
+                assert!((found - exact).abs().max_element() <= limit, "case {case}: {found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn reaches_are_the_largest_sums_of_magnitudes() {
+        let random = &mut Random(3);
+        for case in 0..300 {
+            let (pose, own) = (pose(random), random.power(-3.0, 3.0));
+            let row = |i: usize| (0..3).map(|k| pose.rotation.col(k)[i].abs()).sum::<f64>();
+            let rows = (0..3).map(row).fold(0.0, f64::max);
+            let shift = (0..3).map(|i| pose.translation[i].abs()).fold(0.0, f64::max);
+            let (expected, found) = (rows * own + shift, pose.check_reach(own).unwrap());
+            assert!((found - expected).abs() <= 1e-14 * expected, "case {case}: {found} {expected}");
+        }
+        // A thousandth of the range is left for rounding.
+        for (divisor, is_valid) in [(1.0011, true), (1.0009, false), (1.0, false)] {
+            let own = limits::LARGEST / divisor;
+            assert_eq!(Pose::default().check_reach(own).is_ok(), is_valid, "{divisor}");
+        }
+    }
+
+    #[test]
+    fn only_infinite_boxes_are_replaced() {
+        let finite = Aabb { lower: DVec3::new(-1.0, 5.0, 2.0), upper: DVec3::new(3.0, 7.0, -2.0) };
+        assert_eq!(finite_or_empty(finite), finite);
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for axis in 0..3 {
+                let (mut low, mut high) = (finite, finite);
+                (low.lower[axis], high.upper[axis]) = (wrong, wrong);
+                assert_eq!([low, high].map(finite_or_empty), [Aabb::EMPTY; 2]);
+            }
+        }
+    }
+}

@@ -156,6 +156,60 @@ mod tests {
     use crate::test_models::Random;
     use crate::{ContactFilter, Modes, TriMesh};
 
+    /// The AABB of a node in axes of the model and its image are both widened by the margin.
+    #[test]
+    fn node_aabbs_are_the_images_of_those_in_axes_of_the_model() {
+        let random = &mut Random(6);
+        let positions: Vec<DVec3> = (0..302)
+            .map(|i| DVec3::new(f64::from(i / 2) * 0.02, f64::from(i % 2) * 0.03, 0.1 * random.signed()))
+            .collect();
+        let faces = (0..300).map(|i| [i, i + 1, i + 2]).collect();
+        let modes = (0..302 * 3).map(|_| random.vector() * 0.2).collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(3, modes).unwrap()).unwrap();
+        let hierarchy = Arc::new(Hierarchy::build(&model, model.metric()));
+        let filter = ContactFilter::default();
+        let context = Context::new(&model, Arc::clone(&hierarchy), &filter, &[], Some(Needs::LAZY));
+        let layout = &context.layout;
+        let mut motion = PosedMotion::<2>::new(&model).unwrap();
+        for case in 0..40 {
+            let ends = [(); 2].map(|()| {
+                let q = [(); 3].map(|()| random.signed());
+                let columns = [(); 3].map(|()| random.vector() * 2.0);
+                let rotation = DMat3::from_cols(columns[0], columns[1], columns[2]);
+                (q, Pose { rotation, translation: random.vector() * 2.0 })
+            });
+            let (q, pose) = (ends.each_ref().map(|(q, _)| &q[..]), ends.each_ref().map(|(_, pose)| pose));
+            motion.place(&model, layout, q, pose).unwrap();
+            let own_reach = q.map(|q| model.check_coordinates(q).unwrap()).into_iter().fold(0.0, f64::max);
+            assert_eq!(motion.in_world().unwrap().own_rounding, rounding_bound(own_reach, 3));
+            motion.margin = [0.0, 0.3][case % 2];
+            let margin = DVec3::splat(motion.margin);
+            for bucket in 0..layout.buckets.count() as u32 {
+                let node = layout.buckets.node(bucket);
+                let Aabb { lower, upper } = motion.node_aabb(layout, node).unwrap();
+                let images = q.into_iter().zip(pose).flat_map(|(q, pose)| {
+                    let own = layout.bd_tree.at(node, [q], margin).unwrap();
+                    let corners = (0..8_u32).map(move |i| {
+                        let of_axis =
+                            |axis: usize| if i >> axis & 1 == 0 { own.lower[axis] } else { own.upper[axis] };
+                        DVec3::new(of_axis(0), of_axis(1), of_axis(2))
+                    });
+                    corners.map(move |corner| pose.apply(corner))
+                });
+                let expected = Aabb::of_points(images);
+                for (found, expected) in [(lower, expected.lower - margin), (upper, expected.upper + margin)]
+                {
+                    assert!((found - expected).abs().max_element() < 1e-9, "case {case}: {found} {expected}");
+                }
+                for x in layout.buckets.vertices(bucket).iter().flat_map(|v| motion.positions(layout, *v)) {
+                    let is_inside = (x - margin).cmpge(lower).all() && (x + margin).cmple(upper).all();
+                    assert!(is_inside, "case {case}: {x} {lower} {upper}");
+                }
+            }
+        }
+    }
+
     /// The shapes are small or large in the frame, rotated, sheared and moved far away. The test also checks that AABBs contain
     /// all exact positions.
     #[test]

@@ -166,6 +166,7 @@ impl PosedShape {
 #[cfg(test)]
 mod tests {
     use glam::DMat3;
+    use sscc_testing::Dyadic;
 
     use super::*;
     use crate::{CertifyOptions, Modes, TriMesh, intersect_triangle_triangle};
@@ -340,6 +341,27 @@ mod tests {
                 assert!(most <= bound && bound < 3.0 * most, "{most} {bound}");
             }
             assert!(shape.displacement_bound(&[f64::NAN, 0.0]).unwrap().is_nan());
+        }
+    }
+
+    /// All vertices move alike, so that nothing but rounding is between the bound and the exact length.
+    #[test]
+    fn bounds_of_equal_displacements_are_their_lengths_rounded_up() {
+        let state = &mut 13;
+        for case in 0..50 {
+            let ways = [vector(state), vector(state)];
+            let modes = [ways; 3].as_flattened().to_vec();
+            let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+            let model = ReducedModel::new(mesh, Modes::new(2, modes).unwrap()).unwrap();
+            let shape = PosedShape::without_certificates(&model).unwrap();
+            let q = [random(state) * 10.0_f64.powi(case % 7 - 3), 1e-3 * random(state)];
+            let bound = shape.displacement_bound(&q).unwrap();
+            let exact = Dyadic::new;
+            let along = |axis: usize| (0..2).map(|k| exact(ways[k][axis]) * exact(q[k])).sum::<Dyadic>();
+            let square: Dyadic = (0..3).map(along).map(|x| &x * &x).sum();
+            assert!(exact(bound) * exact(bound) >= square, "case {case}: {bound}");
+            let length = (ways[0] * q[0] + ways[1] * q[1]).length();
+            assert!(bound <= length * (1.0 + 1e-7), "case {case}: {bound} {length}");
         }
     }
 

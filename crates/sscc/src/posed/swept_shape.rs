@@ -313,6 +313,69 @@ mod tests {
         }
     }
 
+    /// The second shape and the frame change, but not the first shape, whose volumes must follow the frame.
+    #[test]
+    fn shapes_at_rest_follow_the_frame_of_others() {
+        let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mesh = TriMesh::new(corners.clone(), vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, corners).unwrap()).unwrap();
+        let shape = PosedShape::without_certificates(&model).unwrap();
+        let at =
+            |shift: f64, height: f64| Pose { translation: DVec3::new(shift, 0.0, height), ..Pose::default() };
+        for is_near in [false, true] {
+            let [mut x, mut y] = [(); 2].map(|()| SweptShape::new(&shape).unwrap());
+            x.place([&[0.0]; 2], [&at(0.0, 0.0); 2]).unwrap();
+            for shift in [1000.0, 0.0, -50.0, 0.0, 7.0, 0.0] {
+                y.place([&[0.0]; 2], [&at(shift, 9.0), &at(shift, -1.0)]).unwrap();
+                let (mut impacts, mut near) = (Vec::new(), Vec::new());
+                if is_near {
+                    x.near(&mut y, Aabb::EMPTY, 0.1, 9, &mut near).unwrap();
+                } else {
+                    x.impacts(&mut y, Aabb::EMPTY, &mut impacts).unwrap();
+                }
+                assert_eq!(impacts.len() + near.len(), usize::from(shift == 0.0), "{shift} {is_near}");
+            }
+        }
+    }
+
+    /// Error bounds hold within the box of the frame, which must contain both motions and their margins.
+    #[test]
+    fn frames_of_near_pairs_contain_the_margin() {
+        let state = &mut 14;
+        let models = [model(5, state), model(4, state)];
+        let [mut x, mut y] = models
+            .each_ref()
+            .map(|model| SweptShape::new(&PosedShape::without_certificates(model).unwrap()).unwrap());
+        for case in 0..40 {
+            let mut wholes = Aabb::EMPTY;
+            for shape in [&mut x, &mut y] {
+                let ends = [(); 2].map(|()| {
+                    let rotation = DMat3::from_quat(DQuat::from_scaled_axis(vector(state)));
+                    let translation = vector(state) * 3.0 + DVec3::new(20.0, -30.0, 5.0);
+                    ([random(state), random(state)], Pose { rotation, translation })
+                });
+                let q = ends.each_ref().map(|(q, _)| &q[..]);
+                wholes = wholes.union(&shape.place(q, ends.each_ref().map(|(_, pose)| pose)).unwrap());
+                for (t, face) in shape.model.mesh().faces().iter().enumerate() {
+                    let corners = shape.corners(t as u32);
+                    for (end, (q, pose)) in ends.iter().enumerate() {
+                        assert_eq!(corners[end], face.map(|v| pose.apply(shape.model.position(v, q))));
+                    }
+                }
+            }
+            let margin = [0.0, 1e-3, 0.5, 40.0][case % 4];
+            let mut near = Vec::new();
+            x.near(&mut y, Aabb::EMPTY, margin, usize::MAX, &mut near).unwrap();
+            let widened = Aabb { lower: wholes.lower - margin, upper: wholes.upper + margin };
+            for motion in [&x.motion, &y.motion] {
+                assert_eq!((motion.around, motion.margin), (widened, margin / 2.0), "case {case}");
+            }
+            if margin == 40.0 {
+                assert_eq!(near.len(), 20);
+            }
+        }
+    }
+
     /// The shapes are far from the box that is given, and touch each other at corners.
     #[test]
     fn shapes_that_were_never_placed_rest() {

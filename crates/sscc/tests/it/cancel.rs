@@ -125,7 +125,7 @@ fn certificates_can_be_cancelled_after_their_radii() {
 /// After a sweep, a resolution or a search for near pairs is cancelled, the statistics say that the answer is incomplete.
 #[test]
 fn cancelled_answers_are_incomplete() {
-    let model = strip(120);
+    let model = strip(40);
     let certificates = Certificates::compute(&model, &CertifyOptions::default(), &()).unwrap();
     let after = After::new();
     let mut query = Query::new(&model, &certificates).unwrap().cancelled_by(after.token());

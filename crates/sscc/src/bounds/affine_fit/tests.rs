@@ -138,3 +138,49 @@ fn planes_turn_without_strain() {
         assert!(size > 1.0 && strain <= 1e-6 * size, "case {case}: {strain:e} of {size:e}");
     }
 }
+
+/// The gradient of modes that are affine is found, for points of any size that fill space: reduced along each
+/// axis by the ridge, and across the flattest direction completed by the share that the ridge takes.
+#[test]
+fn gradients_of_affine_modes_are_found() {
+    let sides = DVec3::new(1.0, 0.9, 0.8);
+    let (rank, row_len) = (6, 8);
+    for (case, size) in [1e-40, 1e-3, 1.0, 7.0, 1e40].into_iter().enumerate() {
+        let random = &mut Random::new(case as u64);
+        let corner =
+            |i: usize| DVec3::from_array([0, 1, 2].map(|axis| (i >> axis & 1) as f64)) * sides * size;
+        let offsets: Vec<DVec3> = (0..8).map(corner).collect();
+        let at_first: Vec<DVec3> = (0..rank).map(|_| random.vector()).collect();
+        // The images of the axes, for each mode.
+        let images: Vec<[DVec3; 3]> =
+            (0..rank).map(|_| std::array::from_fn(|_| random.vector() / size)).collect();
+        let modes: Vec<Vec<f64>> = offsets
+            .iter()
+            .map(|d| {
+                let mut rows = vec![0.0; 3 * row_len];
+                for k in 0..rank {
+                    let u = at_first[k] + images[k][0] * d.x + images[k][1] * d.y + images[k][2] * d.z;
+                    for c in 0..3 {
+                        rows[c * row_len + k] = u[c];
+                    }
+                }
+                rows
+            })
+            .collect();
+        let mut affine = AffineFit::new(row_len);
+        assert!(affine.fit(&offsets, |i| modes[i].as_slice()));
+        // In units of the squared size: the moments of eight points, half a side from their mean, and the
+        // ridge.
+        let moments = sides * sides * 2.0;
+        let ridge = 1e-4 * moments.element_sum();
+        let kept = moments / (moments + ridge);
+        let undetermined = ridge / (moments.z + ridge);
+        for (k, c, j) in (0..9 * rank).map(|at| (at / 9, at / 3 % 3, at % 3)) {
+            let fitted = images[k][j][c] * kept[j];
+            let completed = if j == 2 && c != 2 { images[k][c].z * kept[c] * undetermined } else { 0.0 };
+            let found = affine.gradient()[(3 * c + j) * row_len + k];
+            let expected = fitted - completed;
+            assert!((found - expected).abs() * size <= 1e-9, "size {size:e}: {found:e}, not {expected:e}");
+        }
+    }
+}

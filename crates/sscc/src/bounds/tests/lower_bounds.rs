@@ -239,21 +239,23 @@ fn two_triangles(positions: [DVec3; 6], modes: [&[DVec3]; 6]) -> ReducedModel {
         .unwrap()
 }
 
-/// One mode lowers the upper triangle: the upper bound is the height, whatever the size of the pair.
+/// One mode lowers the upper triangle: the upper bound is the height, less a clearance, whatever the size of
+/// the pair.
 #[test]
 fn rays_find_the_first_contact() {
-    for height in [1e-3, 1.0, 1e3] {
+    for (height, share) in [1e-3, 1.0, 1e3].into_iter().flat_map(|height| [(height, 0.0), (height, 0.5)]) {
         let low = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let [x, y, z] = low.map(|p| p + DVec3::Z * height);
         let (still, down) = ([DVec3::ZERO], [-DVec3::Z]);
         let modes: [&[DVec3]; 6] = [&still, &still, &still, &down, &down, &down];
         let model = two_triangles([low[0], low[1], low[2], x, y, z], modes);
-        let scaled = scaled_keeping(&model, 0.0);
+        let scaled = scaled_keeping(&model, share * height);
         let mut target =
             RefinementTarget { cap: f64::INFINITY, upper: f64::INFINITY, epsilon: 1e-3, subdivisions: 4 };
         let lower = PairRefiner::new(&scaled).refine([0, 1, 2], [3, 4, 5], &mut target);
-        assert!(lower <= height && lower >= height * (1.0 - 1e-6), "{lower:e} {height:e}");
-        assert!((target.upper / height - 1.0).abs() < 1e-6, "{:e} {height:e}", target.upper);
+        let truth = height * (1.0 - share);
+        assert!(lower <= truth && lower >= truth * (1.0 - 1e-6), "{lower:e} {truth:e}");
+        assert!((target.upper / truth - 1.0).abs() < 1e-6, "{:e} {truth:e}", target.upper);
     }
 }
 
@@ -286,7 +288,13 @@ fn pairs_that_rotate_together_have_an_affine_witness() {
     let scaled = scaled_keeping(&model, 0.0);
     let mut list = WitnessList::default();
     assert!(PairRefiner::new(&scaled).prove([0, 1, 2], [3, 4, 5], 10.0, &mut list));
-    assert!(matches!(list.witnesses[..], [PairWitness::Affine { .. }]), "{list:?}");
+    let [PairWitness::Affine { gradient, .. }] = &list.witnesses[..] else { panic!("{list:?}") };
+    // The gradient of a rotation about each axis.
+    for (k, c, j) in (0..27).map(|at| (at / 9, at / 3 % 3, at % 3)) {
+        let (found, expected) =
+            (gradient[(3 * c + j) * scaled.row_len + k], DVec3::AXES[k].cross(DVec3::AXES[j])[c]);
+        assert!((found - expected).abs() < 0.01, "mode {k}, {c} {j}: {found}, not {expected}");
+    }
 }
 
 /// Two thin layers, which modes lift by their height and by a tilt: all of their points meet at a known z. The fit has hardly a
@@ -347,7 +355,7 @@ fn affine_witnesses_prove_their_radius() {
     for (i, u) in pyramid.iter().enumerate() {
         let side = u.cross(pyramid[(i + 1) % 4]).normalize();
         let inside = differences.iter().map(|d| side.dot(d.normalize())).fold(f64::INFINITY, f64::min);
-        assert!(inside > 2e-8, "side {i}: {inside:e}");
+        assert!(inside > 2e-8 && inside < 1e-6, "side {i}: {inside:e}");
         // The rate holds at the edges of the pyramid: along u the plane contracts by u_x^2.
         assert!(u.x * u.x <= rate * 1.001, "{u} {rate}");
     }

@@ -155,3 +155,37 @@ impl LocalCertificates {
         4 * words + 2 * self.ellipsoids.len() + size_of_val(&*self.bounds)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Certificates of nine modes, one and none, with five nodes in their lists.
+    #[test]
+    fn bytes_are_those_of_all_lists() {
+        let counts = [9, 1, 0];
+        let ellipsoids: usize = counts.iter().map(|count| EllipsoidBlocks(*count).len()).sum();
+        let local = LocalCertificates {
+            nodes: vec![0; 3],
+            mode_starts: vec![0; 4],
+            modes: vec![0; 10],
+            gradients: vec![0.0; counts.iter().map(|count| gradient_len(*count)).sum()],
+            ellipsoids: vec![0; ellipsoids],
+            bounds: vec![LocalBounds::default(); 3],
+            list_starts: vec![0; 4],
+            list_nodes: vec![0; 5],
+            list_ratios: vec![0.0; 5],
+        };
+        let words = [&local.nodes, &local.mode_starts, &local.modes, &local.list_starts, &local.list_nodes];
+        let numbers = size_of_val(&*local.gradients) + size_of_val(&*local.list_ratios);
+        let expected = words.iter().map(|words| size_of_val(words.as_slice())).sum::<usize>()
+            + numbers
+            + size_of_val(&*local.ellipsoids)
+            + size_of_val(&*local.bounds);
+        assert_eq!(local.bytes(), expected);
+        // The ends of both lists of starts are left out.
+        assert_eq!(local.budgeted_bytes(), expected - 8);
+        let of_certificates: usize = counts.iter().map(|count| LocalCertificates::bytes_of(*count)).sum();
+        assert_eq!(local.budgeted_bytes(), of_certificates + 8 * local.list_nodes.len());
+    }
+}

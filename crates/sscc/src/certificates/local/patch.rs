@@ -220,7 +220,200 @@ impl Kernel for Divide<'_> {
 
 #[cfg(test)]
 mod tests {
+    use sscc_testing::Numbers;
+
     use super::*;
+    use crate::certificates::local::residual_ellipsoid::FitEllipsoid;
+    use crate::{Modes, ReducedModel, TriMesh};
+
+    const VERTICES: u32 = 40;
+    const RANK: usize = 12;
+
+    /// Calls `check` with three patches of a strip of triangles between random points, one after the other in
+    /// the same memory: with all of it, with two of its parts and with one of these. `check` also gets the
+    /// vertices of each, ascending. Modes 0 to 2 are linear maps, mode 5 moves no vertex, and mode 8 moves a
+    /// single one.
+    fn with_patches(mut check: impl FnMut(&ReducedModel, &PatchModel<'_>, &Patch, &[u32])) {
+        let random = &mut Numbers(41);
+        let maps = [(); 3].map(|()| DMat3::from_cols(random.vector(), random.vector(), random.vector()));
+        let positions: Vec<DVec3> = (0..VERTICES).map(|_| random.vector()).collect();
+        let mut modes = Vec::new();
+        for (v, p) in (0_u32..).zip(&positions) {
+            modes.extend((0..RANK).map(|k| match k {
+                0..3 => maps[k] * *p,
+                5 => DVec3::ZERO,
+                8 if v != 17 => DVec3::ZERO,
+                _ => random.vector(),
+            }));
+        }
+        let faces = (2..VERTICES).map(|v| [v - 2, v - 1, v]).collect();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(RANK, modes).unwrap()).unwrap();
+        let patch_model = PatchModel::new(&model, &[0.0; RANK]).unwrap();
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let faces = model.mesh().faces();
+        let children: Vec<u32> = hierarchy.nodes()[0].children().collect();
+        let mut patch = Patch::new(VERTICES as usize);
+        for nodes in [vec![0], children[..2].to_vec(), vec![children[1]]] {
+            patch.load(&patch_model, &hierarchy, faces, nodes.iter().copied(), RANK).unwrap();
+            let of_node = |n: &u32| hierarchy.vertices(&hierarchy.nodes()[*n as usize], faces);
+            let mut vertices: Vec<u32> = nodes.iter().flat_map(of_node).collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            check(&model, &patch_model, &patch, &vertices);
+        }
+    }
+
+    /// Certificates store this gradient. Residuals of any other map, or of other offsets, would prove nothing
+    /// about it.
+    #[test]
+    fn residuals_are_those_of_the_stored_gradient() {
+        with_patches(|model, patch_model, patch, vertices| {
+            assert_eq!(patch.vertices.len(), vertices.len());
+            for v in 0..VERTICES {
+                // The number of other vertices is that of no vertex of the patch.
+                let found = patch.vertices.get(patch.numbers[v as usize] as usize);
+                assert_eq!(found, vertices.contains(&v).then_some(&v));
+            }
+            let moves =
+                |k: &u32| vertices.iter().any(|v| model.modes().of_vertex(*v)[*k as usize] != DVec3::ZERO);
+            let modes: Vec<u32> = (0..RANK as u32).filter(moves).collect();
+            assert_eq!((&patch.modes, patch.row_len), (&modes, 16));
+            assert!(patch.gradient.iter().all(|x| *x == f64::from(*x as f32)));
+            let displacement = |i: usize, k: usize| {
+                let of_vertex = model.modes().of_vertex(patch.vertices[i]);
+                of_vertex[modes[k] as usize] / model.mode_displacement_bound(modes[k] as usize, 1.0)
+            };
+            let position = |i: usize| patch_model.positions[patch.vertices[i] as usize];
+            for i in 0..vertices.len() {
+                assert_eq!(patch.offsets[i], position(i) - position(0));
+                for (c, k) in (0..3).flat_map(|c| (0..16).map(move |k| (c, k))) {
+                    let found = patch.residuals[48 * i + 16 * c + k];
+                    if k >= modes.len() {
+                        assert_eq!(found, 0.0);
+                        continue;
+                    }
+                    let row =
+                        DVec3::from_array(std::array::from_fn(|j| patch.gradient[16 * (3 * c + j) + k]));
+                    let affine = row.dot(position(i) - position(0));
+                    let expected = (displacement(i, k) - displacement(0, k))[c] - affine;
+                    assert!((found - expected).abs() < 1e-12, "{i} {c} {k}: {found} {expected}");
+                    // Points all over a cube determine linear maps.
+                    let is_linear = vertices.len() == VERTICES as usize && k < 3;
+                    assert!(!is_linear || found.abs() < 0.05, "{i} {c} {k}: {found}");
+                }
+            }
+        });
+    }
+
+    /// Rounding terms of certificates are proportional to these norms.
+    #[test]
+    fn norms_are_those_of_all_modes_and_vertices() {
+        with_patches(|_, _, patch, _| {
+            let norm = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(|x| x * x).sum::<f64>().sqrt();
+            let column = |k: usize| norm(&mut patch.gradient.iter().copied().skip(k).step_by(16));
+            let steepest = (0..patch.modes.len()).map(column).fold(0.0, f64::max);
+            let residuals = patch.residuals.chunks(48).map(|rows| norm(&mut rows.iter().copied()));
+            let largest = residuals.fold(0.0, f64::max);
+            let longest = patch.offsets.iter().map(|d| norm(&mut d.to_array().into_iter()));
+            let longest = longest.fold(0.0, f64::max);
+            for (found, expected) in [(patch.steepest(), steepest), (patch.largest_residual(), largest)] {
+                assert!(found >= expected && found < expected * (1.0 + 1e-8), "{found} {expected}");
+            }
+            assert!((patch.longest() - longest).abs() < 1e-14, "{} {longest}", patch.longest());
+        });
+    }
+
+    /// The error of images in single precision is proportional to their largest norm.
+    #[test]
+    fn images_are_those_of_the_residuals() {
+        with_patches(|_, _, patch, _| {
+            let fit = FitEllipsoid { blocks: &patch.residuals, rank: patch.modes.len(), row_len: 16 };
+            let ellipsoid = InstructionSet::default().run(fit).unwrap();
+            // Memory from before is overwritten.
+            let (mut scratch, mut images) = (vec![7.0; 5], vec![7.0; 5]);
+            let found = patch.images(&ellipsoid, &mut scratch, &mut images);
+            let (mut expected, mut largest) = (Vec::new(), 0.0_f64);
+            for rows in patch.residuals.chunks(48) {
+                let mut rows = rows.to_vec();
+                ellipsoid.divide(&mut rows);
+                largest = largest.max(rows.iter().map(|x| x * x).sum::<f64>().sqrt());
+                expected.extend(rows.iter().map(|x| *x as f32));
+            }
+            assert_eq!(images, expected);
+            assert!(found >= largest && found < largest * (1.0 + 1e-8), "{found} {largest}");
+        });
+    }
+
+    /// Heights are the only numbers of their images that are not 0. Their error is relative to the largest one,
+    /// and to the longest offset in double precision.
+    #[test]
+    fn heights_are_components_of_offsets() {
+        let random = &mut Numbers(42);
+        with_patches(|_, _, patch, vertices| {
+            let direction = random.vector().normalize();
+            let mut images = vec![7.0; 5];
+            let found = patch.heights(direction, &mut images);
+            assert_eq!(images.len(), 48 * vertices.len());
+            let (mut highest, mut longest) = (0.0_f64, 0.0_f64);
+            for (d, rows) in patch.offsets.iter().zip(images.chunks(48)) {
+                let height = direction.x * d.x + direction.y * d.y + direction.z * d.z;
+                assert!((f64::from(rows[0]) - height).abs() <= 6e-8 * height.abs() + 1e-15);
+                assert!(rows[1..].iter().all(|x| *x == 0.0));
+                (highest, longest) = (highest.max(height.abs()), longest.max(d.length()));
+            }
+            let expected = highest + 1e-8 * longest;
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        });
+    }
+
+    /// Returns points that have no modes.
+    fn points(offsets: Vec<DVec3>) -> Patch {
+        Patch { offsets, ..Patch::new(0) }
+    }
+
+    /// It is the direction of the smallest moment about the mean, also where the first point lies beside and
+    /// below the others.
+    #[test]
+    fn directions_across_are_those_of_the_smallest_moment() {
+        let random = &mut Numbers(43);
+        for case in 0..100 {
+            let axis = (random.vector() + DVec3::X * 1e-3).normalize();
+            let turn = DMat3::from_axis_angle(axis, 3.0 * random.signed());
+            let middle = DVec3::new(0.8, 0.3, 0.02);
+            let mut offsets = vec![DVec3::ZERO];
+            offsets.extend((0..30).map(|_| turn * (middle + random.vector() * DVec3::new(0.5, 0.5, 0.005))));
+            let mean = offsets.iter().sum::<DVec3>() / 31.0;
+            let across = points(offsets.clone()).across().unwrap();
+            assert!((across.length() - 1.0).abs() < 1e-12);
+            let moved: DVec3 = offsets.iter().map(|d| (*d - mean) * (*d - mean).dot(across)).sum();
+            let trace: f64 = offsets.iter().map(|d| (*d - mean).length_squared()).sum();
+            let smallest = moved.dot(across);
+            assert!((moved - across * smallest).length() < 1e-9 * trace, "case {case}");
+            assert!(smallest < 0.01 * trace, "case {case}: {smallest}");
+        }
+        // Points of one plane have a moment of 0 across it.
+        let grid = (0..16).map(|i| DVec3::new(f64::from(i % 4), f64::from(i / 4), 0.0)).collect();
+        let across = points(grid).across().unwrap();
+        assert!((across.z.abs() - 1.0).abs() < 1e-12, "{across}");
+    }
+
+    #[test]
+    fn patches_are_flat_up_to_a_share_of_their_length() {
+        let random = &mut Numbers(44);
+        for case in 0..20 {
+            let axis = (random.vector() + DVec3::X * 1e-3).normalize();
+            let turn = DMat3::from_axis_angle(axis, 3.0 * random.signed());
+            for (share, is_flat) in [(0.0499, true), (0.0501, false)] {
+                let height = DVec3::Z * (0.5 * share);
+                let around = [DVec3::ZERO, DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, height, -height];
+                let across = points(around.map(|d| turn * d * 3.0).to_vec()).across();
+                assert_eq!(across.is_some(), is_flat, "case {case}: {share}");
+                let is_normal = |across: DVec3| across.dot(turn * DVec3::Z).abs() > 1.0 - 1e-12;
+                assert!(across.is_none_or(is_normal), "case {case}");
+            }
+        }
+    }
 
     /// Rounding terms are proportional to these norms.
     #[test]

@@ -83,3 +83,56 @@ impl<'t> TouchingNodes<'t> {
         nodes.binary_search(&self.parents[n as usize]).is_ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::test_models::square;
+    use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
+
+    #[test]
+    fn nodes_around_are_those_that_share_a_vertex_but_no_triangle() {
+        let sheet = square(24);
+        // The same sheet, whose triangles have vertices of their own.
+        let corners = sheet.faces().iter().flatten().map(|v| sheet.rest_positions()[*v as usize]).collect();
+        let faces = (0..sheet.faces().len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let split = TriMesh::new(corners, faces).unwrap();
+        for mesh in [sheet, split] {
+            let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1e-3).unwrap();
+            let model = ReducedModel::new(mesh, modes).unwrap();
+            let hierarchy = Hierarchy::build(&model, model.metric());
+            let filter = PairFilter::new(&model, &ContactFilter::default().weld(true));
+            let touching = TouchingNodes::new(&hierarchy, &filter);
+            let (nodes, within) = (hierarchy.nodes(), hierarchy.nodes_within_buckets());
+            let classes_of = |n: usize| -> BTreeSet<u32> {
+                hierarchy.triangles(&nodes[n]).iter().flat_map(|t| filter.vertex_classes(*t)).collect()
+            };
+            let classes: Vec<BTreeSet<u32>> = (0..nodes.len()).map(classes_of).collect();
+            let own = |n: usize| nodes[n].first_triangle..nodes[n].first_triangle + nodes[n].triangle_count;
+            let (mut larger, mut parts) = (0, 0);
+            for n in (0..nodes.len()).filter(|n| !within[*n]) {
+                let is_around = |m: &u32| {
+                    let m = *m as usize;
+                    let is_apart = own(m).end <= own(n).start || own(n).end <= own(m).start;
+                    let is_listed = match nodes[m].fits_in_bucket() {
+                        true => !within[m],
+                        false => nodes[m].triangle_count <= nodes[n].triangle_count,
+                    };
+                    is_apart && is_listed && !classes[m].is_disjoint(&classes[n])
+                };
+                let expected: Vec<u32> = (0..nodes.len() as u32).filter(is_around).collect();
+                let found = touching.around(n as u32);
+                assert_eq!(found, expected, "node {n}");
+                for m in &found {
+                    let has_parent = found.iter().any(|p| nodes[*p as usize].children().contains(m));
+                    assert_eq!(touching.has_parent(*m, &found), has_parent, "nodes {n} {m}");
+                    larger += usize::from(!nodes[*m as usize].fits_in_bucket());
+                    parts += usize::from(has_parent);
+                }
+            }
+            assert!(larger > 0 && parts > 0, "{larger} {parts}");
+        }
+    }
+}

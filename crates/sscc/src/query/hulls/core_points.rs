@@ -136,4 +136,20 @@ mod tests {
             );
         }
     }
+
+    /// As many points as a hull has core points, none of which is near the hull of the others, are all core points.
+    #[test]
+    fn few_points_are_their_own_hull() {
+        assert_eq!(choose(&[DVec3::X]).distance, ROUNDING);
+        // Points on a spiral around a sphere, in single precision.
+        let count = CORE_POINTS as f64;
+        let at = |i: usize| {
+            let height = 1.0 - (2.0 * i as f64 + 1.0) / count;
+            let (sin, cos) = (2.4 * i as f64).sin_cos();
+            let x = DVec3::new(cos, sin, 0.0) * (1.0 - height * height).sqrt() + DVec3::Z * height;
+            (x * 0.999).as_vec3().as_dvec3()
+        };
+        let points: Vec<DVec3> = (0..CORE_POINTS).map(at).collect();
+        assert_eq!(choose(&points).distance, ROUNDING);
+    }
 }

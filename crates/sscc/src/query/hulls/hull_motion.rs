@@ -108,6 +108,11 @@ impl<const E: usize> HullMotion<E> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::certificates::Scope;
+    use crate::geometry::Aabb;
+    use crate::hierarchy::Hierarchy;
+    use crate::test_models::Random;
+    use crate::{Modes, ReducedModel, TriMesh};
 
     /// Tests the units of tiny and huge models, whose squares are not normal floating-point numbers.
     #[test]
@@ -117,5 +122,70 @@ mod tests {
             let distance = f64::from(motion.distance(DVec3::new(3.0, 4.0, 12.0) * size));
             assert!((13.0..13.001).contains(&distance), "{size}: {distance}");
         }
+    }
+
+    /// The factors, the shift and the error bound are those of the formulas, whichever term is the largest.
+    #[test]
+    fn numbers_of_a_motion_are_those_of_the_formulas() {
+        let random = &mut Random(41);
+        let mesh = TriMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(3, DVec3::AXES.repeat(3)).unwrap()).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let mut hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 3]).unwrap();
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        let (mut useful, mut useless) = (0, 0);
+        for case in 0..300 {
+            hulls.configuration = (0..3).map(|_| random.signed()).collect();
+            hulls.sizes = (0..3).map(|_| random.power(-2.0, 2.0)).collect();
+            hulls.weights = (0..4).map(|_| random.power(-1.0, 1.0)).collect();
+            (hulls.center, hulls.half) = (random.vector(), random.power(-2.0, 2.0));
+            hulls.reach = random.power(-6.0, 14.0);
+            let (rounding, center) = (random.power(-15.0, 0.0), random.vector());
+            let half = DVec3::splat(random.power(-1.0, 1.0));
+            let frame = F32Frame::around(Aabb { lower: center - half, upper: center + half });
+            let q: [[f64; 3]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| 3.0 * random.signed()));
+            let mut motion = HullMotion::<2>::default();
+            let is_useful = motion.begin(&hulls, [&q[0], &q[1]], &frame, rounding);
+
+            let scale = frame.scale();
+            assert!(motion.scale > scale && motion.scale < scale * (1.0 + 1e-11), "case {case}");
+            let shift = (hulls.center - frame.center()) * scale;
+            for axis in 0..3 {
+                assert!((f64::from(motion.shift[axis]) - shift[axis]).abs() <= 1e-7 * shift[axis].abs());
+            }
+            assert_eq!(motion.factors.len(), 4);
+            let mut most = 0.0_f64;
+            for (end, q) in q.iter().enumerate() {
+                let mut terms = shift.abs().max_element();
+                for (k, factors) in motion.factors.iter().enumerate() {
+                    let exact = match k {
+                        0 => hulls.half * scale,
+                        _ => (q[k - 1] - hulls.configuration[k - 1]) * hulls.sizes[k - 1] * scale,
+                    };
+                    let factor = factors[end];
+                    let difference = (f64::from(factor.y) - exact).abs();
+                    assert!(difference <= 1e-7 * exact.abs(), "case {case}, {k}: {factor} {exact}");
+                    assert_eq!((factor.x, factor.z, factor.w), (factor.y.abs(), factor.y, factor.y));
+                    terms += exact.abs() * hulls.weights[k];
+                }
+                most = most.max(terms);
+            }
+            let single = (3.0 * 3.0 + 32.0) * unit * most;
+            let double = (rounding + rounding_bound(hulls.reach, 3)) * scale;
+            let error = f64::from(motion.error) / (3.0_f64.sqrt() * (single + double));
+            assert!((1.0..1.02).contains(&error), "case {case}: {single} {double} {error}");
+            assert_eq!(is_useful, motion.error <= 1.0 / 64.0, "case {case}");
+            assert_eq!(f64::from(motion.relative), 2.0 * (3.0 + 16.0) * unit);
+            (useful, useless) = (useful + i32::from(is_useful), useless + i32::from(!is_useful));
+        }
+        assert!(useful > 30 && useless > 30, "{useful} {useless}");
+
+        // Of the error of a shape that is a point at the centre, only the part for underflow is left.
+        (hulls.center, hulls.half, hulls.reach) = (DVec3::ZERO, 0.0, 0.0);
+        hulls.sizes.fill(0.0);
+        let frame = F32Frame::around(Aabb { lower: DVec3::NEG_ONE, upper: DVec3::ONE });
+        let mut motion = HullMotion::<1>::default();
+        assert!(motion.begin(&hulls, [&[0.0; 3]], &frame, 0.0));
+        assert!((0.99e-15..1.01e-15).contains(&f64::from(motion.error)), "{}", motion.error);
     }
 }

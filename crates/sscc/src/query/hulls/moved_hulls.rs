@@ -214,10 +214,13 @@ mod tests {
 
     use super::*;
     use crate::certificates::Scope;
+    use crate::detect::layout::{Layout, Needs};
     use crate::detect::vertex_motion::DeformedMotion;
+    use crate::filter::PairFilter;
     use crate::hierarchy::Hierarchy;
+    use crate::query::widened_motion::WidenedMotion;
     use crate::test_models::Random;
-    use crate::{Modes, ReducedModel, TriMesh};
+    use crate::{ContactFilter, Modes, ReducedModel, TriMesh};
 
     /// No unit vector that F moves becomes longer than the bound. The matrices stretch mostly along a diagonal, where the
     /// entries of F'F are alike.
@@ -290,5 +293,139 @@ mod tests {
             let largest = cofactors.into_iter().fold(0.0_f32, |most, x| most.max(x.abs()));
             assert!((0.999..1.001).contains(&largest), "{factor}: {largest}");
         }
+    }
+
+    /// Returns the radius of the first hull without the error of a motion and without slack, by the formulas, in
+    /// double precision.
+    fn radius_of<const E: usize>(hulls: &NodeHulls, motion: &HullMotion<E>) -> f64 {
+        let (shape, relative) = (hulls.shape(0), f64::from(motion.relative));
+        let of_end = |end: usize| {
+            // The transposed matrix of F.
+            let mut transposed = DMat3::ZERO;
+            let (mut sum, mut squares, mut along) = (0.0_f64, 0.0_f64, DVec3::ZERO);
+            for (rate, factors) in hulls.frame(0).iter().zip(&motion.factors) {
+                let factor = f64::from(factors[end].y);
+                let [x, y, z, residual] = rate.map(|row| row.as_dvec4() * factor);
+                transposed += DMat3::from_cols(x.truncate(), y.truncate(), z.truncate());
+                sum += residual.x.abs();
+                squares += residual.x * residual.x;
+                along += DVec3::new(residual.y, residual.z, residual.w);
+            }
+            let most = sum * (1.0 + relative);
+            let of_vector = |j: usize| f64::from(shape.along[j]) * (along[j].abs() + relative * most);
+            let split = (0..3).map(of_vector).sum::<f64>() + f64::from(shape.remainder) * squares.sqrt();
+            let residual = most.min(split * (1.0 + 2.0 * relative));
+            let gram = transposed * transposed.transpose();
+            let sums = [gram.x_axis, gram.y_axis, gram.z_axis].map(|column| column.abs().element_sum());
+            f64::from(shape.distance) * sums.into_iter().fold(0.0, f64::max).sqrt() + residual
+        };
+        (0..E).map(of_end).fold(0.0, f64::max)
+    }
+
+    /// Sets random factors up to a size, and large numbers in place of the small ones that cover rounding.
+    fn set<const E: usize>(motion: &mut HullMotion<E>, rank: usize, size: f64, random: &mut Random) {
+        let factor = |x: f32| Vec4::new(x.abs(), x, x, x);
+        motion.factors = vec![[factor(1.0); E]];
+        for _ in 0..rank {
+            motion.factors.push(std::array::from_fn(|_| factor((size * random.signed()) as f32)));
+        }
+        (motion.error, motion.relative, motion.scale) = (0.25, 0.05, 2.0);
+    }
+
+    /// Each term of a radius has its part in it, at one configuration with slack and at the ends of a motion.
+    #[test]
+    fn radii_are_those_of_the_formulas() {
+        let random = &mut Random(23);
+        for case in 0..12 {
+            let rank = [1, 4, 12][case % 3];
+            let positions: Vec<DVec3> = (0..60).map(|_| random.vector()).collect();
+            // Residuals are multiples of one vector over the modes, and noise.
+            let rates: Vec<f64> = (0..rank).map(|_| random.signed()).collect();
+            let mut rows = Vec::new();
+            for _ in 0..60 {
+                let along = random.vector();
+                rows.extend(rates.iter().map(|rate| along * *rate + random.vector() * 0.1));
+            }
+            let faces = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let modes = Modes::new(rank, rows).unwrap();
+            let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
+            let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+            let q = vec![0.0; rank];
+            let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &q).unwrap();
+            let filter = PairFilter::new(&model, &ContactFilter::default());
+            let layout = Layout::new(&model, &hierarchy, &filter, Needs::LAZY);
+            let widened = WidenedMotion::new(DeformedMotion::new([&q[..]], 9.0), &layout, 0.1);
+            let slack = 2.0 * widened.coarse_slack(0).unwrap().length();
+            assert!(slack > 0.1, "{slack}");
+            for size in [0.5, 0.5, 3.0, 3.0] {
+                let mut moved = MovedHulls::<1>::new(&hulls);
+                set(&mut moved.motion, rank, size, random);
+                moved.begin();
+                moved.update(&hulls, 0, 0, &widened);
+                let exact = radius_of(&hulls, &moved.motion) + 0.25 + slack;
+                let share = f64::from(moved.hulls[0].radius) / exact;
+                assert!((1.0 - 1e-5..1.0 + 1e-4).contains(&share), "case {case}, {size}: {share}");
+
+                let mut moved = MovedHulls::<2>::new(&hulls);
+                set(&mut moved.motion, rank, size, random);
+                moved.begin();
+                moved.update(&hulls, 0, 0, &DeformedMotion::new([&q[..]; 2], 9.0));
+                let exact = radius_of(&hulls, &moved.motion) + 0.25;
+                let share = f64::from(moved.hulls[0].radius) / exact;
+                assert!((1.0 - 1e-5..1.0 + 1e-4).contains(&share), "case {case}, {size}, ends: {share}");
+            }
+        }
+    }
+
+    /// Both factors that cover the rounding of a radius increase it: here all else is a residual of 1, up to its last
+    /// bit.
+    #[test]
+    fn radii_cover_their_own_rounding() {
+        // The corners of a square move up and down alternately. No affine map describes that.
+        let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let mesh = TriMesh::new(positions.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let modes = Modes::new(1, [DVec3::Z, DVec3::NEG_Z].repeat(2)).unwrap();
+        let model = ReducedModel::new(mesh, modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0]).unwrap();
+        let mut moved = MovedHulls::<1>::new(&hulls);
+        moved.motion.factors = vec![[Vec4::ZERO], [Vec4::ONE]];
+        (moved.motion.error, moved.motion.relative, moved.motion.scale) = (0.0, 0.0, 1.0);
+        moved.begin();
+        moved.update(&hulls, 0, 0, &DeformedMotion::new([&[0.0][..]], 9.0));
+        let radius = f64::from(moved.hulls[0].radius);
+        assert!((1.0 + 1.5e-6..1.0 + 2.5e-6).contains(&radius), "{radius}");
+    }
+
+    /// A number that is not finite makes a radius infinite, whether it is the radius or only in the map.
+    #[test]
+    fn radii_of_numbers_that_are_not_finite_are_infinite() {
+        let map = [Vec4::X, Vec4::Y, Vec4::Z];
+        assert_eq!(radius_or_infinity(&map, 2.0), 2.0);
+        for wrong in [f32::NAN, f32::INFINITY] {
+            assert_eq!(radius_or_infinity(&map, wrong), f32::INFINITY);
+            for axis in 0..3 {
+                let mut map = map;
+                map[axis].w = wrong;
+                assert_eq!(radius_or_infinity(&map, 2.0), f32::INFINITY);
+            }
+        }
+    }
+
+    /// After the last number of a search the count begins anew, and no hull of an earlier search is current.
+    #[test]
+    fn no_hull_is_current_when_the_count_of_searches_begins_anew() {
+        let mut moved = MovedHulls::<1> {
+            motion: HullMotion::default(),
+            instructions: InstructionSet::default(),
+            has_begun: true,
+            is_useful: false,
+            search: u32::MAX,
+            searches: vec![0, 1, u32::MAX],
+            hulls: Vec::new(),
+        };
+        moved.begin();
+        assert!(moved.searches.iter().all(|search| *search != moved.search), "{:?}", moved.searches);
+        assert!(moved.is_useful() && !moved.has_begun);
     }
 }

@@ -123,7 +123,10 @@ impl NodeHull {
 
 #[cfg(test)]
 mod tests {
+    use glam::{DVec4, Vec3};
+
     use super::*;
+    use crate::test_models::Random;
 
     /// Affine modes leave no residual but that of the regularization, also in a node that is so small that the rounding of its
     /// centre to single precision is a large part of it.
@@ -142,5 +145,87 @@ mod tests {
                 assert!(rate[3].x < 1e-3, "{size}: {rate:?}");
             }
         }
+    }
+
+    /// Each map is the least-squares fit with a small weight on the gradient: the sum of all residuals is 0, and that of
+    /// their products with the offsets is the gradient times the weight. The size is that of the farthest vertex, and the
+    /// bound of each mode is that of the residuals of the map as it is stored. Half of the nodes are so small that the
+    /// rounding of their centre to single precision is a large part of them.
+    #[test]
+    fn maps_solve_the_normal_equations() {
+        let random = &mut Random(51);
+        for case in 0..12 {
+            let (rank, node) = ([1, 2, 5][case % 3], [1.0, 1e-7][case / 3 % 2]);
+            let corners: Vec<DVec3> = (0..30).map(|_| random.vector()).collect();
+            let positions: Vec<DVec3> =
+                corners.iter().map(|x| DVec3::new(0.7, -0.6, 0.8) + *x * node).collect();
+            let ways: Vec<[DVec3; 3]> = (0..rank).map(|_| std::array::from_fn(|_| random.vector())).collect();
+            let mut modes = Vec::new();
+            for x in &corners {
+                let noisy = |[a, b, c]: &[DVec3; 3]| (*a * x.dot(*b) + *c) * 0.3 + random.vector() * 0.1;
+                modes.extend(ways.iter().map(noisy));
+            }
+            let vertices = Vertices { positions: &positions, modes: &modes, rank };
+            let indices: Vec<u32> = (0..30).collect();
+            let NodeHull { frame, shape } = NodeHull::fit(&vertices, &indices, &mut Vec::new());
+            assert_eq!(frame.len(), rank + 1);
+
+            let size = f64::from(frame[0][0].x);
+            let center = DVec3::from_array([0, 1, 2].map(|axis| f64::from(frame[0][axis].w)));
+            for axis in 0..3 {
+                assert_eq!(frame[0][axis].truncate(), Vec3::AXES[axis] * frame[0][0].x);
+            }
+            let middle = positions.iter().sum::<DVec3>() / 30.0;
+            assert!(center.abs_diff_eq(middle, 1e-7), "case {case}: {center} {middle}");
+            let most = positions.iter().map(|x| (*x - center).length()).fold(0.0, f64::max);
+            assert!((1.0..1.0 + 2e-6).contains(&(size / most)), "case {case}: {size} {most}");
+
+            let offsets: Vec<DVec3> = positions.iter().map(|x| (*x - center) / size).collect();
+            let mean = offsets.iter().sum::<DVec3>() / 30.0;
+            let trace = offsets.iter().map(|d| (*d - mean).length_squared()).sum::<f64>();
+            for (k, rate) in frame[1..].iter().enumerate() {
+                let rows: [DVec4; 3] = std::array::from_fn(|axis| rate[axis].as_dvec4());
+                let (mut sum, mut products, mut most) = (DVec3::ZERO, [DVec3::ZERO; 3], 0.0_f64);
+                for (v, d) in offsets.iter().enumerate() {
+                    let map = DVec3::from_array(rows.map(|row| row.dot(d.extend(1.0))));
+                    let residual = modes[v * rank + k] - map;
+                    sum += residual;
+                    (0..3).for_each(|axis| products[axis] += *d * residual[axis]);
+                    most = most.max(residual.length());
+                }
+                assert!(sum.length() < 1e-5, "case {case}, mode {k}: {sum}");
+                for axis in 0..3 {
+                    let error = products[axis] - rows[axis].truncate() * (REGULARIZATION * trace);
+                    assert!(error.length() < 1e-5, "case {case}, mode {k}, axis {axis}: {error}");
+                }
+                let bound = f64::from(rate[3].x) / most;
+                assert!((1.0..1.0 + 1e-6).contains(&bound), "case {case}, mode {k}: {bound}");
+            }
+            for i in 0..CORE_POINTS {
+                let point = DVec3::from_array(shape.core.map(|axis| f64::from(axis[i])));
+                assert!(point.length() <= 1.0, "case {case}: {point}");
+                assert!(offsets.iter().any(|d| d.distance(point) < 1e-7), "case {case}: {point}");
+            }
+        }
+    }
+
+    /// A mode that moves all vertices alike leaves the rounding of its map, and one that moves none leaves nothing.
+    #[test]
+    fn constant_modes_leave_the_rounding_of_their_map() {
+        let corner = |i: usize| DVec3::from_array([1, 2, 4].map(|bit| if i & bit == 0 { -0.5 } else { 0.5 }));
+        let positions: Vec<DVec3> = (0..8).map(corner).collect();
+        let modes = [DVec3::new(5.0, 4.0, 3.0), DVec3::ZERO].repeat(8);
+        let vertices = Vertices { positions: &positions, modes: &modes, rank: 2 };
+        let hull = NodeHull::fit(&vertices, &[0, 1, 2, 3, 4, 5, 6, 7], &mut Vec::new());
+        let share = f64::from(hull.frame[1][3].x) / (5.0 * ROUNDING);
+        assert!((1.0..1.3).contains(&share), "{share}");
+        assert_eq!(hull.frame[2], [Vec4::ZERO; 4]);
+    }
+
+    #[test]
+    fn hulls_without_modes_have_no_residual() {
+        let vertices = Vertices { positions: &[DVec3::X, DVec3::Y, DVec3::Z], modes: &[], rank: 0 };
+        let NodeHull { frame, shape } = NodeHull::fit(&vertices, &[0, 1, 2], &mut Vec::new());
+        assert_eq!((frame.len(), shape.along, shape.remainder), (1, [0.0; VECTORS], 0.0));
     }
 }

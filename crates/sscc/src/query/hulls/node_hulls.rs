@@ -121,3 +121,63 @@ impl NodeHulls {
         &self.shapes[index]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificates::Scope;
+    use crate::test_models::Random;
+    use crate::{Modes, TriMesh};
+
+    /// Returns a strip of triangles far from the origin, and its hierarchy. `modes`: the displacements of a vertex, from
+    /// its position.
+    fn strip(triangles: u32, modes: impl FnMut(&DVec3) -> Vec<DVec3>) -> (ReducedModel, Hierarchy) {
+        let random = &mut Random(u64::from(triangles));
+        let at =
+            |i: u32| DVec3::new(10.0 + 0.01 * f64::from(i), f64::from(i % 2), 0.0) + random.vector() * 0.1;
+        let positions: Vec<DVec3> = (0..triangles + 2).map(at).collect();
+        let rows: Vec<DVec3> = positions.iter().flat_map(modes).collect();
+        let modes = Modes::new(rows.len() / positions.len(), rows).unwrap();
+        let faces = (0..triangles).map(|i| [i, i + 1, i + 2]).collect();
+        let model = ReducedModel::new(TriMesh::new(positions, faces).unwrap(), modes).unwrap();
+        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
+        (model, hierarchy)
+    }
+
+    /// The units are half the size of the shape and the largest entry of each mode, and the weights are the largest sums
+    /// of the coefficients of any row of any hull. A mode that moves nothing is no obstacle.
+    #[test]
+    fn units_and_weights_are_those_of_all_hulls() {
+        let random = &mut Random(2);
+        let (model, hierarchy) = strip(100, |_| vec![random.vector(), DVec3::ZERO, random.vector() * 100.0]);
+        let all: Vec<NodePair> = (0..hierarchy.nodes().len() as u32).map(|n| (n, n)).collect();
+        let q = [0.3, 5.0, -0.01];
+        let hulls = NodeHulls::new(&model, &hierarchy, &all, &q).unwrap();
+        assert_eq!((hulls.count(), hulls.configuration.as_slice()), (all.len(), &q[..]));
+        let positions = model.positions(&q).unwrap();
+        let lower = positions.iter().copied().reduce(DVec3::min).unwrap();
+        let upper = positions.iter().copied().reduce(DVec3::max).unwrap();
+        assert!(hulls.center.abs_diff_eq((lower + upper) / 2.0, 1e-12), "{}", hulls.center);
+        assert!((hulls.half - (upper - lower).max_element() / 2.0).abs() < 1e-12, "{}", hulls.half);
+        for k in 0..3 {
+            let entries = model.modes().displacements().iter().skip(k).step_by(3);
+            assert_eq!(hulls.sizes[k], entries.map(|u| u.abs().max_element()).fold(0.0, f64::max));
+        }
+        for (k, weight) in hulls.weights.iter().enumerate() {
+            let rows = hulls.all().flat_map(|(_, index)| hulls.frame(index)[k][..3].iter());
+            let most = rows.map(|row| row.as_dvec4().abs().element_sum()).fold(0.0, f64::max);
+            assert!((most..=most * (1.0 + 2e-6)).contains(weight), "{k}: {weight} {most}");
+        }
+    }
+
+    /// Two nodes have hulls if neither has too many triangles. A shape that is a point has none.
+    #[test]
+    fn only_small_nodes_have_a_hull() {
+        let (model, hierarchy) = strip(MAX_TRIANGLES, |_| vec![DVec3::X]);
+        assert_eq!(NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0]).unwrap().count(), 1);
+        let (model, hierarchy) = strip(MAX_TRIANGLES + 1, |_| vec![DVec3::X]);
+        assert_eq!(NodeHulls::new(&model, &hierarchy, &[(0, 1), (2, 0)], &[0.0]).unwrap().count(), 0);
+        let (model, hierarchy) = strip(20, |x| vec![-*x]);
+        assert!(NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[1.0]).is_none());
+    }
+}

@@ -142,6 +142,7 @@ pub(super) fn up(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_models::Random;
 
     /// A mode that moves no vertex is no obstacle to the bound by vectors.
     #[test]
@@ -151,5 +152,85 @@ mod tests {
         assert_eq!(rates[1], [0.0; 1 + VECTORS]);
         assert!(rates.iter().flatten().chain(&along).all(|x| x.is_finite()), "{rates:?} {along:?}");
         assert!(along[0] >= 0.999 && remainder < 1e-9, "{along:?} {remainder}");
+    }
+
+    /// The residuals of all vertices are within the bound, also if they are wrong by their errors, for random factors and
+    /// for those that follow a row of a remainder; for these, the bound is nearly reached.
+    #[test]
+    fn residuals_are_within_the_bound_and_reach_it() {
+        let random = &mut Random(61);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        for case in 0..30 {
+            let (rank, count) = ([1, 2, 3, 5, 9][case % 5], 12);
+            let sizes: Vec<f64> = (0..rank).map(|_| random.power(-2.0, 2.0)).collect();
+            let rows: Vec<DVec3> = (0..count * rank).map(|i| random.vector() * sizes[i % rank]).collect();
+            let error: Vec<f64> = sizes.iter().map(|size| size * [0.0, 0.1][case / 5 % 2]).collect();
+            let Residuals { rates, along, remainder } = Residuals::new(&mut rows.clone(), &error);
+            let (along, remainder) = (along.map(f64::from), f64::from(remainder));
+
+            let largest: Vec<f64> = rates.iter().map(|rate| f64::from(rate[0])).collect();
+            for k in 0..rank {
+                let of_mode = rows.iter().skip(k).step_by(rank).map(|e| e.length());
+                let most = of_mode.fold(0.0, f64::max) + error[k];
+                assert!((1.0..1.0 + 1e-6).contains(&(largest[k] / most)), "case {case}, mode {k}");
+            }
+            // Three vectors describe up to three modes.
+            let own = error.iter().zip(&largest).map(|(error, e)| (error / e).powi(2)).sum::<f64>().sqrt();
+            assert!(
+                remainder >= own && (rank > VECTORS || remainder < own + 1e-5),
+                "case {case}: {remainder}"
+            );
+
+            let vectors: [Vec<f64>; VECTORS] = std::array::from_fn(|j| {
+                rates.iter().map(|r| f64::from(r[1 + j]) / f64::from(r[0])).collect()
+            });
+            // Factors are in units in which the largest residual of each mode is 1.
+            let bound = |t: &[f64]| {
+                let split = along.iter().zip(&vectors).map(|(g, w)| g * dot(w, t).abs()).sum::<f64>();
+                split + remainder * dot(t, t).sqrt()
+            };
+            let residual = |v: usize, t: &[f64]| {
+                let factors: Vec<f64> = t.iter().zip(&largest).map(|(t, e)| t / e).collect();
+                let of_vertex = rows[v * rank..][..rank].iter().zip(&factors);
+                let errors = error.iter().zip(&factors).map(|(error, f)| error * f.abs());
+                of_vertex.map(|(e, f)| *e * *f).sum::<DVec3>().length() + errors.sum::<f64>()
+            };
+            let mut share = 0.0_f64;
+            for i in 0..4 * count {
+                let t: Vec<f64> = if i < count {
+                    (0..rank).map(|_| random.signed()).collect()
+                } else {
+                    let (v, axis) = (i % count, i / count - 1);
+                    let mut t: Vec<f64> = (0..rank).map(|k| rows[v * rank + k][axis] / largest[k]).collect();
+                    for w in vectors.iter().chain(&vectors).filter(|w| dot(w, w) > 0.5) {
+                        let part = dot(w, &t) / dot(w, w);
+                        t.iter_mut().zip(w).for_each(|(t, w)| *t -= part * w);
+                    }
+                    t
+                };
+                let most = (0..count).map(|v| residual(v, &t)).fold(0.0, f64::max);
+                assert!(most <= bound(&t) * (1.0 + 1e-12), "case {case}, {i}: {most} {}", bound(&t));
+                if i >= count {
+                    share = share.max(most / bound(&t).max(1e-3));
+                }
+            }
+            assert!(rank <= VECTORS || share > 0.7, "case {case}: {share}");
+        }
+    }
+
+    /// The search for vectors begins at the largest row, here that of the only vertex that has residuals.
+    #[test]
+    fn one_vector_describes_the_only_vertex_with_residuals() {
+        let mut residuals = [DVec3::ZERO; 12];
+        residuals[10..].copy_from_slice(&[DVec3::X, DVec3::X * 2.0]);
+        let Residuals { along, remainder, .. } = Residuals::new(&mut residuals, &[0.0; 2]);
+        assert!(along[0] > 1.0 && remainder < 1e-5, "{along:?} {remainder}");
+    }
+
+    /// Where the Gram matrix is diagonal or has rank 1, the bound is the largest singular value itself.
+    #[test]
+    fn spectral_bounds_of_perpendicular_and_of_parallel_rows_are_exact() {
+        assert_eq!(spectral_bound(&[DVec3::X * 3.0, DVec3::Y * -4.0]), 4.0);
+        assert_eq!(spectral_bound(&[DVec3::new(1.0, -1.0, 0.0), DVec3::new(-1.0, 1.0, 0.0)]), 2.0);
     }
 }

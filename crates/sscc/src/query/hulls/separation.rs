@@ -154,3 +154,18 @@ fn unit(dir: Vec3) -> Option<Vec3> {
     let dir = (dir / dir.abs().max_element()).normalize();
     dir.is_finite().then_some(dir)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest component is divided out first, so no square underflows or overflows.
+    #[test]
+    fn directions_of_any_length_have_a_unit_vector() {
+        for length in [1e-37, 1e-20, 1.0, 1e20, 1e37] {
+            let dir = unit(Vec3::new(0.6, 0.0, -0.8) * length).unwrap();
+            assert!(dir.abs_diff_eq(Vec3::new(0.6, 0.0, -0.8), 1e-6), "{length}: {dir}");
+        }
+        assert!(unit(Vec3::ZERO).is_none() && unit(Vec3::NAN).is_none());
+    }
+}

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::core_points::CORE_POINTS;
-use super::separation::{AffineMap, MovedPoints, PlaneTest, Points};
+use super::separation::{AffineMap, MovedPoints, PlaneTest, Points, widest_gap};
 use super::{MovedHulls, NodeHulls};
 use crate::certificates::Scope;
 use crate::detect::f32_frame::F32Frame;
@@ -475,6 +475,131 @@ fn gaps_are_rounded_down() {
             let points = [&low, &high].map(|maps| MovedPoints::<1> { points: &coordinates, maps });
             let nearer = PlaneTest { points, distance: distance * (1.0 - 1e-5), normal };
             assert!(InstructionSet::Baseline.run(nearer), "{normal} {distance}");
+        }
+    }
+}
+
+/// Returns the distance of the hulls of two sets of points, each moved by its map.
+fn distance_of(a: &MovedPoints<'_, 1>, b: &MovedPoints<'_, 1>) -> f64 {
+    let between = |i: usize| b.point(i / CORE_POINTS).as_dvec3() - a.point(i % CORE_POINTS).as_dvec3();
+    let differences: [DVec3; CORE_POINTS * CORE_POINTS] = std::array::from_fn(between);
+    nearest_to_origin(&differences).point.length()
+}
+
+/// The gap that a search finds is nearly the distance of the hulls, and it is the gap along the normal. Where hulls
+/// intersect there is none.
+#[test]
+fn searches_find_nearly_the_widest_gap() {
+    let random = &mut Random(77);
+    let (mut apart, mut met) = (0, 0);
+    for case in 0..60 {
+        let shift = (random.vector().normalize() * [0.25, 1.0, 2.0, 5.0][case % 4]).as_vec3();
+        let mut number = || random.signed() as f32;
+        let points: [Points; 2] =
+            std::array::from_fn(|_| std::array::from_fn(|_| std::array::from_fn(|_| number())));
+        let mut map_to = |shift: Vec3| shift.to_array().map(|x| Vec4::new(number(), number(), number(), x));
+        let maps: [[AffineMap; 1]; 2] = [[map_to(-shift)], [map_to(shift)]];
+        let [a, b] = [0, 1].map(|i| MovedPoints { points: &points[i], maps: &maps[i] });
+        let distance = distance_of(&a, &b);
+        let mut found = 0.0;
+        if let Some((normal, gap)) = widest_gap(&a, &b) {
+            assert!((normal.length() - 1.0).abs() < 1e-5, "case {case}: {normal}");
+            assert_eq!(gap, -b.extent(Baseline, -normal) - a.extent(Baseline, normal));
+            found = f64::from(gap);
+        }
+        assert!(found <= distance * (1.0 + 1e-4) + 1e-5, "case {case}: {found} {distance}");
+        if distance > 0.05 {
+            apart += 1;
+            assert!(found > 0.99 * distance, "case {case}: {found} {distance}");
+        } else {
+            met += 1;
+        }
+    }
+    assert!(apart > 20 && met > 5, "{apart} {met}");
+}
+
+/// Returns two sheets of 16 triangles in one plane, at the left and at the right of the origin, and all pairs of a node of
+/// the left one and a node of the right one, which have hulls. Modes turn both about the origin, shrink them, and turn
+/// them back.
+fn two_sheets() -> (Case, Vec<NodePair>) {
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for side in [-1.0, 1.0] {
+        let first = positions.len() as u32;
+        for i in 0..15_u32 {
+            let (x, y) = (1.0 + 0.5 * f64::from(i % 3), 0.25 * f64::from(i / 3) - 0.5);
+            positions.push(DVec3::new(side * x, y, 0.0));
+        }
+        for i in 0..8 {
+            let j = first + i + i / 2;
+            faces.extend([[j, j + 1, j + 3], [j + 1, j + 4, j + 3]]);
+        }
+    }
+    let turned = |p: &DVec3| DVec3::new(-p.y, p.x, 0.0);
+    let modes = positions.iter().flat_map(|p| [turned(p), -*p, -turned(p)]).collect();
+    let mesh = TriMesh::new(positions, faces).unwrap();
+    let model = ReducedModel::new(mesh, Modes::new(3, modes).unwrap()).unwrap();
+    let Case { model, hierarchy, layout, .. } = Case::new(model, &[0.0; 3]);
+    let vertices = |n: &u32| hierarchy.vertices(&hierarchy.nodes()[*n as usize], model.mesh().faces());
+    let nodes = 0..hierarchy.nodes().len() as u32;
+    let left: Vec<u32> = nodes.clone().filter(|n| vertices(n).iter().all(|v| *v < 15)).collect();
+    let right: Vec<u32> = nodes.filter(|n| vertices(n).iter().all(|v| *v >= 15)).collect();
+    let pairs: Vec<NodePair> = left.iter().flat_map(|n| right.iter().map(|m| (*n, *m))).collect();
+    assert!(!pairs.is_empty());
+    let hulls = NodeHulls::new(&model, &hierarchy, &pairs, &[0.0; 3]).unwrap();
+    (Case { model, hierarchy, layout, hulls }, pairs)
+}
+
+/// Returns the motion to one configuration.
+fn motion_to<'q>(model: &ReducedModel, q: &'q [f64]) -> DeformedMotion<'q, 1> {
+    DeformedMotion::new([q], model.check_coordinates(q).unwrap())
+}
+
+/// A direction that separates two nodes at rest turns with them, and already the first test of a search uses it. A
+/// search whose error bound is too large tests no hulls.
+#[test]
+fn directions_turn_with_the_nodes() {
+    let (Case { model, layout, hulls, .. }, pairs) = two_sheets();
+    let mut moved = MovedHulls::<1>::new(&hulls);
+    // At rest, and turned by 90, 180 and 270 degrees.
+    for q in [[0.0; 3], [1.0, 1.0, 0.0], [0.0, 2.0, 0.0], [0.0, 1.0, 1.0]] {
+        let motion = motion_to(&model, &q);
+        let frame = F32Frame::around(motion.overall_aabb(&layout));
+        for pair in &pairs {
+            for (dir, is_between) in [(Vec3::X, true), (Vec3::NEG_X, false)] {
+                moved.begin();
+                let is_apart = moved.are_apart(&hulls, *pair, dir, &frame, &motion);
+                assert_eq!((is_apart, moved.is_useful()), (is_between, true), "{q:?}, {pair:?}, {dir}");
+            }
+        }
+    }
+    // The sum of large displacements is 0, so the shape is the one at rest.
+    let frame = F32Frame::around(motion_to(&model, &[0.0; 3]).overall_aabb(&layout));
+    moved.begin();
+    let motion = motion_to(&model, &[1e4, 0.0, 1e4]);
+    let is_apart = moved.are_apart(&hulls, pairs[0], Vec3::X, &frame, &motion);
+    assert_eq!((is_apart, moved.is_useful()), (false, false));
+}
+
+/// The direction between two nodes is that of the widest gap. There is none unless the gap is wider than twice the sum of
+/// both radii.
+#[test]
+fn only_wide_gaps_have_a_direction() {
+    let (Case { model, layout, hulls, .. }, pairs) = two_sheets();
+    let motion = motion_to(&model, &[0.0; 3]);
+    let frame = F32Frame::around(motion.overall_aabb(&layout));
+    let mut moved = MovedHulls::<1>::new(&hulls);
+    moved.update_all(&hulls, &frame, &motion);
+    for (n, m) in pairs {
+        let indices = [n, m].map(|n| hulls.index_of(n).unwrap());
+        let [a, b] = indices.map(|i| moved.points(&hulls, i));
+        let distance = distance_of(&a, &b) as f32;
+        for (share, has_direction) in [(0.24, true), (0.26, false)] {
+            indices.iter().for_each(|i| moved.hulls[*i].radius = share * distance);
+            let dir = moved.separating_direction(&hulls, (n, m));
+            assert_eq!(dir.is_some(), has_direction, "{n} {m}, {share}");
+            let [a, b] = indices.map(|i| moved.points(&hulls, i));
+            let gap = dir.map(|dir| -b.extent(Baseline, -dir) - a.extent(Baseline, dir));
+            assert!(gap.is_none_or(|gap| gap > 0.99 * distance), "{n} {m}: {gap:?} {distance}");
         }
     }
 }

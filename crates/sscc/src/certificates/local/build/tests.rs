@@ -442,3 +442,284 @@ fn ellipsoids_are_fitted_to_a_few_quotients_of_residuals() {
     let of_vertices = blocks.len() / width - of_pairs;
     assert!(of_vertices > VERTEX_BLOCKS / 2 && of_vertices <= VERTEX_BLOCKS, "{of_vertices}");
 }
+
+/// A model with the tables of its leaves, for tests of the parts of a builder.
+struct Case {
+    model: ReducedModel,
+    hierarchy: Hierarchy,
+    filter: PairFilter,
+}
+
+impl Case {
+    fn ring(quads: usize, rank: usize) -> Self {
+        let model = ring(quads, rank, 0.4);
+        let hierarchy = Hierarchy::build(&model, model.metric());
+        let filter = PairFilter::new(&model, &ContactFilter::default());
+        Self { model, hierarchy, filter }
+    }
+
+    fn with_builder(&self, check: impl FnOnce(&Builder<'_>)) {
+        let Self { model, hierarchy, filter } = self;
+        let patch_model = PatchModel::new(model, &vec![0.0; model.rank()]).unwrap();
+        let gaps = CornerGaps::new(hierarchy, filter, &patch_model.positions, &()).unwrap().unwrap();
+        let touching = TouchingNodes::new(hierarchy, filter);
+        check(&Builder { model: &patch_model, gaps: &gaps, touching: &touching });
+    }
+}
+
+/// Returns the nodes around a node, and the nodes of its patch.
+fn patch_nodes(builder: &Builder<'_>, n: u32) -> (Vec<u32>, Vec<u32>) {
+    let around = builder.touching.around(n);
+    let top = around.iter().copied().filter(|m| !builder.touching.has_parent(*m, &around));
+    let nodes = std::iter::once(n).chain(top).collect();
+    (around, nodes)
+}
+
+/// Loads the patch of these nodes.
+fn load(builder: &Builder<'_>, patch: &mut Patch, nodes: &[u32]) {
+    let CornerGaps { hierarchy, filter, .. } = builder.gaps;
+    patch.load(builder.model, hierarchy, filter.faces(), nodes.iter().copied(), MOST_MODES).unwrap();
+}
+
+/// The ratios of lists are those of searches that begin at the ratio of the node.
+#[test]
+fn error_terms_are_products_of_norms_over_the_smallest_gap() {
+    let case = Case::ring(60, 3);
+    let (mut near, mut listed) = (0, 0);
+    case.with_builder(|builder| {
+        let mut scratch = Scratch::new(builder.model.positions.len());
+        for n in certified_nodes(&case.hierarchy) {
+            let LocalCertificate { bounds, list, .. } = builder.certify(n, &mut scratch).unwrap();
+            let Scratch { instructions, patch, search, images } = &mut scratch;
+            let gap = search.smallest_gap.min(1.0);
+            let blocks = builder.blocks(n, patch);
+            let fit = FitEllipsoid { blocks: &blocks, rank: patch.modes.len(), row_len: patch.row_len };
+            let ellipsoid = instructions.run(fit).unwrap();
+            assert_eq!((bounds.steepest, bounds.widest), (patch.steepest(), ellipsoid.largest_column()));
+            let quotient = bounds.per_error * gap;
+            assert!((1.0..1.0 + 1e-11).contains(&quotient), "node {n}: {quotient}");
+            // 64 units of 2^-53.
+            let of_residuals = 2.0_f64.powi(-47) * (2.0 + patch.steepest() * patch.longest());
+            let of_images = 2.0 * ellipsoid.defect() * patch.largest_residual();
+            let quotient = bounds.per_factor * gap / (of_residuals + of_images);
+            assert!((quotient - 1.0).abs() < 1e-9, "node {n}: {quotient}");
+            near += u32::from(gap < 0.5);
+
+            // Heights may have replaced the images.
+            let (around, nodes) = patch_nodes(builder, n);
+            assert_eq!(list.iter().map(|(m, _)| *m).collect::<Vec<u32>>(), around, "node {n}");
+            let parts = search.load(builder.gaps, patch, nodes.iter().copied());
+            let largest_image = patch.images(&ellipsoid, images, &mut search.images);
+            search.begin(largest_image);
+            for (m, ratio) in list {
+                let part = parts.iter().copied().find(|part| search.node(*part).0 == m);
+                let Some(part) = part.filter(|part| search.node(*part).1.is_none()) else { continue };
+                let found = search.between(builder.gaps, (0, part), bounds.ratio as f32);
+                assert_eq!(ratio, infinite_for_nan(found), "nodes {n} {m}");
+                listed += 1;
+            }
+        }
+    });
+    assert!(near > 0 && listed > 2, "{near} {listed}");
+}
+
+/// Images that no listed bucket has are far larger than the others, so that ratios of other nodes would show.
+#[test]
+fn lists_have_the_nodes_that_share_a_vertex_with_ratios_of_their_own() {
+    let case = Case::ring(300, 2);
+    let random = &mut Numbers(12);
+    let (mut buckets, mut larger) = (0, 0);
+    case.with_builder(|builder| {
+        let nodes = case.hierarchy.nodes();
+        let mut patch = Patch::new(builder.model.positions.len());
+        let mut search = StrainSearch::default();
+        for n in nodes[0].children() {
+            let (around, of_patch) = patch_nodes(builder, n);
+            load(builder, &mut patch, &of_patch);
+            let parts = search.load(builder.gaps, &patch, of_patch.iter().copied());
+            let is_bucket = |m: &u32| nodes[*m as usize].fits_in_bucket();
+            let mut is_listed = vec![false; patch.vertices.len()];
+            for m in std::iter::once(n).chain(around.iter().copied().filter(is_bucket)) {
+                for v in case.hierarchy.vertices(&nodes[m as usize], case.filter.faces()) {
+                    is_listed[patch.numbers[v as usize] as usize] = true;
+                }
+            }
+            let width = 3 * patch.row_len;
+            search.images.clear();
+            for e in 0..patch.vertices.len() * width {
+                let size = if is_listed[e / width] { 1.0 } else { 1e3 };
+                search.images.push((size * random.signed()) as f32);
+            }
+            search.begin(1e3 * (width as f64).sqrt());
+            let mut list = Vec::new();
+            for part in &parts[1..] {
+                builder.list(&mut search, &around, *part, 0.0, &mut list);
+            }
+            list.sort_unstable_by_key(|(m, _)| *m);
+            assert_eq!(list.iter().map(|(m, _)| *m).collect::<Vec<u32>>(), around, "node {n}");
+            let mut stack = parts[1..].to_vec();
+            while let Some(part) = stack.pop() {
+                let (m, children) = search.node(part);
+                stack.extend(children.into_iter().flatten());
+                let Ok(at) = around.binary_search(&m) else { continue };
+                let ratio = list[at].1;
+                let alone = search.between(builder.gaps, (0, part), 0.0);
+                assert!(alone.is_finite(), "nodes {n} {m}");
+                if is_bucket(&m) {
+                    assert_eq!(ratio, alone, "nodes {n} {m}");
+                    buckets += 1;
+                } else {
+                    // Accepted ratios are up to 1.1 times the largest one, singular values up to 1.07 times.
+                    assert!(ratio <= 1.2 * alone && alone <= 1.2 * ratio, "nodes {n} {m}: {ratio} {alone}");
+                    larger += 1;
+                }
+            }
+        }
+    });
+    assert!(buckets > 3 && larger > 0, "{buckets} {larger}");
+}
+
+/// Returns the index of the largest number.
+fn largest_of(numbers: &[f64]) -> usize {
+    (0..numbers.len()).fold(0, |best, i| if numbers[i] > numbers[best] { i } else { best })
+}
+
+/// The largest pair of each part of the list comes first, then the largest of all pairs.
+#[test]
+fn blocks_are_quotients_of_residuals_of_vertices_and_of_the_largest_pairs() {
+    let case = Case::ring(80, 3);
+    let mut others = 0;
+    case.with_builder(|builder| {
+        let mut patch = Patch::new(builder.model.positions.len());
+        for n in certified_nodes(&case.hierarchy) {
+            load(builder, &mut patch, &patch_nodes(builder, n).1);
+            let own = leaves_of(&case.hierarchy, n);
+            let number = |v: u32| patch.vertices.iter().position(|w| *w == v).map(|i| i as u32);
+            let mut expected = Vec::new();
+            for (leaf, pair) in own.iter().flat_map(|leaf| builder.gaps.tight(*leaf)) {
+                if let (Some(i), Some(j)) = (number(pair.i), number(pair.j)) {
+                    expected.push((*leaf, i, j, pair.gap.to_bits()));
+                }
+            }
+            expected.sort_unstable();
+            let tight = builder.tight(n, &patch);
+            let mut found: Vec<_> =
+                tight.iter().map(|(leaf, TightPair { i, j, gap })| (*leaf, *i, *j, gap.to_bits())).collect();
+            found.sort_unstable();
+            assert_eq!(found, expected, "node {n}");
+            let key = |pair: &TightPair| (pair.i, pair.j, pair.gap.to_bits());
+            let within: Vec<_> =
+                tight.iter().filter(|(leaf, _)| own.contains(leaf)).map(|(_, pair)| key(pair)).collect();
+            let found: Vec<_> = builder.tight_within(n, &patch).iter().map(key).collect();
+            assert_eq!(found, within, "node {n}");
+            others += tight.len() - within.len();
+
+            let width = 3 * patch.row_len;
+            let residual = |i: usize| &patch.residuals[width * i..][..width];
+            let norm = |block: &[f64]| block.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let all = builder.blocks(n, &patch);
+            let mut blocks = all.chunks_exact(width);
+            for i in (1..patch.vertices.len()).step_by(patch.vertices.len().div_ceil(VERTEX_BLOCKS)) {
+                let distance = patch.offsets[i].length();
+                let expected: Vec<f64> = residual(i).iter().map(|x| x / distance).collect();
+                assert_eq!(blocks.next().unwrap(), expected, "node {n}: {i}");
+            }
+            let mut of_pairs: Vec<Vec<f64>> = Vec::new();
+            for (_, TightPair { i, j, gap }) in &tight {
+                let pairs = residual(*i as usize).iter().zip(residual(*j as usize));
+                of_pairs.push(pairs.map(|(x, y)| (y - x) / f64::from(*gap)).collect());
+            }
+            let mut norms: Vec<f64> = of_pairs.iter().map(|block| norm(block)).collect();
+            let part = tight.len().div_ceil(TIGHT_BLOCKS).max(1);
+            for (of_pairs, norms) in of_pairs.chunks(part).zip(norms.chunks(part)) {
+                let found = norm(blocks.next().unwrap());
+                let expected = norm(&of_pairs[largest_of(norms)]);
+                assert!((found - expected).abs() <= 1e-12 * expected, "node {n}: {found} {expected}");
+            }
+            norms.sort_by(|a, b| b.total_cmp(a));
+            for expected in &norms[..norms.len().min(TIGHT_BLOCKS / 2)] {
+                let block = blocks.next().unwrap();
+                assert!(of_pairs.iter().any(|of_pair| of_pair == block), "node {n}");
+                assert!((norm(block) - expected).abs() <= 1e-12 * expected, "node {n}: {expected}");
+            }
+            assert!(blocks.next().is_none());
+        }
+    });
+    assert!(others > 0);
+}
+
+/// Eight entries of each mode come first, then the ninth entries of all modes, and zeros.
+#[test]
+fn gradients_are_stored_column_by_column() {
+    let row_len = 16;
+    for count in [1, 3, 8, 11] {
+        let mut patch = Patch::new(0);
+        patch.modes = (0..count as u32).collect();
+        patch.row_len = row_len;
+        patch.gradient = (0..9 * row_len as u32).map(f64::from).collect();
+        let numbers = gradients(&patch);
+        assert_eq!(numbers.len(), gradient_len(count));
+        for (k, e) in (0..count).flat_map(|k| (0..9).map(move |e| (k, e))) {
+            let (column, row) = (e / 3, e % 3);
+            let stored = numbers[if e < 8 { 8 * k + e } else { 8 * count + k }];
+            assert_eq!(
+                f64::from(stored),
+                patch.gradient[(3 * row + column) * row_len + k],
+                "{count}: {k} {e}"
+            );
+        }
+        assert!(numbers[9 * count..].iter().all(|x| *x == 0.0));
+    }
+}
+
+/// Each entry of a list takes eight bytes.
+#[test]
+fn lists_count_as_memory() {
+    let Case { hierarchy, .. } = Case::ring(10, 1);
+    let is_kept = |most_bytes: usize| {
+        let certificate = LocalCertificate {
+            modes: vec![0; 3],
+            gradients: Vec::new(),
+            ellipsoid: Vec::new(),
+            bounds: LocalBounds::default(),
+            list: vec![(0, 0.0); 5],
+        };
+        let mut found = vec![(0, certificate)];
+        keep_within(&mut found, &hierarchy, most_bytes);
+        !found.is_empty()
+    };
+    let bytes = LocalCertificates::bytes_of(3) + 40;
+    assert!(is_kept(bytes) && !is_kept(bytes - 1));
+}
+
+#[test]
+fn folded_neighbours_have_no_certificates() {
+    let Case { model, hierarchy, filter } = Case::ring(10, 1);
+    let folded = PairFilter::new(&model, &ContactFilter::new(Neighbours::IncludeFolded));
+    for (filter, has_certificates) in [(&filter, true), (&folded, false)] {
+        let all = compute_local_certificates(&model, &hierarchy, filter, &[0.0], 1 << 20, &()).unwrap();
+        assert_eq!(all != LocalCertificates::default(), has_certificates);
+    }
+}
+
+/// Heights above a plane are within rounding, so that the bound is the smallest one that is distinguished.
+#[test]
+fn only_flat_patches_have_a_direction_across() {
+    let mesh = square(6);
+    let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |row, _| (row as f64).sin()).unwrap();
+    let flat = ReducedModel::new(mesh, modes).unwrap();
+    for (model, is_flat) in [(&flat, true), (&ring(60, 1, 0.4), false)] {
+        let hierarchy = Hierarchy::build(model, model.metric());
+        let filter = PairFilter::new(model, &ContactFilter::default());
+        let all = compute_local_certificates(model, &hierarchy, &filter, &[0.0], 1 << 20, &()).unwrap();
+        assert_eq!(all.nodes[0], 0);
+        let LocalBounds { across: [x, y, z], flatness, .. } = all.bounds[0];
+        if is_flat {
+            assert!(x.abs().max(y.abs()) < 1e-9 && (z.abs() - 1.0).abs() < 1e-9, "{x} {y} {z}");
+            let least = f64::from(LEAST_FLATNESS);
+            assert!((least..1.2 * least).contains(&flatness), "{flatness}");
+        } else {
+            assert_eq!(([x, y, z], flatness), ([0.0; 3], f64::INFINITY));
+        }
+    }
+}

@@ -68,6 +68,39 @@ fn singular_values_are_at_least_exact() {
     }
 }
 
+/// Returns the distance of two images.
+fn distance(x: &[f32], y: &[f32]) -> f64 {
+    let square = |(x, y): (&f32, &f32)| (f64::from(*x) - f64::from(*y)).powi(2);
+    x.iter().zip(y).map(square).sum::<f64>().sqrt()
+}
+
+/// Also of images that are large beside their difference. A bound of the singular value is above it without any
+/// further rounding up.
+#[test]
+fn distances_and_singular_values_are_those_of_differences() {
+    let random = &mut Numbers(10);
+    for case in 0..600 {
+        let row_len = [8, 16, 40][case % 3];
+        let (size, share) = (random.power(-6.0, 6.0), random.power(-3.0, 0.0));
+        let base: Vec<f64> = (0..row_len).map(|_| random.signed()).collect();
+        let weights = random.vector().to_array();
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for i in 0..3 * row_len {
+            // In every second case the three rows of the difference are one row times three numbers.
+            let parallel = weights[i / row_len] * base[i % row_len];
+            let change = if case % 2 == 0 { parallel } else { random.signed() };
+            let middle = random.signed();
+            x.push((size * middle) as f32);
+            y.push((size * (middle + share * change)) as f32);
+        }
+        let difference: Vec<f64> = x.iter().zip(&y).map(|(x, y)| f64::from(*y) - f64::from(*x)).collect();
+        let (exact, bound) = (singular_value(&difference), f64::from(largest_singular_value(&x, &y)));
+        assert!(bound > exact && bound < 1.06 * exact, "case {case}: {bound} {exact}");
+        let (exact, found) = (distance(&x, &y), f64::from(squared_distance(&x, &y).sqrt()));
+        assert!((found / exact - 1.0).abs() < 2e-6, "case {case}: {found} {exact}");
+    }
+}
+
 #[test]
 fn nan_is_the_largest_ratio() {
     for other in [0.0, 1.0, f32::INFINITY, f32::NAN] {
@@ -87,9 +120,19 @@ struct Case {
 
 impl Case {
     fn new(positions: Vec<DVec3>, faces: Vec<[u32; 3]>, neighbours: Neighbours) -> Self {
-        let vertices = positions.len();
-        let mesh = TriMesh::new(positions, faces).unwrap();
-        let modes = Modes::from_matrix(vertices, 1, |row, _| (row as f64).sin()).unwrap();
+        let modes = Modes::from_matrix(positions.len(), 1, |row, _| (row as f64).sin()).unwrap();
+        Self::with_modes(TriMesh::new(positions, faces).unwrap(), modes, neighbours)
+    }
+
+    /// Returns a case of triangles with these corners. Nodes consist of triangles that are near each other.
+    fn of_triangles(positions: Vec<DVec3>) -> Self {
+        // A mode that is the position separates the same triangles.
+        let modes = Modes::new(1, positions.clone()).unwrap();
+        let faces = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Self::with_modes(TriMesh::new(positions, faces).unwrap(), modes, Neighbours::Exclude)
+    }
+
+    fn with_modes(mesh: TriMesh, modes: Modes, neighbours: Neighbours) -> Self {
         let model = ReducedModel::new(mesh, modes).unwrap();
         let hierarchy = Hierarchy::build(&model, model.metric());
         let filter = PairFilter::new(&model, &ContactFilter::new(neighbours));
@@ -149,6 +192,195 @@ fn images_are_within_the_spread_of_their_part() {
         });
     }
     assert!(checked > 10_000, "{checked}");
+}
+
+/// Returns 64 triangles in cells of two rows and two layers, as a case. All of them have gaps; some leaves are
+/// near each other, and others are not.
+fn cells_of_triangles(random: &mut Numbers) -> Case {
+    let cell = |v: u32| DVec3::new(f64::from(v / 12), f64::from(v / 6 % 2), f64::from(v / 3 % 2));
+    Case::of_triangles((0..192).map(|v| cell(v) + random.vector() * 0.2).collect())
+}
+
+/// Spreads have room for the rounding of distances at each level.
+#[test]
+fn means_and_spreads_are_those_of_vertices_and_parts_below() {
+    let random = &mut Numbers(59);
+    with_search(&cells_of_triangles(random), &mut Numbers(4), |search, _, _, _| {
+        assert!(search.parts.len() > 8, "{}", search.parts.len());
+        search.images.iter_mut().for_each(|x| *x = random.signed() as f32);
+        search.begin(1.0);
+        for (p, part) in search.parts.iter().enumerate() {
+            let children = part.first_child..part.first_child + part.child_count;
+            let is_leaf = children.is_empty();
+            let (below, round_up): (Vec<(&[f32], f32)>, f64) = if is_leaf {
+                (search.leaf_vertices(p as u32).iter().map(|i| (search.image(*i), 0.0)).collect(), 1.0)
+            } else {
+                let child = |c: u32| (search.mean(c), search.parts[c as usize].spread);
+                (children.map(child).collect(), f64::from(ROUND_UP))
+            };
+            let mean = search.mean(p as u32);
+            for k in 0..search.width {
+                let sum: f64 = below.iter().map(|(x, _)| f64::from(x[k])).sum();
+                let expected = sum / below.len() as f64;
+                assert!((f64::from(mean[k]) - expected).abs() < 2e-6, "{p}: {} {expected}", mean[k]);
+            }
+            let spreads = below.iter().map(|(x, spread)| distance(mean, x) * round_up + f64::from(*spread));
+            let expected = spreads.fold(0.0, f64::max) * f64::from(ROUND_UP);
+            assert!(
+                (f64::from(part.spread) / expected - 1.0).abs() < 2e-6,
+                "{p}: {} {expected}",
+                part.spread
+            );
+        }
+    });
+}
+
+/// Parts are replaced by the parts below until all pairs of leaves were compared, whichever of two parts is given
+/// first. Checks for cancellation change nothing.
+#[test]
+fn ratios_of_parts_are_those_of_all_of_their_leaves() {
+    let random = &mut Numbers(58);
+    let case = cells_of_triangles(random);
+    let parents = parents(&case.hierarchy);
+    with_search(&case, &mut Numbers(4), |search, gaps, _, _| {
+        search.images.iter_mut().for_each(|x| *x = random.signed() as f32);
+        // No image is longer.
+        search.begin((search.width as f64).sqrt());
+        let parts = search.parts.clone();
+        let leaves: Vec<usize> = (0..parts.len()).filter(|p| parts[*p].child_count == 0).collect();
+        // The largest ratios of each two leaves: with the widest gap that may be used, and with that of the leaves.
+        let mut ratios = vec![vec![[0.0_f64; 2]; parts.len()]; parts.len()];
+        for (x, y) in leaves.iter().flat_map(|x| leaves.iter().map(move |y| (*x, *y))) {
+            let nodes = (parts[x].node, parts[y].node);
+            if nodes.0 > nodes.1 {
+                continue;
+            }
+            let mut components = [Vec::new(), Vec::new()];
+            let near = gaps.near(nodes).map(|table| table.as_ref().unwrap());
+            let are_apart = near.is_some() || gaps.components(nodes, &mut components).is_some();
+            assert!(are_apart, "leaves {x} {y}");
+            let [of_x, of_y] = [x, y].map(|part| search.leaf_vertices(part as u32));
+            let mut largest = [0.0_f64; 2];
+            for (a, b) in (0..of_x.len()).flat_map(|a| (0..of_y.len()).map(move |b| (a, b))) {
+                let gap = match near {
+                    Some(table) => f64::from(table.gaps[a * of_y.len() + b]),
+                    None => CornerGaps::gap_between(components[0][a], components[1][b]),
+                };
+                if gap == f64::INFINITY {
+                    continue;
+                }
+                let images = search.image(of_x[a]).iter().zip(search.image(of_y[b]));
+                let difference: Vec<f64> = images.map(|(x, y)| f64::from(*y) - f64::from(*x)).collect();
+                let stretch = singular_value(&difference);
+                let vertices = (gaps.vertices(nodes.0)[a], gaps.vertices(nodes.1)[b]);
+                let widest = widest_gap(gaps, &parents, nodes, vertices);
+                let error = f64::from(search.image_error);
+                largest = [largest[0].max(stretch / widest), largest[1].max((stretch + error) / gap)];
+            }
+            (ratios[x][y], ratios[y][x]) = (largest, largest);
+        }
+        let mut below: Vec<Vec<usize>> = vec![Vec::new(); parts.len()];
+        for p in (0..parts.len()).rev() {
+            let Part { first_child, child_count, .. } = parts[p];
+            let children = first_child as usize..(first_child + child_count) as usize;
+            let of_children = children.flat_map(|c| below[c].iter().copied()).collect();
+            below[p] = if child_count == 0 { vec![p] } else { of_children };
+        }
+        for (x, y) in (0..parts.len()).flat_map(|x| (0..parts.len()).map(move |y| (x, y))) {
+            if x != y && below[x].iter().any(|p| below[y].contains(p)) {
+                continue;
+            }
+            let pairs = below[x].iter().flat_map(|p| below[y].iter().map(move |q| (*p, *q)));
+            let each = pairs.map(|(p, q)| ratios[p][q]);
+            let [low, high] = each.fold([0.0_f64; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+            search.visits = VISITS_PER_CHECK - 1;
+            let (part, pair) = (x as u32, (x as u32, y as u32));
+            let found = if x == y { search.within(gaps, part, 0.0) } else { search.between(gaps, pair, 0.0) };
+            // Bounds of singular values are up to 7% too large.
+            let most = 1.08 * f64::from(ACCEPTED) * high;
+            assert!((low..=most).contains(&f64::from(found)), "parts {x} {y}: {found}, not {low} to {most}");
+        }
+    });
+}
+
+/// Parts whose spheres are apart are accepted with the distance of their means, both spreads and the error of
+/// images, over the gap of the spheres.
+#[test]
+fn ratios_of_far_parts_are_those_of_their_means_over_the_gap_of_their_spheres() {
+    let random = &mut Numbers(60);
+    let case = cells_of_triangles(random);
+    with_search(&case, &mut Numbers(4), |_, gaps, _, _| {
+        let width = 3 * LANES;
+        for case in 0..300 {
+            let size = random.power(-3.0, 3.0);
+            let means: Vec<f32> = (0..2 * width).map(|_| (size * random.signed()) as f32).collect();
+            let centers = [random.vector(), random.vector()];
+            let length = (centers[1] - centers[0]).length();
+            let parts = centers.map(|center| Part {
+                center,
+                radius: 0.4 * length * random.signed().abs(),
+                spread: (size * random.signed().abs()) as f32,
+                ..Part::default()
+            });
+            let image_error = (size * random.signed().abs()) as f32;
+            let [a, b] = parts;
+            let gap = length - a.radius - b.radius;
+            let terms =
+                distance(&means[..width], &means[width..]) + f64::from(a.spread) + f64::from(b.spread);
+            let round_up = f64::from(ROUND_UP);
+            let expected = (terms * round_up + f64::from(image_error)) / gap * round_up;
+            let mut search = StrainSearch {
+                parts: parts.to_vec(),
+                width,
+                means,
+                image_error,
+                smallest_gap: f64::INFINITY,
+                ..StrainSearch::default()
+            };
+            let found = f64::from(search.between(gaps, (0, 1), (expected / 1.05) as f32));
+            assert!((found / expected - 1.0).abs() < 2e-6, "case {case}: {found} {expected}");
+            // The gap is shortened by its rounding.
+            let shortened = (gap - search.smallest_gap) / length;
+            assert!(shortened > 5e-15 && shortened < 2e-14, "case {case}: {shortened}");
+        }
+    });
+}
+
+/// Two leaves that are far apart are accepted with their gap along the direction between them, where their spheres
+/// are not: they are flat, and this direction is across both.
+#[test]
+fn ratios_of_far_leaves_are_those_of_their_means_over_their_gap() {
+    let random = &mut Numbers(61);
+    let corner = |v: u32| DVec3::new(6.0 * f64::from(v / 24), random.signed(), random.signed());
+    let case = Case::of_triangles((0..48).map(corner).collect());
+    let positions = PatchModel::new(&case.model, &[0.0]).unwrap().positions;
+    with_search(&case, &mut Numbers(4), |search, gaps, _, _| {
+        search.images.iter_mut().for_each(|x| *x = random.signed() as f32);
+        search.begin(1.0);
+        search.image_error = 0.25;
+        let parts = search.parts.clone();
+        let leaves: Vec<usize> = (0..parts.len()).filter(|p| parts[*p].child_count == 0).collect();
+        let pairs = leaves.iter().flat_map(|x| leaves.iter().map(move |y| (*x, *y)));
+        let is_apart = |(x, y): &(usize, usize)| parts[*x].center.x * parts[*y].center.x < -0.9;
+        let pairs: Vec<(usize, usize)> = pairs.filter(is_apart).collect();
+        assert!(!pairs.is_empty());
+        for (x, y) in pairs {
+            let (a, b, pair) = (parts[x], parts[y], (x as u32, y as u32));
+            assert!(gaps.near((a.node.min(b.node), a.node.max(b.node))).is_none());
+            let dir = (b.center - a.center).normalize();
+            let along = |v: &u32| dir.dot(positions[*v as usize]);
+            let last = gaps.vertices(a.node).iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+            let gap = gaps.vertices(b.node).iter().map(along).fold(f64::INFINITY, f64::min) - last;
+            let difference = distance(search.mean(pair.0), search.mean(pair.1));
+            let round_up = f64::from(ROUND_UP);
+            let terms = (difference + f64::from(a.spread) + f64::from(b.spread)) * round_up;
+            let expected = (terms + 0.25) / gap * round_up;
+            search.smallest_gap = f64::INFINITY;
+            let found = f64::from(search.between(gaps, pair, (expected / 1.08) as f32));
+            assert!((found / expected - 1.0).abs() < 2e-6, "parts {x} {y}: {found} {expected}");
+            assert!((search.smallest_gap - gap).abs() < 1e-12, "{} {gap}", search.smallest_gap);
+        }
+    });
 }
 
 /// Calls `each` with the ratio and the widest gap of each pair of corners that counts, and their triangles.
@@ -340,5 +572,47 @@ fn limits_are_kept_with_room_for_rounding() {
         let search = StrainSearch { image_error, ..StrainSearch::default() };
         let is_at_most = |limit: f32| search.is_at_most(distance * distance, more, limit);
         assert!(!is_at_most(1.0 + 9e-5) && is_at_most(1.0 + 3e-4), "{distance} {more} {image_error}");
+        let least = (more + image_error) * ROUND_UP + distance * ROUND_UP * ROUND_UP.sqrt();
+        assert!(!is_at_most(least * (1.0 - 4e-6)) && is_at_most(least * (1.0 + 4e-6)), "{least}");
     }
+}
+
+/// The error of images is added to the singular value, and the quotient is rounded up by more than it errs.
+#[test]
+fn ratios_of_vertices_include_the_error_of_images() {
+    let width = 3 * LANES;
+    for (stretch, image_error, gap) in
+        [(1.0_f32, 0.0_f32, 1.0_f32), (0.25, 0.0, 1e-3), (1.0, 0.5, 0.7), (2.0, 3.0, 5.0), (0.0, 0.5, 2.0)]
+    {
+        let mut images = vec![0.0; 3 * width];
+        (images[width], images[2 * width]) = (0.5 * stretch, stretch);
+        let search = StrainSearch { width, images, image_error, ..StrainSearch::default() };
+        // The bound of a singular value is higher by half of 1e-5.
+        let (stretch, round_up) = (f64::from(stretch) * (1.0 + 5e-6), f64::from(ROUND_UP));
+        let expected = (stretch * round_up + f64::from(image_error)) / f64::from(gap) * round_up;
+        let pair = |j: u32| TightPair { i: 0, j, gap };
+        // The ratio of the first of two pairs is smaller.
+        for pairs in [vec![pair(2)], vec![pair(1), pair(2)], vec![pair(2), pair(1)]] {
+            let found = f64::from(search.largest_ratio(&pairs));
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+    assert_eq!(StrainSearch::default().largest_ratio(&[]), 0.0);
+}
+
+/// Lists go down to buckets: what is below them has no ratio of its own.
+#[test]
+fn buckets_have_no_children_to_list() {
+    let bucket = BUCKET_TRIANGLES as u32;
+    let part = |triangle_count: u32| Part {
+        node: 7,
+        first_child: 3,
+        child_count: 2,
+        triangle_count,
+        ..Part::default()
+    };
+    let parts = [bucket + 1, bucket, 1].map(part).to_vec();
+    let search = StrainSearch { parts, ..StrainSearch::default() };
+    let found = [0, 1, 2].map(|part| search.node(part));
+    assert_eq!(found, [(7, Some(3..5)), (7, None), (7, None)]);
 }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::*;
 use crate::certificates::test_models::ring;
 use crate::certificates::{CertificateParts, Certificates};
+use crate::test_models::square;
 use crate::{CertifyOptions, Method, Modes, Query, ReducedModel};
 
 const RANK: usize = 11;
@@ -255,4 +256,167 @@ fn nodes_that_no_mode_moves_are_certified() {
             assert_eq!(query.discrete(&q).unwrap(), expected, "{scale}");
         }
     }
+}
+
+/// Returns consistent certificates of the root and of two of its four children, and their hierarchy. They have
+/// three modes, one, and none.
+fn consistent() -> (LocalCertificates, Hierarchy) {
+    let mesh = square(40);
+    let modes = Modes::from_matrix(mesh.rest_positions().len(), 1, |_, _| 1e-3).unwrap();
+    let model = ReducedModel::new(mesh, modes).unwrap();
+    let hierarchy = Hierarchy::build(&model, model.metric());
+    assert_eq!(hierarchy.nodes()[0].children(), 1..5);
+    let counts = [3, 1, 0];
+    let bounds = LocalBounds {
+        ratio: 0.5,
+        per_factor: 1e-12,
+        per_error: 2.0,
+        steepest: 1.0,
+        widest: 1.0,
+        ..LocalBounds::default()
+    };
+    let local = LocalCertificates {
+        nodes: vec![0, 1, 2],
+        mode_starts: vec![0, 3, 4, 4],
+        modes: vec![0, 4, 6, 5],
+        gradients: vec![0.5; counts.iter().map(|count| gradient_len(*count)).sum()],
+        ellipsoids: vec![0x3f80; counts.iter().map(|count| EllipsoidBlocks(*count).len()).sum()],
+        bounds: vec![LocalBounds { across: [1.0, 0.0, 0.0], flatness: 0.0, ..bounds }, bounds, bounds],
+        list_starts: vec![0, 0, 3, 4],
+        list_nodes: vec![2, 3, 4, 1],
+        list_ratios: vec![0.0, 0.7, f32::INFINITY, 0.9],
+    };
+    (local, hierarchy)
+}
+
+/// The seventh mode is the last one. In each case only one condition fails.
+#[test]
+fn each_condition_is_checked_by_itself() {
+    type Change<'c> = &'c dyn Fn(&mut LocalCertificates);
+    let (local, hierarchy) = consistent();
+    let changed = |change: Change<'_>| {
+        let mut local = local.clone();
+        change(&mut local);
+        local.check(&hierarchy, 7)
+    };
+    assert_eq!(changed(&|_| ()), Ok(()));
+    assert_eq!(changed(&|local| *local = LocalCertificates::default()), Ok(()));
+    let count = hierarchy.nodes().len() as u32;
+    let within = hierarchy.nodes_within_buckets().iter().position(|within| *within).unwrap() as u32;
+    assert!(within > 4);
+    let all: [(&str, &[Change<'_>]); 13] = [
+        ("they have numbers, but no nodes", &[&|local| local.nodes.clear()]),
+        (
+            "modes of certificates are out of order",
+            &[
+                &|local| local.mode_starts.push(4),
+                &|local| local.mode_starts[0] = 1,
+                &|local| local.mode_starts = vec![0, 4, 3, 4],
+                &|local| local.modes.push(6),
+            ],
+        ),
+        (
+            "modes of a certificate are out of order, or do not exist",
+            &[
+                &|local| local.modes[1] = 0,
+                &|local| local.modes.swap(0, 1),
+                &|local| local.modes[2] = 7,
+                &|local| local.modes[3] = 7,
+            ],
+        ),
+        (
+            "gradients or ellipsoids are not those of their modes",
+            &[&|local| _ = local.gradients.pop(), &|local| local.ellipsoids.push(0)],
+        ),
+        (
+            "a gradient is not finite",
+            &[&|local| local.gradients[3] = f32::NAN, &|local| local.gradients[9] = f32::NEG_INFINITY],
+        ),
+        (
+            "an ellipsoid is not finite",
+            &[&|local| local.ellipsoids[0] = 0x7f80, &|local| local.ellipsoids[9] = 0xff81],
+        ),
+        (
+            "the number of bounds is not the number of certificates",
+            &[&|local| _ = local.bounds.pop(), &|local| local.bounds.push(LocalBounds::default())],
+        ),
+        (
+            "a bound is out of range",
+            &[
+                &|local| local.bounds[0].ratio = -1.0,
+                &|local| local.bounds[1].ratio = f64::NAN,
+                &|local| local.bounds[2].flatness = -1.0,
+                &|local| local.bounds[0].per_factor = f64::INFINITY,
+                &|local| local.bounds[1].per_error = -1e-300,
+                &|local| local.bounds[1].steepest = f64::NAN,
+                &|local| local.bounds[2].widest = f64::INFINITY,
+                &|local| local.bounds[0].across = [-1.5, 0.0, 0.0],
+                &|local| local.bounds[0].across = [0.8, 0.0, -0.8],
+                &|local| local.bounds[1].across = [0.0, 1.0 + 1e-11, 0.0],
+                &|local| local.bounds[2].across[2] = f64::NAN,
+            ],
+        ),
+        (
+            "a ratio is negative or not a number",
+            &[&|local| local.list_ratios[2] = f32::NAN, &|local| local.list_ratios[3] = -1e-30],
+        ),
+        (
+            "nodes are out of order, do not exist, or are inside a bucket",
+            &[
+                &|local| local.nodes.swap(1, 2),
+                &|local| local.nodes[2] = 1,
+                &|local| local.nodes[2] = count,
+                &|local| local.nodes[2] = within,
+            ],
+        ),
+        (
+            "lists of certificates are out of order",
+            &[
+                &|local| local.list_starts.push(4),
+                &|local| local.list_starts = vec![1, 1, 3, 4],
+                &|local| local.list_starts = vec![0, 3, 1, 4],
+                &|local| {
+                    local.list_nodes.push(3);
+                    local.list_ratios.push(0.0);
+                },
+            ],
+        ),
+        (
+            "nodes of a list are out of order, do not exist, or are inside a bucket",
+            &[
+                &|local| local.list_nodes.swap(0, 1),
+                &|local| local.list_nodes[1] = 2,
+                &|local| local.list_nodes[2] = count,
+                &|local| local.list_nodes[2] = within,
+            ],
+        ),
+        (
+            "a node of a list has triangles of the certificate's node",
+            &[&|local| local.list_nodes[3] = 2, &|local| local.list_nodes[3] = 0],
+        ),
+    ];
+    for (cause, changes) in all {
+        for (at, change) in changes.iter().enumerate() {
+            assert_eq!(changed(change), Err(cause), "{at}");
+        }
+    }
+    assert_eq!(
+        changed(&|local| _ = local.list_ratios.pop()),
+        Err("the number of ratios is not the number of nodes in lists")
+    );
+    let with_modes = |count: usize| {
+        let one = LocalCertificates {
+            nodes: vec![0],
+            mode_starts: vec![0, count as u32],
+            modes: (0..count as u32).collect(),
+            gradients: vec![0.0; gradient_len(count)],
+            ellipsoids: vec![0; EllipsoidBlocks(count).len()],
+            bounds: vec![LocalBounds::default()],
+            list_starts: vec![0, 0],
+            ..LocalCertificates::default()
+        };
+        one.check(&hierarchy, 1000)
+    };
+    assert_eq!(with_modes(MOST_MODES), Ok(()));
+    assert_eq!(with_modes(MOST_MODES + 1), Err("a certificate has too many modes"));
 }
