@@ -154,7 +154,7 @@ mod tests {
     /// to a fifth.
     fn two_sides(random: &mut Random) -> ScaledModel {
         let (rank, far, apart) = (1 + random.below(8), random.vector() * 5.0, random.power(0.35, 0.9));
-        let side = |v: usize| DVec3::X * if v % 2 == 0 { 0.0 } else { apart };
+        let side = |v: usize| DVec3::X * if v.is_multiple_of(2) { 0.0 } else { apart };
         let p: Vec<DVec3> = (0..14).map(|v| far + random.vector() + side(v)).collect();
         let maps: Vec<[DVec3; 3]> = (0..rank).map(|_| [(); 3].map(|()| random.vector())).collect();
         let mut modes = Vec::new();

@@ -143,4 +143,34 @@ mod tests {
             assert!(matches!(filter.check_groups(triangles), Err(Error::Groups { .. })), "{triangles}");
         }
     }
+
+    /// Neither certificates nor continuous queries can decide folded neighbours.
+    #[test]
+    fn folded_neighbours_are_refused_except_for_discrete_queries_of_meshes() {
+        for neighbours in [Neighbours::Exclude, Neighbours::IncludeOneVertex] {
+            assert!(check_models(neighbours).is_ok() && check_continuous(neighbours).is_ok());
+            assert!(ContactFilter::new(neighbours).check_model(5).is_ok());
+        }
+        let folded = Neighbours::IncludeFolded;
+        for result in
+            [check_models(folded), check_continuous(folded), ContactFilter::new(folded).check_model(5)]
+        {
+            assert!(matches!(result, Err(Error::FoldedNeighbours { .. })));
+        }
+        assert!(ContactFilter::new(folded).check_groups(5).is_ok());
+    }
+
+    /// A filter has the groups it was given, unless all of their pairs count; a model has one for each of its triangles.
+    #[test]
+    fn filters_keep_groups_of_which_some_pairs_do_not_count() {
+        let groups = TriangleGroups::new(&[0, 1, 1]).unwrap();
+        assert_eq!(ContactFilter::default().with_groups(groups.clone()).groups(), None);
+        let between = groups.between_only();
+        let filter = ContactFilter::default().with_groups(between.clone());
+        assert_eq!(filter.groups().map(|groups| &**groups), Some(&between));
+        assert!(filter.check_model(3).is_ok());
+        for triangles in [0, 2, 4] {
+            assert!(matches!(filter.check_model(triangles), Err(Error::Groups { .. })), "{triangles}");
+        }
+    }
 }

@@ -264,4 +264,39 @@ mod tests {
         assert_eq!(filter.relation(0, 1), Relation::SharedVertex(0));
         assert!(!filter.collide((0, 1), &[DVec3::ONE; 3], &[DVec3::ONE; 3]));
     }
+
+    /// Only where all pairs without common vertices count, and no others, searches need no relations.
+    #[test]
+    fn relations_follow_from_adjacency_alone_without_groups_and_shared_vertices() {
+        let groups = TriangleGroups::new(&[0, 1]).unwrap().between_only();
+        for neighbours in [Neighbours::Exclude, Neighbours::IncludeOneVertex, Neighbours::IncludeFolded] {
+            let plain = ContactFilter::new(neighbours).ignoring([(0, 1)]);
+            let grouped = plain.clone().with_groups(groups.clone());
+            let [plain, grouped] =
+                [plain, grouped].map(|f| PairFilter::with_classes(&[[0, 1, 2], [3, 4, 5]], None, &f));
+            assert_eq!(plain.is_adjacency_alone(), neighbours == Neighbours::Exclude);
+            assert!(!grouped.is_adjacency_alone());
+            assert_eq!((plain.groups(), grouped.groups()), (None, Some(&groups)));
+        }
+    }
+
+    /// Two triangles with one to three corners of a class share a vertex only where all these corners are at one position.
+    #[test]
+    fn vertices_are_shared_where_all_corners_of_the_class_are_together() {
+        let filter = ContactFilter::new(Neighbours::IncludeOneVertex);
+        for of_class in 0..64_usize {
+            let is_of_class = |i: usize| (of_class >> i) & 1 == 1;
+            if of_class & 0b111 == 0 || of_class >> 3 == 0 {
+                continue;
+            }
+            let classes: Vec<u32> = (0..6).map(|i| if is_of_class(i as usize) { 9 } else { i }).collect();
+            let filter = PairFilter::with_classes(&[[0, 1, 2], [3, 4, 5]], Some(&classes), &filter);
+            for aside in 0..64_usize {
+                let corner = |i: usize| if (aside >> i) & 1 == 1 { DVec3::X } else { DVec3::ZERO };
+                let [a, b] = [0, 3].map(|first| [first, first + 1, first + 2].map(corner));
+                let expected = aside & of_class == 0 || aside & of_class == of_class;
+                assert_eq!(filter.is_vertex_shared(9, (0, 1), &a, &b), expected, "{of_class:b} {aside:b}");
+            }
+        }
+    }
 }

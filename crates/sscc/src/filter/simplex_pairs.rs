@@ -111,3 +111,64 @@ fn edges_and_triangles(edge_a: [usize; 2], edge_b: [usize; 2]) -> [Option<Simple
         with_mutant!(Some(SimplexPair { a: TRIANGLE, b: edge(edge_b) }), OneSimplexPairOfTwo, None),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::Random;
+    use crate::{ContactFilter, Neighbours};
+
+    /// Two corners of the class are one vertex if they are together at start and end. What remains of each triangle is the set
+    /// of its corners that are not always there, and meets the whole other triangle. Corners are at two positions, so that they
+    /// often meet at one of the ends, or at both.
+    #[test]
+    fn moving_triangles_share_vertices_that_stay_together() {
+        let random = &mut Random(12);
+        let contact_filter = ContactFilter::new(Neighbours::IncludeOneVertex);
+        let (mut whole, mut none, mut edges) = (0, 0, 0);
+        for case in 0..4000 {
+            let mut is_of_class = [false; 6].map(|_| random.below(2) == 0);
+            is_of_class[random.below(3)] = true;
+            is_of_class[3 + random.below(3)] = true;
+            let paths = [(); 6].map(|()| [random.below(2), random.below(2)]);
+            let classes: Vec<u32> = (0..6).map(|i| if is_of_class[i as usize] { 9 } else { i }).collect();
+            let filter = PairFilter::with_classes(&[[0, 1, 2], [3, 4, 5]], Some(&classes), &contact_filter);
+            let [a, b] = [0, 3].map(|first| {
+                [0, 1].map(|end| [0, 1, 2].map(|i: usize| DVec3::X * paths[first + i][end] as f64))
+            });
+            let found: Vec<[Vec<usize>; 2]> = filter
+                .moving_simplex_pairs(9, (0, 1), [&a[0], &a[1]], [&b[0], &b[1]])
+                .map(|simplices| {
+                    [simplices.a, simplices.b].map(|corners| {
+                        let mut corners = corners.to_vec();
+                        corners.sort_unstable();
+                        corners.dedup();
+                        corners
+                    })
+                })
+                .collect();
+            let all = vec![0, 1, 2];
+            let pairs = (0..3).flat_map(|i| (3..6).map(move |j| (i, j)));
+            let common = pairs
+                .filter(|&(i, j)| is_of_class[i] && is_of_class[j])
+                .map(|(i, j)| [paths[i], paths[j]])
+                .find(|[x, y]| x == y);
+            let Some([path, _]) = common else {
+                whole += 1;
+                assert_eq!(found, [[all.clone(), all]], "case {case}");
+                continue;
+            };
+            let [rest_a, rest_b] = [0, 3].map(|first| -> Vec<usize> {
+                (0..3).filter(|i| !is_of_class[first + i] || paths[first + i] != path).collect()
+            });
+            if rest_a.is_empty() || rest_b.is_empty() {
+                none += 1;
+                assert!(found.is_empty(), "case {case}");
+            } else {
+                edges += 1;
+                assert_eq!(found, [[rest_a, all.clone()], [all, rest_b]], "case {case}");
+            }
+        }
+        assert!(whole > 1000 && none > 20 && edges > 1000, "{whole} {none} {edges}");
+    }
+}

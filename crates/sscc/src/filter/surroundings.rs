@@ -115,4 +115,17 @@ mod tests {
         assert_eq!(surroundings(&filter, &[(0, 6)], 1, None), Ok(expected.clone()));
         assert_eq!(surroundings_between([&filter; 2], &[(0, 6)], 1, None), Ok(expected));
     }
+
+    /// Pairs that never count, of a triangle and itself or a neighbour, are left out, and no others.
+    #[test]
+    fn surroundings_within_one_strip_are_pairs_that_count() {
+        let faces: Vec<[u32; 3]> = (0..9).map(|i| [i, i + 1, i + 2]).collect();
+        let filter = PairFilter::with_classes(&faces, None, &ContactFilter::default());
+        let near = |a: u32, b: u32| u32::abs_diff(a, b) <= 2;
+        let expected: Vec<Pair> = (0..9)
+            .flat_map(|a| (a + 1..9).map(move |b| (a, b)))
+            .filter(|&(a, b)| !near(a, b) && ((near(a, 1) && near(b, 4)) || (near(a, 4) && near(b, 1))))
+            .collect();
+        assert_eq!(surroundings(&filter, &[(4, 1)], 1, None), Ok(expected));
+    }
 }

@@ -95,3 +95,30 @@ fn groups_are_split_between_meshes() {
         assert!(!groups.is_counted(0, 1) && groups.is_counted(0, 2));
     }
 }
+
+/// Groups with other numbers or another table are not equal, for certificates hold for one table alone. Files store tables as
+/// they are here.
+#[test]
+fn groups_are_equal_if_the_same_pairs_count() {
+    let groups = |of_triangle: [u32; 4]| TriangleGroups::new(&of_triangle).unwrap();
+    let ignoring = groups([0, 1, 2, 1]).ignoring([[0, 1]]).unwrap();
+    let only = groups([0, 1, 2, 1]).only([[0, 1]]).unwrap();
+    assert_eq!(ignoring, ignoring.of_meshes(&[4]).unwrap()[0]);
+    for other in [
+        only.clone(),
+        groups([0, 1, 2, 1]),
+        groups([0, 1, 2, 1]).ignoring([[0, 2]]).unwrap(),
+        groups([0, 1, 2, 2]).ignoring([[0, 1]]).unwrap(),
+        groups([0, 1, 3, 1]).ignoring([[0, 1]]).unwrap(),
+    ] {
+        assert_ne!(ignoring, other);
+    }
+    for (groups, others_count) in [(&ignoring, true), (&only, false)] {
+        let table = GroupTable::from(groups);
+        assert_eq!((table.count, table.others_count, &table.listed[..]), (3, others_count, &[[0, 1]][..]));
+        assert_eq!(table.of_triangles, [0, 1, 2, 1]);
+        for (g, h) in (0..3_u16).flat_map(|g| (g..3).map(move |h| (g, h))) {
+            assert_eq!(groups.is_counted(g, h), table.listed.contains(&[g, h]) != table.others_count);
+        }
+    }
+}

@@ -88,3 +88,87 @@ impl Number for BoundedFloat {
         DVec3::from_array(dir.map(|x| x.value))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use sscc_testing::Dyadic;
+
+    use super::*;
+    use crate::test_models::Random;
+
+    fn exact(x: f64) -> Dyadic {
+        Dyadic::new(x)
+    }
+
+    /// Returns 0, or a number of at most `10^widest`, with no error or one of up to ten times its size.
+    fn number(random: &mut Random, widest: f64) -> BoundedFloat {
+        if random.below(8) == 0 {
+            return BoundedFloat::zero();
+        }
+        let value = random.signed() * random.power(-widest, widest);
+        let error = if random.below(4) == 0 { 0.0 } else { value.abs() * random.power(-17.0, 1.0) };
+        BoundedFloat { value, error }
+    }
+
+    /// Error bounds are at least the sum of the errors of operands, to second order, and of the rounding. They exceed
+    /// it by no more than a few roundings and what covers underflow.
+    #[test]
+    fn errors_are_those_of_both_operands_and_of_the_rounding() {
+        let random = &mut Random(1);
+        for case in 0..1_500 {
+            let widest = [0.0, 20.0, 150.0][case % 3];
+            let (x, y) = (number(random, widest), number(random, widest));
+            let ((a, e), (b, f)) = ((exact(x.value), exact(x.error)), (exact(y.value), exact(y.error)));
+            for (found, value, of_operands) in [
+                (x.plus(&y), &a + &b, &e + &f),
+                (x.minus(&y), &a - &b, &e + &f),
+                (x.times(&y), &a * &b, a.abs() * &f + b.abs() * &e + &e * &f),
+                (BoundedFloat::difference(x.value, y.value), &a - &b, exact(0.0)),
+            ] {
+                let error = exact(found.error);
+                let off = (exact(found.value) - value).abs();
+                assert!(error >= off + &of_operands, "case {case}: {x:?} {y:?} {found:?}");
+                let least = of_operands + exact(U) * exact(found.value.abs());
+                let most = &least * exact(1.0 + 64.0 * U) + exact(2.0 * f64::MIN_POSITIVE);
+                assert!(least <= error && error <= most, "case {case}: {x:?} {y:?} {found:?}");
+            }
+        }
+    }
+
+    /// A number that is as far from 0 as its error bound may be 0, which is not positive.
+    #[test]
+    fn only_numbers_beyond_their_error_are_positive() {
+        for error in [0.0, f64::MIN_POSITIVE, 1.0] {
+            let sign = |value: f64| BoundedFloat { value, error }.is_positive();
+            assert_ne!(sign(error), Some(true), "{error}");
+            assert_eq!([error.next_up(), -error.next_up()].map(sign), [Some(true), Some(false)], "{error}");
+        }
+    }
+
+    /// The lower bound is that of the smallest number and the largest square, the upper bound that of the other ends.
+    #[test]
+    fn quotients_by_roots_are_those_of_the_ends() {
+        let random = &mut Random(2);
+        let (share, zero) = (exact(1.0 + 64.0 * U), exact(0.0));
+        for case in 0..1_000 {
+            let x = BoundedFloat {
+                value: random.signed() * random.power(-9.0, 9.0),
+                error: random.power(-12.0, 9.0),
+            };
+            let value = random.power(-9.0, 9.0);
+            let square = BoundedFloat { value, error: value * random.power(-17.0, 0.3) };
+            let Bounds { lower, upper } = x.over_root(&square);
+            let ends = [exact(x.value) - exact(x.error), exact(x.value) + exact(x.error)];
+            let [least, most] = ends.map(|end| if end > zero { &end * &end } else { zero.clone() });
+            let (s, e) = (exact(square.value), exact(square.error));
+            let below = exact(lower) * exact(lower) * (&s + &e);
+            assert!(below <= least && least <= &below * &share, "case {case}: {x:?} {square:?} {lower}");
+            if s > e {
+                let above = exact(upper) * exact(upper) * (&s - &e);
+                assert!(above >= most && above <= &most * &share, "case {case}: {x:?} {square:?} {upper}");
+            } else {
+                assert_eq!(upper, f64::INFINITY, "case {case}: {x:?} {square:?}");
+            }
+        }
+    }
+}

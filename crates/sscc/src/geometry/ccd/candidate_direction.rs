@@ -181,6 +181,101 @@ fn largest([p, q, r]: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_models::Random;
+
+    /// Returns two triangles whose corners move between integers, the second one shifted along a direction.
+    fn on_grid(random: &mut Random, dir: DVec3) -> [MovingTriangle; 2] {
+        let mut corners = |by: DVec3| [(); 3].map(|()| (random.vector() * 3.0).round() + by);
+        let a = MovingTriangle { t0: corners(DVec3::ZERO), t1: corners(DVec3::ZERO) };
+        let b = MovingTriangle { t0: corners(dir), t1: corners(dir) };
+        [a, b]
+    }
+
+    /// Returns a vector of integers, the largest of which is 4.
+    fn direction(random: &mut Random) -> DVec3 {
+        let mut dir = (random.vector() * 4.0).round();
+        dir[random.below(3)] = if random.below(2) == 0 { 4.0 } else { -4.0 };
+        dir
+    }
+
+    /// Returns the gaps of all nine pairs of corners along a direction at a time.
+    fn gaps([a, b]: [&MovingTriangle; 2], n: DVec3, t: f64) -> [f64; 9] {
+        let at = |triangle: &MovingTriangle, i: usize| {
+            n.dot(triangle.t0[i] + (triangle.t1[i] - triangle.t0[i]) * t)
+        };
+        std::array::from_fn(|ij| at(b, ij % 3) - at(a, ij / 3))
+    }
+
+    /// Of integers, and at quarters, all numbers but the rounding bound are exact. The length of a direction does not
+    /// matter.
+    #[test]
+    fn gaps_are_those_of_all_corners_less_the_slack() {
+        let random = &mut Random(5);
+        // Gaps of differing signs at both ends, and roots.
+        let (mut always, mut open, mut roots) = (0, 0, 0);
+        for case in 0..1_200 {
+            let dir = direction(random);
+            let [a, b] = on_grid(random, dir);
+            let slack = [0.0, 0.25, 1.0][case % 3];
+            let pair = MovingPair::with_slack(&a, &b, slack);
+            assert_eq!(pair.slack(), slack);
+            let n = dir / 4.0;
+            let change = slack * n.abs().element_sum();
+            let along = pair.along(dir * [1.0, 2.0_f64.powi(100), 2.0_f64.powi(-300)][case / 3 % 3]).unwrap();
+            let proven = |n: DVec3, t: f64| gaps([&a, &b], n, t).map(|gap| gap - change);
+            let narrowest = |n: DVec3, t: f64| proven(n, t).into_iter().fold(f64::INFINITY, f64::min);
+            for (along, n) in [(along, n), (along.reversed(), -n)] {
+                for t in [0.0, 0.25, 0.5, 1.0] {
+                    let (found, exact) = (along.gap(t), narrowest(n, t));
+                    assert!(found <= exact && found >= exact - 1e-12, "case {case} at {t}: {found} {exact}");
+                    let until = along.separates_until(t);
+                    if exact <= 0.0 {
+                        assert_eq!(until, t, "case {case}");
+                        continue;
+                    }
+                    let ends = proven(n, 0.0).into_iter().zip(proven(n, 1.0)).filter(|(_, g1)| *g1 <= 0.0);
+                    let root = ends.map(|(g0, g1)| g0 / (g0 - g1)).fold(f64::INFINITY, f64::min);
+                    let is_near = root == f64::INFINITY || until >= root - 1e-10;
+                    assert!(until <= root && is_near, "case {case} at {t}: {until} {root}");
+                    roots += usize::from(root < f64::INFINITY);
+                }
+                let separates = narrowest(n, 0.0) > 0.0 && narrowest(n, 1.0) > 0.0;
+                assert_eq!(along.separates(), separates, "case {case}");
+                always += usize::from(separates);
+                open += usize::from(!separates && narrowest(n, 0.0).max(narrowest(n, 1.0)) > 0.0);
+            }
+        }
+        assert!(always > 300 && open > 200 && roots > 300, "{always} {open} {roots}");
+    }
+
+    /// All three Bernstein coefficients of the gaps count: at either end, and between.
+    #[test]
+    fn turning_directions_separate_where_three_gaps_are_positive() {
+        let random = &mut Random(6);
+        let mut counts = [0; 8];
+        for case in 0..2_000 {
+            let dirs = [direction(random), direction(random)];
+            let [a, b] = on_grid(random, (dirs[0] + dirs[1]) * 0.5);
+            let slack = [0.0, 0.25][case % 2];
+            let (t, s) = [(0.0, 1.0), (0.25, 0.5), (0.5, 1.0)][case % 3];
+            let pair = MovingPair::with_slack(&a, &b, slack);
+            let [from, to] = dirs.map(|dir| pair.along(dir).unwrap());
+            let [n, m] = dirs.map(|dir| dir / 4.0);
+            let [change_n, change_m] = [n, m].map(|n| slack * n.abs().element_sum());
+            let all = |n: DVec3, t: f64| gaps([&a, &b], n, t);
+            let between = [all(n, s), all(m, t)];
+            let is_wide = [
+                all(n, t).iter().all(|gap| *gap > change_n),
+                (0..9).all(|ij| between[0][ij] + between[1][ij] > change_n + change_m),
+                all(m, s).iter().all(|gap| *gap > change_m),
+            ];
+            let separates = is_wide.iter().all(|wide| *wide);
+            assert_eq!(from.separates_turning(t, &to, s), separates, "case {case}: {is_wide:?}");
+            counts[(0..3).map(|i| usize::from(is_wide[i]) << i).sum::<usize>()] += 1;
+        }
+        // All are wide, or all but one.
+        assert!([3, 5, 6, 7].iter().all(|i| counts[*i] > 10), "{counts:?}");
+    }
 
     /// A point passes through another one, or close by it. The direction to it separates the two at both ends of the
     /// motion.

@@ -104,6 +104,8 @@ fn normalize(v: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::geometry::ccd::moving_triangle::MovingTriangle;
+    use crate::geometry::distance_triangle_triangle;
+    use crate::test_models::Random;
 
     /// Edges cross at a distance of 1e-12, so that the direction between the closest points is far too imprecise. Each edge of both
     /// triangles is the crossing one in turn.
@@ -121,5 +123,57 @@ mod tests {
             let direction = ClosestPoints::at(&pair, 0.0).direction;
             assert!(direction.is_some_and(|dir| dir.gap(0.0) > 0.9e-12), "edges {i} and {j}");
         }
+    }
+
+    /// Two points, and two copies of a triangle, are as far apart as they were moved, at every size and time.
+    #[test]
+    fn distances_are_those_at_the_time() {
+        let random = &mut Random(7);
+        for case in 0..300 {
+            let size = 2.0_f64.powi([-200, 0, 60][case % 3]);
+            let mut vector = || random.vector() * size;
+            let corners = if case % 2 == 0 { [vector(); 3] } else { [vector(), vector(), vector()] };
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(DVec3::Z);
+            // Of a triangle the distance is that of its plane.
+            let way = |by: DVec3| if case % 2 == 0 { by } else { normal * by.x.abs() };
+            let [from, to] = [way(vector()), way(vector())];
+            let a = MovingTriangle { t0: corners, t1: corners };
+            let b = MovingTriangle { t0: corners.map(|p| p + from), t1: corners.map(|p| p + to) };
+            for t in [0.0, 0.25, 0.75, 1.0] {
+                let found = ClosestPoints::at(&MovingPair::new(&a, &b), t);
+                let exact = (from + (to - from) * t).length();
+                let message = format!("case {case} at {t}: {} {exact}", found.distance);
+                assert!((found.distance - exact).abs() <= 1e-9 * size, "{message}");
+                assert!(
+                    exact < 1e-3 * size || found.direction.is_some_and(|dir| dir.gap(t) > 0.7 * exact),
+                    "{message}"
+                );
+            }
+        }
+    }
+
+    /// The widest gap is at least the distance: the direction between the closest points, whose largest component is
+    /// 1, is among those that are searched, whichever features are closest.
+    #[test]
+    fn the_widest_gap_is_no_narrower_than_the_distance() {
+        let random = &mut Random(13);
+        let mut apart = 0;
+        for case in 0..600 {
+            let size = 2.0_f64.powi([-300, 0, 60][case % 3]);
+            let place = random.vector() * 2.5;
+            let mut corners = |by: DVec3| [(); 3].map(|()| (random.vector() + by) * size);
+            let (a, b) = (corners(DVec3::ZERO), corners(place));
+            let distance = distance_triangle_triangle(&a, &b);
+            if distance < 0.01 * size {
+                continue;
+            }
+            apart += 1;
+            let [rests_a, rests_b] = [a, b].map(|corners| MovingTriangle { t0: corners, t1: corners });
+            let pair = MovingPair::new(&rests_a, &rests_b);
+            let gap = find_widest_gap(&pair, 0.5, &pair.at(0.5)).unwrap().gap(0.5);
+            let share = gap / distance;
+            assert!((1.0 - 1e-9..=3.0_f64.sqrt() + 1e-9).contains(&share), "case {case}: {gap} {distance}");
+        }
+        assert!(apart > 200, "{apart}");
     }
 }

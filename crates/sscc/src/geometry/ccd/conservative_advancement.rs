@@ -163,3 +163,22 @@ pub(super) fn advance_along_features(
     }
     Some(t)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// A point is above a face by less than the rounding bound of the gap along its normal: no step follows.
+    #[test]
+    fn a_gap_within_its_rounding_ends_the_search_along_features() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let face = MovingTriangle { t0: corners, t1: corners };
+        let point = MovingTriangle::vertex(DVec3::new(0.25, 0.25, 1e-16), DVec3::new(0.25, 0.25, -1.0));
+        let mut steps = 100;
+        let pair = MovingPair::new(&face, &point);
+        assert_eq!(advance_along_features([&face, &point], &pair, 0.0, 0.0, &mut steps), Some(0.0));
+        assert_eq!(steps, 99);
+    }
+}

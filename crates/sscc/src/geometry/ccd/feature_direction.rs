@@ -223,6 +223,62 @@ fn interpolate<T: Number>(from: &T, to: &T, t: f64) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::distance_triangle_triangle;
+    use crate::test_models::Random;
+
+    /// The distance is the widest gap along directions of features, whichever features are closest.
+    #[test]
+    fn the_widest_gap_is_the_distance() {
+        let random = &mut Random(11);
+        let mut apart = 0;
+        for case in 0..400 {
+            let place = random.vector() * 2.5;
+            let mut corners = |by: DVec3| [(); 3].map(|()| random.vector() + by);
+            let a = MovingTriangle { t0: corners(DVec3::ZERO), t1: corners(DVec3::ZERO) };
+            let b = MovingTriangle { t0: corners(place), t1: corners(place) };
+            let t = [0.0, 0.375, 1.0][case % 3];
+            let [at_a, at_b] = [&a, &b].map(|x| [0, 1, 2].map(|i| x.t0[i] + (x.t1[i] - x.t0[i]) * t));
+            let distance = distance_triangle_triangle(&at_a, &at_b);
+            if distance < 0.01 {
+                continue;
+            }
+            apart += 1;
+            let found = find_gap_above(distance * (1.0 - 1e-8), &a, &b, t);
+            let dir = found.expect("a gap of nearly the distance").vector.normalize();
+            let lowest = at_b.iter().map(|p| dir.dot(*p)).fold(f64::INFINITY, f64::min);
+            let highest = at_a.iter().map(|p| dir.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+            assert!((lowest - highest - distance).abs() < 1e-6, "case {case}: {found:?} {distance}");
+            let wider = find_gap_above(distance * (1.0 + 1e-8), &a, &b, t);
+            assert!(wider.is_none(), "case {case}: {wider:?} {distance}");
+        }
+        assert!(apart > 100, "{apart}");
+    }
+
+    /// Along the difference d of two points the gap is `d.d`, and the slack changes it by itself times the sum of the
+    /// largest magnitudes of the components of d. Between two times the Bernstein coefficients of the gap are products
+    /// of d at these times.
+    #[test]
+    fn gaps_along_features_exceed_the_slack() {
+        let random = &mut Random(12);
+        for case in 0..100 {
+            let from = random.vector() + DVec3::from_array([1.5, -1.5, 1.5]);
+            let to = from + random.vector() * 0.4;
+            let place = random.vector();
+            let (a, b) =
+                (MovingTriangle::vertex(place, DVec3::ZERO), MovingTriangle::vertex(place + from, to));
+            for [t, s] in [[0.0, 1.0], [0.25, 0.5]] {
+                let direction = find_gap_above(0.1, &a, &b, t).expect("points that are apart");
+                let [p, q] = [t, s].map(|t| from + (to - from) * t);
+                let narrowest = p.dot(p).min(p.dot(q)).min(q.dot(q));
+                let limit = narrowest / p.abs().max(q.abs()).element_sum();
+                for (share, separates) in [(0.0, true), (1.0 - 1e-9, true), (1.0 + 1e-9, false), (4.0, false)]
+                {
+                    let found = direction.separates([&a, &b], limit * share, [t, s]);
+                    assert_eq!(found, separates, "case {case}: {share} of {limit}");
+                }
+            }
+        }
+    }
 
     /// A point passes through another one. The direction between them separates them up to the contact, but not in an
     /// interval that contains it.

@@ -86,3 +86,56 @@ pub(super) fn is_separated_by_planes(pair: &MovingPair) -> bool {
         normal.is_some_and(|dir| dir.separates() || dir.reversed().separates())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle stands on its tip, just above or below a large one whose plane it does not reach: only the normal of
+    /// the large one separates them.
+    #[test]
+    fn planes_of_either_triangle_separate_either_side() {
+        let v = DVec3::new;
+        let large = [v(-4.0, -3.0, 0.0), v(5.0, -3.0, 0.0), v(0.0, 6.0, 0.0)];
+        let standing = [v(0.0, 0.0, 0.1), v(1.0, 0.2, 1.0), v(-1.0, -0.2, 1.2)];
+        let moving = |t0: [DVec3; 3]| MovingTriangle { t0, t1: t0.map(|p| p + v(3.0, 2.0, 1.0)) };
+        for (drop, separated) in [(0.0, true), (0.2, false)] {
+            let standing = standing.map(|p| p - DVec3::Z * drop);
+            for other in [standing, standing.map(|p| v(p.x, p.y, -p.z))] {
+                for (a, b) in [(large, other), (other, large)] {
+                    let found = is_separated_by_planes(&MovingPair::new(&moving(a), &moving(b)));
+                    assert_eq!(found, separated, "{a:?} {b:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_vertex_meets_a_face_and_passes_beside_it() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let face = MovingTriangle { t0: corners, t1: corners.map(|p| p + DVec3::Z) };
+        let falling = |x: f64, to: f64| [DVec3::new(x, 0.25, 2.0), DVec3::new(x, 0.25, to)];
+        let t = impact_vertex_face(falling(0.25, 0.0), &face, 1e-9).unwrap();
+        assert!(t <= 2.0 / 3.0 && t > 2.0 / 3.0 - 1e-8, "{t}");
+        assert_eq!(impact_vertex_face(falling(0.25, 1.001), &face, 1e-9), None);
+        assert_eq!(impact_vertex_face(falling(0.8, 0.0), &face, 1e-9), None);
+    }
+
+    /// A point falls on a face, or passes from above it to beside it and below its plane, at sizes down to denormal
+    /// numbers. Coordinates are exact at all sizes.
+    #[test]
+    fn times_of_impact_are_the_same_at_every_size() {
+        for exponent in [-1060, -1040, -500, -101, -99, 0, 190] {
+            let scaled = |x: f64, y: f64, z: f64| {
+                DVec3::new(x, y, z) * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
+            };
+            let corners = [DVec3::ZERO, scaled(1.0, 0.0, 0.0), scaled(0.0, 1.0, 0.0)];
+            let face = MovingTriangle { t0: corners, t1: corners };
+            let from = scaled(0.375, 0.375, 0.125);
+            let t = impact_vertex_face([from, scaled(0.375, 0.375, -0.125)], &face, 1e-9).unwrap();
+            assert!(t <= 0.5 && t > 0.5 - 1e-7, "{t} at 2^{exponent}");
+            let beside = impact_vertex_face([from, scaled(3.0, 3.0, -1.0)], &face, 1e-9);
+            assert_eq!(beside, None, "2^{exponent}");
+        }
+    }
+}

@@ -48,3 +48,23 @@ impl MovingTriangle {
         !a.is_disjoint(&b)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_models::Random;
+
+    /// Positions between integers are exact at quarters.
+    #[test]
+    fn corners_move_linearly() {
+        let random = &mut Random(9);
+        for _ in 0..20 {
+            let mut corners = || [(); 3].map(|()| (random.vector() * 8.0).round());
+            let triangle = MovingTriangle { t0: corners(), t1: corners() };
+            for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let exact = |i: usize| triangle.t0[i] + (triangle.t1[i] - triangle.t0[i]) * t;
+                assert_eq!(triangle.at(t), [0, 1, 2].map(exact), "{t}");
+            }
+        }
+    }
+}

@@ -120,3 +120,22 @@ fn quotients_by_roots_are_rounded_down() {
     let Bounds { lower: found, .. } = small.times(&small).over_root(&small.times(&small));
     assert!((found / 1e-290 - 1.0).abs() < 1e-14, "{found:e}");
 }
+
+/// Rounded directions have the ratios of exact vectors, far beyond the range of doubles and beside zeros, too. They
+/// neither overflow nor vanish.
+#[test]
+fn directions_of_exact_vectors_have_their_ratios() {
+    for components in [[3.0, -5.0, 0.25], [0.0, 1e-20, -3e-20], [1e25, 0.0, 7e24], [-1e-15, 0.0, 0.0]] {
+        for factor in [1.0, 1e-300, 1e300] {
+            let factor = Dyadic::from_f64(factor);
+            let vector = components.map(|x| Dyadic::from_f64(x).times(&factor).times(&factor));
+            let found = Dyadic::direction(&vector).to_array();
+            let largest = |x: [f64; 3]| x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+            let size = largest(found);
+            assert!((1.0..=power_of_two(60)).contains(&size), "{components:?}: {found:?}");
+            for (x, y) in found.into_iter().zip(components) {
+                assert!((x / size - y / largest(components)).abs() < 1e-15, "{components:?}: {found:?}");
+            }
+        }
+    }
+}

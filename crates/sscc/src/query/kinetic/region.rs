@@ -170,4 +170,20 @@ mod tests {
         assert!(!region.contains(&metric, at(region.norm.next_up())));
         assert!(!region.contains(&metric, at(f64::NAN)));
     }
+
+    /// A search adds the rounding of positions of the region's reach, and control uses its size.
+    #[test]
+    fn regions_have_twice_the_reach_of_their_ends() {
+        let metric = Metric::identity(1);
+        let mut region = Region::new(1);
+        for reach in [1e-3, 0.5, 1.0, 7.0, 1e6] {
+            region.set_ball(Configuration { q: &[1.0], norm: 1.0, reach }, 0.25);
+            assert_eq!((region.reach, region.size(), region.largest_travel()), (2.0 * reach, 0.25, 0.25));
+            region.end[0] = 3.0;
+            region.set_capsule(&metric, Configuration { q: &[1.0], norm: 1.0, reach }, (3.0, 0.1), 0.25);
+            assert_eq!(region.reach, 2.0 * reach.max(0.1));
+            let is_near = |x: f64, y: f64| x >= y && x <= y * (1.0 + 1e-13);
+            assert!(is_near(region.size(), 2.0) && is_near(region.largest_travel(), 2.45));
+        }
+    }
 }

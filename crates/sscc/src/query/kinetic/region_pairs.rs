@@ -211,4 +211,44 @@ mod tests {
         region_pairs.take(&[(0, 4)], &mut pending);
         assert_eq!(pending, [(0, 4)]);
     }
+
+    /// The travelled distance at which a safe distance ends is compared with their sum in exact arithmetic.
+    #[test]
+    fn safe_distances_end_before_they_are_used_up() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        for i in 0..600 {
+            let travelled = if i % 3 == 0 { 0.0 } else { f64::from(i).sqrt() * 0.1_f64.powi(i % 7) };
+            let distance = f64::from(i * i % 41 + 1).sqrt() * 0.1_f64.powi(i % 5);
+            let region_pairs = RegionPairs { travelled, ..RegionPairs::default() };
+            let until = region_pairs.travelled_after(distance);
+            assert!(exact(until) < exact(travelled) + exact(distance), "{travelled} {distance}");
+            assert!(until >= (travelled + distance) * (1.0 - 1e-14), "{travelled} {distance}");
+        }
+    }
+
+    #[test]
+    fn vanishing_distances_are_not_stored_after_a_jump_either() {
+        let mut region_pairs = RegionPairs::default();
+        region_pairs.begin_region(1.0);
+        assert!(!region_pairs.store((0, 1), 0.0) && region_pairs.safe.is_empty());
+    }
+
+    /// A motion is safe only before the end of the region and within the safe distance of every pair.
+    #[test]
+    fn motions_end_within_all_safe_distances() {
+        let mut region_pairs = RegionPairs::default();
+        assert!(!region_pairs.is_safe_for(0.0));
+        region_pairs.begin_region(4.0);
+        assert!(region_pairs.is_safe_for(3.9) && !region_pairs.is_safe_for(4.1));
+        assert!(region_pairs.store((0, 1), 3.0) && region_pairs.store((0, 2), 2.0));
+        region_pairs.end_step();
+        assert_eq!(region_pairs.steps, 1);
+        assert!(region_pairs.is_safe_for(1.9) && !region_pairs.is_safe_for(2.1));
+        region_pairs.advance(1.5);
+        assert!(region_pairs.is_safe_for(0.4) && !region_pairs.is_safe_for(0.6));
+        region_pairs.end_step();
+        assert_eq!(region_pairs.steps, 2);
+        region_pairs.leave_region();
+        assert!(!region_pairs.has_region() && !region_pairs.is_safe_for(0.4));
+    }
 }

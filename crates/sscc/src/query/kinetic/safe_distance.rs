@@ -137,4 +137,21 @@ mod tests {
         }
         assert!(measured > 1000 && reached > 200, "{measured} {reached}");
     }
+
+    /// Distances are at most twice the norm, and both ends of one have at most three times the norm.
+    #[test]
+    fn gaps_are_rounded_as_at_three_times_the_norm() {
+        let (model, _) = strips(&mut Random(3), 3);
+        let scope = Scope::of(&model);
+        let mut distances = SafeDistances::new(ScaledModel::new(&model, &scope.metric, &scope.center));
+        for norm in [0.25, 1.0, 30.0] {
+            distances.begin(norm);
+            assert_eq!(distances.largest, 2.0 * norm);
+            let expected = distances.model.rounding.between_configurations(3.0 * norm);
+            for dir in [DVec3::X, DVec3::Y, DVec3::ONE] {
+                assert_eq!(distances.error.at_rest(dir), expected.at_rest(dir), "{norm} {dir}");
+                assert_eq!(distances.error.per_norm(dir), expected.per_norm(dir), "{norm} {dir}");
+            }
+        }
+    }
 }

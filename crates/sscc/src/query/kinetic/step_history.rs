@@ -87,3 +87,82 @@ impl StepHistory {
         RADIUS_FACTOR * distance + ADDED_RADIUS * steps * metric.length(&self.step)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::MetricKind;
+    use crate::test_models::Random;
+
+    /// Positions and norms are those of a parabola in whole 64ths, of which no number is rounded.
+    #[test]
+    fn predictions_continue_a_parabola() {
+        for case in 0..60 {
+            let random = &mut Random(case + 40);
+            let rank = 1 + case as usize % 5;
+            let scales: Vec<f64> = (0..rank).map(|_| 0.5 + random.signed().abs()).collect();
+            let metric = Metric::from_scales(MetricKind::Given, scales.clone()).unwrap();
+            let mut vector =
+                || -> Vec<f64> { (0..rank).map(|_| (random.signed() * 64.0).round() / 64.0).collect() };
+            let (start, first, change) = (vector(), vector(), vector());
+            let at = |k: f64| -> Vec<f64> {
+                (0..rank).map(|i| start[i] + k * first[i] + 0.5 * k * (k - 1.0) * change[i]).collect()
+            };
+            let length =
+                |x: Vec<f64>| x.iter().zip(&scales).map(|(x, s)| (s * x).powi(2)).sum::<f64>().sqrt();
+            let mut history = StepHistory::new(rank);
+            for (k, is_jump) in [(-7.0, true), (3.0, false), (0.0, true), (1.0, false)] {
+                history.record(&at(k), is_jump);
+                assert!(!history.is_known());
+                assert_eq!(history.straight_steps(&metric, 100.0), 0.0);
+            }
+            history.record(&at(2.0), false);
+            assert!(history.is_known());
+            for steps in [16.0, 21.0, 1000.0] {
+                let mut end = vec![0.0; rank];
+                let radius = history.predict(&metric, steps, &mut end);
+                assert_eq!(end, at(2.0 + steps), "case {case}, {steps} steps");
+                // Twice the sagitta, and a 64th of the way.
+                let step = (0..rank).map(|i| first[i] + change[i]).collect();
+                let expected = 0.25 * length(change.clone()) * steps * steps + length(step) * steps / 64.0;
+                assert!((radius - expected).abs() <= 1e-12 * expected, "case {case}: {radius} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_are_those_from_the_last_q() {
+        let metric = Metric::identity(2);
+        let mut history = StepHistory::new(2);
+        assert_eq!(history.distance(&metric, &[3.0, 4.0]), f64::INFINITY);
+        history.record(&[0.0, 0.0], true);
+        for (q, expected) in [([3.0, 4.0], 5.0), ([3.0, 5.0], 1.0), ([-9.0, 0.0], 13.0), ([-9.0, 0.0], 0.0)] {
+            let distance = history.distance(&metric, &q);
+            assert!(distance >= expected && distance <= expected * (1.0 + 1e-13), "{distance} {expected}");
+            history.record(&q, false);
+        }
+    }
+
+    /// A motion is nearly straight for as many steps as its change needs to become as long as a step.
+    #[test]
+    fn motions_are_straight_while_their_change_is_small() {
+        let metric = Metric::identity(2);
+        for (step, change, limit, expected) in [
+            (10.5, 1.0, 1e9, 10.0),
+            (10.5, 1.0, 7.9, 7.0),
+            (10.5, 0.0, 1e9, 1000.0),
+            (10.5, 1e-5, 2000.0, 1000.0),
+            (1.0, 2.5, 100.0, 0.0),
+            (0.0, 1.0, 100.0, 0.0),
+            (0.0, 0.0, 100.0, 0.0),
+        ] {
+            let history = StepHistory {
+                step: vec![0.0, step],
+                change: vec![change, 0.0],
+                count: 2,
+                ..StepHistory::new(2)
+            };
+            assert_eq!(history.straight_steps(&metric, limit), expected, "{step} {change} {limit}");
+        }
+    }
+}

@@ -498,3 +498,86 @@ fn no_region_begins_during_a_pause() {
         assert_eq!(regions > 0, !is_paused);
     }
 }
+
+/// Returns a query in a ball that was searched a few steps before, where the upper one of three sheets is near the middle one;
+/// and its last q. No other region begins soon.
+fn query_in_a_ball(model: &ReducedModel, certificates: &Certificates) -> (KineticQuery, [f64; 3]) {
+    let mut kinetic = KineticQuery::new(model, certificates).unwrap();
+    // A zigzag, for which there are no capsules.
+    let path = [0.0, 1e-4, 0.0, 1e-4, 0.0, 1e-4].map(|aside| [0.0, 2.38, aside]);
+    for (i, q) in path.iter().enumerate() {
+        kinetic.control.plain_cost = 1_000_000;
+        kinetic.control.balls.share = 0.05;
+        (kinetic.control.balls.pause, kinetic.control.capsules.pause) = (0, 0);
+        kinetic.discrete(q).unwrap();
+        // Neither the jump to the first q nor a single step has a region.
+        assert!(i > 1 || !kinetic.region_pairs.has_region());
+    }
+    assert!(kinetic.region_pairs.has_region() && kinetic.region_pairs.steps > 1);
+    (kinetic.control.balls.pause, kinetic.control.capsules.pause) = (9, 9);
+    (kinetic, path[5])
+}
+
+/// Returns three sheets with certificates of a large error, which take little time.
+fn sheets_near_a_contact(intersects_at_rest: bool) -> (ReducedModel, Certificates) {
+    let model = three_sheets(3, [-1.2, 0.0, 2.5], intersects_at_rest);
+    let options = CertifyOptions::default().budget(0).epsilon(0.5);
+    let certificates = Certificates::compute(&model, &options, &()).unwrap();
+    (model, certificates)
+}
+
+/// A region holds neither beyond its radius, however short the way was, nor after a long way within it; then queries are plain
+/// ones.
+#[test]
+fn regions_end_where_z_leaves_them_and_where_it_has_travelled_too_far() {
+    let (model, certificates) = sheets_near_a_contact(false);
+    let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+    let (within, last) = query_in_a_ball(&model, &certificates);
+    let steps = within.region_pairs.steps;
+    let (near, contact) = ([0.0, last[1], 3e-4], [0.0, 2.5, 0.0]);
+    for (radius, travelled) in [(None, None), (Some(1e-5), None), (None, Some(1e3))] {
+        let mut kinetic = within.clone();
+        kinetic.region.radius = radius.unwrap_or(kinetic.region.radius);
+        kinetic.region_pairs.travelled = travelled.unwrap_or(kinetic.region_pairs.travelled);
+        let holds = radius.is_none() && travelled.is_none();
+        // After a region that did not pay no other one begins soon.
+        kinetic.control.plain_cost = 0;
+        assert_eq!(kinetic.discrete(&near).unwrap(), oracle.discrete(&near).unwrap());
+        assert_eq!(kinetic.region_pairs.has_region(), holds);
+        // Only queries in a region are steps of one.
+        assert_eq!(kinetic.region_pairs.steps, steps + u64::from(holds));
+        let expected = oracle.discrete(&contact).unwrap();
+        assert!(!expected.is_empty());
+        assert_eq!(kinetic.discrete(&contact).unwrap(), expected);
+    }
+}
+
+/// A region proves only motions free that begin at the last q and end in it, within its way and its pairs' safe distances, of
+/// models without exceptions. All others are searched.
+#[test]
+fn motions_within_a_region_are_free_and_no_others() {
+    let is_free = |kinetic: &mut KineticQuery, q_t0: &[f64], q_t1: &[f64]| {
+        let ends = [q_t0, q_t1].map(|q| kinetic.query.measure(q).unwrap());
+        kinetic.is_free_within_region(ends).unwrap()
+    };
+    for intersects_at_rest in [false, true] {
+        let (model, certificates) = sheets_near_a_contact(intersects_at_rest);
+        assert_eq!(certificates.exceptions().is_empty(), !intersects_at_rest);
+        let mut oracle = Query::with_method(&model, &certificates, Method::BruteForce).unwrap();
+        let (mut kinetic, last) = query_in_a_ball(&model, &certificates);
+        let (near, contact) = ([0.0, last[1], 2e-4], [0.0, 2.5, 0.0]);
+        assert_eq!(is_free(&mut kinetic, &last, &near), !intersects_at_rest);
+        assert!(!is_free(&mut kinetic, &near, &last) && !is_free(&mut kinetic, &last, &contact));
+        let mut smaller = kinetic.clone();
+        smaller.region.radius = 1e-5;
+        assert!(!is_free(&mut smaller, &last, &near));
+        let mut farther = kinetic.clone();
+        farther.region_pairs.travelled = 1e3;
+        assert!(!is_free(&mut farther, &last, &near));
+        for (q_t0, q_t1) in [(last, near), (last, contact), (contact, last)] {
+            let expected = oracle.continuous(&q_t0, &q_t1).unwrap();
+            assert_eq!(expected.is_empty(), !intersects_at_rest && q_t1 == near);
+            assert_eq!(kinetic.continuous(&q_t0, &q_t1).unwrap(), expected);
+        }
+    }
+}
