@@ -66,7 +66,7 @@ impl AffineMap {
     pub(crate) fn separates(
         &self,
         model: &ScaledModel,
-        [x, y]: [&Triangle; 2],
+        [x, y]: [Triangle<'_>; 2],
         AffineWitness { dir, rate, pyramid }: &AffineWitness,
         radius: &Radius,
     ) -> bool {
@@ -93,11 +93,11 @@ impl AffineMap {
     }
 
     /// Returns the largest squared residual of the nine pairs of corners.
-    fn largest_residual(&self, x: &Triangle, y: &Triangle, differences: &[Vector]) -> Dyadic {
+    fn largest_residual(&self, x: Triangle<'_>, y: Triangle<'_>, differences: &[Vector]) -> Dyadic {
         let rank = self.gradient.len() / 9;
         let mut largest = Dyadic::default();
         for (ij, d) in differences.iter().enumerate() {
-            let (i, j) = (&x[ij / 3], &y[ij % 3]);
+            let (i, j) = (x[ij / 3], y[ij % 3]);
             let residual = (0..3 * rank).map(|ck| {
                 let (c, k) = (ck / rank, ck % rank);
                 let map = (0..3).map(|l| &self.gradient[(3 * c + l) * rank + k] * &d[l]).sum();

@@ -1,10 +1,10 @@
 //! Certificates: the hierarchy, which must be a partition, and the radii that queries rely on.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, claim, proof, require};
+use crate::refusal::{Refusal, claim, proof};
 
 /// A bucket has at most this many triangles, and is not the root. The pair tree ends at buckets. Leaves also have at most this many.
-const BUCKET: u32 = 64;
+pub(crate) const BUCKET: u32 = 64;
 /// The largest number of children of a node.
 const MAX_CHILDREN: u32 = 4;
 /// The largest number of levels of a hierarchy.
@@ -82,10 +82,10 @@ impl Certificates {
         let reals = [&this.node_radii[..], &this.root_pair_radii, &[pair_limit]].concat();
         let are_radii =
             reals.iter().all(|radius| *radius >= 0.0) && this.radii.iter().all(|radius| *radius >= 0.0);
-        require(are_radii, "a radius is negative or not a number")?;
+        claim(are_radii, "a radius is negative or not a number")?;
         let starts = if pair_limit > 0.0 { this.nodes.len() } else { 0 };
         let fits = pair_limit.is_finite() && this.starts.len() == starts;
-        require(fits, "the limit or the starts of the pair tree do not fit the hierarchy")?;
+        claim(fits, "the limit or the starts of the pair tree do not fit the hierarchy")?;
         Ok(this)
     }
 

@@ -58,10 +58,9 @@ impl<'a> Container<'a> {
         let file = Self::parse_header(bytes)
             .ok_or_else(|| Refusal::Input("its header is malformed or too large".into()))?;
         require(file.text("format")? == format, "it is of another kind")?;
-        match file.text("version")?.parse() {
-            Ok(version) if (1..=newest).contains(&version) => Ok(file),
-            _ => input(format!("its version is not one from 1 to {newest}")),
-        }
+        let version = file.text("version")?;
+        let is_known = (1..=newest).any(|known| known.to_string() == version);
+        if is_known { Ok(file) } else { input(format!("its version is not one from 1 to {newest}")) }
     }
 
     fn parse_header(bytes: &'a [u8]) -> Option<Self> {
@@ -69,7 +68,7 @@ impl<'a> Container<'a> {
         let header = bytes[LENGTH..].get(..length).filter(|_| length <= MAX_HEADER)?;
         let data = &bytes[LENGTH + length..];
         let Value::Object(entries) = serde_json::from_slice(header).ok()? else { return None };
-        let (mut texts, mut tensors) = (BTreeMap::new(), BTreeMap::new());
+        let (mut texts, mut tensors, mut ranges) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
         for (name, entry) in entries {
             if name == "__metadata__" {
                 for (key, text) in entry.as_object()? {
@@ -82,10 +81,14 @@ impl<'a> Container<'a> {
                 numbers.map(|n| n.as_u64().and_then(|n| usize::try_from(n).ok())).collect()
             };
             let &[begin, end] = numbers("data_offsets")?.as_slice() else { return None };
+            ranges.push([begin, end]);
             let dtype = entry.get("dtype")?.as_str()?.to_owned();
             tensors.insert(name, Tensor { dtype, shape: numbers("shape")?, bytes: data.get(begin..end)? });
         }
-        Some(Self { texts, tensors })
+        // Tensors lie one after the other, as in all files of sscc: no byte has two meanings, or none.
+        ranges.sort_unstable();
+        let end = ranges.iter().try_fold(0, |end, range| (range[0] == end).then_some(range[1]))?;
+        (end == data.len()).then_some(Self { texts, tensors })
     }
 
     pub(crate) fn text(&self, key: &str) -> Result<&str, Refusal> {

@@ -7,9 +7,11 @@ use crate::inequality::stays_open;
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
-/// The number of values that a direction may keep. Lists of triangles of usual leaves and ranks have fewer. Values of others are
-/// computed again, so that no proof exhausts the memory.
-const MAX_KEPT: usize = 1 << 14;
+/// The memory for values along directions that all threads may keep together, in bytes. Values beyond it are computed again, so that
+/// no proof exhausts the memory. Lists of triangles of usual leaves and ranks need less.
+const MAX_KEPT: usize = 1 << 27;
+/// Bytes for each value that a table and the allocator add, about.
+const PER_VALUE: usize = 24;
 
 /// A point of a triangle: its position at the centre and its modes (three rows).
 #[derive(Clone)]
@@ -19,7 +21,7 @@ pub(crate) struct Corner {
 }
 
 /// A triangle, or a quarter of one.
-pub(crate) type Triangle = [Corner; 3];
+pub(crate) type Triangle<'a> = [&'a Corner; 3];
 
 impl Corner {
     pub(crate) fn of(model: &ScaledModel, vertex: u32) -> Self {
@@ -41,53 +43,90 @@ impl Corner {
     }
 }
 
-/// Returns the four quarters of a triangle, cut at the middles of its edges.
-pub(crate) fn quarters([p, q, r]: &Triangle) -> [Triangle; 4] {
-    let (pq, qr, rp) = (p.middle(q), q.middle(r), r.middle(p));
-    let quarter = |a: &Corner, b: &Corner, c: &Corner| [a.clone(), b.clone(), c.clone()];
-    [quarter(p, &pq, &rp), quarter(&pq, q, &qr), quarter(&rp, &qr, r), quarter(&pq, &qr, &rp)]
+/// Returns the middles of the three edges of a triangle.
+pub(crate) fn middles([p, q, r]: Triangle<'_>) -> [Corner; 3] {
+    [p.middle(q), q.middle(r), r.middle(p)]
+}
+
+/// Returns the four quarters of a triangle, which share its corners and its middles.
+pub(crate) fn quarters<'a>([p, q, r]: Triangle<'a>, [pq, qr, rp]: Triangle<'a>) -> [Triangle<'a>; 4] {
+    [[p, pq, rp], [pq, q, qr], [rp, qr, r], [pq, qr, rp]]
 }
 
 /// Returns the nine differences of corners, from the first triangle to the second.
-pub(crate) fn differences(x: &Triangle, y: &Triangle) -> Vec<Vector> {
+pub(crate) fn differences(x: Triangle<'_>, y: Triangle<'_>) -> Vec<Vector> {
     x.iter().flat_map(|i| y.iter().map(move |j| minus(&j.position, &i.position))).collect()
 }
 
+/// The directions of a list of triangles.
+pub(crate) struct Directions {
+    all: Vec<Direction>,
+    /// The memory of the values that they keep, and its limit, in bytes.
+    kept: usize,
+    limit: usize,
+}
+
 /// A direction, and the positions and modes of vertices along it that have been computed.
-pub(crate) struct Direction {
+struct Direction {
     dir: Vector,
     errors: [Dyadic; 2],
     vertices: HashMap<u32, (Dyadic, Vec<Dyadic>)>,
     apart: HashMap<[u32; 2], bool>,
 }
 
-impl Direction {
-    pub(crate) fn new(model: &ScaledModel, dir: Vector) -> Self {
-        let errors = model.errors(&dir);
-        Self { dir, errors, vertices: HashMap::new(), apart: HashMap::new() }
+impl Directions {
+    /// Creates an empty list for one of a number of threads.
+    pub(crate) fn new(threads: usize) -> Self {
+        Self { all: Vec::new(), kept: 0, limit: MAX_KEPT / threads.max(1) }
     }
 
-    /// Whether the direction separates two simplices below a radius, that is, all nine pairs of their corners. Results
-    /// are kept, so all calls on one direction must have the same radius.
-    pub(crate) fn separates(&mut self, model: &ScaledModel, [x, y]: Simplices, radius: &Radius) -> bool {
-        let rank = self.vertices.values().next().map_or(0, |(_, row)| row.len());
-        if self.vertices.len() * (rank + 1) > MAX_KEPT || self.apart.len() > MAX_KEPT {
-            self.vertices.clear();
-            self.apart.clear();
+    pub(crate) fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Adds a direction at an index, in place of all that are not before it.
+    pub(crate) fn set(&mut self, index: usize, model: &ScaledModel, dir: Vector) {
+        self.all.truncate(index);
+        let errors = model.errors(&dir);
+        self.all.push(Direction { dir, errors, vertices: HashMap::new(), apart: HashMap::new() });
+    }
+
+    /// Whether a direction separates two simplices below a radius, that is, all nine pairs of their corners. Results
+    /// are kept, so all calls on one list must have the same radius.
+    pub(crate) fn separate(
+        &mut self,
+        index: usize,
+        model: &ScaledModel,
+        [x, y]: Simplices,
+        radius: &Radius,
+    ) -> bool {
+        if self.kept > self.limit {
+            self.kept = 0;
+            for direction in &mut self.all {
+                (direction.vertices, direction.apart) = (HashMap::new(), HashMap::new());
+            }
         }
+        let Direction { dir, errors, vertices, apart } = &mut self.all[index];
         for i in x.into_iter().chain(y) {
-            self.vertices.entry(i).or_insert_with(|| Corner::of(model, i).along(&self.dir));
+            vertices.entry(i).or_insert_with(|| {
+                let (at, row) = Corner::of(model, i).along(dir);
+                self.kept += row.iter().chain([&at]).map(|x| x.size() + PER_VALUE).sum::<usize>();
+                (at, row)
+            });
         }
-        let Self { errors, vertices, apart, .. } = self;
         x.into_iter().flat_map(|i| y.map(|j| [i, j])).all(|pair @ [i, j]| {
-            *apart.entry(pair).or_insert_with(|| are_apart(&vertices[&i], &vertices[&j], errors, radius))
+            *apart.entry(pair).or_insert_with(|| {
+                self.kept += PER_VALUE;
+                are_apart(&vertices[&i], &vertices[&j], errors, radius)
+            })
         })
     }
 
-    /// Whether the direction separates two triangles, or quarters of them, below a radius.
-    pub(crate) fn separates_corners(&self, x: &Triangle, y: &Triangle, radius: &Radius) -> bool {
-        let [x, y] = [x, y].map(|triangle| triangle.each_ref().map(|corner| corner.along(&self.dir)));
-        x.iter().all(|i| y.iter().all(|j| are_apart(i, j, &self.errors, radius)))
+    /// Whether a direction separates two triangles, or quarters of them, below a radius.
+    pub(crate) fn separate_corners(&self, index: usize, pair: [Triangle<'_>; 2], radius: &Radius) -> bool {
+        let Direction { dir, errors, .. } = &self.all[index];
+        let [x, y] = pair.map(|triangle| triangle.map(|corner| corner.along(dir)));
+        x.iter().all(|i| y.iter().all(|j| are_apart(i, j, errors, radius)))
     }
 }
 
@@ -100,4 +139,50 @@ fn are_apart(
     let gap = &(at_j - at_i) - rest_error;
     let square = row_i.iter().zip(row_j).map(|(a, b)| (a - b).square()).sum();
     stays_open(&gap, rate_error, &square, radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dyadic::vector;
+    use crate::model::Model;
+    use crate::scope::Scope;
+
+    /// Values that are computed again, because many threads share the memory for them, give the same answers.
+    #[test]
+    fn answers_do_not_depend_on_the_kept_values() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / 2_f64.powi(53)
+        };
+        let (triangles, rank) = (20, 3);
+        let positions = (0..3 * triangles).map(|i| [random(), random(), (i / 3) as f64]).collect();
+        let faces = (0..triangles).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let modes = (0..9 * triangles as usize * rank).map(|_| random() - 0.5).collect();
+        let model = Model::new(positions, faces, modes, rank).unwrap();
+        let scaled = &ScaledModel::new(&model, &Scope::of_factor(vec![1.0; rank], rank), &|| false).unwrap();
+        let radius = &scaled.radius(1.5);
+        let [mut many, mut none] = [1, usize::MAX].map(Directions::new);
+        let (mut apart, mut largest) = (0, 0);
+        for step in 0..400 {
+            if step % 20 == 0 {
+                let (index, dir) = (many.len().min(3), vector([random() - 0.5, random() - 0.5, 1.0]));
+                many.set(index, scaled, dir.clone());
+                none.set(index, scaled, dir);
+            }
+            let [a, b] = [random(), random()].map(|x| (x * f64::from(triangles)) as u32);
+            let pair = [a, b].map(|t| model.faces[t as usize]);
+            let index = (random() * many.len() as f64) as usize;
+            let found = many.separate(index, scaled, pair, radius);
+            assert_eq!(none.separate(index, scaled, pair, radius), found);
+            let [x, y] = pair.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
+            assert_eq!(many.separate_corners(index, [x.each_ref(), y.each_ref()], radius), found);
+            apart += usize::from(found);
+            largest = largest.max(none.kept);
+        }
+        assert!((50..350).contains(&apart), "{apart}");
+        // The values of six vertices and nine pairs are needed at once.
+        assert!(many.kept > 10 * largest && largest < 6 * (rank + 1) * 256, "{} {largest}", many.kept);
+    }
 }

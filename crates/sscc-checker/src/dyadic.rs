@@ -22,8 +22,8 @@ impl Dyadic {
         Self { mantissa: mantissa.into(), exponent }
     }
 
-    /// Returns the exact value of a finite number; 0 for other numbers, which only the node maps of a proof can
-    /// contain: any map is valid.
+    /// Returns the exact value of a finite number, and 0 for other numbers. Only the node maps of a proof, which may be any, and
+    /// computed positions at a huge centre are not finite: their distance from the exact positions is measured after this.
     pub(crate) fn of(x: f64) -> Self {
         let bits = x.to_bits();
         let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
@@ -48,6 +48,16 @@ impl Dyadic {
 
     pub(crate) fn abs(&self) -> Self {
         Self { mantissa: self.mantissa.clone().unsigned_abs().into(), exponent: self.exponent }
+    }
+
+    /// Returns the smallest e such that the magnitude of this number is less than `2^e`; the smallest integer for 0.
+    pub(crate) fn magnitude(&self) -> i64 {
+        if self.is_zero() { i64::MIN } else { self.mantissa.bit_len() as i64 + self.exponent }
+    }
+
+    /// Returns about the size in memory, in bytes.
+    pub(crate) fn size(&self) -> usize {
+        size_of::<Self>() + self.mantissa.bit_len() / 8
     }
 
     /// Returns the number times a power of two.
@@ -85,14 +95,19 @@ impl Dyadic {
         let mut shift = (2 * ROOT_BITS).saturating_sub(mantissa.bit_len());
         shift += (exponent - shift as i64).rem_euclid(2) as usize;
         let shifted: UBig = (mantissa << shift).unsigned_abs();
-        Self { mantissa: IBig::from(shifted.sqrt()) + IBig::ONE, exponent: (exponent - shift as i64) / 2 }
+        let mut root = shifted.sqrt() + UBig::ONE;
+        // This never happens. With it, the bound does not depend on the crate's roots.
+        while &root * &root < shifted {
+            root <<= 1;
+        }
+        Self { mantissa: root.into(), exponent: (exponent - shift as i64) / 2 }
     }
 
-    /// Returns the quotient by a positive number, rounded towards 0, with at least `bits` binary digits.
-    pub(crate) fn divided_by(&self, divisor: &Self, bits: usize) -> Self {
-        let shift = (bits + divisor.mantissa.bit_len()).saturating_sub(self.mantissa.bit_len());
-        let exponent = self.exponent - divisor.exponent - shift as i64;
-        Self { mantissa: (&self.mantissa << shift) / &divisor.mantissa, exponent }
+    /// Returns the quotient by a positive number, rounded towards 0 to a multiple of `2^exponent`.
+    pub(crate) fn divided_by(&self, divisor: &Self, exponent: i64) -> Self {
+        let shift = self.exponent - divisor.exponent - exponent;
+        let (up, down) = (shift.max(0) as usize, shift.min(0).unsigned_abs() as usize);
+        Self { mantissa: (&self.mantissa << up) / (&divisor.mantissa << down), exponent }
     }
 }
 
@@ -235,8 +250,30 @@ mod tests {
             }
         }
         assert!(Dyadic::default().root_up().is_zero());
-        let third = Dyadic::of(1.0).divided_by(&Dyadic::of(3.0), 64);
-        let missing = &Dyadic::of(1.0) - &(&third * &Dyadic::of(3.0));
-        assert!(missing.is_positive() && missing < Dyadic::new(1, -60));
+    }
+
+    #[test]
+    fn quotients_are_rounded_towards_0() {
+        for (x, divisor, exponent, quotient) in [
+            (1.0, 3.0, -64, ((1_i128 << 64) / 3) as f64 / 2_f64.powi(64)),
+            (-7.0, 2.0, 0, -3.0),
+            (7.0, 2.0, -1, 3.5),
+            (1e300, 1.0, 1000, 0.0),
+            (-11.0, 0.25, 3, -40.0),
+        ] {
+            let found = Dyadic::of(x).divided_by(&Dyadic::of(divisor), exponent);
+            // The first quotient has more digits than an f64.
+            let missing = (&found - &Dyadic::of(quotient)).abs();
+            assert!(missing.is_zero() || missing < Dyadic::new(1, -54), "{x} / {divisor}");
+            assert!(found.is_zero() || found.magnitude() > exponent, "{x} / {divisor}");
+        }
+    }
+
+    #[test]
+    fn magnitudes_are_the_next_powers_of_two() {
+        for (x, magnitude) in [(1.0, 1), (-1.0, 1), (0.99, 0), (3.0, 2), (5e-324, -1073), (-1e300, 997)] {
+            assert_eq!(Dyadic::of(x).magnitude(), magnitude, "{x}");
+        }
+        assert_eq!(Dyadic::default().times_power(300).magnitude(), i64::MIN);
     }
 }

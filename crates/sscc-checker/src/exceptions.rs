@@ -1,4 +1,6 @@
-//! Exceptions: pairs that count and collide at the centre. Every query tests them, so an unnecessary exception costs only time.
+//! Exceptions: pairs that count and collide at the centre. Every query tests them, so an unnecessary exception costs only time. Such
+//! are pairs of which one triangle is a segment, with the common vertex inside: the opposite edge contains it, though no other point
+//! need be common.
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
 use crate::model::Model;

@@ -20,6 +20,9 @@ mod proof;
 mod refusal;
 mod scaled;
 mod scope;
+mod uncounted;
+
+use std::fmt;
 
 pub use files::read;
 pub use model::Model;
@@ -29,14 +32,21 @@ use certificates::Certificates;
 use proof::{Check, Proof};
 use refusal::require;
 use scope::{CountedPairs, Scope};
+use uncounted::UncountedPairs;
 
 /// The result of a check that confirmed the radii of pairs that count.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Confirmed {
     /// The number of entries into which all pairs of triangles are divided.
     pub entries: usize,
-    /// The number of entries that were proven: all of them, or a sample.
+    /// The number of entries that were proven, at least 1: all of them, or a sample.
     pub proven: usize,
+    /// The number of all entries with a positive radius. The others state nothing, so their proof is empty.
+    pub positive: usize,
+    /// The number of entries with a positive radius that were proven.
+    pub proven_positive: usize,
+    /// The root's radius, below which the whole shape is free if all entries were proven.
+    pub root_radius: f64,
     /// The parts that were not checked, as text: numbers of pairs, groups of triangles, local certificates.
     pub left_out: String,
 }
@@ -52,6 +62,35 @@ impl Confirmed {
             format!("proof: it has {proven} of {entries} entries: samples are accepted on request alone");
         if proven == entries { Ok(self) } else { Err(Refusal::Proof(cause)) }
     }
+
+    /// Checks that the proof states something: that it has all entries, or a sample with an entry of a positive radius. The author of the
+    /// proof chose the entries of a sample, so it says nothing about the others.
+    ///
+    /// # Errors
+    /// When the proof is a sample of entries of radius 0.
+    pub fn of_sample(self) -> Result<Self, Refusal> {
+        let Self { entries, proven, .. } = &self;
+        let cause = format!("proof: its {proven} of {entries} entries have radius 0, and state nothing");
+        if proven == entries || self.proven_positive > 0 { Ok(self) } else { Err(Refusal::Proof(cause)) }
+    }
+}
+
+impl fmt::Display for Confirmed {
+    /// Writes one line. It begins with "confirmed:" if all entries were proven, and with "confirmed a sample:" if not.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { entries, proven, positive, proven_positive, root_radius, left_out } = self;
+        if proven == entries {
+            write!(f, "confirmed: {proven} of {entries} entries, {positive} with a positive radius; ")?;
+            write!(f, "root's radius {root_radius:?}")?;
+        } else {
+            write!(f, "confirmed a sample: {proven} of {entries} entries, {proven_positive} of {positive} ")?;
+            write!(
+                f,
+                "with a positive radius, chosen by the author of the proof; nothing is known of the others"
+            )?;
+        }
+        write!(f, "; left out: {left_out}")
+    }
 }
 
 /// Checks a proof as [`check_until`], without cancellation.
@@ -64,10 +103,12 @@ pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -
 
 /// Checks a proof, on this number of threads (at least 1), until the caller cancels. `certificates`, `proof`: the bytes of the files.
 ///
+/// The result may be that of a sample, whose entries the author of the proof chose: call [`Confirmed::of_all_entries`].
+///
 /// # Errors
 /// [`Refusal::Input`] if the certificates are damaged, of another model, or of a kind that is not checked, or the file of the
-/// proof is no proof or of other certificates; [`Refusal::Proof`] if the hierarchy, the pair tree or an exception of the certificates is
-/// invalid, or the proof is damaged or does not hold; [`Refusal::Cancelled`] if the caller cancels.
+/// proof is no proof or of other certificates; [`Refusal::Proof`] if a radius, the hierarchy, the pair tree or an exception of the
+/// certificates is invalid, or the proof has no entry, is damaged or does not hold; [`Refusal::Cancelled`] if the caller cancels.
 pub fn check_until(
     model: &Model,
     certificates: &[u8],
@@ -80,21 +121,29 @@ pub fn check_until(
     let file = container::Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;
     let scope = Scope::read(&file, model).map_err(of_certificates)?;
     let certificates = Certificates::read(&file, model.faces.len()).map_err(of_certificates)?;
+    // Files that do not belong together are refused before work that takes longer than reading them.
+    let proof = Proof::parse(proof).map_err(of_proof)?;
+    proof.check_head(&certificates, model.rank).map_err(of_proof)?;
     let counted = CountedPairs::new(model, &scope);
     let is_of_model = digest::digest(model, &scope, &counted.classes) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
+    let entries = entries::entries(&certificates).map_err(of_certificates)?;
+    proof.check_entries(&entries).map_err(of_proof)?;
     exceptions::check(model, &scope, &counted, is_cancelled).map_err(of_certificates)?;
     let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
-    let entries = entries::entries(&certificates).map_err(of_certificates)?;
-    let proof = Proof::parse(proof).map_err(of_proof)?;
-    let is_theirs = proof.digest == certificates.digest && proof.entries == entries.len() as u64;
-    require(is_theirs, "proof: of other certificates")?;
-    let check =
-        Check { certificates: &certificates, counted: &counted, scaled: &scaled, model, is_cancelled };
-    check.run(&proof, &entries, threads).map_err(of_proof)?;
-    let groups = if scope.groups.is_some() { "pairs of groups" } else { "no groups" };
+    let uncounted = UncountedPairs::new(model, &certificates, &counted, &scope);
+    let (certificates, counted, uncounted, scaled) = (&certificates, &counted, &uncounted, &scaled);
+    Check { certificates, counted, uncounted, scaled, model, is_cancelled }
+        .run(&proof, &entries, threads)
+        .map_err(of_proof)?;
+    let is_positive = |index: usize| entries[index].radius > 0.0;
     let local = if file.has("local_nodes") { "local certificates" } else { "no local certificates" };
-    let [exceptions, ignored] = [&scope.exceptions, &scope.ignored].map(Vec::len);
-    let left_out = format!("{exceptions} exceptions, {ignored} ignored pairs, {groups}, {local}");
-    Ok(Confirmed { entries: entries.len(), proven: proof.proven.len(), left_out })
+    Ok(Confirmed {
+        entries: entries.len(),
+        proven: proof.proven.len(),
+        positive: (0..entries.len()).filter(|index| is_positive(*index)).count(),
+        proven_positive: proof.proven.iter().filter(|(index, _)| is_positive(*index)).count(),
+        root_radius: certificates.node_radii[0],
+        left_out: format!("{}, {local}", scope.left_out()),
+    })
 }

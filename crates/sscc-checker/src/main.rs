@@ -1,5 +1,6 @@
 //! `sscc-checker [--sample] MODEL [MODES] CERTIFICATES PROOF`: exit code 0 if the proof holds for all entries (with
-//! `--sample`: for those that it has), 1 if not, 2 on other errors, also if the answer cannot be written.
+//! `--sample`: for those that it has, if these state something), 1 if not, 2 on other errors, also if the answer cannot be
+//! written.
 
 use std::env;
 use std::io::{self, ErrorKind, Write};
@@ -12,9 +13,11 @@ use sscc_checker::{Confirmed, Model, Refusal, check, read};
 const USAGE: &str = "usage: sscc-checker [--sample] MODEL.model.safetensors CERTIFICATES PROOF
        sscc-checker [--sample] MESH.obj MODES.npy CERTIFICATES PROOF
 
---sample: a proof of some of the entries suffices.
-Exit codes: 0 confirmed, 1 not confirmed (also a damaged proof), 2 a file cannot be read or is of another model, the
-model or the certificates are damaged, or the answer cannot be written";
+--sample: a proof of some of the entries suffices, at least one with a positive radius. Whoever writes the proof chooses
+them, so a sample says nothing about the other entries. `sscc audit --exact` draws a sample of its own.
+Exit codes: 0 confirmed, 1 not confirmed (also a damaged or empty proof, or a wrong hierarchy, radius, pair tree or
+exception in the certificates), 2 a file cannot be read, is of another kind, or of another model or other certificates,
+a seal does not match, the metric is out of range, or the answer cannot be written";
 
 /// The exit code of errors.
 const ERROR: u8 = 2;
@@ -27,7 +30,7 @@ fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
     };
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let confirmed = check(&Model::read(mesh, modes)?, &read(certificates)?, &read(proof)?, threads)?;
-    if takes_sample { Ok(confirmed) } else { confirmed.of_all_entries() }
+    if takes_sample { confirmed.of_sample() } else { confirmed.of_all_entries() }
 }
 
 /// Writes a line. Returns the exit code of the answer if that succeeds or the reader has closed the pipe, else that of
@@ -46,10 +49,7 @@ fn main() -> ExitCode {
     }
     let takes_sample = words.first().is_some_and(|word| word == Path::new("--sample"));
     let code = match run(&words[usize::from(takes_sample)..], takes_sample) {
-        Ok(Confirmed { entries, proven, left_out }) => {
-            let line = format!("confirmed: {proven} of {entries} entries; left out: {left_out}");
-            write(io::stdout(), &line, 0)
-        }
+        Ok(confirmed) => write(io::stdout(), &confirmed.to_string(), 0),
         Err(refusal) => {
             let code = if matches!(refusal, Refusal::Proof(_)) { 1 } else { ERROR };
             write(io::stderr(), &format!("error: {refusal}"), code)

@@ -3,8 +3,10 @@
 use crate::container::Container;
 use crate::refusal::{Refusal, input, require};
 
-/// The largest magnitude of coordinates, 2^200.
-const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
+/// The largest magnitude of coordinates, and of the entries of dense metrics, 2^200.
+pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
+/// The largest number of modes.
+const MAX_MODES: usize = 1 << 20;
 
 /// A mesh and its modes, with the numbers of the file.
 #[derive(Clone, Debug)]
@@ -20,8 +22,8 @@ impl Model {
     /// Creates a model from positions at rest (V), faces (vertex numbers) and modes (3V x r by rows, three rows for a vertex).
     ///
     /// # Errors
-    /// When there are no faces or no modes, sizes do not fit each other, a face names a vertex that does not exist, or
-    /// a number is not finite or beyond 2^200.
+    /// When there are no faces, no modes or more than 2^20, sizes do not fit each other, a face names a vertex that does not
+    /// exist, or a number is not finite or beyond 2^200.
     pub fn new(
         positions: Vec<[f64; 3]>,
         faces: Vec<[u32; 3]>,
@@ -31,6 +33,7 @@ impl Model {
         let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
         let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
         require(fits, "model: it has no faces, no modes, or not three rows of modes for each vertex")?;
+        require(rank <= MAX_MODES, "model: it has more than 2^20 modes")?;
         let has_vertices = faces.as_flattened().iter().all(|i| (*i as usize) < positions.len());
         require(has_vertices, "model: a face names a vertex that does not exist")?;
         let is_in_range = positions.as_flattened().iter().chain(&modes).all(|x| x.abs() <= LARGEST);

@@ -5,20 +5,19 @@ use std::thread;
 
 use crate::affine::{AffineMap, AffineWitness};
 use crate::certificates::Certificates;
-use crate::corners::{Corner, Direction, Triangle, quarters};
+use crate::corners::{Corner, Directions, Triangle, middles, quarters};
 use crate::dyadic::{Dyadic, Vector, vector};
 use crate::entries::Entry;
 use crate::model::Model;
 use crate::node_maps::{NodeMaps, numbers_of_map};
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof, require};
+use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::{CountedPairs, Simplices};
+use crate::uncounted::UncountedPairs;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 /// The largest depth of quarters within quarters.
 const MAX_DEPTH: usize = 64;
-/// Pairs of triangles without a witness between two checks for cancellation.
-const PAIRS_PER_CHECK: usize = 1 << 12;
 
 /// Witnesses of node pairs.
 const DIRECTION: u8 = b'd';
@@ -35,9 +34,9 @@ const QUARTER_SECOND: u8 = 251;
 
 /// The parts of a proof.
 pub(crate) struct Proof<'a> {
-    pub(crate) digest: &'a [u8],
+    digest: &'a [u8],
     /// The number of all entries, proven or not.
-    pub(crate) entries: u64,
+    entries: u64,
     rank: u32,
     nodes: u32,
     maps: &'a [u8],
@@ -73,8 +72,9 @@ impl<'a> Bytes<'a> {
 
 impl<'a> Proof<'a> {
     pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+        require(bytes.iter().zip(MAGIC).all(|(a, b)| a == b), "not a proof of certificates")?;
         let mut bytes = Bytes(bytes);
-        require(bytes.take(MAGIC.len()).ok() == Some(MAGIC), "not a proof of certificates")?;
+        bytes.take(MAGIC.len())?;
         let digest = bytes.take(32)?;
         let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
         let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
@@ -93,7 +93,20 @@ impl<'a> Proof<'a> {
         if !bytes.0.is_empty() {
             return proof("there are bytes after its end");
         }
+        claim(!proven.is_empty(), "it proves no entry")?;
         Ok(Self { digest, entries, rank, nodes, maps, proven })
+    }
+
+    /// Checks that the proof is of these certificates, before costly work.
+    pub(crate) fn check_head(&self, certificates: &Certificates, rank: usize) -> Result<(), Refusal> {
+        require(self.digest == certificates.digest, "of other certificates")?;
+        let fits = (self.rank as usize, self.nodes as usize) == (rank, certificates.nodes.len());
+        claim(fits, "it has another number of modes or nodes than the certificates")
+    }
+
+    /// Checks that the proof has entries of this list.
+    pub(crate) fn check_entries(&self, entries: &[Entry]) -> Result<(), Refusal> {
+        require(self.entries == entries.len() as u64, "of other certificates")
     }
 }
 
@@ -101,6 +114,7 @@ impl<'a> Proof<'a> {
 pub(crate) struct Check<'a> {
     pub(crate) certificates: &'a Certificates,
     pub(crate) counted: &'a CountedPairs<'a>,
+    pub(crate) uncounted: &'a UncountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
     pub(crate) model: &'a Model,
     pub(crate) is_cancelled: &'a IsCancelled<'a>,
@@ -109,16 +123,12 @@ pub(crate) struct Check<'a> {
 impl Check<'_> {
     /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some.
     pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
-        let nodes = self.certificates.nodes.len();
-        if (file.rank as usize, file.nodes as usize) != (self.scaled.rank, nodes) {
-            return proof("it has another number of modes or nodes than the certificates");
-        }
         let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
         let next = AtomicUsize::new(0);
         let work = || {
             loop {
                 let (index, bytes) = file.proven.get(next.fetch_add(1, Ordering::Relaxed))?;
-                if let Err(refusal) = self.entry(&maps, entries[*index], bytes) {
+                if let Err(refusal) = self.entry(&maps, entries[*index], bytes, threads) {
                     return Some((*index, refusal));
                 }
             }
@@ -140,10 +150,10 @@ impl Check<'_> {
         proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
     }
 
-    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8]) -> Result<(), Refusal> {
+    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8], threads: usize) -> Result<(), Refusal> {
         let radius = self.scaled.radius(entry.radius);
-        let (bytes, directions) = (Bytes(bytes), Vec::new());
-        let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
+        let (bytes, directions) = (Bytes(bytes), Directions::new(threads));
+        let mut reader = EntryReader { check: self, maps, radius, bytes, threads, directions, map: None };
         // An entry of radius 0 needs no witness.
         if entry.radius > 0.0 {
             reader.nodes(entry.nodes)?;
@@ -158,8 +168,9 @@ struct EntryReader<'a> {
     maps: &'a NodeMaps<'a>,
     radius: Radius,
     bytes: Bytes<'a>,
+    threads: usize,
     /// The directions of the last list of triangles.
-    directions: Vec<Direction>,
+    directions: Directions,
     /// The last affine map of this list.
     map: Option<AffineMap>,
 }
@@ -168,8 +179,7 @@ impl EntryReader<'_> {
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         check_cancelled(self.check.is_cancelled)?;
-        let Check { certificates, counted, .. } = self.check;
-        let children = |n: u32| certificates.nodes[n as usize].children();
+        let children = |n: u32| self.check.certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
@@ -179,18 +189,7 @@ impl EntryReader<'_> {
                 }
                 proof(format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => {
-                // Large nodes have many pairs.
-                for (number, [a, b]) in certificates.pairs([n, m]).enumerate() {
-                    if number % PAIRS_PER_CHECK == PAIRS_PER_CHECK - 1 {
-                        check_cancelled(self.check.is_cancelled)?;
-                    }
-                    if !counted.simplices(a, b).is_empty() {
-                        return proof(format!("triangles {a} and {b} count"));
-                    }
-                }
-                Ok(())
-            }
+            [NOTHING_COUNTS] => self.check.uncounted.check([n, m]),
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
             [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
             [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
@@ -199,7 +198,7 @@ impl EntryReader<'_> {
     }
 
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
-        (self.directions, self.map) = (Vec::new(), None);
+        (self.directions, self.map) = (Directions::new(self.threads), None);
         let Check { certificates, counted, .. } = self.check;
         for [a, b] in certificates.pairs(nodes) {
             check_cancelled(self.check.is_cancelled)?;
@@ -217,10 +216,10 @@ impl EntryReader<'_> {
         let scaled = self.check.scaled;
         let [tag] = self.bytes.array()?;
         match self.direction(tag)? {
-            Some(number) => Ok(self.directions[number].separates(scaled, simplices, &self.radius)),
+            Some(index) => Ok(self.directions.separate(index, scaled, simplices, &self.radius)),
             None => {
                 let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
-                self.parts([&x, &y], tag, 0)
+                self.parts([x.each_ref(), y.each_ref()], tag, 0)
             }
         }
     }
@@ -229,25 +228,26 @@ impl EntryReader<'_> {
     fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
         if tag == NEW_DIRECTION {
             // Only as many directions are kept as have an index; a further one replaces the last.
-            self.directions.truncate(QUARTER_SECOND.into());
-            self.directions.push(Direction::new(self.check.scaled, self.bytes.vector()?));
-            return Ok(Some(self.directions.len() - 1));
+            let index = self.directions.len().min(QUARTER_SECOND.into());
+            self.directions.set(index, self.check.scaled, self.bytes.vector()?);
+            return Ok(Some(index));
         }
         let is_known = tag < QUARTER_SECOND && usize::from(tag) < self.directions.len();
         Ok(is_known.then_some(tag.into()))
     }
 
     /// Whether a witness holds for two triangles, or parts of them.
-    fn parts(&mut self, [x, y]: [&Triangle; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
+    fn parts(&mut self, [x, y]: [Triangle<'_>; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
         check_cancelled(self.check.is_cancelled)?;
         let scaled = self.check.scaled;
-        if let Some(number) = self.direction(tag)? {
-            return Ok(self.directions[number].separates_corners(x, y, &self.radius));
+        if let Some(index) = self.direction(tag)? {
+            return Ok(self.directions.separate_corners(index, [x, y], &self.radius));
         }
         match tag {
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
-                for part in quarters(if tag == QUARTER_FIRST { x } else { y }) {
-                    let pair = if tag == QUARTER_FIRST { [&part, y] } else { [x, &part] };
+                let whole = if tag == QUARTER_FIRST { x } else { y };
+                for part in quarters(whole, middles(whole).each_ref()) {
+                    let pair = if tag == QUARTER_FIRST { [part, y] } else { [x, part] };
                     let [tag] = self.bytes.array()?;
                     if !self.parts(pair, tag, depth + 1)? {
                         return Ok(false);
@@ -288,17 +288,9 @@ mod tests {
         let corners = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
         let mode = (0..18).map(|row| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 }).collect();
         let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;
-        let scope = Scope {
-            factor: vec![1.0],
-            is_dense: false,
-            center: vec![0.0],
-            one_vertex: false,
-            weld: false,
-            ignored: Vec::new(),
-            exceptions: Vec::new(),
-            groups: None,
-        };
+        let scope = Scope::of_factor(vec![1.0], 1);
         let (certificates, counted) = (Certificates::of_leaf(2, 0.5), CountedPairs::new(&model, &scope));
+        let uncounted = &UncountedPairs::new(&model, &certificates, &counted, &scope);
         let scaled = &ScaledModel::new(&model, &scope, &|| false)?;
         let witness = |dir: [f64; 3]| {
             let numbers = dir.into_iter().flat_map(f64::to_le_bytes);
@@ -310,7 +302,38 @@ mod tests {
         let file = Proof { digest: &[], entries: ENTRIES as u64, rank: 1, nodes: 1, maps: &[], proven };
         let entries = [Entry { nodes: [0, 0], radius: 0.5 }; ENTRIES];
         let (certificates, counted, model) = (&certificates, &counted, &model);
-        Check { certificates, counted, scaled, model, is_cancelled }.run(&file, &entries, threads)
+        Check { certificates, counted, uncounted, scaled, model, is_cancelled }.run(&file, &entries, threads)
+    }
+
+    #[test]
+    fn the_head_is_checked_before_all_else() {
+        let cause = |bytes: &[u8]| Proof::parse(bytes).err();
+        let head = |rank: u32, nodes: u32, count: u64| {
+            let numbers =
+                [&2_u64.to_le_bytes()[..], &count.to_le_bytes(), &rank.to_le_bytes(), &nodes.to_le_bytes()];
+            [&MAGIC[..], &[0; 32], &numbers.concat(), &vec![0; 8 * 15 * nodes as usize]].concat()
+        };
+        for bytes in [&b"x"[..], b"SSCCPRF2", b"SSCCPRX1 and more", b"{}"] {
+            assert_eq!(cause(bytes), Some(Refusal::Input("not a proof of certificates".into())), "{bytes:?}");
+        }
+        let entry = [&1_u64.to_le_bytes()[..], &0_u32.to_le_bytes()].concat();
+        let whole = [head(1, 1, 1), entry.clone()].concat();
+        for length in 0..whole.len() {
+            assert_eq!(cause(&whole[..length]), Some(Refusal::Proof("it ends too early".into())), "{length}");
+        }
+        assert_eq!(cause(&head(1, 1, 0)), Some(Refusal::Proof("it proves no entry".into())));
+        assert!(matches!(cause(&[&whole[..], &entry].concat()), Some(Refusal::Proof(_))));
+        assert!(matches!(cause(&[head(1, 1, 2), entry.clone(), entry].concat()), Some(Refusal::Proof(_))));
+        // No memory is reserved for numbers that the file does not have.
+        assert_eq!(cause(&head(u32::MAX, 1, u64::MAX)), Some(Refusal::Proof("it ends too early".into())));
+        let certificates = Certificates::of_leaf(2, 0.5);
+        let check = |bytes: &[u8]| Proof::parse(bytes).unwrap().check_head(&certificates, 1).err();
+        assert_eq!(check(&whole), None);
+        let mut other = whole.clone();
+        other[8] ^= 1;
+        assert_eq!(check(&other), Some(Refusal::Input("of other certificates".into())));
+        let two_nodes = [head(1, 2, 1), whole[whole.len() - 12..].to_vec()].concat();
+        assert!(matches!(check(&two_nodes), Some(Refusal::Proof(_))));
     }
 
     /// One thread is what remains if the system refuses all others.

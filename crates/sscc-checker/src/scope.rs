@@ -3,8 +3,11 @@
 use std::collections::HashMap;
 
 use crate::container::Container;
-use crate::model::Model;
+use crate::model::{LARGEST, Model};
 use crate::refusal::{Refusal, input, require};
+
+/// The largest number of modes of a dense metric, whose factor takes a time cubic in it.
+const MAX_DENSE: usize = 1024;
 
 /// Metric, centre and contact filter of certificates.
 pub(crate) struct Scope {
@@ -36,15 +39,19 @@ impl Scope {
             true => file.shaped("metric_factor", &[Some(rank), Some(rank)])?,
             false => file.shaped("metric_scales", &[Some(rank)])?,
         };
+        require(!is_dense || rank <= MAX_DENSE, "metric: it is dense, and has more than 1024 rows")?;
         let is_row = |i: usize| {
             let row = &factor[i * rank..][..rank];
-            row[..i].iter().all(|s| *s == 0.0) && row[i] > 0.0
+            let is_in_range = row[i] >= LARGEST.recip() && row.iter().all(|s| s.abs() <= LARGEST);
+            is_in_range && row[..i].iter().all(|s| *s == 0.0)
         };
-        let is_triangular = !is_dense || (0..rank).all(is_row);
+        let is_factor = match is_dense {
+            true => (0..rank).all(is_row),
+            false => factor.iter().all(|s| *s > 0.0 && s.is_finite()),
+        };
         let center = file.shaped::<f64>("center", &[Some(rank)])?;
-        let is_finite = factor.iter().chain(&center).all(|x| x.is_finite());
-        let is_positive = is_dense || factor.iter().all(|s| *s > 0.0);
-        require(is_finite && is_triangular && is_positive, "metric or centre: a number is out of range")?;
+        let is_finite = center.iter().all(|x| x.is_finite());
+        require(is_factor && is_finite, "metric or centre: a number is out of range")?;
         let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
         let weld = is_second(file, "weld", ["none", "equal"])?;
         let triangles = model.faces.len();
@@ -62,6 +69,19 @@ impl Scope {
         }
         let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
+    }
+
+    /// Returns which pairs of triangles do not count, as text.
+    pub(crate) fn left_out(&self) -> String {
+        let vertices = if self.one_vertex { "two common vertices" } else { "common vertices" };
+        let welded = if self.weld { " (equal ones are welded)" } else { "" };
+        let [exceptions, ignored] = [&self.exceptions, &self.ignored].map(Vec::len);
+        let groups = match &self.groups {
+            None => "no groups".to_owned(),
+            Some(Groups { others_count: true, listed, .. }) => format!("{} pairs of groups", listed.len()),
+            Some(Groups { listed, .. }) => format!("all pairs of groups but {}", listed.len()),
+        };
+        format!("pairs with {vertices}{welded}, {exceptions} exceptions, {ignored} ignored pairs, {groups}")
     }
 }
 
@@ -137,7 +157,50 @@ impl<'a> CountedPairs<'a> {
     fn groups_count(&self, a: u32, b: u32) -> bool {
         let Some(groups) = &self.scope.groups else { return true };
         let [g, h] = [a, b].map(|t| groups.of_triangles[t as usize]);
-        let is_listed = groups.listed.binary_search(&[g.min(h), g.max(h)]).is_ok();
-        is_listed != groups.others_count
+        groups.count(g, h)
+    }
+}
+
+impl Groups {
+    /// Whether triangles of two groups count.
+    pub(crate) fn count(&self, g: u32, h: u32) -> bool {
+        let is_listed = self.listed.binary_search(&[g.min(h), g.max(h)]).is_ok();
+        is_listed != self.others_count
+    }
+}
+
+#[cfg(test)]
+impl Scope {
+    /// Returns the default scope about 0, with the factor of a diagonal or of a dense metric.
+    pub(crate) fn of_factor(factor: Vec<f64>, rank: usize) -> Self {
+        Self {
+            is_dense: factor.len() != rank,
+            factor,
+            center: vec![0.0; rank],
+            one_vertex: false,
+            weld: false,
+            ignored: Vec::new(),
+            exceptions: Vec::new(),
+            groups: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pairs_that_do_not_count_are_stated() {
+        let mut scope = Scope::of_factor(vec![1.0], 1);
+        assert_eq!(scope.left_out(), "pairs with common vertices, 0 exceptions, 0 ignored pairs, no groups");
+        (scope.weld, scope.one_vertex) = (true, true);
+        (scope.ignored, scope.exceptions) = (vec![[0, 1]], vec![[0, 2], [1, 2]]);
+        let groups = |others_count| Groups { of_triangles: vec![0; 3], others_count, listed: vec![[0, 0]] };
+        scope.groups = Some(groups(true));
+        let vertices = "pairs with two common vertices (equal ones are welded)";
+        assert_eq!(scope.left_out(), format!("{vertices}, 2 exceptions, 1 ignored pairs, 1 pairs of groups"));
+        scope.groups = Some(groups(false));
+        assert!(scope.left_out().ends_with(", all pairs of groups but 1"));
     }
 }

@@ -112,6 +112,9 @@ fn proofs_of_all_kinds_of_certificates_are_confirmed() {
         let proof = prove(&model, &certificates);
         let confirmed = check(&model, &file, &proof).unwrap_or_else(|refusal| panic!("{seed}: {refusal}"));
         assert_eq!(confirmed.proven, confirmed.entries, "seed {seed}");
+        assert_eq!(confirmed.proven_positive, confirmed.positive, "seed {seed}");
+        assert!(confirmed.positive <= confirmed.entries, "seed {seed}");
+        assert_eq!(confirmed.root_radius.to_bits(), certificates.root_radius().to_bits(), "seed {seed}");
         entries += confirmed.entries;
         trees += usize::from(certificates.parts().pair_tree.limit() > 0.0);
         positive += usize::from(certificates.root_radius() > 0.0);
@@ -202,8 +205,16 @@ fn dropped_pairs_are_refused() {
     let sample = [prover.header(all.len()), prover.prove(&all, None, &()).unwrap()].concat();
     let confirmed = check(&model, &file, &sample).unwrap();
     assert_eq!((confirmed.proven, confirmed.entries), (all.len(), all.len() + 1));
-    assert_eq!(confirmed.left_out, "0 exceptions, 0 ignored pairs, no groups, no local certificates");
+    let left_out =
+        "pairs with common vertices, 0 exceptions, 0 ignored pairs, no groups, no local certificates";
+    assert_eq!(confirmed.left_out, left_out);
+    let line = confirmed.to_string();
+    assert!(line.starts_with(&format!("confirmed a sample: {} of {} ", all.len(), all.len() + 1)), "{line}");
+    assert!(line.ends_with(left_out), "{line}");
+    assert_eq!(confirmed.clone().of_sample().as_ref(), Ok(&confirmed));
     assert!(refusal(confirmed.of_all_entries(), true).contains("samples are accepted on request"));
+    // Without any entry a proof states nothing, not even as a sample.
+    assert!(refusal(check(&model, &file, &prover.header(0)), true).contains("it proves no entry"));
     // Bytes that are missing, and bytes that follow.
     assert!(refusal(check(&model, &file, &proof[..proof.len() - 1]), true).contains("too early"));
     assert!(refusal(check(&model, &file, &[&proof[..], b"x"].concat()), true).contains("after its end"));
@@ -268,6 +279,11 @@ fn exceptions_must_count_and_collide_at_the_centre() {
         CertificateParts { scope: scope.into(), digest, ..parts.clone() }.try_into().unwrap()
     };
     let bytes = |certificates: &Certificates| certificates_to_bytes(certificates).unwrap();
+    // The head of a proof names model and scope, and is compared before exceptions are tested.
+    let proof_of = |certificates: &Certificates| {
+        let digest = certificates.parts().digest.0;
+        [&proof[..8], &digest, &proof[8 + digest.len()..]].concat()
+    };
     let triangles = model.mesh().faces().len() as u32;
     let is_apart = |pair: &(u32, u32)| {
         let [a, b] = [pair.0, pair.1].map(|t| model.mesh().faces()[t as usize]);
@@ -280,11 +296,15 @@ fn exceptions_must_count_and_collide_at_the_centre() {
         more.push(pair);
         more.sort_unstable();
         more.dedup();
-        assert!(refusal(check(&model, &bytes(&with(more)), &proof), true).contains(cause));
+        let more = with(more);
+        assert!(refusal(check(&model, &bytes(&more), &proof), false).contains("other certificates"));
+        assert!(refusal(check(&model, &bytes(&more), &proof_of(&more)), true).contains(cause));
     }
     // An exception is missing: no witness can prove its entry.
     let less = with(exceptions[1..].to_vec());
     assert!(refusal(check(&model, &bytes(&less), &proof), false).contains("other certificates"));
+    let line = refusal(check(&model, &bytes(&less), &proof_of(&less)), true);
+    assert!(line.contains("entry "), "{line}");
     let prover = Prover::new(&model, &less).unwrap();
     let all: Vec<usize> = (0..prover.entries()).collect();
     assert!(prover.prove(&all, None, &()).unwrap_err().to_string().contains("has no proof"));
