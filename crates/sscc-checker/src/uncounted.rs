@@ -149,4 +149,41 @@ mod tests {
         assert_eq!(check(apart(2), |scope| scope.ignored = vec![[0, 1]]), Ok(()));
         assert_eq!(check(apart(2), |scope| scope.exceptions = vec![[0, 1]]), Ok(()));
     }
+
+    /// Neither groups nor a common vertex stand for a pair that counts: tests of all pairs are the oracle.
+    #[test]
+    fn answers_are_those_of_all_pairs() {
+        let mut state = 7_u64;
+        let mut random = |n: u32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % u64::from(n)) as u32
+        };
+        let (mut by_shortcut, mut refused) = (0, 0);
+        for case in 0..3000 {
+            let triangles = 2 + random(4);
+            // Few vertices, so that triangles often have one in common; in some cases all of them contain vertex 0.
+            let face = |random: &mut dyn FnMut(u32) -> u32| {
+                let first = if case % 3 == 0 { 0 } else { random(7) };
+                [first, (first + 1 + random(3)) % 7, (first + 4 + random(3)) % 7]
+            };
+            let faces: Vec<[u32; 3]> = (0..triangles).map(|_| face(&mut random)).collect();
+            let model = Model::new(vec![[0.0; 3]; 7], faces, vec![0.0; 21], 1).unwrap();
+            let mut scope = Scope::of_factor(vec![1.0], 1);
+            scope.one_vertex = random(2) == 0;
+            let kinds = 1 + random(2);
+            let of_triangles = (0..triangles).map(|_| random(kinds)).collect();
+            let listed = [[0, 0], [0, 1], [1, 1]].into_iter().filter(|_| random(2) == 0).collect();
+            scope.groups =
+                (case % 2 == 0).then_some(Groups { of_triangles, others_count: random(2) == 0, listed });
+            let counted = CountedPairs::new(&model, &scope);
+            let certificates = Certificates::of_leaf(triangles, 1.0);
+            let uncounted = UncountedPairs::new(&model, &certificates, &counted, &scope);
+            let counts = certificates.pairs([0, 0]).any(|[a, b]| !counted.simplices(a, b).is_empty());
+            assert_eq!(uncounted.check([0, 0]).is_err(), counts, "case {case}");
+            let Common { group, vertices } = &uncounted.nodes[0];
+            by_shortcut += usize::from(!counts && (group.is_some() || !vertices.is_empty()));
+            refused += usize::from(counts && (group.is_some() || !vertices.is_empty()));
+        }
+        assert!(by_shortcut > 300 && refused > 100, "{by_shortcut} {refused}");
+    }
 }

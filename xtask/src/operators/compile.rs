@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
@@ -36,6 +36,8 @@ pub fn compile() -> Result<(Vec<Variant>, Vec<PathBuf>), String> {
     let folder = root().join("target/operators");
     let workspace = folder.join("workspace");
     copy_workspace(&workspace)?;
+    let mut test = tool(&folder, "test");
+    succeed(test.stdout(Stdio::null()), "the tests of operators/ fail")?;
     let mut excluded = BTreeSet::new();
     for _ in 0..MAX_ROUNDS {
         let variants = instrument(&folder, &workspace, &excluded)?;
@@ -72,19 +74,29 @@ fn copy(from: &Path, to: &Path) -> Result<(), String> {
 
 /// Puts the variants into the copy of the core. Returns all that are not excluded.
 fn instrument(folder: &Path, workspace: &Path, excluded: &BTreeSet<u32>) -> Result<Vec<Variant>, String> {
-    // Files that are the same as before are not compiled again.
+    // Files that are the same as before are not compiled again. Files that are gone have no variants.
     let core = folder.join("core");
+    if core.is_dir() {
+        fs::remove_dir_all(&core).map_err(|error| format!("{}: {error}", core.display()))?;
+    }
     copy_folder(&root().join("crates/sscc/src"), &core)?;
     let (numbers, list) = (folder.join("excluded"), folder.join("variants.tsv"));
     let text = excluded.iter().map(|number| format!("{number}\n")).collect::<String>();
     fs::write(&numbers, text).map_err(|error| format!("{}: {error}", numbers.display()))?;
-    let mut tool = cargo();
-    tool.args(["run", "--quiet", "--locked", "--manifest-path"]).arg(root().join("operators/Cargo.toml"));
-    tool.arg("--target-dir").arg(folder.join("tool")).arg("--").arg(&core);
-    succeed(tool.args([&numbers, &list]).args(FOLDERS), "the variants cannot be made")?;
+    let mut run = tool(folder, "run");
+    run.arg("--").args([&core, &numbers, &list]).args(FOLDERS);
+    succeed(&mut run, "the variants cannot be made")?;
     copy_folder(&core, &workspace.join("crates/sscc/src"))?;
     let text = fs::read_to_string(&list).map_err(|error| format!("{}: {error}", list.display()))?;
     text.lines().map(|line| variant(line).ok_or_else(|| format!("not a variant: {line}"))).collect()
+}
+
+/// Returns cargo's command `run` or `test` for the program that makes the variants.
+fn tool(folder: &Path, command: &str) -> Command {
+    let mut tool = cargo();
+    tool.args([command, "--quiet", "--locked", "--manifest-path"]).arg(root().join("operators/Cargo.toml"));
+    tool.arg("--target-dir").arg(folder.join("tool"));
+    tool
 }
 
 fn copy_folder(from: &Path, to: &Path) -> Result<(), String> {
@@ -112,7 +124,7 @@ fn not_compiling(workspace: &Path) -> Result<BTreeSet<u32>, String> {
     let mut check = cargo();
     check.args(["check", "--quiet", "-p", "sscc", "--lib", "--message-format=json"]);
     let compiler = in_copy(&mut check, workspace)
-        .stderr(std::process::Stdio::inherit())
+        .stderr(Stdio::inherit())
         .output()
         .map_err(|error| format!("cargo cannot be run: {error}"))?;
     let mut wrong = BTreeSet::new();

@@ -246,16 +246,21 @@ mod tests {
         }
     }
 
-    /// Where a number is infinite or NaN at either end of a motion, no plane separates the hull from any other one.
-    #[test]
-    fn hulls_with_infinite_or_nan_factors_prove_nothing() {
+    /// Returns the hulls of two triangles, one above the other, that two modes move as a whole.
+    fn hulls_of_two_triangles() -> NodeHulls {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
         let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let modes = Modes::new(2, [DVec3::Z, DVec3::X].repeat(6)).unwrap();
         let model = ReducedModel::new(mesh, modes).unwrap();
         let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
-        let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap();
+        NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap()
+    }
+
+    /// Where a number is infinite or NaN at either end of a motion, no plane separates the hull from any other one.
+    #[test]
+    fn hulls_with_infinite_or_nan_factors_prove_nothing() {
+        let hulls = hulls_of_two_triangles();
         let motion = DeformedMotion::new([&[0.0; 2][..]; 2], 9.0);
         for wrong in [f32::INFINITY, f32::NAN] {
             for (mode, end) in [(0, 0), (0, 1), (1, 0), (2, 1)] {
@@ -275,13 +280,7 @@ mod tests {
     /// Cofactors only turn directions. Their size must not depend on that of the hull: normals that are too short are not tested.
     #[test]
     fn the_largest_cofactor_is_1() {
-        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let positions = [0.0, 9.0].map(|z| corners.map(|x| x + DVec3::Z * z)).concat();
-        let mesh = TriMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
-        let modes = Modes::new(2, [DVec3::Z, DVec3::X].repeat(6)).unwrap();
-        let model = ReducedModel::new(mesh, modes).unwrap();
-        let hierarchy = Hierarchy::build(&model, &Scope::of(&model).metric);
-        let hulls = NodeHulls::new(&model, &hierarchy, &[(0, 0)], &[0.0; 2]).unwrap();
+        let hulls = hulls_of_two_triangles();
         let motion = DeformedMotion::new([&[0.0; 2][..]], 9.0);
         for factor in [1e-3_f32, 0.1, 1.0, 100.0] {
             let mut moved = MovedHulls::<1>::new(&hulls);
