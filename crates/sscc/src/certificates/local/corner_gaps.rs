@@ -288,9 +288,9 @@ impl<'g> CornerGaps<'g> {
                         let i = x.binary_search(&a[ij / 3]).ok()?;
                         let j = y.binary_search(&b[ij % 3]).ok()?;
                         let entry = &mut gaps[i * y.len() + j];
-                        let gap = with_mutant!(gap, LocalTableLonger, gap * (1.0 + 2e-6));
                         // The share alone is more than the rounding to single precision.
-                        let shortened = (gap * (1.0 - 1e-6)) as f32;
+                        let share = with_mutant!(1.0 - 1e-6, LocalTableLonger, 1.0 + 1e-6);
+                        let shortened = (gap * share) as f32;
                         *entry =
                             entry.min(with_mutant!(shortened.next_down(), LocalTableToNearest, shortened));
                     }
