@@ -556,7 +556,8 @@ class Detector:
     ) -> tuple[tuple[int, int], tuple[int, int]]:
         """Returns the number of connected components of this mesh that are inside the other mesh, and the number of all its
         components; then the same numbers for the components of the other mesh inside this one. The result is valid if ``against``
-        finds no pair. Only closed components have an inside; open components can be inside of them.
+        finds no pair. Only closed parts have an inside: triangles that common edges join, and that run along every edge as often in
+        one direction as in the other. Open components can be inside of them.
         """
     def penetration(
         self, positions: ArrayLike, other: Detector, other_positions: ArrayLike

@@ -304,6 +304,18 @@ fn enclosed_components_are_counted() {
     let open = TriMesh::new(small.rest_positions().to_vec(), small.faces()[1..].to_vec()).unwrap();
     assert_eq!(inside(&large, &open), [(0, 1), (1, 1)]);
     assert_eq!(inside(&open, &large), [(1, 1), (0, 1)]);
+    // A body has an inside also where an open surface, or another body, shares a vertex with it.
+    let beside = cubes(&[(DVec3::splat(-5.0), 1.0)]);
+    let positions = [large.rest_positions(), &beside.rest_positions()[..7]].concat();
+    let of_beside = beside.faces().iter().map(|face| face.map(|v| if v == 7 { 0 } else { v + 8 }));
+    let faces = [large.faces().to_vec(), of_beside.collect()].concat();
+    for left_out in 0..2 {
+        let joined = TriMesh::new(positions.clone(), faces[left_out..].to_vec()).unwrap();
+        assert_eq!(inside(&joined, &small), [(0, 1), (1 - left_out, 1)]);
+        let joined = TriMesh::new(positions.clone(), faces[..faces.len() - left_out].to_vec()).unwrap();
+        assert_eq!(inside(&joined, &small), [(0, 1), (1, 1)]);
+        assert_eq!(inside(&joined, &cubes(&[(DVec3::splat(-5.0), 0.1)])), [(0, 1), (1 - left_out, 1)]);
+    }
     // A soup is closed where its corners are welded.
     let corners = large.faces().iter().flatten().map(|v| large.rest_positions()[*v as usize]);
     let soup =

@@ -1,49 +1,40 @@
-//! Connected components of a mesh, and which of them are closed.
+//! The connected components of a mesh and their parts, and which of the parts are closed.
 
 use std::collections::HashMap;
 
 use crate::disjoint_sets::DisjointSets;
 
-/// The connected components of a mesh.
+/// The connected components of a mesh, and their parts. Parts consist of triangles that common edges join, directly or through
+/// others; components are joined by vertices as well.
 #[derive(Clone, Debug)]
 pub(super) struct Components {
-    /// For each triangle the number of its component.
-    of_triangles: Vec<u32>,
-    all: Vec<Component>,
-    /// For each triangle the number of its part: parts are joined by edges, and components by vertices as well.
+    /// The first triangle of each component.
+    triangles: Vec<u32>,
+    /// For each triangle the number of its part.
     parts: Vec<u32>,
-}
-
-#[derive(Clone, Debug)]
-struct Component {
-    /// One triangle of the component.
-    triangle: u32,
-    /// Whether its triangles run along each edge as often in one direction as in the other, so that it has an inside.
-    is_closed: bool,
+    /// For each part, whether its triangles run along each edge as often in one direction as in the other, so that it has an
+    /// inside.
+    is_closed: Vec<bool>,
 }
 
 impl Components {
-    /// Finds the components of triangles whose corners have these numbers.
+    /// Finds the components and parts of triangles whose corners have these numbers.
     pub fn new(corners: &[[u32; 3]]) -> Self {
-        let triangles = 0..corners.len() as u32;
+        let all = 0..corners.len() as u32;
         let count = corners.iter().flatten().max().map_or(0, |most| *most as usize + 1);
         let mut sets = DisjointSets::new(count);
         for [a, b, c] in corners.iter().copied() {
             sets.unite(a, b);
             sets.unite(a, c);
         }
-        let (mut all, mut numbers) = (Vec::new(), HashMap::new());
-        let of_triangles: Vec<u32> = triangles
-            .clone()
-            .map(|triangle| {
-                *numbers.entry(sets.find(corners[triangle as usize][0])).or_insert_with(|| {
-                    all.push(Component { triangle, is_closed: true });
-                    all.len() as u32 - 1
-                })
-            })
-            .collect();
+        // For each triangle the first one of its component.
+        let mut firsts = HashMap::new();
+        let first = |t: u32| *firsts.entry(sets.find(corners[t as usize][0])).or_insert(t);
+        let firsts: Vec<u32> = all.clone().map(first).collect();
+        let triangles = all.clone().filter(|t| firsts[*t as usize] == *t).collect();
         // Edges with their direction, and a triangle. The direction of an edge from a vertex to itself cancels.
-        let mut edges: Vec<([u32; 2], i32, u32)> = triangles
+        let mut edges: Vec<([u32; 2], i32, u32)> = all
+            .clone()
             .flat_map(|t| {
                 let [a, b, c] = corners[t as usize];
                 let own = [[a, b], [b, c], [c, a]].into_iter().filter(|[u, v]| u != v);
@@ -54,52 +45,49 @@ impl Components {
         let mut along_edges = DisjointSets::new(corners.len());
         for same in edges.chunk_by(|x, y| x.0 == y.0) {
             same.windows(2).for_each(|pair| along_edges.unite(pair[0].2, pair[1].2));
-            let component = of_triangles[same[0].2 as usize] as usize;
+        }
+        let (mut parts, mut is_closed): (Vec<u32>, Vec<bool>) = (Vec::new(), Vec::new());
+        for triangle in all {
+            let first =
+                with_mutant!(along_edges.find(triangle), PartsJoinInVertices, firsts[triangle as usize]);
+            let is_new = first == triangle;
+            parts.push(if is_new { is_closed.len() as u32 } else { parts[first as usize] });
+            is_closed.extend(is_new.then_some(true));
+        }
+        for same in edges.chunk_by(|x, y| x.0 == y.0) {
             let is_balanced = same.iter().map(|edge| edge.1).sum::<i32>() == 0;
-            all[component].is_closed &= with_mutant!(is_balanced, OpenIsClosed, true);
+            is_closed[parts[same[0].2 as usize] as usize] &= with_mutant!(is_balanced, OpenIsClosed, true);
         }
-        let mut parts: Vec<u32> = Vec::with_capacity(corners.len());
-        let mut count = 0;
-        for triangle in 0..corners.len() as u32 {
-            let first = along_edges.find(triangle);
-            let number = if first == triangle { count } else { parts[first as usize] };
-            count += u32::from(first == triangle);
-            parts.push(number);
-        }
-        Self { of_triangles, all, parts }
+        Self { triangles, parts, is_closed }
     }
 
-    /// Returns for each triangle the number of its part. Parts consist of triangles that common edges join, directly or through
-    /// others. A part of a closed component is closed.
-    pub fn parts(&self) -> &[u32] {
-        with_mutant!(&self.parts, PartsJoinInVertices, &self.of_triangles)
-    }
-
+    /// Returns the number of components.
     pub fn count(&self) -> usize {
-        self.all.len()
+        self.triangles.len()
     }
 
-    /// Returns one triangle of each component.
-    pub fn triangles(&self) -> impl Iterator<Item = u32> {
-        self.all.iter().map(|component| component.triangle)
+    /// Returns the first triangle of each component.
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles
     }
 
-    /// Returns the number of the component of a triangle.
-    pub fn of_triangle(&self, triangle: u32) -> usize {
-        self.of_triangles[triangle as usize] as usize
+    /// Returns for each triangle the number of its part.
+    pub fn parts(&self) -> &[u32] {
+        &self.parts
     }
 
+    /// Whether a part is closed.
     pub fn has_closed(&self) -> bool {
-        self.all.iter().any(|component| component.is_closed)
+        self.is_closed.contains(&true)
     }
 
-    /// Whether there are components, and all of them are closed.
+    /// Whether there are parts, and all of them are closed.
     pub fn are_closed(&self) -> bool {
-        !self.all.is_empty() && self.all.iter().all(|component| component.is_closed)
+        self.has_closed() && !self.is_closed.contains(&false)
     }
 
-    /// Whether a triangle is part of a closed component.
+    /// Returns whether the part of a triangle is closed.
     pub fn is_closed(&self, triangle: u32) -> bool {
-        self.all[self.of_triangle(triangle)].is_closed
+        self.is_closed[self.parts[triangle as usize] as usize]
     }
 }

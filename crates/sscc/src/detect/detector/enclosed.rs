@@ -24,9 +24,9 @@ impl Detector {
     /// Counts the connected components of this mesh that lie inside the other one, and those of the other mesh inside this one, at
     /// positions at which [`Detector::against`] finds no pair: then each component is inside or outside as a whole.
     ///
-    /// Only closed components have an inside: those whose triangles run along every edge as often in one direction as in the other. A
-    /// component, closed or not, is inside if the winding number of the closed components of the other mesh about it is
-    /// not 0. The winding number is computed exactly. Vertices that the contact filter welds are one vertex, unless the
+    /// Only closed parts have an inside: triangles that common edges join, directly or through others, and that run along every edge as
+    /// often in one direction as in the other. A component, closed or not, is inside if the winding number of the closed parts of the
+    /// other mesh about it is not 0. The winding number is computed exactly. Vertices that the contact filter welds are one vertex, unless the
     /// vertices of any weld have different positions: then no vertices of that mesh are welded.
     ///
     /// # Errors
@@ -101,13 +101,13 @@ impl Side<'_> {
         let mut inside = 0;
         if self.components.has_closed() {
             for triangle in other.components.triangles() {
-                inside += usize::from(self.winding_number(other.boxes.corners(triangle)[0])? != 0);
+                inside += usize::from(self.winding_number(other.boxes.corners(*triangle)[0])? != 0);
             }
         }
         Ok(Enclosed { components: other.components.count(), inside })
     }
 
-    /// Returns the winding number of the closed components about a point.
+    /// Returns the winding number of the closed parts about a point.
     pub(super) fn winding_number(&self, point: DVec3) -> Result<i32, Error> {
         self.winding_number_of(point, |triangle| self.components.is_closed(triangle))
     }

@@ -6,6 +6,7 @@
 //! pair. They do not cover the rounding of positions, so every q must be checked.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -29,17 +30,22 @@ struct Separation {
     positions: [f64; CORNERS],
     /// The smallest gap that the half-spaces allow.
     margin: f64,
+    /// The range of its modes in [`Separations::modes`].
+    modes: Range<usize>,
 }
 
 /// Separating directions of all near pairs that were added.
 pub(super) struct Separations {
     list: Vec<Separation>,
     known: HashSet<Pair>,
-    /// Six rows of each separation: the rates of its corners along the direction.
+    /// The modes of each separation that move its corners along the direction. Few modes move a vertex of a skin.
+    modes: Vec<u32>,
+    /// Six rows of each separation: the rates of its corners along the direction, for its modes.
     rates: Vec<f64>,
     rank: usize,
-    /// Scratch: the scaled modes of a vertex.
-    modes: Vec<DVec3>,
+    /// Scratch: the scaled modes of a vertex, and six rows for all modes.
+    scaled: Vec<DVec3>,
+    rows: Vec<f64>,
 }
 
 impl Separations {
@@ -47,9 +53,11 @@ impl Separations {
         Self {
             list: Vec::new(),
             known: HashSet::new(),
+            modes: Vec::new(),
             rates: Vec::new(),
             rank,
-            modes: vec![DVec3::ZERO; rank],
+            scaled: vec![DVec3::ZERO; rank],
+            rows: Vec::new(),
         }
     }
 
@@ -62,7 +70,9 @@ impl Separations {
                 std::array::from_fn(|i| if i < 3 { simplices.a[i] } else { simplices.b[i - 3] });
             if !self.add_simplices(context, q, pair, vertices, margin) {
                 self.list.truncate(count);
-                self.rates.truncate(count * CORNERS * self.rank);
+                let modes = self.list.last().map_or(0, |last| last.modes.end);
+                self.modes.truncate(modes);
+                self.rates.truncate(CORNERS * modes);
                 return false;
             }
         }
@@ -78,7 +88,7 @@ impl Separations {
         vertices: [u32; CORNERS],
         margin: f64,
     ) -> bool {
-        let bytes = self.rates.len() * size_of::<f64>();
+        let bytes = size_of_val(&self.rates[..]) + size_of_val(&self.modes[..]);
         if self.list.len() >= MAX_SEPARATIONS || (bytes >= MAX_BYTES && !self.list.is_empty()) {
             return false;
         }
@@ -93,11 +103,20 @@ impl Separations {
         if !(gap > 0.0 && gap.is_finite()) {
             return false;
         }
+        let Self { modes, rates, rank, scaled, rows, .. } = self;
+        rows.clear();
         for v in vertices {
-            context.scope.metric.scaled_modes(model.modes().of_vertex(v), &mut self.modes);
-            self.rates.extend(self.modes.iter().map(|mode| dir.dot(*mode)));
+            context.scope.metric.scaled_modes(model.modes().of_vertex(v), scaled);
+            rows.extend(scaled.iter().map(|mode| dir.dot(*mode)));
         }
-        self.list.push(Separation { pair, positions, margin: margin.min(gap) });
+        let first = modes.len();
+        let moves = |k: &u32| (0..CORNERS).any(|corner| rows[corner * *rank + *k as usize] != 0.0);
+        modes.extend((0..*rank as u32).filter(moves));
+        let modes = first..modes.len();
+        for corner in 0..CORNERS {
+            rates.extend(self.modes[modes.clone()].iter().map(|k| rows[corner * *rank + *k as usize]));
+        }
+        self.list.push(Separation { pair, positions, margin: margin.min(gap), modes });
         true
     }
 
@@ -122,6 +141,7 @@ impl Separations {
         pairs.dedup();
         self.list.clear();
         self.known.clear();
+        self.modes.clear();
         self.rates.clear();
         pairs
     }
@@ -129,15 +149,16 @@ impl Separations {
     /// Returns the half-spaces `normal . s >= offset` that a displacement violates by more than a share of the margin: at
     /// most `count`, the most violated ones first, relative to the lengths of their normals.
     pub(super) fn most_violated(&self, displacement: &[f64], count: usize) -> Vec<(Vec<f64>, f64)> {
-        let mut violated = Vec::new();
+        let (mut violated, mut scratch) = (Vec::new(), Vec::new());
         for (at, separation) in self.list.iter().enumerate() {
-            let positions: [f64; CORNERS] = std::array::from_fn(|corner| {
-                separation.positions[corner] + dot(self.row(at, corner), displacement)
-            });
+            let rates = self.rates_along(at, displacement, &mut scratch);
+            let positions = std::array::from_fn(|corner| separation.positions[corner] + rates[corner]);
             let (i, j) = nearest_corners(&positions);
             let violation = separation.margin - (positions[j] - positions[i]);
             if violation > TOLERANCE * separation.margin {
-                let depth = violation / length(&self.normal(at, i, j)).max(f64::MIN_POSITIVE);
+                let normal = self.row(at, j).iter().zip(self.row(at, i)).map(|(b, a)| b - a);
+                let normal: Vec<f64> = normal.collect();
+                let depth = violation / length(&normal).max(f64::MIN_POSITIVE);
                 violated.push((depth, at, i, j));
             }
         }
@@ -145,16 +166,18 @@ impl Separations {
         violated.truncate(count);
         let half_space = |(_, at, i, j): (f64, usize, usize, usize)| {
             let Separation { positions, margin, .. } = &self.list[at];
-            (self.normal(at, i, j), margin - (positions[j] - positions[i]))
+            let mut normal = vec![0.0; self.rank];
+            self.normal(at, i, j).for_each(|(k, rate)| normal[k] = rate);
+            (normal, margin - (positions[j] - positions[i]))
         };
         violated.into_iter().map(half_space).collect()
     }
 
     /// Returns the largest share of a displacement, at most 1, that stays in all half-spaces, up to twice the tolerance.
     pub(super) fn allowed_share(&self, displacement: &[f64]) -> f64 {
-        let mut share = 1.0_f64;
+        let (mut share, mut scratch) = (1.0_f64, Vec::new());
         for (at, separation) in self.list.iter().enumerate() {
-            let rates: [f64; CORNERS] = std::array::from_fn(|corner| dot(self.row(at, corner), displacement));
+            let rates = self.rates_along(at, displacement, &mut scratch);
             for ij in 0..9 {
                 let (i, j) = (ij / 3, 3 + ij % 3);
                 let margin = separation.margin * (1.0 - 2.0 * TOLERANCE);
@@ -168,13 +191,31 @@ impl Separations {
         share
     }
 
-    fn row(&self, separation: usize, corner: usize) -> &[f64] {
-        &self.rates[(separation * CORNERS + corner) * self.rank..][..self.rank]
+    /// Returns how far a displacement moves the corners along the direction.
+    #[inline(always)]
+    fn rates_along(&self, at: usize, displacement: &[f64], scratch: &mut Vec<f64>) -> [f64; CORNERS] {
+        let modes = &self.modes[self.list[at].modes.clone()];
+        let mut of_modes = displacement;
+        if modes.len() < self.rank {
+            scratch.clear();
+            scratch.extend(modes.iter().map(|k| displacement[*k as usize]));
+            of_modes = scratch;
+        }
+        let rates = &self.rates[CORNERS * self.list[at].modes.start..];
+        std::array::from_fn(|corner| dot(&rates[corner * modes.len()..][..modes.len()], of_modes))
     }
 
-    /// Returns the rate of the gap of two corners.
-    fn normal(&self, separation: usize, i: usize, j: usize) -> Vec<f64> {
-        self.row(separation, j).iter().zip(self.row(separation, i)).map(|(b, a)| b - a).collect()
+    /// Returns the rates of a corner, for the modes of the separation.
+    fn row(&self, at: usize, corner: usize) -> &[f64] {
+        let modes = &self.list[at].modes;
+        &self.rates[CORNERS * modes.start + corner * modes.len()..][..modes.len()]
+    }
+
+    /// Returns the rate of the gap of two corners, for each mode of the separation.
+    fn normal(&self, at: usize, i: usize, j: usize) -> impl Iterator<Item = (usize, f64)> {
+        let modes = self.modes[self.list[at].modes.clone()].iter();
+        let rates = self.row(at, j).iter().zip(self.row(at, i)).map(|(b, a)| b - a);
+        modes.map(|k| *k as usize).zip(rates)
     }
 }
 
