@@ -1,8 +1,7 @@
 //! Reads sealed safetensors files: a length, a header in JSON, and data. The header contains the BLAKE3 digest of all other bytes.
 
-use std::collections::BTreeMap;
-
-use serde_json::Value;
+use safetensors::Dtype;
+use safetensors::tensor::Metadata;
 
 use crate::refusal::{Refusal, input, require};
 
@@ -17,34 +16,9 @@ const MAX_HEADER: usize = 1 << 20;
 
 /// The tensors and texts of a file whose digest matches.
 pub(crate) struct Container<'a> {
-    texts: BTreeMap<String, String>,
-    tensors: BTreeMap<String, Tensor<'a>>,
+    metadata: Metadata,
+    data: &'a [u8],
 }
-
-struct Tensor<'a> {
-    dtype: String,
-    shape: Vec<usize>,
-    bytes: &'a [u8],
-}
-
-/// A type of numbers in tensors.
-pub(crate) trait Number: Sized + Copy {
-    const DTYPE: &'static str;
-    fn list(bytes: &[u8]) -> Vec<Self>;
-}
-
-macro_rules! numbers {
-    ($($type:ty = $name:literal),+) => {
-        $(impl Number for $type {
-            const DTYPE: &'static str = $name;
-            fn list(bytes: &[u8]) -> Vec<Self> {
-                bytes.as_chunks().0.iter().map(|bytes| Self::from_le_bytes(*bytes)).collect()
-            }
-        })+
-    };
-}
-
-numbers!(f64 = "F64", u64 = "U64", f32 = "F32", u32 = "U32", u8 = "U8");
 
 impl<'a> Container<'a> {
     /// Parses a file. `format`: its kind; `newest`: the newest supported version.
@@ -64,70 +38,57 @@ impl<'a> Container<'a> {
     }
 
     fn parse_header(bytes: &'a [u8]) -> Option<Self> {
-        let length = usize::try_from(u64::list(&bytes[..LENGTH])[0]).ok()?;
-        let header = bytes[LENGTH..].get(..length).filter(|_| length <= MAX_HEADER)?;
-        let data = &bytes[LENGTH + length..];
-        let Value::Object(entries) = serde_json::from_slice(header).ok()? else { return None };
-        let (mut texts, mut tensors, mut ranges) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
-        for (name, entry) in entries {
-            if name == "__metadata__" {
-                for (key, text) in entry.as_object()? {
-                    texts.insert(key.clone(), text.as_str()?.to_owned());
-                }
-                continue;
-            }
-            let numbers = |key: &str| -> Option<Vec<usize>> {
-                let numbers = entry.get(key)?.as_array()?.iter();
-                numbers.map(|n| n.as_u64().and_then(|n| usize::try_from(n).ok())).collect()
-            };
-            let &[begin, end] = numbers("data_offsets")?.as_slice() else { return None };
-            ranges.push([begin, end]);
-            let dtype = entry.get("dtype")?.as_str()?.to_owned();
-            tensors.insert(name, Tensor { dtype, shape: numbers("shape")?, bytes: data.get(begin..end)? });
-        }
-        // Tensors lie one after the other, as in all files of sscc: no byte has two meanings, or none.
-        ranges.sort_unstable();
-        let end = ranges.iter().try_fold(0, |end, range| (range[0] == end).then_some(range[1]))?;
-        (end == data.len()).then_some(Self { texts, tensors })
+        let (length, rest) = bytes.split_first_chunk()?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).ok().filter(|n| *n <= MAX_HEADER)?;
+        let (header, data) = rest.split_at_checked(length)?;
+        // This refuses tensors that do not lie one after the other, as in all files of sscc, or whose shape does not fit their
+        // size: no byte has two meanings, or none.
+        let metadata: Metadata = serde_json::from_slice(header).ok()?;
+        (metadata.data_len() == data.len()).then_some(Self { metadata, data })
     }
 
     pub(crate) fn text(&self, key: &str) -> Result<&str, Refusal> {
-        let text = self.texts.get(key).map(String::as_str);
-        text.ok_or_else(|| Refusal::Input(format!("text '{key}' is missing")))
+        let text = self.metadata.metadata().as_ref().and_then(|texts| texts.get(key));
+        text.map_or_else(|| input(format!("text '{key}' is missing")), |text| Ok(text.as_str()))
     }
 
     pub(crate) fn has(&self, name: &str) -> bool {
-        self.tensors.contains_key(name)
+        self.metadata.info(name).is_some()
     }
 
-    /// Returns the numbers of a tensor and the lengths of its axes.
-    pub(crate) fn tensor<T: Number>(&self, name: &str) -> Result<(Vec<T>, &[usize]), Refusal> {
-        let Some(tensor) = self.tensors.get(name) else {
+    /// Returns the numbers of a tensor with these axes; `None` matches any length. `from`: converts the bytes of a number.
+    pub(crate) fn numbers<T, const N: usize>(
+        &self,
+        name: &str,
+        axes: &[Option<usize>],
+        dtype: Dtype,
+        from: fn([u8; N]) -> T,
+    ) -> Result<Vec<T>, Refusal> {
+        let Some(info) = self.metadata.info(name) else {
             return input(format!("tensor '{name}' is missing"));
         };
-        let numbers = T::list(tensor.bytes);
-        let size = tensor.shape.iter().try_fold(1_usize, |size, axis| size.checked_mul(*axis));
-        let bytes = numbers.len() * size_of::<T>();
-        if tensor.dtype != T::DTYPE || size != Some(numbers.len()) || bytes != tensor.bytes.len() {
+        if info.dtype != dtype {
             return input(format!("tensor '{name}' has another type or size"));
         }
-        Ok((numbers, &tensor.shape))
-    }
-
-    /// Returns the numbers of a tensor with these axes; `None` matches any length.
-    pub(crate) fn shaped<T: Number>(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<T>, Refusal> {
-        let (numbers, shape) = self.tensor(name)?;
         let fits = |(found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| wanted == *found);
-        if shape.len() != axes.len() || !shape.iter().zip(axes).all(fits) {
+        if info.shape.len() != axes.len() || !info.shape.iter().zip(axes).all(fits) {
             return input(format!("tensor '{name}' has another shape"));
         }
-        Ok(numbers)
+        let bytes = &self.data[info.data_offsets.0..info.data_offsets.1];
+        Ok(bytes.as_chunks().0.iter().map(|bytes| from(*bytes)).collect())
+    }
+
+    pub(crate) fn reals(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<f64>, Refusal> {
+        self.numbers(name, axes, Dtype::F64, f64::from_le_bytes)
+    }
+
+    pub(crate) fn integers(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<u32>, Refusal> {
+        self.numbers(name, axes, Dtype::U32, u32::from_le_bytes)
     }
 
     /// Returns the pairs of a tensor of two columns, which must be ascending, each with the smaller number first.
     pub(crate) fn pairs(&self, name: &str) -> Result<Vec<[u32; 2]>, Refusal> {
-        let numbers = self.shaped::<u32>(name, &[None, Some(2)])?;
-        let pairs = numbers.as_chunks().0.to_vec();
+        let pairs = self.integers(name, &[None, Some(2)])?.as_chunks().0.to_vec();
         let is_sorted = pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|[a, b]| a <= b);
         require(is_sorted, "pairs are not in order")?;
         Ok(pairs)

@@ -3,17 +3,12 @@
 //! need be common.
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
-use crate::model::Model;
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof};
-use crate::scope::{CountedPairs, Scope};
+use crate::scope::CountedPairs;
 
 /// Checks that each exception counts and collides at the centre.
-pub(crate) fn check(
-    model: &Model,
-    scope: &Scope,
-    counted: &CountedPairs<'_>,
-    is_cancelled: &IsCancelled<'_>,
-) -> Result<(), Refusal> {
+pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+    let CountedPairs { model, scope, .. } = counted;
     for &[a, b] in &scope.exceptions {
         check_cancelled(is_cancelled)?;
         let simplices = counted.with_exceptions(a, b);

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use crate::container::Number;
 use crate::model::Model;
 use crate::refusal::{Refusal, input};
 
@@ -88,9 +87,10 @@ fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal
             [first, 3, rank] if first == vertices => rank,
             _ => return None,
         };
-        let numbers = f64::list(&bytes[length..]);
-        let size = (3 * vertices).checked_mul(rank)?;
-        (is_known && numbers.len() == size && bytes.len() - length == 8 * size).then_some((numbers, rank))
+        let (numbers, rest) = bytes[length..].as_chunks();
+        let fits = Some(numbers.len()) == (3 * vertices).checked_mul(rank) && rest.is_empty();
+        let modes = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        (is_known && fits).then_some((modes, rank))
     };
     parsed().ok_or_else(|| {
         let rows = 3 * vertices;

@@ -125,13 +125,13 @@ pub fn check_until(
     let proof = Proof::parse(proof).map_err(of_proof)?;
     proof.check_head(&certificates, model.rank).map_err(of_proof)?;
     let counted = CountedPairs::new(model, &scope);
-    let is_of_model = digest::digest(model, &scope, &counted.classes) == certificates.digest;
+    let is_of_model = digest::digest(&counted) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
     let entries = entries::entries(&certificates).map_err(of_certificates)?;
     proof.check_entries(&entries).map_err(of_proof)?;
-    exceptions::check(model, &scope, &counted, is_cancelled).map_err(of_certificates)?;
+    exceptions::check(&counted, is_cancelled).map_err(of_certificates)?;
     let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
-    let uncounted = UncountedPairs::new(model, &certificates, &counted, &scope);
+    let uncounted = UncountedPairs::new(&certificates, &counted);
     let (certificates, counted, uncounted, scaled) = (&certificates, &counted, &uncounted, &scaled);
     Check { certificates, counted, uncounted, scaled, model, is_cancelled }
         .run(&proof, &entries, threads)

@@ -1,7 +1,7 @@
 //! The model: faces, positions at rest, modes.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Refusal, require};
 
 /// The largest magnitude of coordinates, and of the entries of dense metrics, 2^200.
 pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
@@ -47,13 +47,11 @@ impl Model {
     /// When the file is damaged, of another kind or version, or not a model.
     pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
         let file = Container::parse(bytes, "sscc.model", 3)?;
-        let positions = file.shaped::<f64>("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
-        let faces = file.shaped::<u32>("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
-        let (modes, shape) = file.tensor::<f64>("modes")?;
-        match *shape {
-            [vertices, 3, rank] if vertices == positions.len() => Self::new(positions, faces, modes, rank),
-            _ => input("tensor 'modes' has another shape"),
-        }
+        let positions: Vec<[f64; 3]> = file.reals("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let faces = file.integers("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let modes = file.reals("modes", &[Some(positions.len()), Some(3), None])?;
+        let rank = modes.len().checked_div(3 * positions.len()).unwrap_or(0);
+        Self::new(positions, faces, modes, rank)
     }
 
     /// Returns the three rows of a vertex.

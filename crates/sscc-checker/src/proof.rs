@@ -290,7 +290,7 @@ mod tests {
         let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;
         let scope = Scope::of_factor(vec![1.0], 1);
         let (certificates, counted) = (Certificates::of_leaf(2, 0.5), CountedPairs::new(&model, &scope));
-        let uncounted = &UncountedPairs::new(&model, &certificates, &counted, &scope);
+        let uncounted = &UncountedPairs::new(&certificates, &counted);
         let scaled = &ScaledModel::new(&model, &scope, &|| false)?;
         let witness = |dir: [f64; 3]| {
             let numbers = dir.into_iter().flat_map(f64::to_le_bytes);

@@ -36,8 +36,8 @@ impl Scope {
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
         let factor: Vec<f64> = match is_dense {
-            true => file.shaped("metric_factor", &[Some(rank), Some(rank)])?,
-            false => file.shaped("metric_scales", &[Some(rank)])?,
+            true => file.reals("metric_factor", &[Some(rank), Some(rank)])?,
+            false => file.reals("metric_scales", &[Some(rank)])?,
         };
         require(!is_dense || rank <= MAX_DENSE, "metric: it is dense, and has more than 1024 rows")?;
         let is_row = |i: usize| {
@@ -49,7 +49,7 @@ impl Scope {
             true => (0..rank).all(is_row),
             false => factor.iter().all(|s| *s > 0.0 && s.is_finite()),
         };
-        let center = file.shaped::<f64>("center", &[Some(rank)])?;
+        let center = file.reals("center", &[Some(rank)])?;
         let is_finite = center.iter().all(|x| x.is_finite());
         require(is_factor && is_finite, "metric or centre: a number is out of range")?;
         let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
@@ -64,7 +64,7 @@ impl Scope {
         let mut groups = None;
         if file.has("groups") {
             let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
-            let of_triangles = file.shaped("groups", &[Some(triangles)])?;
+            let of_triangles = file.integers("groups", &[Some(triangles)])?;
             groups = Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? });
         }
         let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
@@ -96,8 +96,8 @@ pub(crate) type Simplices = [[u32; 3]; 2];
 
 /// The pairs of triangles that count.
 pub(crate) struct CountedPairs<'a> {
-    model: &'a Model,
-    scope: &'a Scope,
+    pub(crate) model: &'a Model,
+    pub(crate) scope: &'a Scope,
     /// For each vertex the lowest vertex with the same position and modes; without welds the vertex itself.
     pub(crate) classes: Vec<u32>,
 }

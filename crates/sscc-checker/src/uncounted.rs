@@ -1,9 +1,8 @@
 //! Node pairs of which no pair of triangles counts.
 
 use crate::certificates::{BUCKET, Certificates};
-use crate::model::Model;
 use crate::refusal::{Refusal, proof};
-use crate::scope::{CountedPairs, Scope};
+use crate::scope::CountedPairs;
 
 /// The largest number of pairs of triangles of two nodes that are tested one by one: those of two leaves.
 const MAX_TESTED: u64 = (BUCKET as u64).pow(2);
@@ -12,7 +11,6 @@ const MAX_TESTED: u64 = (BUCKET as u64).pow(2);
 pub(crate) struct UncountedPairs<'a> {
     certificates: &'a Certificates,
     counted: &'a CountedPairs<'a>,
-    scope: &'a Scope,
     nodes: Vec<Common>,
 }
 
@@ -37,39 +35,35 @@ impl Common {
 }
 
 impl<'a> UncountedPairs<'a> {
-    pub(crate) fn new(
-        model: &Model,
-        certificates: &'a Certificates,
-        counted: &'a CountedPairs<'a>,
-        scope: &'a Scope,
-    ) -> Self {
+    pub(crate) fn new(certificates: &'a Certificates, counted: &'a CountedPairs<'a>) -> Self {
         let of_triangle = |t: &u32| Common {
-            group: scope.groups.as_ref().map(|groups| groups.of_triangles[*t as usize]),
-            vertices: model.faces[*t as usize].map(|i| counted.classes[i as usize]).to_vec(),
+            group: counted.scope.groups.as_ref().map(|groups| groups.of_triangles[*t as usize]),
+            vertices: counted.model.faces[*t as usize].map(|i| counted.classes[i as usize]).to_vec(),
         };
         let mut nodes = vec![Common::default(); certificates.nodes.len()];
         // Children come after their parents.
         for n in (0..nodes.len()).rev() {
             let children = certificates.nodes[n].children();
-            let common = match children.is_empty() {
-                true => certificates.triangles(n as u32).iter().map(of_triangle).reduce(|a, b| a.and(&b)),
-                false => children.map(|child| nodes[child as usize].clone()).reduce(|a, b| a.and(&b)),
+            let parts: Vec<Common> = match children.is_empty() {
+                true => certificates.triangles(n as u32).iter().map(of_triangle).collect(),
+                false => children.map(|child| nodes[child as usize].clone()).collect(),
             };
-            nodes[n] = common.unwrap_or_default();
+            nodes[n] = parts.into_iter().reduce(|a, b| a.and(&b)).unwrap_or_default();
         }
-        Self { certificates, counted, scope, nodes }
+        Self { certificates, counted, nodes }
     }
 
     /// Checks that no pair of triangles of two nodes, or of one node, counts. Large nodes need one group each, which do not count
     /// together, or a vertex that all triangles have. Otherwise one byte of a proof could demand a test of all pairs of the mesh.
     pub(crate) fn check(&self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         let [x, y] = [n, m].map(|n| &self.nodes[n as usize]);
-        let is_group_ignored = match (&self.scope.groups, x.group, y.group) {
+        let scope = self.counted.scope;
+        let is_group_ignored = match (&scope.groups, x.group, y.group) {
             (Some(groups), Some(g), Some(h)) => !groups.count(g, h),
             _ => false,
         };
         // Without `one_vertex` no pair with a common vertex counts.
-        let is_adjacent = !self.scope.one_vertex && x.vertices.iter().any(|class| y.vertices.contains(class));
+        let is_adjacent = !scope.one_vertex && x.vertices.iter().any(|class| y.vertices.contains(class));
         if is_group_ignored || is_adjacent {
             return Ok(());
         }
@@ -88,8 +82,8 @@ impl<'a> UncountedPairs<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::refusal::Refusal;
-    use crate::scope::Groups;
+    use crate::model::Model;
+    use crate::scope::{Groups, Scope};
 
     /// More triangles than two leaves can have.
     const TRIANGLES: u32 = 100;
@@ -103,7 +97,7 @@ mod tests {
         let mut scope = Scope::of_factor(vec![1.0], 1);
         change(&mut scope);
         let counted = CountedPairs::new(&model, &scope);
-        UncountedPairs::new(&model, &certificates, &counted, &scope).check([0, 0])
+        UncountedPairs::new(&certificates, &counted).check([0, 0])
     }
 
     /// Triangles around vertex 0.
@@ -177,7 +171,7 @@ mod tests {
                 (case % 2 == 0).then_some(Groups { of_triangles, others_count: random(2) == 0, listed });
             let counted = CountedPairs::new(&model, &scope);
             let certificates = Certificates::of_leaf(triangles, 1.0);
-            let uncounted = UncountedPairs::new(&model, &certificates, &counted, &scope);
+            let uncounted = UncountedPairs::new(&certificates, &counted);
             let counts = certificates.pairs([0, 0]).any(|[a, b]| !counted.simplices(a, b).is_empty());
             assert_eq!(uncounted.check([0, 0]).is_err(), counts, "case {case}");
             let Common { group, vertices } = &uncounted.nodes[0];
