@@ -2,13 +2,14 @@
 //! neither certificates nor proofs. `docs/guarantees.md`, "The checker", has the statement that it confirms.
 //!
 //! `entries` lists the statements that must be proven, from the certificates alone. `proof` reads the witnesses, which `node_maps`,
-//! `corners` and `affine` check. `scaled` bounds the rounding of computed positions.
+//! `directions` and `affine` check. `scaled` bounds the rounding of computed positions.
 
 mod affine;
 mod certificates;
 mod container;
-mod corners;
+
 mod digest;
+mod directions;
 mod dyadic;
 mod entries;
 mod exceptions;
@@ -16,6 +17,7 @@ mod files;
 mod inequality;
 mod model;
 mod node_maps;
+mod points;
 mod proof;
 mod refusal;
 mod scaled;
@@ -133,7 +135,7 @@ pub fn check_until(
     let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
     let uncounted = UncountedPairs::new(&certificates, &counted);
     let (certificates, counted, uncounted, scaled) = (&certificates, &counted, &uncounted, &scaled);
-    Check { certificates, counted, uncounted, scaled, model, is_cancelled }
+    Check { certificates, counted, uncounted, scaled, is_cancelled }
         .run(&proof, &entries, threads)
         .map_err(of_proof)?;
     let is_positive = |index: usize| entries[index].radius > 0.0;

@@ -1,15 +1,17 @@
 //! The file of a proof, and the check of its entries. `docs/formats.md` has the format.
 
+use std::iter;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use crate::affine::{AffineMap, AffineWitness};
+use crate::affine::AffineMap;
 use crate::certificates::Certificates;
-use crate::corners::{Corner, Directions, Triangle, middles, quarters};
-use crate::dyadic::{Dyadic, Vector, vector};
+use crate::directions::Directions;
+use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
-use crate::model::Model;
 use crate::node_maps::{NodeMaps, numbers_of_map};
+use crate::points::{Triangle, middles, quarters};
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::{CountedPairs, Simplices};
@@ -49,24 +51,21 @@ struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
     fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
-        let Some((front, rest)) = self.0.split_at_checked(count) else { return proof("it ends too early") };
-        self.0 = rest;
-        Ok(front)
+        self.0.split_off(..count).ok_or_else(|| Refusal::Proof("it ends too early".into()))
     }
 
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
         Ok(self.take(N)?.try_into().unwrap_or([0; N]))
     }
 
-    fn real(&mut self) -> Result<f64, Refusal> {
-        match f64::from_le_bytes(self.array()?) {
-            x if x.is_finite() => Ok(x),
-            _ => proof("a number is not finite"),
-        }
+    fn real(&mut self) -> Result<Dyadic, Refusal> {
+        let x = f64::from_le_bytes(self.array()?);
+        claim(x.is_finite(), "a number is not finite")?;
+        Ok(Dyadic::of(x))
     }
 
     fn vector(&mut self) -> Result<Vector, Refusal> {
-        Ok(vector([self.real()?, self.real()?, self.real()?]))
+        Ok([self.real()?, self.real()?, self.real()?])
     }
 }
 
@@ -116,23 +115,24 @@ pub(crate) struct Check<'a> {
     pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) uncounted: &'a UncountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
-    pub(crate) model: &'a Model,
     pub(crate) is_cancelled: &'a IsCancelled<'a>,
 }
 
 impl Check<'_> {
     /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some.
     pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
-        let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
+        let &Self { certificates, counted, scaled, .. } = self;
+        let boxes = certificates.nodes.iter().map(|_| OnceLock::new()).collect();
+        let maps = &NodeMaps { model: counted.model, scaled, certificates, numbers: file.maps, boxes };
         let next = AtomicUsize::new(0);
-        let work = || {
-            loop {
-                let (index, bytes) = file.proven.get(next.fetch_add(1, Ordering::Relaxed))?;
-                if let Err(refusal) = self.entry(&maps, entries[*index], bytes, threads) {
-                    return Some((*index, refusal));
-                }
-            }
+        let take = || file.proven.get(next.fetch_add(1, Ordering::Relaxed));
+        let refused = |&(index, bytes): &(usize, &[u8])| {
+            let radius = scaled.radius(entries[index].radius);
+            let (bytes, directions) = (Bytes(bytes), Directions::new(threads));
+            let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
+            Some((index, reader.entry(entries[index]).err()?))
         };
+        let work = || iter::from_fn(take).find_map(refused);
         let refused = thread::scope(|scope| {
             // The system may refuse threads.
             let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
@@ -143,22 +143,8 @@ impl Check<'_> {
             others.chain(own).min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
-        if refusal == Refusal::Cancelled {
-            return Err(refusal);
-        }
         let Entry { nodes: [n, m], radius } = entries[index];
-        proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
-    }
-
-    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8], threads: usize) -> Result<(), Refusal> {
-        let radius = self.scaled.radius(entry.radius);
-        let (bytes, directions) = (Bytes(bytes), Directions::new(threads));
-        let mut reader = EntryReader { check: self, maps, radius, bytes, threads, directions, map: None };
-        // An entry of radius 0 needs no witness.
-        if entry.radius > 0.0 {
-            reader.nodes(entry.nodes)?;
-        }
-        if reader.bytes.0.is_empty() { Ok(()) } else { proof("there are witnesses after its end") }
+        Err(refusal.of(&format!("entry {index}, nodes {n} and {m}, radius {radius:e}")))
     }
 }
 
@@ -168,7 +154,6 @@ struct EntryReader<'a> {
     maps: &'a NodeMaps<'a>,
     radius: Radius,
     bytes: Bytes<'a>,
-    threads: usize,
     /// The directions of the last list of triangles.
     directions: Directions,
     /// The last affine map of this list.
@@ -176,6 +161,14 @@ struct EntryReader<'a> {
 }
 
 impl EntryReader<'_> {
+    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<(), Refusal> {
+        // An entry of radius 0 needs no witness.
+        if radius > 0.0 {
+            self.nodes(nodes)?;
+        }
+        claim(self.bytes.0.is_empty(), "there are witnesses after its end")
+    }
+
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         check_cancelled(self.check.is_cancelled)?;
@@ -184,10 +177,8 @@ impl EntryReader<'_> {
         match self.bytes.array()? {
             [DIRECTION] => {
                 let dir = self.bytes.vector()?;
-                if n != m && self.maps.are_apart([n, m], &dir, &self.radius) {
-                    return Ok(());
-                }
-                proof(format!("the direction does not separate nodes {n} and {m}"))
+                let are_apart = n != m && self.maps.are_apart([n, m], &dir, &self.radius);
+                claim(are_apart, &format!("the direction does not separate nodes {n} and {m}"))
             }
             [NOTHING_COUNTS] => self.check.uncounted.check([n, m]),
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
@@ -198,12 +189,13 @@ impl EntryReader<'_> {
     }
 
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
-        (self.directions, self.map) = (Directions::new(self.threads), None);
-        let Check { certificates, counted, .. } = self.check;
+        self.directions.clear();
+        self.map = None;
+        let Check { certificates, counted, scaled, .. } = self.check;
         for [a, b] in certificates.pairs(nodes) {
-            check_cancelled(self.check.is_cancelled)?;
             for simplices in counted.simplices(a, b) {
-                if !self.simplices(simplices)? {
+                let corners = simplices.map(|simplex| simplex.map(|i| scaled.point(i)));
+                if !self.parts(corners, Some(simplices), 0)? {
                     return proof(format!("the witness of triangles {a} and {b} does not hold"));
                 }
             }
@@ -211,45 +203,35 @@ impl EntryReader<'_> {
         Ok(())
     }
 
-    /// Whether the next witness holds for two simplices.
-    fn simplices(&mut self, simplices: Simplices) -> Result<bool, Refusal> {
-        let scaled = self.check.scaled;
-        let [tag] = self.bytes.array()?;
-        match self.direction(tag)? {
-            Some(index) => Ok(self.directions.separate(index, scaled, simplices, &self.radius)),
-            None => {
-                let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
-                self.parts([x.each_ref(), y.each_ref()], tag, 0)
-            }
-        }
-    }
-
-    /// Returns the index of the direction of a witness, if it has one; reads a new direction.
-    fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
-        if tag == NEW_DIRECTION {
-            // Only as many directions are kept as have an index; a further one replaces the last.
-            let index = self.directions.len().min(QUARTER_SECOND.into());
-            self.directions.set(index, self.check.scaled, self.bytes.vector()?);
-            return Ok(Some(index));
-        }
-        let is_known = tag < QUARTER_SECOND && usize::from(tag) < self.directions.len();
-        Ok(is_known.then_some(tag.into()))
-    }
-
-    /// Whether a witness holds for two triangles, or parts of them.
-    fn parts(&mut self, [x, y]: [Triangle<'_>; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
+    /// Whether the next witness holds for two triangles, or parts of them. `whole`: their vertices if they are simplices of the mesh.
+    fn parts(
+        &mut self,
+        [x, y]: [Triangle<'_>; 2],
+        whole: Option<Simplices>,
+        depth: usize,
+    ) -> Result<bool, Refusal> {
         check_cancelled(self.check.is_cancelled)?;
         let scaled = self.check.scaled;
-        if let Some(index) = self.direction(tag)? {
-            return Ok(self.directions.separate_corners(index, [x, y], &self.radius));
-        }
+        let [tag] = self.bytes.array()?;
         match tag {
+            NEW_DIRECTION | ..QUARTER_SECOND => {
+                let mut index = usize::from(tag);
+                if tag == NEW_DIRECTION {
+                    // Only as many directions are kept as have an index; a further one replaces the last.
+                    index = self.directions.len().min(QUARTER_SECOND.into());
+                    self.directions.set(index, scaled, self.bytes.vector()?);
+                }
+                Ok(match whole {
+                    _ if index >= self.directions.len() => false,
+                    Some(simplices) => self.directions.separate(index, scaled, simplices, &self.radius),
+                    None => self.directions.separate_corners(index, [x, y], &self.radius),
+                })
+            }
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
                 let whole = if tag == QUARTER_FIRST { x } else { y };
-                for part in quarters(whole, middles(whole).each_ref()) {
+                for part in quarters(whole, &middles(whole)) {
                     let pair = if tag == QUARTER_FIRST { [part, y] } else { [x, part] };
-                    let [tag] = self.bytes.array()?;
-                    if !self.parts(pair, tag, depth + 1)? {
+                    if !self.parts(pair, None, depth + 1)? {
                         return Ok(false);
                     }
                 }
@@ -257,15 +239,14 @@ impl EntryReader<'_> {
             }
             NEW_MAP | LAST_MAP => {
                 if tag == NEW_MAP {
-                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real().map(Dyadic::of));
+                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real());
                     self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
                 }
                 let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
                 let mut direction = || self.bytes.vector();
                 let pyramid = [direction()?, direction()?, direction()?, direction()?];
-                let witness = AffineWitness { dir, rate, pyramid };
-                let map = self.map.as_ref();
-                Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
+                let Some(map) = &self.map else { return Ok(false) };
+                Ok(map.separates(scaled, [x, y], &dir, &rate, &pyramid, &self.radius))
             }
             _ => Ok(false),
         }
@@ -277,6 +258,7 @@ mod tests {
     use std::sync::atomic::AtomicBool;
 
     use super::*;
+    use crate::model::Model;
     use crate::scope::Scope;
 
     /// The number of entries of [`check`].
@@ -301,8 +283,8 @@ mod tests {
         let proven = (0..ENTRIES).map(|index| (index, bytes(index))).collect();
         let file = Proof { digest: &[], entries: ENTRIES as u64, rank: 1, nodes: 1, maps: &[], proven };
         let entries = [Entry { nodes: [0, 0], radius: 0.5 }; ENTRIES];
-        let (certificates, counted, model) = (&certificates, &counted, &model);
-        Check { certificates, counted, uncounted, scaled, model, is_cancelled }.run(&file, &entries, threads)
+        let (certificates, counted) = (&certificates, &counted);
+        Check { certificates, counted, uncounted, scaled, is_cancelled }.run(&file, &entries, threads)
     }
 
     #[test]

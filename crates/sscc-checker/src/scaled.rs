@@ -9,8 +9,11 @@
 //! The positions at the centre are the computed ones, from which witnesses are found. Their distance from the exact ones is part of
 //! the rounding.
 
+use std::collections::BTreeSet;
+
 use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
 use crate::model::Model;
+use crate::points::Point;
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, input};
 use crate::scope::Scope;
 
@@ -35,9 +38,8 @@ pub(crate) enum Radius {
 /// Computed positions at the centre, modes A, and the rounding of computed positions.
 pub(crate) struct ScaledModel {
     pub(crate) rank: usize,
-    pub(crate) positions: Vec<Vector>,
-    /// The modes A: three rows for each vertex.
-    modes: Vec<Dyadic>,
+    /// Three rows for each vertex: a position, then the modes A.
+    points: Vec<Dyadic>,
     /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from `positions + A z'`.
     rest_errors: Vector,
     /// See `rest_errors`.
@@ -51,49 +53,42 @@ impl ScaledModel {
         let (columns, delta) = inverse(scope, rank, is_cancelled)?;
         // Entries of |T| that are rounded up make |U| |T| larger, by a relative error of at most 2^-52.
         let magnitudes: Vec<Column> = columns.iter().map(Column::magnitudes).collect();
-        let mut used = vec![false; model.positions.len()];
-        model.faces.as_flattened().iter().for_each(|i| used[*i as usize] = true);
         let center: Vec<Dyadic> = scope.center.iter().map(|x| Dyadic::of(*x)).collect();
-        let mut this = Self {
-            rank,
-            positions: vec![Vector::default(); used.len()],
-            modes: vec![Dyadic::default(); 3 * rank * used.len()],
-            rest_errors: Vector::default(),
-            rate_errors: Vector::default(),
-            delta,
-        };
-        let mut center_errors = Vector::default();
-        for i in (0..used.len()).filter(|i| used[*i]) {
+        let mut points = vec![Dyadic::default(); 3 * (1 + rank) * model.positions.len()];
+        let [mut rest_errors, mut rate_errors, mut center_errors] = <[Vector; 3]>::default();
+        for i in model.faces.as_flattened().iter().copied().collect::<BTreeSet<u32>>() {
             check_cancelled(is_cancelled)?;
-            let rest = vector(model.positions[i]);
-            this.positions[i] = vector(model.computed_position(i, &scope.center));
-            for c in 0..3 {
+            let i = i as usize;
+            let computed = vector(model.computed_position(i, &scope.center));
+            for (c, computed) in computed.into_iter().enumerate() {
+                let rest = Dyadic::of(model.positions[i][c]);
                 let row = &model.modes_of(i)[c * rank..][..rank];
                 let row: Vec<Dyadic> = row.iter().map(|u| Dyadic::of(*u)).collect();
                 let moved = || row.iter().zip(&center).map(|(u, x)| u * x);
-                let exact = &rest[c] + &moved().sum();
-                center_errors[c].raise((&exact - &this.positions[i][c]).abs());
-                let magnitude = &rest[c].abs() + &moved().map(|x| x.abs()).sum();
-                let out = &mut this.modes[(3 * i + c) * rank..][..rank];
-                out.iter_mut().zip(&columns).for_each(|(a, column)| *a = column.product(&row));
+                let exact = &rest + &moved().sum();
+                center_errors[c].raise((&exact - &computed).abs());
+                rest_errors[c].raise(&rest.abs() + &moved().map(|x| x.abs()).sum());
+                let out = &mut points[(3 * i + c) * (1 + rank)..][..1 + rank];
+                out[0] = computed;
+                out[1..].iter_mut().zip(&columns).for_each(|(a, column)| *a = column.product(&row));
                 let row: Vec<Dyadic> = row.iter().map(Dyadic::abs).collect();
                 let magnitudes: Vec<Dyadic> = magnitudes.iter().map(|column| column.product(&row)).collect();
-                this.rest_errors[c].raise(magnitude);
-                this.rate_errors[c].raise(squared_norm(&magnitudes).root_up());
+                rate_errors[c].raise(squared_norm(&magnitudes).root_up());
             }
         }
         // Each product and each of r sums is rounded to nearest once. So the error is at most gamma_(r+1) <= (r + 2) 2^-53 (as r <=
         // 2^20) times the magnitudes, and 2^-1075 for each product that underflows.
         let (gamma, least) = (Dyadic::new(rank as i64 + 2, -53), Dyadic::new(rank as i64 + 2, -1074));
-        let error = |c: usize| &(&this.rest_errors[c] * &gamma) + &center_errors[c];
-        this.rest_errors = std::array::from_fn(|c| &error(c).round_up(64) + &least);
-        this.rate_errors = this.rate_errors.map(|x| (&x * &gamma).round_up(64));
-        Ok(this)
+        let error = |c: usize| &(&rest_errors[c] * &gamma) + &center_errors[c];
+        let rest_errors = std::array::from_fn(|c| &error(c).round_up(64) + &least);
+        let rate_errors = rate_errors.map(|x| (&x * &gamma).round_up(64));
+        Ok(Self { rank, points, rest_errors, rate_errors, delta })
     }
 
-    /// Returns the row of the modes for a vertex and a component.
-    pub(crate) fn row(&self, vertex: u32, component: usize) -> &[Dyadic] {
-        &self.modes[(3 * vertex as usize + component) * self.rank..][..self.rank]
+    /// Returns a vertex.
+    pub(crate) fn point(&self, vertex: u32) -> &Point {
+        let length = 3 * (1 + self.rank);
+        &self.points[vertex as usize * length..][..length]
     }
 
     /// Converts a radius of z to one of z', rounded up.

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::dyadic::{Dyadic, Vector, dot, minus};
-use crate::inequality::stays_open;
+use crate::dyadic::{Dyadic, Vector};
+use crate::inequality::are_apart;
+use crate::points::{Triangle, along};
 use crate::scaled::{Radius, ScaledModel};
 use crate::scope::Simplices;
 
@@ -12,51 +13,6 @@ use crate::scope::Simplices;
 const MAX_KEPT: usize = 1 << 27;
 /// Bytes for each value that a table and the allocator add, about.
 const PER_VALUE: usize = 24;
-
-/// A point of a triangle: its position at the centre and its modes (three rows).
-#[derive(Clone)]
-pub(crate) struct Corner {
-    pub(crate) position: Vector,
-    pub(crate) modes: Vec<Dyadic>,
-}
-
-/// A triangle, or a quarter of one.
-pub(crate) type Triangle<'a> = [&'a Corner; 3];
-
-impl Corner {
-    pub(crate) fn of(model: &ScaledModel, vertex: u32) -> Self {
-        let modes = (0..3).flat_map(|c| model.row(vertex, c).iter().cloned()).collect();
-        Self { position: model.positions[vertex as usize].clone(), modes }
-    }
-
-    fn middle(&self, other: &Self) -> Self {
-        let half = |a: &Dyadic, b: &Dyadic| (a + b).times_power(-1);
-        let modes = self.modes.iter().zip(&other.modes).map(|(a, b)| half(a, b)).collect();
-        Self { position: std::array::from_fn(|c| half(&self.position[c], &other.position[c])), modes }
-    }
-
-    /// Returns position and modes along a direction.
-    fn along(&self, dir: &Vector) -> (Dyadic, Vec<Dyadic>) {
-        let rank = self.modes.len() / 3;
-        let row = (0..rank).map(|k| (0..3).map(|c| &dir[c] * &self.modes[c * rank + k]).sum());
-        (dot(dir, &self.position), row.collect())
-    }
-}
-
-/// Returns the middles of the three edges of a triangle.
-pub(crate) fn middles([p, q, r]: Triangle<'_>) -> [Corner; 3] {
-    [p.middle(q), q.middle(r), r.middle(p)]
-}
-
-/// Returns the four quarters of a triangle, which share its corners and its middles.
-pub(crate) fn quarters<'a>([p, q, r]: Triangle<'a>, [pq, qr, rp]: Triangle<'a>) -> [Triangle<'a>; 4] {
-    [[p, pq, rp], [pq, q, qr], [rp, qr, r], [pq, qr, rp]]
-}
-
-/// Returns the nine differences of corners, from the first triangle to the second.
-pub(crate) fn differences(x: Triangle<'_>, y: Triangle<'_>) -> Vec<Vector> {
-    x.iter().flat_map(|i| y.iter().map(move |j| minus(&j.position, &i.position))).collect()
-}
 
 /// The directions of a list of triangles.
 pub(crate) struct Directions {
@@ -70,7 +26,7 @@ pub(crate) struct Directions {
 struct Direction {
     dir: Vector,
     errors: [Dyadic; 2],
-    vertices: HashMap<u32, (Dyadic, Vec<Dyadic>)>,
+    vertices: HashMap<u32, Vec<Dyadic>>,
     apart: HashMap<[u32; 2], bool>,
 }
 
@@ -78,6 +34,10 @@ impl Directions {
     /// Creates an empty list for one of a number of threads.
     pub(crate) fn new(threads: usize) -> Self {
         Self { all: Vec::new(), kept: 0, limit: MAX_KEPT / threads.max(1) }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        (self.all, self.kept) = (Vec::new(), 0);
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -109,9 +69,9 @@ impl Directions {
         let Direction { dir, errors, vertices, apart } = &mut self.all[index];
         for i in x.into_iter().chain(y) {
             vertices.entry(i).or_insert_with(|| {
-                let (at, row) = Corner::of(model, i).along(dir);
-                self.kept += row.iter().chain([&at]).map(|x| x.size() + PER_VALUE).sum::<usize>();
-                (at, row)
+                let row = along(model.point(i), dir);
+                self.kept += row.iter().map(|x| x.size() + PER_VALUE).sum::<usize>();
+                row
             });
         }
         x.into_iter().flat_map(|i| y.map(|j| [i, j])).all(|pair @ [i, j]| {
@@ -125,20 +85,9 @@ impl Directions {
     /// Whether a direction separates two triangles, or quarters of them, below a radius.
     pub(crate) fn separate_corners(&self, index: usize, pair: [Triangle<'_>; 2], radius: &Radius) -> bool {
         let Direction { dir, errors, .. } = &self.all[index];
-        let [x, y] = pair.map(|triangle| triangle.map(|corner| corner.along(dir)));
+        let [x, y] = pair.map(|triangle| triangle.map(|corner| along(corner, dir)));
         x.iter().all(|i| y.iter().all(|j| are_apart(i, j, errors, radius)))
     }
-}
-
-fn are_apart(
-    (at_i, row_i): &(Dyadic, Vec<Dyadic>),
-    (at_j, row_j): &(Dyadic, Vec<Dyadic>),
-    [rest_error, rate_error]: &[Dyadic; 2],
-    radius: &Radius,
-) -> bool {
-    let gap = &(at_j - at_i) - rest_error;
-    let square = row_i.iter().zip(row_j).map(|(a, b)| (a - b).square()).sum();
-    stays_open(&gap, rate_error, &square, radius)
 }
 
 #[cfg(test)]
@@ -176,8 +125,8 @@ mod tests {
             let index = (random() * many.len() as f64) as usize;
             let found = many.separate(index, scaled, pair, radius);
             assert_eq!(none.separate(index, scaled, pair, radius), found);
-            let [x, y] = pair.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
-            assert_eq!(many.separate_corners(index, [x.each_ref(), y.each_ref()], radius), found);
+            let corners = pair.map(|simplex| simplex.map(|i| scaled.point(i)));
+            assert_eq!(many.separate_corners(index, corners, radius), found);
             apart += usize::from(found);
             largest = largest.max(none.kept);
         }
