@@ -1,10 +1,10 @@
 //! The digest of model and scope that certificates contain.
 
-use crate::scope::CountedPairs;
+use crate::counted::CountedPairs;
 
 /// Returns the BLAKE3 digest of the model and the scope: of named lists one after the other, each with its length; all numbers
 /// have 64 bits.
-pub(crate) fn digest(CountedPairs { model, scope, classes }: &CountedPairs<'_>) -> [u8; 32] {
+pub(crate) fn digest(CountedPairs { model, scope, classes, .. }: &CountedPairs<'_>) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     let mut list = |name: &str, count: usize, numbers: &mut dyn Iterator<Item = u64>| {
         hasher.update(name.as_bytes()).update(&(count as u64).to_le_bytes());

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use crate::counted::Simplices;
 use crate::dyadic::{Dyadic, Vector};
 use crate::inequality::are_apart;
 use crate::points::{Triangle, along};
 use crate::scaled::{Radius, ScaledModel};
-use crate::scope::Simplices;
 
 /// The memory for values along directions that all threads may keep together, in bytes. Values beyond it are computed again, so that
 /// no proof exhausts the memory. Lists of triangles of usual leaves and ranks need less.

@@ -2,9 +2,9 @@
 //! are pairs of which one triangle is a segment, with the common vertex inside: the opposite edge contains it, though no other point
 //! need be common.
 
+use crate::counted::CountedPairs;
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof};
-use crate::scope::CountedPairs;
 
 /// Checks that each exception counts and collides at the centre.
 pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {

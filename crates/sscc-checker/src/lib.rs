@@ -7,6 +7,7 @@
 mod affine;
 mod certificates;
 mod container;
+mod counted;
 
 mod digest;
 mod directions;
@@ -22,7 +23,6 @@ mod proof;
 mod refusal;
 mod scaled;
 mod scope;
-mod uncounted;
 
 use std::fmt;
 
@@ -31,10 +31,10 @@ pub use model::Model;
 pub use refusal::{IsCancelled, Refusal};
 
 use certificates::Certificates;
-use proof::{Check, Proof};
+use counted::CountedPairs;
+use proof::Proof;
 use refusal::require;
-use scope::{CountedPairs, Scope};
-use uncounted::UncountedPairs;
+use scope::Scope;
 
 /// The result of a check that confirmed the radii of pairs that count.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,20 +124,15 @@ pub fn check_until(
     let scope = Scope::read(&file, model).map_err(of_certificates)?;
     let certificates = Certificates::read(&file, model.faces.len()).map_err(of_certificates)?;
     // Files that do not belong together are refused before work that takes longer than reading them.
-    let proof = Proof::parse(proof).map_err(of_proof)?;
-    proof.check_head(&certificates, model.rank).map_err(of_proof)?;
-    let counted = CountedPairs::new(model, &scope);
+    let proof = Proof::parse(proof, &certificates, model.rank).map_err(of_proof)?;
+    let counted = CountedPairs::new(model, &scope, &certificates);
     let is_of_model = digest::digest(&counted) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
     let entries = entries::entries(&certificates).map_err(of_certificates)?;
-    proof.check_entries(&entries).map_err(of_proof)?;
+    require(proof.entries == entries.len() as u64, "proof: of other certificates")?;
     exceptions::check(&counted, is_cancelled).map_err(of_certificates)?;
     let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
-    let uncounted = UncountedPairs::new(&certificates, &counted);
-    let (certificates, counted, uncounted, scaled) = (&certificates, &counted, &uncounted, &scaled);
-    Check { certificates, counted, uncounted, scaled, is_cancelled }
-        .run(&proof, &entries, threads)
-        .map_err(of_proof)?;
+    proof.check(&entries, &counted, &scaled, threads, is_cancelled).map_err(of_proof)?;
     let is_positive = |index: usize| entries[index].radius > 0.0;
     let local = if file.has("local_nodes") { "local certificates" } else { "no local certificates" };
     Ok(Confirmed {

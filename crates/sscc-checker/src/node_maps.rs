@@ -7,10 +7,9 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use crate::certificates::Certificates;
+use crate::counted::CountedPairs;
 use crate::dyadic::{Dyadic, Vector, dot};
 use crate::inequality::are_apart;
-use crate::model::Model;
 use crate::points::{along, difference, position, row, squared_residual, sum};
 use crate::scaled::{Radius, ScaledModel};
 
@@ -22,16 +21,14 @@ pub(crate) fn numbers_of_map(rank: usize) -> usize {
 
 /// The maps of all nodes, and the boxes of those that have been needed.
 pub(crate) struct NodeMaps<'a> {
-    pub(crate) model: &'a Model,
+    pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
-    pub(crate) certificates: &'a Certificates,
     /// [`numbers_of_map`] numbers of eight bytes for each node.
     pub(crate) numbers: &'a [u8],
     pub(crate) boxes: Vec<OnceLock<NodeBox>>,
 }
 
 /// The corners of a box, with the modes of the map: the sums of the centre and of each half extent or its negative.
-#[derive(Clone)]
 pub(crate) struct NodeBox {
     center: Vec<Dyadic>,
     /// The half extent along each axis, as the difference of two points.
@@ -59,8 +56,9 @@ impl NodeMaps<'_> {
         let (center, rows) = numbers.split_at(3);
         let rows: Vec<&[Dyadic]> = rows.chunks(rank).collect();
         let center: Vec<Dyadic> = (0..3).flat_map(|c| [&center[c..=c], rows[c]].concat()).collect();
-        let triangles = self.certificates.triangles(n).iter();
-        let vertices: BTreeSet<u32> = triangles.flat_map(|t| self.model.faces[*t as usize]).collect();
+        let CountedPairs { model, certificates, .. } = self.counted;
+        let triangles = certificates.triangles(n).iter();
+        let vertices: BTreeSet<u32> = triangles.flat_map(|t| model.faces[*t as usize]).collect();
         let [mut half, mut squares] = <[Vector; 2]>::default();
         for i in vertices {
             let from_center = difference(self.scaled.point(i), &center);

@@ -7,6 +7,7 @@ use std::thread;
 
 use crate::affine::AffineMap;
 use crate::certificates::Certificates;
+use crate::counted::{CountedPairs, Simplices};
 use crate::directions::Directions;
 use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
@@ -14,8 +15,6 @@ use crate::node_maps::{NodeMaps, numbers_of_map};
 use crate::points::{Triangle, middles, quarters};
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
 use crate::scaled::{Radius, ScaledModel};
-use crate::scope::{CountedPairs, Simplices};
-use crate::uncounted::UncountedPairs;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 /// The largest depth of quarters within quarters.
@@ -36,11 +35,8 @@ const QUARTER_SECOND: u8 = 251;
 
 /// The parts of a proof.
 pub(crate) struct Proof<'a> {
-    digest: &'a [u8],
     /// The number of all entries, proven or not.
-    entries: u64,
-    rank: u32,
-    nodes: u32,
+    pub(crate) entries: u64,
     maps: &'a [u8],
     /// The number of each proven entry, ascending, and its witnesses.
     pub(crate) proven: Vec<(usize, &'a [u8])>,
@@ -70,15 +66,16 @@ impl<'a> Bytes<'a> {
 }
 
 impl<'a> Proof<'a> {
-    pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+    /// Parses a proof of certificates of a model with a rank.
+    pub(crate) fn parse(bytes: &'a [u8], certificates: &Certificates, rank: usize) -> Result<Self, Refusal> {
         require(bytes.iter().zip(MAGIC).all(|(a, b)| a == b), "not a proof of certificates")?;
         let mut bytes = Bytes(bytes);
         bytes.take(MAGIC.len())?;
         let digest = bytes.take(32)?;
         let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
-        let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
-        let numbers = numbers_of_map(rank as usize).checked_mul(nodes as usize);
-        let maps = bytes.take(numbers.and_then(|count| count.checked_mul(8)).unwrap_or(usize::MAX))?;
+        let size = [u32::from_le_bytes(bytes.array()?) as usize, u32::from_le_bytes(bytes.array()?) as usize];
+        let numbers = numbers_of_map(size[0]).saturating_mul(size[1]);
+        let maps = bytes.take(numbers.saturating_mul(8))?;
         let mut proven: Vec<(usize, &[u8])> = Vec::new();
         for _ in 0..count {
             let index = u64::from_le_bytes(bytes.array()?);
@@ -89,47 +86,32 @@ impl<'a> Proof<'a> {
             }
             proven.push((index as usize, bytes.take(length as usize)?));
         }
-        if !bytes.0.is_empty() {
-            return proof("there are bytes after its end");
-        }
+        claim(bytes.0.is_empty(), "there are bytes after its end")?;
         claim(!proven.is_empty(), "it proves no entry")?;
-        Ok(Self { digest, entries, rank, nodes, maps, proven })
+        require(digest == certificates.digest, "of other certificates")?;
+        let fits = size == [rank, certificates.nodes.len()];
+        claim(fits, "it has another number of modes or nodes than the certificates")?;
+        Ok(Self { entries, maps, proven })
     }
 
-    /// Checks that the proof is of these certificates, before costly work.
-    pub(crate) fn check_head(&self, certificates: &Certificates, rank: usize) -> Result<(), Refusal> {
-        require(self.digest == certificates.digest, "of other certificates")?;
-        let fits = (self.rank as usize, self.nodes as usize) == (rank, certificates.nodes.len());
-        claim(fits, "it has another number of modes or nodes than the certificates")
-    }
-
-    /// Checks that the proof has entries of this list.
-    pub(crate) fn check_entries(&self, entries: &[Entry]) -> Result<(), Refusal> {
-        require(self.entries == entries.len() as u64, "of other certificates")
-    }
-}
-
-/// The data that the checks of all entries share.
-pub(crate) struct Check<'a> {
-    pub(crate) certificates: &'a Certificates,
-    pub(crate) counted: &'a CountedPairs<'a>,
-    pub(crate) uncounted: &'a UncountedPairs<'a>,
-    pub(crate) scaled: &'a ScaledModel,
-    pub(crate) is_cancelled: &'a IsCancelled<'a>,
-}
-
-impl Check<'_> {
-    /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some.
-    pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
-        let &Self { certificates, counted, scaled, .. } = self;
-        let boxes = certificates.nodes.iter().map(|_| OnceLock::new()).collect();
-        let maps = &NodeMaps { model: counted.model, scaled, certificates, numbers: file.maps, boxes };
+    /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some. `entries`: all entries.
+    pub(crate) fn check(
+        &self,
+        entries: &[Entry],
+        counted: &CountedPairs<'_>,
+        scaled: &ScaledModel,
+        threads: usize,
+        is_cancelled: &IsCancelled<'_>,
+    ) -> Result<(), Refusal> {
+        let boxes = counted.certificates.nodes.iter().map(|_| OnceLock::new()).collect();
+        let maps = &NodeMaps { counted, scaled, numbers: self.maps, boxes };
         let next = AtomicUsize::new(0);
-        let take = || file.proven.get(next.fetch_add(1, Ordering::Relaxed));
+        let take = || self.proven.get(next.fetch_add(1, Ordering::Relaxed));
         let refused = |&(index, bytes): &(usize, &[u8])| {
             let radius = scaled.radius(entries[index].radius);
-            let (bytes, directions) = (Bytes(bytes), Directions::new(threads));
-            let mut reader = EntryReader { check: self, maps, radius, bytes, directions, map: None };
+            let (bytes, directions, map) = (Bytes(bytes), Directions::new(threads), None);
+            let mut reader =
+                EntryReader { counted, scaled, maps, is_cancelled, radius, bytes, directions, map };
             Some((index, reader.entry(entries[index]).err()?))
         };
         let work = || iter::from_fn(take).find_map(refused);
@@ -150,7 +132,9 @@ impl Check<'_> {
 
 /// Reads and checks the witnesses of an entry.
 struct EntryReader<'a> {
-    check: &'a Check<'a>,
+    counted: &'a CountedPairs<'a>,
+    scaled: &'a ScaledModel,
+    is_cancelled: &'a IsCancelled<'a>,
     maps: &'a NodeMaps<'a>,
     radius: Radius,
     bytes: Bytes<'a>,
@@ -171,8 +155,8 @@ impl EntryReader<'_> {
 
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
-        check_cancelled(self.check.is_cancelled)?;
-        let children = |n: u32| self.check.certificates.nodes[n as usize].children();
+        check_cancelled(self.is_cancelled)?;
+        let children = |n: u32| self.counted.certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
@@ -180,7 +164,7 @@ impl EntryReader<'_> {
                 let are_apart = n != m && self.maps.are_apart([n, m], &dir, &self.radius);
                 claim(are_apart, &format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => self.check.uncounted.check([n, m]),
+            [NOTHING_COUNTS] => self.counted.check_uncounted([n, m]),
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
             [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
             [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
@@ -191,8 +175,8 @@ impl EntryReader<'_> {
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
         self.directions.clear();
         self.map = None;
-        let Check { certificates, counted, scaled, .. } = self.check;
-        for [a, b] in certificates.pairs(nodes) {
+        let Self { counted, scaled, .. } = *self;
+        for [a, b] in counted.certificates.pairs(nodes) {
             for simplices in counted.simplices(a, b) {
                 let corners = simplices.map(|simplex| simplex.map(|i| scaled.point(i)));
                 if !self.parts(corners, Some(simplices), 0)? {
@@ -210,8 +194,8 @@ impl EntryReader<'_> {
         whole: Option<Simplices>,
         depth: usize,
     ) -> Result<bool, Refusal> {
-        check_cancelled(self.check.is_cancelled)?;
-        let scaled = self.check.scaled;
+        check_cancelled(self.is_cancelled)?;
+        let scaled = self.scaled;
         let [tag] = self.bytes.array()?;
         match tag {
             NEW_DIRECTION | ..QUARTER_SECOND => {
@@ -271,8 +255,8 @@ mod tests {
         let mode = (0..18).map(|row| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 }).collect();
         let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;
         let scope = Scope::of_factor(vec![1.0], 1);
-        let (certificates, counted) = (Certificates::of_leaf(2, 0.5), CountedPairs::new(&model, &scope));
-        let uncounted = &UncountedPairs::new(&certificates, &counted);
+        let certificates = Certificates::of_leaf(2, 0.5);
+        let counted = CountedPairs::new(&model, &scope, &certificates);
         let scaled = &ScaledModel::new(&model, &scope, &|| false)?;
         let witness = |dir: [f64; 3]| {
             let numbers = dir.into_iter().flat_map(f64::to_le_bytes);
@@ -281,15 +265,15 @@ mod tests {
         let (along, across) = (witness([0.0, 0.0, 1.0]), witness([1.0, 0.0, 0.0]));
         let bytes = |index: usize| if wrong == Some(index) { &across[..] } else { &along[..] };
         let proven = (0..ENTRIES).map(|index| (index, bytes(index))).collect();
-        let file = Proof { digest: &[], entries: ENTRIES as u64, rank: 1, nodes: 1, maps: &[], proven };
+        let file = Proof { entries: ENTRIES as u64, maps: &[], proven };
         let entries = [Entry { nodes: [0, 0], radius: 0.5 }; ENTRIES];
-        let (certificates, counted) = (&certificates, &counted);
-        Check { certificates, counted, uncounted, scaled, is_cancelled }.run(&file, &entries, threads)
+        file.check(&entries, &counted, scaled, threads, is_cancelled)
     }
 
     #[test]
     fn the_head_is_checked_before_all_else() {
-        let cause = |bytes: &[u8]| Proof::parse(bytes).err();
+        let certificates = Certificates::of_leaf(2, 0.5);
+        let cause = |bytes: &[u8]| Proof::parse(bytes, &certificates, 1).err();
         let head = |rank: u32, nodes: u32, count: u64| {
             let numbers =
                 [&2_u64.to_le_bytes()[..], &count.to_le_bytes(), &rank.to_le_bytes(), &nodes.to_le_bytes()];
@@ -308,14 +292,12 @@ mod tests {
         assert!(matches!(cause(&[head(1, 1, 2), entry.clone(), entry].concat()), Some(Refusal::Proof(_))));
         // No memory is reserved for numbers that the file does not have.
         assert_eq!(cause(&head(u32::MAX, 1, u64::MAX)), Some(Refusal::Proof("it ends too early".into())));
-        let certificates = Certificates::of_leaf(2, 0.5);
-        let check = |bytes: &[u8]| Proof::parse(bytes).unwrap().check_head(&certificates, 1).err();
-        assert_eq!(check(&whole), None);
+        assert_eq!(cause(&whole), None);
         let mut other = whole.clone();
         other[8] ^= 1;
-        assert_eq!(check(&other), Some(Refusal::Input("of other certificates".into())));
+        assert_eq!(cause(&other), Some(Refusal::Input("of other certificates".into())));
         let two_nodes = [head(1, 2, 1), whole[whole.len() - 12..].to_vec()].concat();
-        assert!(matches!(check(&two_nodes), Some(Refusal::Proof(_))));
+        assert!(matches!(cause(&two_nodes), Some(Refusal::Proof(_))));
     }
 
     /// One thread is what remains if the system refuses all others.

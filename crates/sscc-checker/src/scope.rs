@@ -1,7 +1,5 @@
 //! The scope of certificates: metric, centre, and which pairs of triangles count.
 
-use std::collections::HashMap;
-
 use crate::container::Container;
 use crate::model::{LARGEST, Model};
 use crate::refusal::{Refusal, input, require};
@@ -71,6 +69,17 @@ impl Scope {
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
     }
 
+    /// Returns the group of a triangle, if there are groups.
+    pub(crate) fn group(&self, t: u32) -> Option<u32> {
+        self.groups.as_ref().map(|groups| groups.of_triangles[t as usize])
+    }
+
+    /// Whether triangles of two groups count; they do if the groups are not known.
+    pub(crate) fn groups_count(&self, g: Option<u32>, h: Option<u32>) -> bool {
+        let (Some(groups), Some(g), Some(h)) = (&self.groups, g, h) else { return true };
+        groups.listed.binary_search(&[g.min(h), g.max(h)]).is_ok() != groups.others_count
+    }
+
     /// Returns which pairs of triangles do not count, as text.
     pub(crate) fn left_out(&self) -> String {
         let vertices = if self.one_vertex { "two common vertices" } else { "common vertices" };
@@ -89,84 +98,6 @@ impl Scope {
 fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
     let which = values.iter().position(|value| Ok(*value) == file.text(key));
     which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
-}
-
-/// Two simplices by their vertices: triangles, or edges, whose last vertex is repeated.
-pub(crate) type Simplices = [[u32; 3]; 2];
-
-/// The pairs of triangles that count.
-pub(crate) struct CountedPairs<'a> {
-    pub(crate) model: &'a Model,
-    pub(crate) scope: &'a Scope,
-    /// For each vertex the lowest vertex with the same position and modes; without welds the vertex itself.
-    pub(crate) classes: Vec<u32>,
-}
-
-impl<'a> CountedPairs<'a> {
-    pub(crate) fn new(model: &'a Model, scope: &'a Scope) -> Self {
-        let mut lowest = HashMap::new();
-        let class = |i: u32| {
-            if !scope.weld {
-                return i;
-            }
-            let numbers = model.positions[i as usize].iter().chain(model.modes_of(i as usize));
-            // Adding 0 makes -0 equal to 0.
-            let key: Vec<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
-            *lowest.entry(key).or_insert(i)
-        };
-        let classes = (0..model.positions.len() as u32).map(class).collect();
-        Self { model, scope, classes }
-    }
-
-    /// Returns pairs of simplices such that one pair meets if two triangles collide in a way that counts; no pairs for triangles
-    /// that never count together, or are an exception.
-    pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
-        let pair = [a.min(b), a.max(b)];
-        let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
-        if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
-    }
-
-    /// Returns the pairs of simplices of [`Self::simplices`], also for exceptions.
-    pub(crate) fn with_exceptions(&self, a: u32, b: u32) -> Vec<Simplices> {
-        let pair = [a.min(b), a.max(b)];
-        if a == b || self.scope.ignored.binary_search(&pair).is_ok() || !self.groups_count(a, b) {
-            return Vec::new();
-        }
-        let faces = [a, b].map(|t| self.model.faces[t as usize]);
-        let [x, y] = faces.map(|face| face.map(|i| self.classes[i as usize]));
-        let Some(&class) = x.iter().find(|class| y.contains(class)) else { return vec![faces] };
-        let shared = |x: [u32; 3], y: [u32; 3], first: u32| x.iter().any(|i| *i != first && y.contains(i));
-        let number = faces[0].iter().find(|i| faces[1].contains(i));
-        let is_one = !shared(x, y, class) && number.is_none_or(|i| !shared(faces[0], faces[1], *i));
-        if !self.scope.one_vertex || !is_one {
-            return Vec::new();
-        }
-        // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them
-        // meets the other triangle (follow the ray from the vertex through that point to the first of the two edges).
-        let opposite = |face: [u32; 3]| {
-            let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
-            Some([*others.first()?, *others.last()?, *others.last()?])
-        };
-        match (opposite(faces[0]), opposite(faces[1])) {
-            (Some(x), Some(y)) => vec![[x, faces[1]], [faces[0], y]],
-            // One face consists of the common vertex alone.
-            _ => Vec::new(),
-        }
-    }
-
-    fn groups_count(&self, a: u32, b: u32) -> bool {
-        let Some(groups) = &self.scope.groups else { return true };
-        let [g, h] = [a, b].map(|t| groups.of_triangles[t as usize]);
-        groups.count(g, h)
-    }
-}
-
-impl Groups {
-    /// Whether triangles of two groups count.
-    pub(crate) fn count(&self, g: u32, h: u32) -> bool {
-        let is_listed = self.listed.binary_search(&[g.min(h), g.max(h)]).is_ok();
-        is_listed != self.others_count
-    }
 }
 
 #[cfg(test)]

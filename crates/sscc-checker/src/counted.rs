@@ -1,16 +1,26 @@
-//! Node pairs of which no pair of triangles counts.
+//! The pairs of triangles that count, and node pairs of which none counts.
+
+use std::collections::{BTreeSet, HashMap};
 
 use crate::certificates::{BUCKET, Certificates};
+use crate::model::Model;
 use crate::refusal::{Refusal, proof};
-use crate::scope::CountedPairs;
+use crate::scope::Scope;
 
 /// The largest number of pairs of triangles of two nodes that are tested one by one: those of two leaves.
 const MAX_TESTED: u64 = (BUCKET as u64).pow(2);
 
-/// The common properties of the triangles of each node.
-pub(crate) struct UncountedPairs<'a> {
-    certificates: &'a Certificates,
-    counted: &'a CountedPairs<'a>,
+/// Two simplices by their vertices: triangles, or edges, whose last vertex is repeated.
+pub(crate) type Simplices = [[u32; 3]; 2];
+
+/// The pairs of triangles that count.
+pub(crate) struct CountedPairs<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) scope: &'a Scope,
+    pub(crate) certificates: &'a Certificates,
+    /// For each vertex the lowest vertex with the same position and modes; without welds the vertex itself.
+    pub(crate) classes: Vec<u32>,
+    /// The common properties of the triangles of each node.
     nodes: Vec<Common>,
 }
 
@@ -34,11 +44,22 @@ impl Common {
     }
 }
 
-impl<'a> UncountedPairs<'a> {
-    pub(crate) fn new(certificates: &'a Certificates, counted: &'a CountedPairs<'a>) -> Self {
+impl<'a> CountedPairs<'a> {
+    pub(crate) fn new(model: &'a Model, scope: &'a Scope, certificates: &'a Certificates) -> Self {
+        let mut lowest = HashMap::new();
+        let class = |i: u32| {
+            if !scope.weld {
+                return i;
+            }
+            let numbers = model.positions[i as usize].iter().chain(model.modes_of(i as usize));
+            // Adding 0 makes -0 equal to 0.
+            let key: Vec<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
+            *lowest.entry(key).or_insert(i)
+        };
+        let classes: Vec<u32> = (0..model.positions.len() as u32).map(class).collect();
         let of_triangle = |t: &u32| Common {
-            group: counted.scope.groups.as_ref().map(|groups| groups.of_triangles[*t as usize]),
-            vertices: counted.model.faces[*t as usize].map(|i| counted.classes[i as usize]).to_vec(),
+            group: scope.group(*t),
+            vertices: model.faces[*t as usize].map(|i| classes[i as usize]).to_vec(),
         };
         let mut nodes = vec![Common::default(); certificates.nodes.len()];
         // Children come after their parents.
@@ -50,21 +71,53 @@ impl<'a> UncountedPairs<'a> {
             };
             nodes[n] = parts.into_iter().reduce(|a, b| a.and(&b)).unwrap_or_default();
         }
-        Self { certificates, counted, nodes }
+        Self { model, scope, certificates, classes, nodes }
+    }
+
+    /// Returns pairs of simplices such that one pair meets if two triangles collide in a way that counts; no pairs for triangles
+    /// that never count together, or are an exception.
+    pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
+        let pair = [a.min(b), a.max(b)];
+        let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
+        if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
+    }
+
+    /// Returns the pairs of simplices of [`Self::simplices`], also for exceptions.
+    pub(crate) fn with_exceptions(&self, a: u32, b: u32) -> Vec<Simplices> {
+        let scope = self.scope;
+        let is_ignored = scope.ignored.binary_search(&[a.min(b), a.max(b)]).is_ok();
+        if a == b || is_ignored || !scope.groups_count(scope.group(a), scope.group(b)) {
+            return Vec::new();
+        }
+        let common =
+            |x: [u32; 3], y: [u32; 3]| -> BTreeSet<u32> { x.into_iter().filter(|i| y.contains(i)).collect() };
+        let [x, y] = [a, b].map(|t| self.model.faces[t as usize]);
+        let classes = |face: [u32; 3]| face.map(|i| self.classes[i as usize]);
+        let common_classes = common(classes(x), classes(y));
+        let Some(&class) = common_classes.first() else { return vec![[x, y]] };
+        if !scope.one_vertex || common_classes.len() > 1 || common(x, y).len() > 1 {
+            return Vec::new();
+        }
+        // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them
+        // meets the other triangle (follow the ray from the vertex through that point to the first of the two edges).
+        let opposite = |face: [u32; 3]| {
+            let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
+            Some([*others.first()?, *others.last()?, *others.last()?])
+        };
+        match (opposite(x), opposite(y)) {
+            (Some(of_x), Some(of_y)) => vec![[of_x, y], [x, of_y]],
+            // One face consists of the common vertex alone.
+            _ => Vec::new(),
+        }
     }
 
     /// Checks that no pair of triangles of two nodes, or of one node, counts. Large nodes need one group each, which do not count
     /// together, or a vertex that all triangles have. Otherwise one byte of a proof could demand a test of all pairs of the mesh.
-    pub(crate) fn check(&self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+    pub(crate) fn check_uncounted(&self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         let [x, y] = [n, m].map(|n| &self.nodes[n as usize]);
-        let scope = self.counted.scope;
-        let is_group_ignored = match (&scope.groups, x.group, y.group) {
-            (Some(groups), Some(g), Some(h)) => !groups.count(g, h),
-            _ => false,
-        };
         // Without `one_vertex` no pair with a common vertex counts.
-        let is_adjacent = !scope.one_vertex && x.vertices.iter().any(|class| y.vertices.contains(class));
-        if is_group_ignored || is_adjacent {
+        let is_adjacent = !self.scope.one_vertex && x.vertices.iter().any(|class| y.vertices.contains(class));
+        if is_adjacent || !self.scope.groups_count(x.group, y.group) {
             return Ok(());
         }
         let [x, y] = [n, m].map(|n| u64::from(self.certificates.nodes[n as usize].count));
@@ -72,7 +125,7 @@ impl<'a> UncountedPairs<'a> {
             return proof(format!("nodes {n} and {m} have too many pairs of triangles to test each of them"));
         }
         let mut pairs = self.certificates.pairs([n, m]);
-        match pairs.find(|[a, b]| !self.counted.simplices(*a, *b).is_empty()) {
+        match pairs.find(|[a, b]| !self.simplices(*a, *b).is_empty()) {
             Some([a, b]) => proof(format!("triangles {a} and {b} count")),
             None => Ok(()),
         }
@@ -82,8 +135,7 @@ impl<'a> UncountedPairs<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Model;
-    use crate::scope::{Groups, Scope};
+    use crate::scope::Groups;
 
     /// More triangles than two leaves can have.
     const TRIANGLES: u32 = 100;
@@ -96,8 +148,7 @@ mod tests {
         let model = Model::new(positions, faces, vec![0.0; 3 * vertices], 1).unwrap();
         let mut scope = Scope::of_factor(vec![1.0], 1);
         change(&mut scope);
-        let counted = CountedPairs::new(&model, &scope);
-        UncountedPairs::new(&certificates, &counted).check([0, 0])
+        CountedPairs::new(&model, &scope, &certificates).check_uncounted([0, 0])
     }
 
     /// Triangles around vertex 0.
@@ -169,12 +220,11 @@ mod tests {
             let listed = [[0, 0], [0, 1], [1, 1]].into_iter().filter(|_| random(2) == 0).collect();
             scope.groups =
                 (case % 2 == 0).then_some(Groups { of_triangles, others_count: random(2) == 0, listed });
-            let counted = CountedPairs::new(&model, &scope);
             let certificates = Certificates::of_leaf(triangles, 1.0);
-            let uncounted = UncountedPairs::new(&certificates, &counted);
+            let counted = CountedPairs::new(&model, &scope, &certificates);
             let counts = certificates.pairs([0, 0]).any(|[a, b]| !counted.simplices(a, b).is_empty());
-            assert_eq!(uncounted.check([0, 0]).is_err(), counts, "case {case}");
-            let Common { group, vertices } = &uncounted.nodes[0];
+            assert_eq!(counted.check_uncounted([0, 0]).is_err(), counts, "case {case}");
+            let Common { group, vertices } = &counted.nodes[0];
             by_shortcut += usize::from(!counts && (group.is_some() || !vertices.is_empty()));
             refused += usize::from(counts && (group.is_some() || !vertices.is_empty()));
         }
