@@ -69,7 +69,8 @@ impl AffineMap {
         if !holds([u0, u1, u2]) || !holds([u0, u2, u3]) {
             return false;
         }
-        let Some(gap) = offsets.iter().map(|d| dot(dir, d)).min() else { return false };
+        let smaller = |a: Dyadic, b: Dyadic| if b < a { b } else { a };
+        let gap = offsets.iter().map(|d| dot(dir, d)).reduce(smaller).unwrap_or_default();
         // The largest squared residual of the nine pairs of corners.
         let rows: Vec<&[Dyadic]> = self.gradient.chunks(model.rank).collect();
         let of_axis = |d: &[Dyadic], offset: &Vector, c: usize| {

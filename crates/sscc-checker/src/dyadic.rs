@@ -25,17 +25,16 @@ impl Dyadic {
     /// Returns the exact value of a finite number, and 0 for other numbers. Only the node maps of a proof, which may be any, and
     /// computed positions at a huge centre are not finite: their distance from the exact positions is measured after this.
     pub(crate) fn of(x: f64) -> Self {
-        let bits = x.to_bits();
-        let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
-        let (mantissa, exponent) =
-            if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-        if mantissa == 0 || biased == 0x7ff {
+        if x == 0.0 || !x.is_finite() {
             return Self::default();
         }
+        let (biased, fraction) = (x.abs().to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
+        let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
         // Trailing zeros are removed, because short mantissas make short products.
         let zeros = mantissa.trailing_zeros();
-        let mantissa = mantissa >> zeros;
-        Self::new(if x < 0.0 { -mantissa } else { mantissa }, exponent + i64::from(zeros))
+        let mantissa = IBig::from(mantissa >> zeros);
+        let exponent = biased.max(1) as i64 - 1075 + i64::from(zeros);
+        Self { mantissa: if x < 0.0 { -mantissa } else { mantissa }, exponent }
     }
 
     pub(crate) fn is_zero(&self) -> bool {
@@ -111,15 +110,24 @@ impl Dyadic {
     }
 }
 
+impl AddAssign for Dyadic {
+    fn add_assign(&mut self, mut other: Self) {
+        if self.is_zero() || (!other.is_zero() && other.exponent < self.exponent) {
+            std::mem::swap(self, &mut other);
+        }
+        // The exponent of this number is the smaller one now, unless the other number is 0.
+        if !other.is_zero() {
+            self.mantissa += other.mantissa << (other.exponent - self.exponent) as usize;
+        }
+    }
+}
+
 impl Add for &Dyadic {
     type Output = Dyadic;
     fn add(self, other: Self) -> Dyadic {
-        if self.is_zero() || other.is_zero() {
-            return if self.is_zero() { other } else { self }.clone();
-        }
-        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
-        let shift = (high.exponent - low.exponent) as usize;
-        Dyadic { mantissa: (&high.mantissa << shift) + &low.mantissa, exponent: low.exponent }
+        let mut sum = self.clone();
+        sum += other.clone();
+        sum
     }
 }
 
@@ -139,51 +147,21 @@ impl Mul for &Dyadic {
 
 impl Sum for Dyadic {
     fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
-        numbers.fold(Self::default(), |mut sum, x| {
-            sum += x;
-            sum
-        })
-    }
-}
-
-impl AddAssign for Dyadic {
-    /// Adds a number like `+`, but consumes it, so that memory can be reused.
-    fn add_assign(&mut self, other: Self) {
-        if self.is_zero() {
-            *self = other;
-        } else if !other.is_zero() {
-            let shift = other.exponent - self.exponent;
-            if shift >= 0 {
-                self.mantissa += other.mantissa << shift as usize;
-            } else {
-                self.mantissa <<= shift.unsigned_abs() as usize;
-                self.mantissa += other.mantissa;
-                self.exponent = other.exponent;
-            }
-        }
+        let mut sum = Self::default();
+        numbers.for_each(|x| sum += x);
+        sum
     }
 }
 
 impl PartialEq for Dyadic {
     fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
+        (self - other).is_zero()
     }
 }
-
-impl Eq for Dyadic {}
 
 impl PartialOrd for Dyadic {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Dyadic {
-    fn cmp(&self, other: &Self) -> Ordering {
-        if self.is_zero() || other.is_zero() || self.is_positive() != other.is_positive() {
-            return self.mantissa.cmp(&other.mantissa);
-        }
-        (self - other).mantissa.cmp(&IBig::ZERO)
+        Some((self - other).mantissa.cmp(&IBig::ZERO))
     }
 }
 
