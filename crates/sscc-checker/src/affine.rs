@@ -16,9 +16,8 @@
 //! part of `u_i'G u_j`. If that is more than g, the cone is halved.
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
-use crate::inequality::stays_open;
-use crate::points::{Triangle, differences, position, row, squared_residual, sum};
-use crate::scaled::{Radius, ScaledModel};
+use crate::points::{Radius, Triangle, differences, position, row, squared_residual, stays_open, sum};
+use crate::scaled::ScaledModel;
 
 /// The number of cones of a witness from which on no cone is halved.
 const MAX_CONES: usize = 1024;

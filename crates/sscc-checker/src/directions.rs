@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use crate::counted::Simplices;
 use crate::dyadic::{Dyadic, Vector};
-use crate::inequality::are_apart;
-use crate::points::{Triangle, along};
-use crate::scaled::{Radius, ScaledModel};
+use crate::points::{Radius, Triangle, along, are_apart};
+use crate::scaled::ScaledModel;
 
 /// The memory for values along directions that all threads may keep together, in bytes. Values beyond it are computed again, so that
 /// no proof exhausts the memory. Lists of triangles of usual leaves and ranks need less.
@@ -14,8 +13,10 @@ const MAX_KEPT: usize = 1 << 27;
 /// Bytes for each value that a table and the allocator add, about.
 const PER_VALUE: usize = 24;
 
-/// The directions of a list of triangles.
-pub(crate) struct Directions {
+/// The directions of a list of triangles, and what they separate below a radius.
+pub(crate) struct Directions<'a> {
+    model: &'a ScaledModel,
+    radius: &'a Radius,
     all: Vec<Direction>,
     /// The memory of the values that they keep, and its limit, in bytes.
     kept: usize,
@@ -30,10 +31,10 @@ struct Direction {
     apart: HashMap<[u32; 2], bool>,
 }
 
-impl Directions {
+impl<'a> Directions<'a> {
     /// Creates an empty list for one of a number of threads.
-    pub(crate) fn new(threads: usize) -> Self {
-        Self { all: Vec::new(), kept: 0, limit: MAX_KEPT / threads.max(1) }
+    pub(crate) fn new(model: &'a ScaledModel, radius: &'a Radius, threads: usize) -> Self {
+        Self { model, radius, all: Vec::new(), kept: 0, limit: MAX_KEPT / threads.max(1) }
     }
 
     pub(crate) fn clear(&mut self) {
@@ -45,21 +46,14 @@ impl Directions {
     }
 
     /// Adds a direction at an index, in place of all that are not before it.
-    pub(crate) fn set(&mut self, index: usize, model: &ScaledModel, dir: Vector) {
+    pub(crate) fn set(&mut self, index: usize, dir: Vector) {
         self.all.truncate(index);
-        let errors = model.errors(&dir);
+        let errors = self.model.errors(&dir);
         self.all.push(Direction { dir, errors, vertices: HashMap::new(), apart: HashMap::new() });
     }
 
-    /// Whether a direction separates two simplices below a radius, that is, all nine pairs of their corners. Results
-    /// are kept, so all calls on one list must have the same radius.
-    pub(crate) fn separate(
-        &mut self,
-        index: usize,
-        model: &ScaledModel,
-        [x, y]: Simplices,
-        radius: &Radius,
-    ) -> bool {
+    /// Whether a direction separates two simplices, that is, all nine pairs of their corners.
+    pub(crate) fn separate(&mut self, index: usize, [x, y]: Simplices) -> bool {
         if self.kept > self.limit {
             self.kept = 0;
             for direction in &mut self.all {
@@ -69,7 +63,7 @@ impl Directions {
         let Direction { dir, errors, vertices, apart } = &mut self.all[index];
         for i in x.into_iter().chain(y) {
             vertices.entry(i).or_insert_with(|| {
-                let row = along(model.point(i), dir);
+                let row = along(self.model.point(i), dir);
                 self.kept += row.iter().map(|x| x.size() + PER_VALUE).sum::<usize>();
                 row
             });
@@ -77,16 +71,16 @@ impl Directions {
         x.into_iter().flat_map(|i| y.map(|j| [i, j])).all(|pair @ [i, j]| {
             *apart.entry(pair).or_insert_with(|| {
                 self.kept += PER_VALUE;
-                are_apart(&vertices[&i], &vertices[&j], errors, radius)
+                are_apart(&vertices[&i], &vertices[&j], errors, self.radius)
             })
         })
     }
 
-    /// Whether a direction separates two triangles, or quarters of them, below a radius.
-    pub(crate) fn separate_corners(&self, index: usize, pair: [Triangle<'_>; 2], radius: &Radius) -> bool {
+    /// Whether a direction separates two triangles, or quarters of them.
+    pub(crate) fn separate_corners(&self, index: usize, pair: [Triangle<'_>; 2]) -> bool {
         let Direction { dir, errors, .. } = &self.all[index];
         let [x, y] = pair.map(|triangle| triangle.map(|corner| along(corner, dir)));
-        x.iter().all(|i| y.iter().all(|j| are_apart(i, j, errors, radius)))
+        x.iter().all(|i| y.iter().all(|j| are_apart(i, j, errors, self.radius)))
     }
 }
 
@@ -112,21 +106,21 @@ mod tests {
         let model = Model::new(positions, faces, modes, rank).unwrap();
         let scaled = &ScaledModel::new(&model, &Scope::of_factor(vec![1.0; rank], rank), &|| false).unwrap();
         let radius = &scaled.radius(1.5);
-        let [mut many, mut none] = [1, usize::MAX].map(Directions::new);
+        let [mut many, mut none] = [1, usize::MAX].map(|threads| Directions::new(scaled, radius, threads));
         let (mut apart, mut largest) = (0, 0);
         for step in 0..400 {
             if step % 20 == 0 {
                 let (index, dir) = (many.len().min(3), vector([random() - 0.5, random() - 0.5, 1.0]));
-                many.set(index, scaled, dir.clone());
-                none.set(index, scaled, dir);
+                many.set(index, dir.clone());
+                none.set(index, dir);
             }
             let [a, b] = [random(), random()].map(|x| (x * f64::from(triangles)) as u32);
             let pair = [a, b].map(|t| model.faces[t as usize]);
             let index = (random() * many.len() as f64) as usize;
-            let found = many.separate(index, scaled, pair, radius);
-            assert_eq!(none.separate(index, scaled, pair, radius), found);
+            let found = many.separate(index, pair);
+            assert_eq!(none.separate(index, pair), found);
             let corners = pair.map(|simplex| simplex.map(|i| scaled.point(i)));
-            assert_eq!(many.separate_corners(index, corners, radius), found);
+            assert_eq!(many.separate_corners(index, corners), found);
             apart += usize::from(found);
             largest = largest.max(none.kept);
         }

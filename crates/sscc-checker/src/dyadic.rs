@@ -125,9 +125,12 @@ impl AddAssign for Dyadic {
 impl Add for &Dyadic {
     type Output = Dyadic;
     fn add(self, other: Self) -> Dyadic {
-        let mut sum = self.clone();
-        sum += other.clone();
-        sum
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other } else { self }.clone();
+        }
+        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
+        let shift = (high.exponent - low.exponent) as usize;
+        Dyadic { mantissa: (&high.mantissa << shift) + &low.mantissa, exponent: low.exponent }
     }
 }
 

@@ -15,7 +15,6 @@ mod dyadic;
 mod entries;
 mod exceptions;
 mod files;
-mod inequality;
 mod model;
 mod node_maps;
 mod points;

@@ -9,9 +9,8 @@ use std::sync::OnceLock;
 
 use crate::counted::CountedPairs;
 use crate::dyadic::{Dyadic, Vector, dot};
-use crate::inequality::are_apart;
-use crate::points::{along, difference, position, row, squared_residual, sum};
-use crate::scaled::{Radius, ScaledModel};
+use crate::points::{Radius, along, are_apart, difference, position, row, squared_residual, sum};
+use crate::scaled::ScaledModel;
 
 /// Returns the number of numbers of a node's map: its centre, M by components, then G (for each direction three components, a row
 /// each).

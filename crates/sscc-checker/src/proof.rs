@@ -12,9 +12,9 @@ use crate::directions::Directions;
 use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
 use crate::node_maps::{NodeMaps, numbers_of_map};
-use crate::points::{Triangle, middles, quarters};
+use crate::points::{Radius, Triangle, middles, quarters};
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
-use crate::scaled::{Radius, ScaledModel};
+use crate::scaled::ScaledModel;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 /// The largest depth of quarters within quarters.
@@ -108,10 +108,9 @@ impl<'a> Proof<'a> {
         let next = AtomicUsize::new(0);
         let take = || self.proven.get(next.fetch_add(1, Ordering::Relaxed));
         let refused = |&(index, bytes): &(usize, &[u8])| {
-            let radius = scaled.radius(entries[index].radius);
-            let (bytes, directions, map) = (Bytes(bytes), Directions::new(threads), None);
-            let mut reader =
-                EntryReader { counted, scaled, maps, is_cancelled, radius, bytes, directions, map };
+            let radius = &scaled.radius(entries[index].radius);
+            let (bytes, directions) = (Bytes(bytes), Directions::new(scaled, radius, threads));
+            let mut reader = EntryReader { maps, is_cancelled, radius, bytes, directions, map: None };
             Some((index, reader.entry(entries[index]).err()?))
         };
         let work = || iter::from_fn(take).find_map(refused);
@@ -132,14 +131,12 @@ impl<'a> Proof<'a> {
 
 /// Reads and checks the witnesses of an entry.
 struct EntryReader<'a> {
-    counted: &'a CountedPairs<'a>,
-    scaled: &'a ScaledModel,
-    is_cancelled: &'a IsCancelled<'a>,
     maps: &'a NodeMaps<'a>,
-    radius: Radius,
+    is_cancelled: &'a IsCancelled<'a>,
+    radius: &'a Radius,
     bytes: Bytes<'a>,
     /// The directions of the last list of triangles.
-    directions: Directions,
+    directions: Directions<'a>,
     /// The last affine map of this list.
     map: Option<AffineMap>,
 }
@@ -156,15 +153,15 @@ impl EntryReader<'_> {
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
         check_cancelled(self.is_cancelled)?;
-        let children = |n: u32| self.counted.certificates.nodes[n as usize].children();
+        let children = |n: u32| self.maps.counted.certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
                 let dir = self.bytes.vector()?;
-                let are_apart = n != m && self.maps.are_apart([n, m], &dir, &self.radius);
+                let are_apart = n != m && self.maps.are_apart([n, m], &dir, self.radius);
                 claim(are_apart, &format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => self.counted.check_uncounted([n, m]),
+            [NOTHING_COUNTS] => self.maps.counted.check_uncounted([n, m]),
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
             [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
             [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
@@ -175,7 +172,7 @@ impl EntryReader<'_> {
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
         self.directions.clear();
         self.map = None;
-        let Self { counted, scaled, .. } = *self;
+        let NodeMaps { counted, scaled, .. } = *self.maps;
         for [a, b] in counted.certificates.pairs(nodes) {
             for simplices in counted.simplices(a, b) {
                 let corners = simplices.map(|simplex| simplex.map(|i| scaled.point(i)));
@@ -195,7 +192,7 @@ impl EntryReader<'_> {
         depth: usize,
     ) -> Result<bool, Refusal> {
         check_cancelled(self.is_cancelled)?;
-        let scaled = self.scaled;
+        let scaled = self.maps.scaled;
         let [tag] = self.bytes.array()?;
         match tag {
             NEW_DIRECTION | ..QUARTER_SECOND => {
@@ -203,12 +200,12 @@ impl EntryReader<'_> {
                 if tag == NEW_DIRECTION {
                     // Only as many directions are kept as have an index; a further one replaces the last.
                     index = self.directions.len().min(QUARTER_SECOND.into());
-                    self.directions.set(index, scaled, self.bytes.vector()?);
+                    self.directions.set(index, self.bytes.vector()?);
                 }
                 Ok(match whole {
                     _ if index >= self.directions.len() => false,
-                    Some(simplices) => self.directions.separate(index, scaled, simplices, &self.radius),
-                    None => self.directions.separate_corners(index, [x, y], &self.radius),
+                    Some(simplices) => self.directions.separate(index, simplices),
+                    None => self.directions.separate_corners(index, [x, y]),
                 })
             }
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
@@ -230,7 +227,7 @@ impl EntryReader<'_> {
                 let mut direction = || self.bytes.vector();
                 let pyramid = [direction()?, direction()?, direction()?, direction()?];
                 let Some(map) = &self.map else { return Ok(false) };
-                Ok(map.separates(scaled, [x, y], &dir, &rate, &pyramid, &self.radius))
+                Ok(map.separates(scaled, [x, y], &dir, &rate, &pyramid, self.radius))
             }
             _ => Ok(false),
         }

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
 use crate::model::Model;
-use crate::points::Point;
+use crate::points::{Point, Radius};
 use crate::refusal::{IsCancelled, Refusal, check_cancelled, input};
 use crate::scope::Scope;
 
@@ -27,13 +27,6 @@ const DIGITS: [i64; 2] = [64, 80];
 const MAX_GROWTH: i64 = 64;
 /// Binary digits of the magnitudes of modes, rounded up.
 const MAGNITUDE_DIGITS: usize = 53;
-
-/// A radius for `|z'|`.
-#[derive(Clone, Debug)]
-pub(crate) enum Radius {
-    Finite(Dyadic),
-    Infinite,
-}
 
 /// Computed positions at the centre, modes A, and the rounding of computed positions.
 pub(crate) struct ScaledModel {
@@ -52,7 +45,9 @@ impl ScaledModel {
         let rank = model.rank;
         let (columns, delta) = inverse(scope, rank, is_cancelled)?;
         // Entries of |T| that are rounded up make |U| |T| larger, by a relative error of at most 2^-52.
-        let magnitudes: Vec<Column> = columns.iter().map(Column::magnitudes).collect();
+        let magnitude = |(k, t): &(usize, Dyadic)| (*k, t.abs().round_up(MAGNITUDE_DIGITS));
+        let magnitudes: Vec<Column> =
+            columns.iter().map(|column| column.iter().map(magnitude).collect()).collect();
         let center: Vec<Dyadic> = scope.center.iter().map(|x| Dyadic::of(*x)).collect();
         let mut points = vec![Dyadic::default(); 3 * (1 + rank) * model.positions.len()];
         let [mut rest_errors, mut rate_errors, mut center_errors] = <[Vector; 3]>::default();
@@ -70,9 +65,9 @@ impl ScaledModel {
                 rest_errors[c].raise(&rest.abs() + &moved().map(|x| x.abs()).sum());
                 let out = &mut points[(3 * i + c) * (1 + rank)..][..1 + rank];
                 out[0] = computed;
-                out[1..].iter_mut().zip(&columns).for_each(|(a, column)| *a = column.product(&row));
+                out[1..].iter_mut().zip(&columns).for_each(|(a, column)| *a = product(&row, column));
                 let row: Vec<Dyadic> = row.iter().map(Dyadic::abs).collect();
-                let magnitudes: Vec<Dyadic> = magnitudes.iter().map(|column| column.product(&row)).collect();
+                let magnitudes: Vec<Dyadic> = magnitudes.iter().map(|column| product(&row, column)).collect();
                 rate_errors[c].raise(squared_norm(&magnitudes).root_up());
             }
         }
@@ -93,12 +88,9 @@ impl ScaledModel {
 
     /// Converts a radius of z to one of z', rounded up.
     pub(crate) fn radius(&self, radius: f64) -> Radius {
-        if radius.is_infinite() {
-            return Radius::Infinite;
-        }
-        let radius = Dyadic::of(radius);
+        let radius = radius.is_finite().then(|| Dyadic::of(radius))?;
         // 1 / (1 - delta) <= 1 + 2 delta for delta <= 1/2.
-        Radius::Finite((&radius + &(&radius * &self.delta.times_power(1))).round_up(128))
+        Some((&radius + &(&radius * &self.delta.times_power(1))).round_up(128))
     }
 
     /// Returns two bounds e0 and e1: the gap of two computed points along a direction is smaller than the exact one by at most
@@ -111,19 +103,12 @@ impl ScaledModel {
     }
 }
 
-/// A column of T: its nonzero entries, with their rows.
-struct Column(Vec<(usize, Dyadic)>);
+/// The nonzero entries of a column of T, with their rows.
+type Column = Vec<(usize, Dyadic)>;
 
-impl Column {
-    /// Returns the product of a row and the column.
-    fn product(&self, row: &[Dyadic]) -> Dyadic {
-        self.0.iter().map(|(k, t)| &row[*k] * t).sum()
-    }
-
-    /// Returns upper bounds of the magnitudes of the entries.
-    fn magnitudes(&self) -> Self {
-        Self(self.0.iter().map(|(k, t)| (*k, t.abs().round_up(MAGNITUDE_DIGITS))).collect())
-    }
+/// Returns the product of a row and a column.
+fn product(row: &[Dyadic], column: &Column) -> Dyadic {
+    column.iter().map(|(k, t)| &row[*k] * t).sum()
 }
 
 /// Returns the columns of T, and delta.
@@ -143,9 +128,9 @@ fn inverse(
         check_cancelled(is_cancelled)?;
         // Solves S t = e_l by back substitution. The column has entries from its first row to its l-th.
         let first = if scope.is_dense { 0 } else { l };
-        let mut column = Column(Vec::new());
+        let mut column = Column::new();
         for i in (first..=l).rev() {
-            let known = column.0.iter().map(|(j, t)| &entry(i, *j) * t).sum();
+            let known = column.iter().map(|(j, t)| &entry(i, *j) * t).sum();
             let wanted = &Dyadic::new(i64::from(i == l), 0) - &known;
             if wanted.magnitude() > MAX_GROWTH {
                 return input("metric: it is nearly singular");
@@ -155,7 +140,7 @@ fn inverse(
             // The entry of D: the products of the row with the known entries, and with this one, without the entry of I.
             error += (&(&pivot * &t) - &wanted).square();
             if !t.is_zero() {
-                column.0.push((i, t));
+                column.push((i, t));
             }
         }
         columns.push(column);
@@ -198,13 +183,13 @@ mod tests {
                     scope.factor[i * rank..][..rank].iter().map(|s| Dyadic::of(*s)).collect();
                 for (l, column) in columns.iter().enumerate() {
                     let one = Dyadic::new(i64::from(i == l), 0);
-                    square += (&column.product(&row) - &one).square();
+                    square += (&product(&row, column) - &one).square();
                 }
             }
             assert!(square <= delta.square() && delta < Dyadic::new(rank as i64, -digits), "{rank} {units}");
             assert!(rank == 1 || delta > Dyadic::new(1, -digits - 10), "{rank} {units}");
             // Numbers stay short.
-            let longest = columns.iter().flat_map(|column| &column.0).map(|(_, t)| t.size()).max();
+            let longest = columns.iter().flatten().map(|(_, t)| t.size()).max();
             assert!(longest.unwrap() <= size_of::<Dyadic>() + (DIGITS[1] + MAX_GROWTH) as usize / 8 + 1);
         }
     }
