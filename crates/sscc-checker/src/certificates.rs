@@ -3,7 +3,7 @@
 use safetensors::Dtype;
 
 use crate::container::Container;
-use crate::refusal::{Refusal, claim, proof};
+use crate::refusal::{Result, claim, proof};
 
 /// A bucket has at most this many triangles, and is not the root. The pair tree ends at buckets. Leaves also have at most this many.
 pub(crate) const BUCKET: u32 = 64;
@@ -55,7 +55,7 @@ pub(crate) struct Certificates {
 }
 
 impl Certificates {
-    pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self, Refusal> {
+    pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self> {
         let digest = file.numbers("model_digest", &[Some(32)], Dtype::U8, u8::from_le_bytes)?;
         let rows = file.integers("nodes", &[None, Some(4)])?;
         let node =
@@ -126,7 +126,7 @@ impl Certificates {
     }
 
     /// Returns the list of siblings that begins at `start`.
-    pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>, Refusal> {
+    pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>> {
         let mut list = Vec::new();
         if start == NO_PAIRS {
             return Ok(list);
@@ -161,7 +161,7 @@ impl Certificates {
 
 /// Checks that each triangle is listed once, that the triangles of each node are the disjoint union of those of its
 /// children, and that no leaf is larger than a bucket.
-fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
+fn check_partition(nodes: &[Node], order: &[u32]) -> Result<()> {
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
     let is_each_listed = sorted.iter().enumerate().all(|(a, listed)| *listed as usize == a);

@@ -3,7 +3,7 @@
 use safetensors::Dtype;
 use safetensors::tensor::Metadata;
 
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Refusal, Result, input, require};
 
 /// The text before the 64 digits of the digest.
 const PREFIX: &str = r#"{"__metadata__":{"blake3":""#;
@@ -22,7 +22,7 @@ pub(crate) struct Container<'a> {
 
 impl<'a> Container<'a> {
     /// Parses a file. `format`: its kind; `newest`: the newest supported version.
-    pub(crate) fn parse(bytes: &'a [u8], format: &str, newest: u64) -> Result<Self, Refusal> {
+    pub(crate) fn parse(bytes: &'a [u8], format: &str, newest: u64) -> Result<Self> {
         let is_sealed = bytes.len() >= DIGITS.end && bytes[LENGTH..].starts_with(PREFIX.as_bytes());
         require(is_sealed, "not a file written by sscc")?;
         let mut hasher = blake3::Hasher::new();
@@ -47,7 +47,7 @@ impl<'a> Container<'a> {
         (metadata.data_len() == data.len()).then_some(Self { metadata, data })
     }
 
-    pub(crate) fn text(&self, key: &str) -> Result<&str, Refusal> {
+    pub(crate) fn text(&self, key: &str) -> Result<&str> {
         let text = self.metadata.metadata().as_ref().and_then(|texts| texts.get(key));
         text.map_or_else(|| input(format!("text '{key}' is missing")), |text| Ok(text.as_str()))
     }
@@ -63,7 +63,7 @@ impl<'a> Container<'a> {
         axes: &[Option<usize>],
         dtype: Dtype,
         from: fn([u8; N]) -> T,
-    ) -> Result<Vec<T>, Refusal> {
+    ) -> Result<Vec<T>> {
         let Some(info) = self.metadata.info(name) else {
             return input(format!("tensor '{name}' is missing"));
         };
@@ -78,16 +78,16 @@ impl<'a> Container<'a> {
         Ok(bytes.as_chunks().0.iter().map(|bytes| from(*bytes)).collect())
     }
 
-    pub(crate) fn reals(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<f64>, Refusal> {
+    pub(crate) fn reals(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<f64>> {
         self.numbers(name, axes, Dtype::F64, f64::from_le_bytes)
     }
 
-    pub(crate) fn integers(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<u32>, Refusal> {
+    pub(crate) fn integers(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<u32>> {
         self.numbers(name, axes, Dtype::U32, u32::from_le_bytes)
     }
 
     /// Returns the pairs of a tensor of two columns, which must be ascending, each with the smaller number first.
-    pub(crate) fn pairs(&self, name: &str) -> Result<Vec<[u32; 2]>, Refusal> {
+    pub(crate) fn pairs(&self, name: &str) -> Result<Vec<[u32; 2]>> {
         let pairs = self.integers(name, &[None, Some(2)])?.as_chunks().0.to_vec();
         let is_sorted = pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|[a, b]| a <= b);
         require(is_sorted, "pairs are not in order")?;

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::certificates::{BUCKET, Certificates};
 use crate::model::Model;
-use crate::refusal::{Refusal, proof};
+use crate::refusal::{Result, proof};
 use crate::scope::Scope;
 
 /// The largest number of pairs of triangles of two nodes that are tested one by one: those of two leaves.
@@ -113,7 +113,7 @@ impl<'a> CountedPairs<'a> {
 
     /// Checks that no pair of triangles of two nodes, or of one node, counts. Large nodes need one group each, which do not count
     /// together, or a vertex that all triangles have. Otherwise one byte of a proof could demand a test of all pairs of the mesh.
-    pub(crate) fn check_uncounted(&self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+    pub(crate) fn check_uncounted(&self, [n, m]: [u32; 2]) -> Result<()> {
         let [x, y] = [n, m].map(|n| &self.nodes[n as usize]);
         // Without `one_vertex` no pair with a common vertex counts.
         let is_adjacent = !self.scope.one_vertex && x.vertices.iter().any(|class| y.vertices.contains(class));
@@ -135,13 +135,14 @@ impl<'a> CountedPairs<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::refusal::Refusal;
     use crate::scope::Groups;
 
     /// More triangles than two leaves can have.
     const TRIANGLES: u32 = 100;
 
     /// Checks a node with these triangles against itself.
-    fn check(faces: Vec<[u32; 3]>, change: impl FnOnce(&mut Scope)) -> Result<(), Refusal> {
+    fn check(faces: Vec<[u32; 3]>, change: impl FnOnce(&mut Scope)) -> Result<()> {
         let certificates = Certificates::of_leaf(faces.len() as u32, 1.0);
         let vertices = faces.as_flattened().iter().max().map_or(0, |last| *last as usize + 1);
         let positions = (0..vertices).map(|i| [i as f64, 0.0, 0.0]).collect();
@@ -173,7 +174,7 @@ mod tests {
         assert_eq!(check(fan(), |_| ()), Ok(()));
         assert_eq!(check(fan(), groups(two(), vec![])), Ok(()));
         assert_eq!(check(apart(TRIANGLES), groups(one(), vec![[1, 1]])), Ok(()));
-        let is_refused = |result: Result<(), Refusal>| {
+        let is_refused = |result: Result<()>| {
             assert!(matches!(&result, Err(Refusal::Proof(line)) if line.contains("too many")), "{result:?}");
         };
         is_refused(check(apart(TRIANGLES), |_| ()));

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -110,18 +110,6 @@ impl Dyadic {
     }
 }
 
-impl AddAssign for Dyadic {
-    fn add_assign(&mut self, mut other: Self) {
-        if self.is_zero() || (!other.is_zero() && other.exponent < self.exponent) {
-            std::mem::swap(self, &mut other);
-        }
-        // The exponent of this number is the smaller one now, unless the other number is 0.
-        if !other.is_zero() {
-            self.mantissa += other.mantissa << (other.exponent - self.exponent) as usize;
-        }
-    }
-}
-
 impl Add for &Dyadic {
     type Output = Dyadic;
     fn add(self, other: Self) -> Dyadic {
@@ -150,9 +138,7 @@ impl Mul for &Dyadic {
 
 impl Sum for Dyadic {
     fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
-        let mut sum = Self::default();
-        numbers.for_each(|x| sum += x);
-        sum
+        numbers.fold(Self::default(), |sum, x| &sum + &x)
     }
 }
 

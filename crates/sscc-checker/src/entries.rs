@@ -5,7 +5,7 @@
 //! between the children of one and the other.
 
 use crate::certificates::{Certificates, StoredPair};
-use crate::refusal::{Refusal, claim};
+use crate::refusal::{Result, claim};
 
 /// Two nodes, or the same node twice, and the radius below which their pairs that count must be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub(crate) struct Entry {
 }
 
 /// Returns all entries, in the order in which proofs number them.
-pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal> {
+pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>> {
     let mut traversal = Traversal { certificates, entries: Vec::new(), visited: 0 };
     traversal.within(0, 0.0)?;
     Ok(traversal.entries)
@@ -31,7 +31,7 @@ struct Traversal<'a> {
 
 impl Traversal<'_> {
     /// Adds the entries of the pairs within a node. `around`: the largest radius of the nodes that contain it.
-    fn within(&mut self, n: u32, around: f64) -> Result<(), Refusal> {
+    fn within(&mut self, n: u32, around: f64) -> Result<()> {
         let certificates = self.certificates;
         let radius = around.max(certificates.node_radii[n as usize]);
         let node = certificates.nodes[n as usize];
@@ -57,7 +57,7 @@ impl Traversal<'_> {
 
     /// Adds the entries of siblings in the pair tree, which are listed from `start`: those that are stored, and the others, which are free
     /// below the limit. `pairs`: the siblings, with the largest radius of the pairs and nodes that contain them.
-    fn siblings(&mut self, pairs: Vec<Entry>, start: u32) -> Result<(), Refusal> {
+    fn siblings(&mut self, pairs: Vec<Entry>, start: u32) -> Result<()> {
         let certificates = self.certificates;
         let (stored, limit) = (certificates.stored(start)?, certificates.pair_limit);
         self.visited += stored.len();

@@ -4,10 +4,10 @@
 
 use crate::counted::CountedPairs;
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, proof};
+use crate::refusal::{IsCancelled, Result, check_cancelled, proof};
 
 /// Checks that each exception counts and collides at the centre.
-pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) -> Result<()> {
     let CountedPairs { model, scope, .. } = counted;
     for &[a, b] in &scope.exceptions {
         check_cancelled(is_cancelled)?;

@@ -27,7 +27,7 @@ use std::fmt;
 
 pub use files::read;
 pub use model::Model;
-pub use refusal::{IsCancelled, Refusal};
+pub use refusal::{IsCancelled, Refusal, Result};
 
 use certificates::Certificates;
 use counted::CountedPairs;
@@ -57,7 +57,7 @@ impl Confirmed {
     ///
     /// # Errors
     /// When not all entries were proven: the author of the proof chose the sample.
-    pub fn of_all_entries(self) -> Result<Self, Refusal> {
+    pub fn of_all_entries(self) -> Result<Self> {
         let Self { entries, proven, .. } = &self;
         let cause =
             format!("proof: it has {proven} of {entries} entries: samples are accepted on request alone");
@@ -69,7 +69,7 @@ impl Confirmed {
     ///
     /// # Errors
     /// When the proof is a sample of entries of radius 0.
-    pub fn of_sample(self) -> Result<Self, Refusal> {
+    pub fn of_sample(self) -> Result<Self> {
         let Self { entries, proven, .. } = &self;
         let cause = format!("proof: its {proven} of {entries} entries have radius 0, and state nothing");
         if proven == entries || self.proven_positive > 0 { Ok(self) } else { Err(Refusal::Proof(cause)) }
@@ -98,7 +98,7 @@ impl fmt::Display for Confirmed {
 ///
 /// # Errors
 /// As [`check_until`].
-pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
+pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed> {
     check_until(model, certificates, proof, threads, &|| false)
 }
 
@@ -116,7 +116,7 @@ pub fn check_until(
     proof: &[u8],
     threads: usize,
     is_cancelled: &IsCancelled<'_>,
-) -> Result<Confirmed, Refusal> {
+) -> Result<Confirmed> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");
     let of_proof = |refusal: Refusal| refusal.of("proof");
     let file = container::Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;

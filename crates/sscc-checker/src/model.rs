@@ -1,7 +1,7 @@
 //! The model: faces, positions at rest, modes.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, require};
+use crate::refusal::{Result, require};
 
 /// The largest magnitude of coordinates, and of the entries of dense metrics, 2^200.
 pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
@@ -24,12 +24,7 @@ impl Model {
     /// # Errors
     /// When there are no faces, no modes or more than 2^20, sizes do not fit each other, a face names a vertex that does not
     /// exist, or a number is not finite or beyond 2^200.
-    pub fn new(
-        positions: Vec<[f64; 3]>,
-        faces: Vec<[u32; 3]>,
-        modes: Vec<f64>,
-        rank: usize,
-    ) -> Result<Self, Refusal> {
+    pub fn new(positions: Vec<[f64; 3]>, faces: Vec<[u32; 3]>, modes: Vec<f64>, rank: usize) -> Result<Self> {
         let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
         let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
         require(fits, "model: it has no faces, no modes, or not three rows of modes for each vertex")?;
@@ -45,7 +40,7 @@ impl Model {
     ///
     /// # Errors
     /// When the file is damaged, of another kind or version, or not a model.
-    pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
+    pub fn from_container(bytes: &[u8]) -> Result<Self> {
         let file = Container::parse(bytes, "sscc.model", 3)?;
         let positions: Vec<[f64; 3]> = file.reals("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
         let faces = file.integers("faces", &[None, Some(3)])?.as_chunks().0.to_vec();

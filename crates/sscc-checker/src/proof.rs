@@ -13,7 +13,7 @@ use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
 use crate::node_maps::{NodeMaps, numbers_of_map};
 use crate::points::{Radius, Triangle, middles, quarters};
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
+use crate::refusal::{IsCancelled, Refusal, Result, check_cancelled, claim, proof, require};
 use crate::scaled::ScaledModel;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
@@ -46,28 +46,28 @@ pub(crate) struct Proof<'a> {
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8]> {
         self.0.split_off(..count).ok_or_else(|| Refusal::Proof("it ends too early".into()))
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
+    fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         Ok(self.take(N)?.try_into().unwrap_or([0; N]))
     }
 
-    fn real(&mut self) -> Result<Dyadic, Refusal> {
+    fn real(&mut self) -> Result<Dyadic> {
         let x = f64::from_le_bytes(self.array()?);
         claim(x.is_finite(), "a number is not finite")?;
         Ok(Dyadic::of(x))
     }
 
-    fn vector(&mut self) -> Result<Vector, Refusal> {
+    fn vector(&mut self) -> Result<Vector> {
         Ok([self.real()?, self.real()?, self.real()?])
     }
 }
 
 impl<'a> Proof<'a> {
     /// Parses a proof of certificates of a model with a rank.
-    pub(crate) fn parse(bytes: &'a [u8], certificates: &Certificates, rank: usize) -> Result<Self, Refusal> {
+    pub(crate) fn parse(bytes: &'a [u8], certificates: &Certificates, rank: usize) -> Result<Self> {
         require(bytes.iter().zip(MAGIC).all(|(a, b)| a == b), "not a proof of certificates")?;
         let mut bytes = Bytes(bytes);
         bytes.take(MAGIC.len())?;
@@ -102,7 +102,7 @@ impl<'a> Proof<'a> {
         scaled: &ScaledModel,
         threads: usize,
         is_cancelled: &IsCancelled<'_>,
-    ) -> Result<(), Refusal> {
+    ) -> Result<()> {
         let boxes = counted.certificates.nodes.iter().map(|_| OnceLock::new()).collect();
         let maps = &NodeMaps { counted, scaled, numbers: self.maps, boxes };
         let next = AtomicUsize::new(0);
@@ -142,7 +142,7 @@ struct EntryReader<'a> {
 }
 
 impl EntryReader<'_> {
-    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<(), Refusal> {
+    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<()> {
         // An entry of radius 0 needs no witness.
         if radius > 0.0 {
             self.nodes(nodes)?;
@@ -151,7 +151,7 @@ impl EntryReader<'_> {
     }
 
     /// Checks all pairs between two nodes, or within one.
-    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
+    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<()> {
         check_cancelled(self.is_cancelled)?;
         let children = |n: u32| self.maps.counted.certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
@@ -169,7 +169,7 @@ impl EntryReader<'_> {
         }
     }
 
-    fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
+    fn triangles(&mut self, nodes: [u32; 2]) -> Result<()> {
         self.directions.clear();
         self.map = None;
         let NodeMaps { counted, scaled, .. } = *self.maps;
@@ -185,12 +185,7 @@ impl EntryReader<'_> {
     }
 
     /// Whether the next witness holds for two triangles, or parts of them. `whole`: their vertices if they are simplices of the mesh.
-    fn parts(
-        &mut self,
-        [x, y]: [Triangle<'_>; 2],
-        whole: Option<Simplices>,
-        depth: usize,
-    ) -> Result<bool, Refusal> {
+    fn parts(&mut self, [x, y]: [Triangle<'_>; 2], whole: Option<Simplices>, depth: usize) -> Result<bool> {
         check_cancelled(self.is_cancelled)?;
         let scaled = self.maps.scaled;
         let [tag] = self.bytes.array()?;
@@ -221,7 +216,7 @@ impl EntryReader<'_> {
             NEW_MAP | LAST_MAP => {
                 if tag == NEW_MAP {
                     let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real());
-                    self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
+                    self.map = Some(AffineMap::new(numbers.collect::<Result<_>>()?));
                 }
                 let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
                 let mut direction = || self.bytes.vector();
@@ -247,7 +242,7 @@ mod tests {
 
     /// Checks a proof of the same entry again and again, on this number of threads: two triangles one unit apart, which the mode
     /// brings together at 1, are separate below 1/2 by the direction along z. The numbered entry has a direction across.
-    fn check(threads: usize, wrong: Option<usize>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+    fn check(threads: usize, wrong: Option<usize>, is_cancelled: &IsCancelled<'_>) -> Result<()> {
         let corners = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
         let mode = (0..18).map(|row| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 }).collect();
         let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;

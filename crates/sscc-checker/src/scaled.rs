@@ -11,10 +11,10 @@
 
 use std::collections::BTreeSet;
 
-use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
+use crate::dyadic::{Dyadic, Vector, dot, squared_norm, vector};
 use crate::model::Model;
 use crate::points::{Point, Radius};
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, input};
+use crate::refusal::{IsCancelled, Result, check_cancelled, input};
 use crate::scope::Scope;
 
 /// Binary digits to which each entry of `S T` is right, for a diagonal and for a dense factor. An entry of T is rounded when the rows
@@ -41,7 +41,7 @@ pub(crate) struct ScaledModel {
 }
 
 impl ScaledModel {
-    pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self, Refusal> {
+    pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self> {
         let rank = model.rank;
         let (columns, delta) = inverse(scope, rank, is_cancelled)?;
         // Entries of |T| that are rounded up make |U| |T| larger, by a relative error of at most 2^-52.
@@ -96,10 +96,8 @@ impl ScaledModel {
     /// Returns two bounds e0 and e1: the gap of two computed points along a direction is smaller than the exact one by at most
     /// `e0 + e1 |z'|`.
     pub(crate) fn errors(&self, dir: &Vector) -> [Dyadic; 2] {
-        [&self.rest_errors, &self.rate_errors].map(|errors| {
-            let sum: Dyadic = dir.iter().zip(errors).map(|(d, e)| &d.abs() * e).sum();
-            sum.times_power(1)
-        })
+        let magnitudes = dir.each_ref().map(Dyadic::abs);
+        [&self.rest_errors, &self.rate_errors].map(|errors| dot(&magnitudes, errors).times_power(1))
     }
 }
 
@@ -112,11 +110,7 @@ fn product(row: &[Dyadic], column: &Column) -> Dyadic {
 }
 
 /// Returns the columns of T, and delta.
-fn inverse(
-    scope: &Scope,
-    rank: usize,
-    is_cancelled: &IsCancelled<'_>,
-) -> Result<(Vec<Column>, Dyadic), Refusal> {
+fn inverse(scope: &Scope, rank: usize, is_cancelled: &IsCancelled<'_>) -> Result<(Vec<Column>, Dyadic)> {
     let digits = DIGITS[usize::from(scope.is_dense)];
     let entry = |i: usize, j: usize| match scope.is_dense {
         true => Dyadic::of(scope.factor[i * rank + j]),
@@ -138,7 +132,7 @@ fn inverse(
             let pivot = entry(i, i);
             let t = wanted.divided_by(&pivot, -digits - pivot.magnitude());
             // The entry of D: the products of the row with the known entries, and with this one, without the entry of I.
-            error += (&(&pivot * &t) - &wanted).square();
+            error = &error + &(&(&pivot * &t) - &wanted).square();
             if !t.is_zero() {
                 column.push((i, t));
             }
@@ -183,7 +177,7 @@ mod tests {
                     scope.factor[i * rank..][..rank].iter().map(|s| Dyadic::of(*s)).collect();
                 for (l, column) in columns.iter().enumerate() {
                     let one = Dyadic::new(i64::from(i == l), 0);
-                    square += (&product(&row, column) - &one).square();
+                    square = &square + &(&product(&row, column) - &one).square();
                 }
             }
             assert!(square <= delta.square() && delta < Dyadic::new(rank as i64, -digits), "{rank} {units}");

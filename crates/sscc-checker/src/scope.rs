@@ -2,7 +2,7 @@
 
 use crate::container::Container;
 use crate::model::{LARGEST, Model};
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Result, input, require};
 
 /// The largest number of modes of a dense metric, whose factor takes a time cubic in it.
 const MAX_DENSE: usize = 1024;
@@ -29,7 +29,7 @@ pub(crate) struct Groups {
 }
 
 impl Scope {
-    pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self, Refusal> {
+    pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self> {
         require(!file.has("clearance"), "certificates with a clearance are not checked")?;
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
@@ -53,19 +53,17 @@ impl Scope {
         let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
         let weld = is_second(file, "weld", ["none", "equal"])?;
         let triangles = model.faces.len();
-        let pairs = |name: &str| -> Result<Vec<[u32; 2]>, Refusal> {
-            let pairs = if file.has(name) { file.pairs(name)? } else { Vec::new() };
-            let are_triangles = pairs.iter().all(|[a, b]| a != b && (*b as usize) < triangles);
-            require(are_triangles, "a pair names a triangle that does not exist, or one twice")?;
-            Ok(pairs)
-        };
+        let pairs = |name: &str| if file.has(name) { file.pairs(name) } else { Ok(Vec::new()) };
+        let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
+        let is_pair = |[a, b]: &[u32; 2]| a != b && (*b as usize) < triangles;
+        let are_pairs = ignored.iter().chain(&exceptions).all(is_pair);
+        require(are_pairs, "a pair names a triangle that does not exist, or one twice")?;
         let mut groups = None;
         if file.has("groups") {
             let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
             let of_triangles = file.integers("groups", &[Some(triangles)])?;
             groups = Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? });
         }
-        let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
     }
 
@@ -95,7 +93,7 @@ impl Scope {
 }
 
 /// Whether a text of the file is the second of two possible values.
-fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
+fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool> {
     let which = values.iter().position(|value| Ok(*value) == file.text(key));
     which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
 }
