@@ -16,7 +16,7 @@
 //! part of `u_i'G u_j`. If that is more than g, the cone is halved.
 
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
-use crate::points::{Radius, Triangle, differences, position, row, squared_residual, stays_open, sum};
+use crate::points::{Radius, Triangle, differences, position, squared_residual, stays_open, sum};
 use crate::scaled::ScaledModel;
 
 /// The number of cones of a witness from which on no cone is halved.
@@ -72,12 +72,10 @@ impl AffineMap {
         let gap = offsets.iter().map(|d| dot(dir, d)).reduce(smaller).unwrap_or_default();
         // The largest squared residual of the nine pairs of corners.
         let rows: Vec<&[Dyadic]> = self.gradient.chunks(model.rank).collect();
-        let of_axis = |d: &[Dyadic], offset: &Vector, c: usize| {
-            squared_residual(row(d, c), offset, [rows[3 * c], rows[3 * c + 1], rows[3 * c + 2]])
-        };
         let mut residual = Dyadic::default();
-        for (d, offset) in differences.iter().zip(&offsets) {
-            residual.raise((0..3).map(|c| of_axis(d, offset, c)).sum());
+        for d in &differences {
+            let of_axis = |c: usize| squared_residual(d, c, [rows[3 * c], rows[3 * c + 1], rows[3 * c + 2]]);
+            residual.raise((0..3).map(of_axis).sum());
         }
         // The inequality for a unit direction, times the length of `dir`. Rounding errors along a unit direction are
         // bounded by those along a vector of ones, because its components are at most 1.
@@ -105,9 +103,9 @@ impl AffineMap {
             return are_slow;
         }
         let length = |(i, j): (usize, usize)| squared_norm(&minus(cone[i], cone[j]));
-        let edges = [(0, 1), (1, 2), (2, 0)];
-        let longest = edges.into_iter().fold(edges[0], |l, e| if length(e) > length(l) { e } else { l });
-        let [u, v, w] = [longest.0, longest.1, 3 - longest.0 - longest.1].map(|i| cone[i]);
+        let longest = |l, e: &(usize, usize)| if length(*e) > length(l) { *e } else { l };
+        let (u, v) = pairs[4..].iter().fold(pairs[3], longest);
+        let [u, v, w] = [u, v, 3 - u - v].map(|i| cone[i]);
         let middle: Vector = std::array::from_fn(|c| (&u[c] + &v[c]).times_power(-1));
         let halves = [[u, &middle, w], [&middle, v, w]];
         halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))

@@ -56,7 +56,7 @@ pub(crate) struct Certificates {
 
 impl Certificates {
     pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self> {
-        let digest = file.numbers("model_digest", &[Some(32)], Dtype::U8, u8::from_le_bytes)?;
+        let digest = file.bytes("model_digest", &[Some(32)], Dtype::U8)?;
         let rows = file.integers("nodes", &[None, Some(4)])?;
         let node =
             |&[first, count, first_child, children]: &[u32; 4]| Node { first, count, first_child, children };
@@ -80,8 +80,8 @@ impl Certificates {
             this.pair_limit = file.reals("pair_limit", &[Some(1)])?[0];
             this.starts = file.integers("pair_starts", &[None])?;
             this.links = file.integers("pair_links", &[None])?;
-            let real = |bytes| f64::from(f32::from_le_bytes(bytes));
-            this.radii = file.numbers("pair_radii", &[Some(this.links.len())], Dtype::F32, real)?;
+            let radii = file.bytes("pair_radii", &[Some(this.links.len())], Dtype::F32)?.as_chunks().0;
+            this.radii = radii.iter().map(|bytes| f64::from(f32::from_le_bytes(*bytes))).collect();
         }
         let limit = &[this.pair_limit];
         let radii = [&this.node_radii, &this.root_pair_radii, &this.radii, &limit[..]].concat();

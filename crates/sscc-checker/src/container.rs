@@ -56,14 +56,8 @@ impl<'a> Container<'a> {
         self.metadata.info(name).is_some()
     }
 
-    /// Returns the numbers of a tensor with these axes; `None` matches any length. `from`: converts the bytes of a number.
-    pub(crate) fn numbers<T, const N: usize>(
-        &self,
-        name: &str,
-        axes: &[Option<usize>],
-        dtype: Dtype,
-        from: fn([u8; N]) -> T,
-    ) -> Result<Vec<T>> {
+    /// Returns the bytes of a tensor of these axes; `None` matches any length.
+    pub(crate) fn bytes(&self, name: &str, axes: &[Option<usize>], dtype: Dtype) -> Result<&'a [u8]> {
         let Some(info) = self.metadata.info(name) else {
             return input(format!("tensor '{name}' is missing"));
         };
@@ -74,16 +68,16 @@ impl<'a> Container<'a> {
         if info.shape.len() != axes.len() || !info.shape.iter().zip(axes).all(fits) {
             return input(format!("tensor '{name}' has another shape"));
         }
-        let bytes = &self.data[info.data_offsets.0..info.data_offsets.1];
-        Ok(bytes.as_chunks().0.iter().map(|bytes| from(*bytes)).collect())
+        Ok(&self.data[info.data_offsets.0..info.data_offsets.1])
     }
 
     pub(crate) fn reals(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<f64>> {
-        self.numbers(name, axes, Dtype::F64, f64::from_le_bytes)
+        Ok(reals(self.bytes(name, axes, Dtype::F64)?))
     }
 
     pub(crate) fn integers(&self, name: &str, axes: &[Option<usize>]) -> Result<Vec<u32>> {
-        self.numbers(name, axes, Dtype::U32, u32::from_le_bytes)
+        let bytes = self.bytes(name, axes, Dtype::U32)?;
+        Ok(bytes.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
     }
 
     /// Returns the pairs of a tensor of two columns, which must be ascending, each with the smaller number first.
@@ -93,4 +87,9 @@ impl<'a> Container<'a> {
         require(is_sorted, "pairs are not in order")?;
         Ok(pairs)
     }
+}
+
+/// Returns the numbers of a list of bytes.
+pub(crate) fn reals(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()
 }

@@ -104,11 +104,9 @@ impl<'a> CountedPairs<'a> {
             let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
             Some([*others.first()?, *others.last()?, *others.last()?])
         };
-        match (opposite(x), opposite(y)) {
-            (Some(of_x), Some(of_y)) => vec![[of_x, y], [x, of_y]],
-            // One face consists of the common vertex alone.
-            _ => Vec::new(),
-        }
+        // A face that consists of the common vertex alone has no opposite edge.
+        let (Some(of_x), Some(of_y)) = (opposite(x), opposite(y)) else { return Vec::new() };
+        vec![[of_x, y], [x, of_y]]
     }
 
     /// Checks that no pair of triangles of two nodes, or of one node, counts. Large nodes need one group each, which do not count

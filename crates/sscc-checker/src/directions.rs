@@ -87,7 +87,6 @@ impl<'a> Directions<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dyadic::vector;
     use crate::model::Model;
     use crate::scope::Scope;
 
@@ -110,7 +109,7 @@ mod tests {
         let (mut apart, mut largest) = (0, 0);
         for step in 0..400 {
             if step % 20 == 0 {
-                let (index, dir) = (many.len().min(3), vector([random() - 0.5, random() - 0.5, 1.0]));
+                let (index, dir) = (many.len().min(3), [random() - 0.5, random() - 0.5, 1.0].map(Dyadic::of));
                 many.set(index, dir.clone());
                 none.set(index, dir);
             }

@@ -167,10 +167,6 @@ pub(crate) fn squared_norm(row: &[Dyadic]) -> Dyadic {
 /// A vector of three numbers.
 pub(crate) type Vector = [Dyadic; 3];
 
-pub(crate) fn vector(x: [f64; 3]) -> Vector {
-    x.map(Dyadic::of)
-}
-
 pub(crate) fn minus(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|c| &a[c] - &b[c])
 }

@@ -3,7 +3,7 @@
 //! need be common.
 
 use crate::counted::CountedPairs;
-use crate::dyadic::{Dyadic, Vector, cross, dot, minus, vector};
+use crate::dyadic::{Dyadic, Vector, cross, dot, minus};
 use crate::refusal::{IsCancelled, Result, check_cancelled, proof};
 
 /// Checks that each exception counts and collides at the centre.
@@ -15,8 +15,9 @@ pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) 
         if simplices.is_empty() {
             return proof(format!("exception: triangles {a} and {b} do not count"));
         }
-        let corners =
-            |simplex: [u32; 3]| simplex.map(|i| vector(model.computed_position(i as usize, &scope.center)));
+        let corners = |simplex: [u32; 3]| {
+            simplex.map(|i| model.computed_position(i as usize, &scope.center).map(Dyadic::of))
+        };
         if simplices.iter().all(|[x, y]| are_disjoint(&corners(*x), &corners(*y))) {
             return proof(format!("exception: triangles {a} and {b} do not collide at the centre"));
         }
@@ -54,7 +55,7 @@ mod tests {
 
     #[test]
     fn triangles_that_touch_are_not_disjoint() {
-        let of = |corners: [[f64; 3]; 3]| corners.map(vector);
+        let of = |corners: [[f64; 3]; 3]| corners.map(|corner| corner.map(Dyadic::of));
         let flat = of([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
         let shifted = |dx: f64, dy: f64, dz: f64| of([[dx, dy, dz], [dx + 4.0, dy, dz], [dx, dy + 4.0, dz]]);
         let tiny = 1e-300;

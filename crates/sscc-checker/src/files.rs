@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::container::reals;
 use crate::model::Model;
 use crate::refusal::{Refusal, Result, input};
 
@@ -27,14 +28,12 @@ impl Model {
     /// When a file cannot be read, or its content is invalid.
     pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self> {
         let bytes = read(mesh)?;
-        let named = |path: &Path| {
-            let name = shown(path);
-            move |refusal: Refusal| refusal.of(&name)
-        };
-        let Some(path) = modes else { return Self::from_container(&bytes).map_err(named(mesh)) };
-        let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(named(mesh))?;
-        let (modes, rank) = parse_npy(&read(path)?, positions.len()).map_err(named(path))?;
-        Self::new(positions, faces, modes, rank).map_err(named(path))
+        let of_mesh = |refusal: Refusal| refusal.of(&shown(mesh));
+        let Some(path) = modes else { return Self::from_container(&bytes).map_err(of_mesh) };
+        let of_modes = |refusal: Refusal| refusal.of(&shown(path));
+        let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(of_mesh)?;
+        let (modes, rank) = parse_npy(&read(path)?, positions.len()).map_err(of_modes)?;
+        Self::new(positions, faces, modes, rank).map_err(of_modes)
     }
 }
 
@@ -84,8 +83,7 @@ fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize)> {
         let data = &bytes[length..];
         let rank = (data.len() / 8).checked_div(3 * vertices)?;
         let fits = axes == [3 * vertices, rank] || axes == [vertices, 3, rank];
-        let modes = data.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
-        (is_known && fits && data.len() == 24 * vertices * rank).then_some((modes, rank))
+        (is_known && fits && data.len() == 24 * vertices * rank).then(|| (reals(data), rank))
     };
     parsed().ok_or_else(|| {
         let rows = 3 * vertices;

@@ -85,10 +85,8 @@ impl fmt::Display for Confirmed {
             write!(f, "root's radius {root_radius:?}")?;
         } else {
             write!(f, "confirmed a sample: {proven} of {entries} entries, {proven_positive} of {positive} ")?;
-            write!(
-                f,
-                "with a positive radius, chosen by the author of the proof; nothing is known of the others"
-            )?;
+            write!(f, "with a positive radius, chosen by the author of the proof; ")?;
+            write!(f, "nothing is known of the others")?;
         }
         write!(f, "; left out: {left_out}")
     }

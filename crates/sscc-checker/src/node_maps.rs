@@ -7,22 +7,17 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
+use crate::container::reals;
 use crate::counted::CountedPairs;
 use crate::dyadic::{Dyadic, Vector, dot};
-use crate::points::{Radius, along, are_apart, difference, position, row, squared_residual, sum};
+use crate::points::{Radius, along, are_apart, difference, position, squared_residual, sum};
 use crate::scaled::ScaledModel;
-
-/// Returns the number of numbers of a node's map: its centre, M by components, then G (for each direction three components, a row
-/// each).
-pub(crate) fn numbers_of_map(rank: usize) -> usize {
-    3 + 12 * rank
-}
 
 /// The maps of all nodes, and the boxes of those that have been needed.
 pub(crate) struct NodeMaps<'a> {
     pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
-    /// [`numbers_of_map`] numbers of eight bytes for each node.
+    /// For each node the same number of bytes: c, M by components, then G (for each direction three components, a row each).
     pub(crate) numbers: &'a [u8],
     pub(crate) boxes: Vec<OnceLock<NodeBox>>,
 }
@@ -49,9 +44,9 @@ impl NodeMaps<'_> {
 
     fn compute(&self, n: u32) -> NodeBox {
         let rank = self.scaled.rank;
-        let len = 8 * numbers_of_map(rank);
-        let numbers = self.numbers[n as usize * len..][..len].as_chunks().0.iter();
-        let numbers: Vec<Dyadic> = numbers.map(|bytes| Dyadic::of(f64::from_le_bytes(*bytes))).collect();
+        let len = self.numbers.len() / self.boxes.len();
+        let numbers = reals(&self.numbers[n as usize * len..][..len]);
+        let numbers: Vec<Dyadic> = numbers.into_iter().map(Dyadic::of).collect();
         let (center, rows) = numbers.split_at(3);
         let rows: Vec<&[Dyadic]> = rows.chunks(rank).collect();
         let center: Vec<Dyadic> = (0..3).flat_map(|c| [&center[c..=c], rows[c]].concat()).collect();
@@ -63,8 +58,7 @@ impl NodeMaps<'_> {
             let from_center = difference(self.scaled.point(i), &center);
             let offset = position(&from_center);
             for c in 0..3 {
-                let gradient = [rows[3 + c], rows[6 + c], rows[9 + c]];
-                squares[c].raise(squared_residual(row(&from_center, c), &offset, gradient));
+                squares[c].raise(squared_residual(&from_center, c, [rows[3 + c], rows[6 + c], rows[9 + c]]));
                 half[c].raise(offset[c].abs());
             }
         }

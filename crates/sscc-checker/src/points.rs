@@ -15,7 +15,7 @@ pub(crate) type Point = [Dyadic];
 pub(crate) type Triangle<'a> = [&'a Point; 3];
 
 /// Returns a row of a point.
-pub(crate) fn row(point: &Point, component: usize) -> &[Dyadic] {
+fn row(point: &Point, component: usize) -> &[Dyadic] {
     let length = point.len() / 3;
     &point[component * length..][..length]
 }
@@ -60,11 +60,11 @@ pub(crate) fn differences(x: Triangle<'_>, y: Triangle<'_>) -> Vec<Vec<Dyadic>> 
     x.iter().flat_map(|i| y.iter().map(move |j| difference(j, i))).collect()
 }
 
-/// Returns the squared length of what an affine map leaves of the rates of a row. `offset`: the position that the map maps; `gradient`: its
-/// rates along each axis.
-pub(crate) fn squared_residual(row: &[Dyadic], offset: &Vector, gradient: [&[Dyadic]; 3]) -> Dyadic {
+/// Returns the squared length of what an affine map leaves of a component's rates. `gradient`: the rates of the map along each axis.
+pub(crate) fn squared_residual(point: &Point, component: usize, gradient: [&[Dyadic]; 3]) -> Dyadic {
+    let offset = position(point);
     let map = |k: usize| (0..3).map(|j| &offset[j] * &gradient[j][k]).sum();
-    row[1..].iter().enumerate().map(|(k, a)| (a - &map(k)).square()).sum()
+    row(point, component)[1..].iter().enumerate().map(|(k, a)| (a - &map(k)).square()).sum()
 }
 
 /// Whether `gap - (rate + root(square)) |z'|` is positive for all z' below a radius: it must be positive at `z' = 0` and not

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::dyadic::{Dyadic, Vector, dot, squared_norm, vector};
+use crate::dyadic::{Dyadic, Vector, dot, squared_norm};
 use crate::model::Model;
 use crate::points::{Point, Radius};
 use crate::refusal::{IsCancelled, Result, check_cancelled, input};
@@ -54,8 +54,8 @@ impl ScaledModel {
         for i in model.faces.as_flattened().iter().copied().collect::<BTreeSet<u32>>() {
             check_cancelled(is_cancelled)?;
             let i = i as usize;
-            let computed = vector(model.computed_position(i, &scope.center));
-            for (c, computed) in computed.into_iter().enumerate() {
+            let computed = model.computed_position(i, &scope.center);
+            for (c, computed) in computed.map(Dyadic::of).into_iter().enumerate() {
                 let rest = Dyadic::of(model.positions[i][c]);
                 let row = &model.modes_of(i)[c * rank..][..rank];
                 let row: Vec<Dyadic> = row.iter().map(|u| Dyadic::of(*u)).collect();
@@ -112,11 +112,8 @@ fn product(row: &[Dyadic], column: &Column) -> Dyadic {
 /// Returns the columns of T, and delta.
 fn inverse(scope: &Scope, rank: usize, is_cancelled: &IsCancelled<'_>) -> Result<(Vec<Column>, Dyadic)> {
     let digits = DIGITS[usize::from(scope.is_dense)];
-    let entry = |i: usize, j: usize| match scope.is_dense {
-        true => Dyadic::of(scope.factor[i * rank + j]),
-        false if i == j => Dyadic::of(scope.factor[i]),
-        false => Dyadic::default(),
-    };
+    // Of a diagonal factor only entries of the diagonal are needed.
+    let entry = |i: usize, j: usize| Dyadic::of(scope.factor[if scope.is_dense { i * rank + j } else { i }]);
     let (mut columns, mut error) = (Vec::new(), Dyadic::default());
     for l in 0..rank {
         check_cancelled(is_cancelled)?;

@@ -43,10 +43,8 @@ impl Scope {
             let is_in_range = row[i] >= LARGEST.recip() && row.iter().all(|s| s.abs() <= LARGEST);
             is_in_range && row[..i].iter().all(|s| *s == 0.0)
         };
-        let is_factor = match is_dense {
-            true => (0..rank).all(is_row),
-            false => factor.iter().all(|s| *s > 0.0 && s.is_finite()),
-        };
+        let is_scale = |s: &f64| *s > 0.0 && s.is_finite();
+        let is_factor = if is_dense { (0..rank).all(is_row) } else { factor.iter().all(is_scale) };
         let center = file.reals("center", &[Some(rank)])?;
         let is_finite = center.iter().all(|x| x.is_finite());
         require(is_factor && is_finite, "metric or centre: a number is out of range")?;
