@@ -63,8 +63,7 @@ impl AffineMap {
         }
         let [u0, u1, u2, u3] = pyramid;
         let mut cones = 0;
-        let squared_rate = rate.square();
-        let mut holds = |cone| self.holds(cone, &squared_rate, &mut cones, 0);
+        let mut holds = |cone| self.holds(cone, &rate.square(), &mut cones, 0);
         if !holds([u0, u1, u2]) || !holds([u0, u2, u3]) {
             return false;
         }

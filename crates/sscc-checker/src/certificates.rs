@@ -59,7 +59,7 @@ impl Certificates {
         let digest = file.bytes("model_digest", &[Some(32)], Dtype::U8)?;
         let rows = file.integers("nodes", &[None, Some(4)])?;
         let node =
-            |&[first, count, first_child, children]: &[u32; 4]| Node { first, count, first_child, children };
+            |row: &[u32; 4]| Node { first: row[0], count: row[1], first_child: row[2], children: row[3] };
         let nodes: Vec<Node> = rows.as_chunks().0.iter().map(node).collect();
         let order = file.integers("order", &[Some(triangles)])?;
         check_partition(&nodes, &order)?;

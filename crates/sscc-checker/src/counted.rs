@@ -51,7 +51,8 @@ impl<'a> CountedPairs<'a> {
             if !scope.weld {
                 return i;
             }
-            let numbers = model.positions[i as usize].iter().chain(model.modes_of(i as usize));
+            let numbers =
+                model.positions[i as usize].iter().chain((0..3).flat_map(|c| model.row(i as usize, c)));
             // Adding 0 makes -0 equal to 0.
             let key: Vec<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
             *lowest.entry(key).or_insert(i)
@@ -89,13 +90,11 @@ impl<'a> CountedPairs<'a> {
         if a == b || is_ignored || !scope.groups_count(scope.group(a), scope.group(b)) {
             return Vec::new();
         }
-        let common =
-            |x: [u32; 3], y: [u32; 3]| -> BTreeSet<u32> { x.into_iter().filter(|i| y.contains(i)).collect() };
-        let [x, y] = [a, b].map(|t| self.model.faces[t as usize]);
-        let classes = |face: [u32; 3]| face.map(|i| self.classes[i as usize]);
-        let common_classes = common(classes(x), classes(y));
-        let Some(&class) = common_classes.first() else { return vec![[x, y]] };
-        if !scope.one_vertex || common_classes.len() > 1 || common(x, y).len() > 1 {
+        let common = |[x, y]: [[u32; 3]; 2]| x.into_iter().filter(|i| y.contains(i)).collect::<BTreeSet<_>>();
+        let faces = [a, b].map(|t| self.model.faces[t as usize]);
+        let classes = common(faces.map(|face| face.map(|i| self.classes[i as usize])));
+        let Some(&class) = classes.first() else { return vec![faces] };
+        if !scope.one_vertex || classes.len() > 1 || common(faces).len() > 1 {
             return Vec::new();
         }
         // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them
@@ -105,8 +104,8 @@ impl<'a> CountedPairs<'a> {
             Some([*others.first()?, *others.last()?, *others.last()?])
         };
         // A face that consists of the common vertex alone has no opposite edge.
-        let (Some(of_x), Some(of_y)) = (opposite(x), opposite(y)) else { return Vec::new() };
-        vec![[of_x, y], [x, of_y]]
+        let [Some(of_x), Some(of_y)] = faces.map(opposite) else { return Vec::new() };
+        vec![[of_x, faces[1]], [faces[0], of_y]]
     }
 
     /// Checks that no pair of triangles of two nodes, or of one node, counts. Large nodes need one group each, which do not count

@@ -15,10 +15,8 @@ pub(crate) fn check(counted: &CountedPairs<'_>, is_cancelled: &IsCancelled<'_>) 
         if simplices.is_empty() {
             return proof(format!("exception: triangles {a} and {b} do not count"));
         }
-        let corners = |simplex: [u32; 3]| {
-            simplex.map(|i| model.computed_position(i as usize, &scope.center).map(Dyadic::of))
-        };
-        if simplices.iter().all(|[x, y]| are_disjoint(&corners(*x), &corners(*y))) {
+        let corner = |i: u32| model.computed_position(i as usize, &scope.center).map(Dyadic::of);
+        if simplices.iter().all(|[x, y]| are_disjoint(&x.map(corner), &y.map(corner))) {
             return proof(format!("exception: triangles {a} and {b} do not collide at the centre"));
         }
     }

@@ -49,17 +49,15 @@ impl Model {
         Self::new(positions, faces, modes, rank)
     }
 
-    /// Returns the three rows of a vertex.
-    pub(crate) fn modes_of(&self, vertex: usize) -> &[f64] {
-        &self.modes[vertex * 3 * self.rank..][..3 * self.rank]
+    /// Returns the row of a vertex and a component.
+    pub(crate) fn row(&self, vertex: usize, component: usize) -> &[f64] {
+        &self.modes[(3 * vertex + component) * self.rank..][..self.rank]
     }
 
     /// Returns the position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
     pub(crate) fn computed_position(&self, vertex: usize, q: &[f64]) -> [f64; 3] {
-        let modes = self.modes_of(vertex);
         std::array::from_fn(|c| {
-            let row = modes[c * self.rank..][..self.rank].iter();
-            row.zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
+            self.row(vertex, c).iter().zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
         })
     }
 }

@@ -62,13 +62,8 @@ impl NodeMaps<'_> {
                 half[c].raise(offset[c].abs());
             }
         }
-        let halves = std::array::from_fn(|j| {
-            let row = |c: usize| {
-                let unit = Dyadic::new(i64::from(c == j), 0);
-                [&[unit], rows[3 + 3 * j + c]].concat().iter().map(|x| x * &half[j]).collect::<Vec<_>>()
-            };
-            (0..3).flat_map(row).collect()
-        });
+        let row = |j: usize, c: usize| [&[Dyadic::new(i64::from(c == j), 0)], rows[3 + 3 * j + c]].concat();
+        let halves = std::array::from_fn(|j| (0..3).flat_map(|c| row(j, c)).map(|x| &x * &half[j]).collect());
         NodeBox { center, halves, residual: squares.map(|x| x.root_up()) }
     }
 }

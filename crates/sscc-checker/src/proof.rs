@@ -110,7 +110,12 @@ impl<'a> Proof<'a> {
             let radius = &scaled.radius(entries[index].radius);
             let (bytes, directions) = (Bytes(bytes), Directions::new(scaled, radius, threads));
             let mut reader = EntryReader { maps, is_cancelled, radius, bytes, directions, map: None };
-            Some((index, reader.entry(entries[index]).err()?))
+            // An entry of radius 0 needs no witness.
+            let checked =
+                if entries[index].radius > 0.0 { reader.nodes(entries[index].nodes) } else { Ok(()) };
+            let is_read = reader.bytes.0.is_empty();
+            let checked = checked.and_then(|()| claim(is_read, "there are witnesses after its end"));
+            Some((index, checked.err()?))
         };
         let work = || iter::from_fn(take).find_map(refused);
         let refused = thread::scope(|scope| {
@@ -141,14 +146,6 @@ struct EntryReader<'a> {
 }
 
 impl EntryReader<'_> {
-    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<()> {
-        // An entry of radius 0 needs no witness.
-        if radius > 0.0 {
-            self.nodes(nodes)?;
-        }
-        claim(self.bytes.0.is_empty(), "there are witnesses after its end")
-    }
-
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<()> {
         check_cancelled(self.is_cancelled)?;

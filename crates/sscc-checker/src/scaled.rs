@@ -51,14 +51,13 @@ impl ScaledModel {
         let center: Vec<Dyadic> = scope.center.iter().map(|x| Dyadic::of(*x)).collect();
         let mut points = vec![Dyadic::default(); 3 * (1 + rank) * model.positions.len()];
         let [mut rest_errors, mut rate_errors, mut center_errors] = <[Vector; 3]>::default();
-        for i in model.faces.as_flattened().iter().copied().collect::<BTreeSet<u32>>() {
+        let used: BTreeSet<usize> = model.faces.as_flattened().iter().map(|i| *i as usize).collect();
+        for i in used {
             check_cancelled(is_cancelled)?;
-            let i = i as usize;
             let computed = model.computed_position(i, &scope.center);
             for (c, computed) in computed.map(Dyadic::of).into_iter().enumerate() {
                 let rest = Dyadic::of(model.positions[i][c]);
-                let row = &model.modes_of(i)[c * rank..][..rank];
-                let row: Vec<Dyadic> = row.iter().map(|u| Dyadic::of(*u)).collect();
+                let row: Vec<Dyadic> = model.row(i, c).iter().map(|u| Dyadic::of(*u)).collect();
                 let moved = || row.iter().zip(&center).map(|(u, x)| u * x);
                 let exact = &rest + &moved().sum();
                 center_errors[c].raise((&exact - &computed).abs());

@@ -33,10 +33,8 @@ impl Scope {
         require(!file.has("clearance"), "certificates with a clearance are not checked")?;
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
-        let factor: Vec<f64> = match is_dense {
-            true => file.reals("metric_factor", &[Some(rank), Some(rank)])?,
-            false => file.reals("metric_scales", &[Some(rank)])?,
-        };
+        let (name, axes) = if is_dense { ("metric_factor", 2) } else { ("metric_scales", 1) };
+        let factor = file.reals(name, &vec![Some(rank); axes])?;
         require(!is_dense || rank <= MAX_DENSE, "metric: it is dense, and has more than 1024 rows")?;
         let is_row = |i: usize| {
             let row = &factor[i * rank..][..rank];
