@@ -179,8 +179,7 @@ fn check_partition(nodes: &[Node], order: &[u32]) -> Result<()> {
         claim(has_children, "hierarchy: the children of a node are not the next two to four nodes")?;
         let level: usize = levels[n];
         levels[next..end].fill(level + 1);
-        let mut first = u64::from(node.first);
-        let mut is_union = level < MAX_LEVELS;
+        let (mut is_union, mut first) = (level < MAX_LEVELS, u64::from(node.first));
         for child in &nodes[next..end] {
             is_union &= u64::from(child.first) == first && child.count > 0;
             first += u64::from(child.count);

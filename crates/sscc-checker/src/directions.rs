@@ -1,4 +1,4 @@
-//! Pairs of triangles or edges, and quarters of them, with exact positions and modes, and the directions that separate them.
+//! Directions that separate triangles, edges, or quarters of triangles.
 
 use std::collections::HashMap;
 

@@ -34,15 +34,14 @@ impl Traversal<'_> {
     fn within(&mut self, n: u32, around: f64) -> Result<()> {
         let certificates = self.certificates;
         let radius = around.max(certificates.node_radii[n as usize]);
-        let node = certificates.nodes[n as usize];
-        if node.children == 0 {
+        let children = certificates.nodes[n as usize].children();
+        if children.is_empty() {
             self.entries.push(Entry { nodes: [n, n], radius });
             return Ok(());
         }
-        for child in node.children() {
+        for child in children.clone() {
             self.within(child, radius)?;
         }
-        let children = node.children();
         let pairs = children.clone().flat_map(|a| (a + 1..children.end).map(move |b| [a, b]));
         let of_root = |which: usize| if n == 0 { certificates.root_pair_radii[which] } else { 0.0 };
         let pair = |(which, nodes)| Entry { nodes, radius: radius.max(of_root(which)) };

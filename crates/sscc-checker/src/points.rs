@@ -77,17 +77,12 @@ pub(crate) fn stays_open(gap: &Dyadic, rate: &Dyadic, square: &Dyadic, radius: &
     gap.is_positive() && left >= Dyadic::default() && left.square() >= &radius.square() * square
 }
 
-/// Whether two points are apart along a direction below a radius: `x`, `y`: their rows along it; `rest_error`, `rate_error`: their gap is
-/// smaller by at most `rest_error + rate_error |z'|`.
-pub(crate) fn are_apart(
-    x: &[Dyadic],
-    y: &[Dyadic],
-    [rest_error, rate_error]: &[Dyadic; 2],
-    radius: &Radius,
-) -> bool {
-    let gap = &(&y[0] - &x[0]) - rest_error;
+/// Whether two points are apart along a direction below a radius. `x`, `y`: their rows along it; `errors`: e0 and e1 such that their gap may
+/// be smaller by `e0 + e1 |z'|`.
+pub(crate) fn are_apart(x: &[Dyadic], y: &[Dyadic], errors: &[Dyadic; 2], radius: &Radius) -> bool {
+    let gap = &(&y[0] - &x[0]) - &errors[0];
     let square = x[1..].iter().zip(&y[1..]).map(|(a, b)| (a - b).square()).sum();
-    stays_open(&gap, rate_error, &square, radius)
+    stays_open(&gap, &errors[1], &square, radius)
 }
 
 #[cfg(test)]
