@@ -93,3 +93,64 @@ impl<'a> Container<'a> {
 pub(crate) fn reals(bytes: &[u8]) -> Vec<f64> {
     bytes.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a sealed file with these entries of the header after its texts, quoted by apostrophes.
+    fn sealed(entries: &str, data: &[u8]) -> Vec<u8> {
+        let texts = "','format':'f','version':'1'}";
+        let header = [PREFIX, &"0".repeat(64), &format!("{texts}{entries}}}").replace('\'', "\"")].concat();
+        let mut bytes = [&(header.len() as u64).to_le_bytes()[..], header.as_bytes(), data].concat();
+        let digest = blake3::hash(&bytes).to_hex();
+        bytes[DIGITS].copy_from_slice(digest.as_bytes());
+        bytes
+    }
+
+    /// Returns the entry of a tensor of bytes.
+    fn tensor(name: &str, shape: &str, begin: u64, end: u64) -> String {
+        format!(",'{name}':{{'dtype':'U8','shape':[{shape}],'data_offsets':[{begin},{end}]}}")
+    }
+
+    #[test]
+    fn headers_that_do_not_describe_each_byte_once_are_refused() {
+        let two = tensor("a", "4", 0, 4) + &tensor("b", "2, 2", 4, 8);
+        let bytes = sealed(&two, &[7; 8]);
+        let file = Container::parse(&bytes, "f", 1).unwrap();
+        assert!(file.has("b") && !file.has("c") && file.bytes("b", &[Some(2), None], Dtype::U8).is_ok());
+        for (axes, dtype) in
+            [(&[Some(4)][..], Dtype::U8), (&[Some(2), Some(3)], Dtype::U8), (&[None; 2], Dtype::I8)]
+        {
+            assert!(file.bytes("b", axes, dtype).is_err(), "{axes:?}");
+        }
+        let last = u64::MAX;
+        for entries in [
+            two.clone() + &tensor("c", "1", 8, 9),
+            tensor("a", "4", 0, 4),
+            tensor("a", "4", 0, 4) + &tensor("b", "3", 5, 8),
+            tensor("a", "5", 0, 5) + &tensor("b", "4", 4, 8),
+            tensor("a", "4", 0, 4) + &tensor("b", "3", 4, 8),
+            // A name twice, and texts twice.
+            tensor("a", "4", 0, 4) + &tensor("a", "4", 4, 8),
+            two.clone() + ",'__metadata__':{'format':'f','version':'1'}",
+            // Sizes that overflow.
+            two.clone() + &tensor("c", &(last - 7).to_string(), 8, last) + &tensor("d", "9", last, 8),
+            tensor("a", "4294967296, 4294967296", 0, 0) + &tensor("b", "8", 0, 8),
+            tensor("a", "-1", 0, 8),
+            two.replace("U8", "X8"),
+            two.replace("dtype", "type"),
+            format!(",{}", " ".repeat(MAX_HEADER)),
+        ] {
+            let refusal = Container::parse(&sealed(&entries, &[7; 8]), "f", 1).err();
+            assert_eq!(
+                refusal,
+                Some(Refusal::Input("its header is malformed or too large".into())),
+                "{entries:.200}"
+            );
+        }
+        for (format, newest) in [("g", 1), ("f", 0)] {
+            assert!(Container::parse(&bytes, format, newest).is_err(), "{format} {newest}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //! neither certificates nor proofs. `docs/guarantees.md`, "The checker", has the statement that it confirms.
 //!
 //! `entries` lists the statements that must be proven, from the certificates alone. `proof` reads the witnesses, which `node_maps`,
-//! `directions` and `affine` check. `scaled` bounds the rounding of computed positions.
+//! `directions` and `affine` check. `points` has the inequality of all witnesses, and `scaled` bounds the rounding of computed positions.
 
 mod affine;
 mod certificates;

@@ -66,7 +66,7 @@ impl<'a> Bytes<'a> {
 }
 
 impl<'a> Proof<'a> {
-    /// Parses a proof of certificates of a model with a rank.
+    /// Parses a proof, and checks its head before costly work: that it is of these certificates, and of a model with this rank.
     pub(crate) fn parse(bytes: &'a [u8], certificates: &Certificates, rank: usize) -> Result<Self> {
         require(bytes.iter().zip(MAGIC).all(|(a, b)| a == b), "not a proof of certificates")?;
         let mut bytes = Bytes(bytes);
@@ -110,12 +110,7 @@ impl<'a> Proof<'a> {
             let radius = &scaled.radius(entries[index].radius);
             let (bytes, directions) = (Bytes(bytes), Directions::new(scaled, radius, threads));
             let mut reader = EntryReader { maps, is_cancelled, radius, bytes, directions, map: None };
-            // An entry of radius 0 needs no witness.
-            let checked =
-                if entries[index].radius > 0.0 { reader.nodes(entries[index].nodes) } else { Ok(()) };
-            let is_read = reader.bytes.0.is_empty();
-            let checked = checked.and_then(|()| claim(is_read, "there are witnesses after its end"));
-            Some((index, checked.err()?))
+            Some((index, reader.entry(entries[index]).err()?))
         };
         let work = || iter::from_fn(take).find_map(refused);
         let refused = thread::scope(|scope| {
@@ -146,6 +141,14 @@ struct EntryReader<'a> {
 }
 
 impl EntryReader<'_> {
+    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<()> {
+        // An entry of radius 0 needs no witness.
+        if radius > 0.0 {
+            self.nodes(nodes)?;
+        }
+        claim(self.bytes.0.is_empty(), "there are witnesses after its end")
+    }
+
     /// Checks all pairs between two nodes, or within one.
     fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<()> {
         check_cancelled(self.is_cancelled)?;
@@ -165,6 +168,7 @@ impl EntryReader<'_> {
         }
     }
 
+    /// Checks all pairs of triangles between two leaves, or within one.
     fn triangles(&mut self, nodes: [u32; 2]) -> Result<()> {
         self.directions.clear();
         self.map = None;
