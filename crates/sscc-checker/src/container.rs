@@ -62,7 +62,7 @@ impl<'a> Container<'a> {
             return input(format!("tensor '{name}' is missing"));
         };
         if info.dtype != dtype {
-            return input(format!("tensor '{name}' has another type or size"));
+            return input(format!("tensor '{name}' has another type"));
         }
         let fits = |(found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| wanted == *found);
         if info.shape.len() != axes.len() || !info.shape.iter().zip(axes).all(fits) {
