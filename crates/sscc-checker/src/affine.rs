@@ -15,97 +15,73 @@
 //! three directions `|u'G u| / |u|^2` is at most the largest quotient `|c_ij| / u_i.u_j`, with `c_ij` the symmetric
 //! part of `u_i'G u_j`. If that is more than g, the cone is halved.
 
-use std::cmp::Ordering;
-
-use crate::corners::{Triangle, differences};
 use crate::dyadic::{Dyadic, Vector, cross, dot, minus, squared_norm};
-use crate::inequality::stays_open;
-use crate::scaled::{Radius, ScaledModel};
+use crate::points::{Radius, Triangle, differences, position, squared_residual, stays_open, sum};
+use crate::scaled::ScaledModel;
 
 /// The number of cones of a witness from which on no cone is halved.
 const MAX_CONES: usize = 1024;
 /// The largest number of times that a cone is halved, because each halving makes numbers longer.
 const MAX_DEPTH: usize = 64;
 
-/// An affine map: nine rows, with `G_cj` at `3 c + j`, and the products of its six symmetric parts. `products[i][j]` is the product
-/// of the parts i and j: once for j = i, twice for j > i, and 0 for j < i.
+/// The six symmetric parts of a matrix: the entries of its diagonal, and the sums of two entries beside it.
+const PARTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)];
+
+/// An affine map: nine rows, with `G_cj` at `3 c + j`, and for each of its symmetric parts the products with itself and, twice, with those
+/// that follow.
 pub(crate) struct AffineMap {
     gradient: Vec<Dyadic>,
-    products: [[Dyadic; 6]; 6],
-}
-
-/// The numbers of a witness in addition to its map.
-pub(crate) struct AffineWitness {
-    pub(crate) dir: Vector,
-    pub(crate) rate: f64,
-    pub(crate) pyramid: [Vector; 4],
+    products: [Vec<Dyadic>; 6],
 }
 
 impl AffineMap {
     pub(crate) fn new(gradient: Vec<Dyadic>) -> Self {
-        let rank = gradient.len() / 9;
-        let row = |c: usize, j: usize| &gradient[(3 * c + j) * rank..][..rank];
-        let parts: [Vec<Dyadic>; 6] = std::array::from_fn(|part| match part {
-            0..3 => row(part, part).to_vec(),
-            _ => {
-                let (c, j) = ((part + 1) % 3, (part + 2) % 3);
-                row(c, j).iter().zip(row(j, c)).map(|(a, b)| a + b).collect()
-            }
+        let rows: Vec<&[Dyadic]> = gradient.chunks(gradient.len() / 9).collect();
+        let parts = PARTS.map(|(c, j)| match c == j {
+            true => rows[4 * c].to_vec(),
+            false => sum(rows[3 * c + j], rows[3 * j + c]),
         });
-        let products = std::array::from_fn(|i| {
-            std::array::from_fn(|j| match j.cmp(&i) {
-                Ordering::Less => Dyadic::default(),
-                Ordering::Equal => squared_norm(&parts[i]),
-                Ordering::Greater => dot(&parts[i], &parts[j]).times_power(1),
-            })
-        });
+        let product = |i: usize, j: usize| dot(&parts[i], &parts[j]).times_power(i64::from(j > i));
+        let products = std::array::from_fn(|i| (i..6).map(|j| product(i, j)).collect());
         Self { gradient, products }
     }
 
-    /// Whether the witness proves that two triangles are separate below a radius.
+    /// Whether the map, a direction, a rate and a pyramid prove that two triangles are separate below a radius.
     pub(crate) fn separates(
         &self,
         model: &ScaledModel,
         [x, y]: [Triangle<'_>; 2],
-        AffineWitness { dir, rate, pyramid }: &AffineWitness,
+        dir: &Vector,
+        rate: &Dyadic,
+        pyramid: &[Vector; 4],
         radius: &Radius,
     ) -> bool {
         let differences = differences(x, y);
-        if *rate < 0.0 || !is_inside(pyramid, &differences) {
+        let offsets: Vec<Vector> = differences.iter().map(|d| position(d)).collect();
+        if *rate < Dyadic::default() || !is_inside(pyramid, &offsets) {
             return false;
         }
-        let rate = Dyadic::of(*rate);
         let [u0, u1, u2, u3] = pyramid;
         let mut cones = 0;
-        let squared_rate = rate.square();
-        let mut holds = |cone| self.holds(cone, &squared_rate, &mut cones, 0);
+        let mut holds = |cone| self.holds(cone, &rate.square(), &mut cones, 0);
         if !holds([u0, u1, u2]) || !holds([u0, u2, u3]) {
             return false;
         }
-        let Some(gap) = differences.iter().map(|d| dot(dir, d)).min() else { return false };
-        let residual = self.largest_residual(x, y, &differences).root_up();
+        let smaller = |a: Dyadic, b: Dyadic| if b < a { b } else { a };
+        let gap = offsets.iter().map(|d| dot(dir, d)).reduce(smaller).unwrap_or_default();
+        // The largest squared residual of the nine pairs of corners.
+        let rows: Vec<&[Dyadic]> = self.gradient.chunks(model.rank).collect();
+        let mut residual = Dyadic::default();
+        for d in &differences {
+            let of_axis = |c: usize| squared_residual(d, c, [rows[3 * c], rows[3 * c + 1], rows[3 * c + 2]]);
+            residual.raise((0..3).map(of_axis).sum());
+        }
         // The inequality for a unit direction, times the length of `dir`. Rounding errors along a unit direction are
         // bounded by those along a vector of ones, because its components are at most 1.
         let length = squared_norm(dir).root_up();
         let [rest_error, rate_error] = model.errors(&std::array::from_fn(|_| Dyadic::new(1, 0)));
-        let closing = &(&gap * &rate) + &(&length * &(&residual + &rate_error));
+        let closing = &(&gap * rate) + &(&length * &(&residual.root_up() + &rate_error));
         stays_open(&(&gap - &(&length * &rest_error)), &closing, &Dyadic::default(), radius)
-    }
-
-    /// Returns the largest squared residual of the nine pairs of corners.
-    fn largest_residual(&self, x: Triangle<'_>, y: Triangle<'_>, differences: &[Vector]) -> Dyadic {
-        let rank = self.gradient.len() / 9;
-        let mut largest = Dyadic::default();
-        for (ij, d) in differences.iter().enumerate() {
-            let (i, j) = (x[ij / 3], y[ij % 3]);
-            let residual = (0..3 * rank).map(|ck| {
-                let (c, k) = (ck / rank, ck % rank);
-                let map = (0..3).map(|l| &self.gradient[(3 * c + l) * rank + k] * &d[l]).sum();
-                &(&j.modes[ck] - &i.modes[ck]) - &map
-            });
-            largest.raise(residual.map(|e| e.square()).sum());
-        }
-        largest
     }
 
     /// Whether the rate holds on the cone of three directions, which is halved as often as necessary, within the
@@ -126,9 +102,9 @@ impl AffineMap {
             return are_slow;
         }
         let length = |(i, j): (usize, usize)| squared_norm(&minus(cone[i], cone[j]));
-        let edges = [(0, 1), (1, 2), (2, 0)];
-        let longest = edges.into_iter().fold(edges[0], |l, e| if length(e) > length(l) { e } else { l });
-        let [u, v, w] = [longest.0, longest.1, 3 - longest.0 - longest.1].map(|i| cone[i]);
+        let longest = |l, e: &(usize, usize)| if length(*e) > length(l) { *e } else { l };
+        let (u, v) = pairs[4..].iter().fold(pairs[3], longest);
+        let [u, v, w] = [u, v, 3 - u - v].map(|i| cone[i]);
         let middle: Vector = std::array::from_fn(|c| (&u[c] + &v[c]).times_power(-1));
         let halves = [[u, &middle, w], [&middle, v, w]];
         halves.into_iter().all(|half| self.holds(half, squared_rate, cones, depth + 1))
@@ -136,14 +112,9 @@ impl AffineMap {
 
     /// Returns `|c|^2` with `c` the symmetric part of `u'G v`, one number for each mode.
     fn squared_form(&self, u: &Vector, v: &Vector) -> Dyadic {
-        let parts: [Dyadic; 6] = std::array::from_fn(|part| match part {
-            0..3 => &u[part] * &v[part],
-            _ => {
-                let (c, j) = ((part + 1) % 3, (part + 2) % 3);
-                (&(&u[c] * &v[j]) + &(&u[j] * &v[c])).times_power(-1)
-            }
-        });
-        (0..6).map(|i| &parts[i] * &dot(&self.products[i][i..], &parts[i..])).sum()
+        let part = |(c, j): (usize, usize)| (&(&u[c] * &v[j]) + &(&u[j] * &v[c])).times_power(-1);
+        let parts = PARTS.map(part);
+        (0..6).map(|i| &parts[i] * &dot(&self.products[i], &parts[i..])).sum()
     }
 }
 

@@ -1,7 +1,9 @@
 //! Certificates: the hierarchy, which must be a partition, and the radii that queries rely on.
 
+use safetensors::Dtype;
+
 use crate::container::Container;
-use crate::refusal::{Refusal, claim, proof};
+use crate::refusal::{Result, claim, proof};
 
 /// A bucket has at most this many triangles, and is not the root. The pair tree ends at buckets. Leaves also have at most this many.
 pub(crate) const BUCKET: u32 = 64;
@@ -47,44 +49,45 @@ pub(crate) struct Certificates {
     /// The limit of the pair tree; 0 if there is no pair tree.
     pub(crate) pair_limit: f64,
     starts: Vec<u32>,
-    radii: Vec<f32>,
+    radii: Vec<f64>,
     /// A link for each node pair of the pair tree.
     pub(crate) links: Vec<u32>,
 }
 
 impl Certificates {
-    pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self, Refusal> {
-        let digest = file.shaped::<u8>("model_digest", &[Some(32)])?.try_into().unwrap_or_default();
-        let rows = file.shaped::<u32>("nodes", &[None, Some(4)])?;
+    pub(crate) fn read(file: &Container<'_>, triangles: usize) -> Result<Self> {
+        let digest = file.bytes("model_digest", &[Some(32)], Dtype::U8)?;
+        let rows = file.integers("nodes", &[None, Some(4)])?;
         let node =
-            |&[first, count, first_child, children]: &[u32; 4]| Node { first, count, first_child, children };
+            |row: &[u32; 4]| Node { first: row[0], count: row[1], first_child: row[2], children: row[3] };
         let nodes: Vec<Node> = rows.as_chunks().0.iter().map(node).collect();
-        let order = file.shaped("order", &[Some(triangles)])?;
+        let order = file.integers("order", &[Some(triangles)])?;
         check_partition(&nodes, &order)?;
         let children = nodes[0].children as usize;
         let root_pairs = children * children.saturating_sub(1) / 2;
-        let is_old = matches!(file.text("version")?, "1" | "2" | "3");
-        let has_tree = !is_old && file.has("pair_limit");
-        let pair_limit = if has_tree { file.shaped("pair_limit", &[Some(1)])?[0] } else { 0.0 };
-        let list = |name| if has_tree { file.shaped::<u32>(name, &[None]) } else { Ok(Vec::new()) };
-        let (starts, links) = (list("pair_starts")?, list("pair_links")?);
-        let this = Self {
-            digest,
-            node_radii: file.shaped("node_radii", &[Some(nodes.len())])?,
-            root_pair_radii: file.shaped("root_pair_radii", &[Some(root_pairs)])?,
-            pair_limit,
-            radii: if has_tree { file.shaped("pair_radii", &[Some(links.len())])? } else { Vec::new() },
-            starts,
-            links,
+        let mut this = Self {
+            digest: digest.try_into().unwrap_or_default(),
+            node_radii: file.reals("node_radii", &[Some(nodes.len())])?,
+            root_pair_radii: file.reals("root_pair_radii", &[Some(root_pairs)])?,
+            pair_limit: 0.0,
+            starts: Vec::new(),
+            radii: Vec::new(),
+            links: Vec::new(),
             nodes,
             order,
         };
-        let reals = [&this.node_radii[..], &this.root_pair_radii, &[pair_limit]].concat();
-        let are_radii =
-            reals.iter().all(|radius| *radius >= 0.0) && this.radii.iter().all(|radius| *radius >= 0.0);
-        claim(are_radii, "a radius is negative or not a number")?;
-        let starts = if pair_limit > 0.0 { this.nodes.len() } else { 0 };
-        let fits = pair_limit.is_finite() && this.starts.len() == starts;
+        if !matches!(file.text("version")?, "1" | "2" | "3") && file.has("pair_limit") {
+            this.pair_limit = file.reals("pair_limit", &[Some(1)])?[0];
+            this.starts = file.integers("pair_starts", &[None])?;
+            this.links = file.integers("pair_links", &[None])?;
+            let radii = file.bytes("pair_radii", &[Some(this.links.len())], Dtype::F32)?.as_chunks().0;
+            this.radii = radii.iter().map(|bytes| f64::from(f32::from_le_bytes(*bytes))).collect();
+        }
+        let limit = &[this.pair_limit];
+        let radii = [&this.node_radii, &this.root_pair_radii, &this.radii, &limit[..]].concat();
+        claim(radii.iter().all(|radius| *radius >= 0.0), "a radius is negative or not a number")?;
+        let starts = if this.pair_limit > 0.0 { this.nodes.len() } else { 0 };
+        let fits = this.pair_limit.is_finite() && this.starts.len() == starts;
         claim(fits, "the limit or the starts of the pair tree do not fit the hierarchy")?;
         Ok(this)
     }
@@ -102,34 +105,34 @@ impl Certificates {
         x.iter().enumerate().flat_map(move |(i, a)| rest(i).iter().map(move |b| [*a, *b]))
     }
 
-    /// Whether queries test a node as a whole, so that the pair tree has no pairs within it.
-    pub(crate) fn is_bucket(&self, n: u32) -> bool {
-        n != 0 && self.nodes[n as usize].count <= BUCKET
-    }
-
     /// Returns the children of a node pair in the pair tree; `None` if both nodes are at most as large as buckets.
     pub(crate) fn split(&self, [n, m]: [u32; 2]) -> Option<Vec<[u32; 2]>> {
-        let [node_n, node_m] = [n, m].map(|n| self.nodes[n as usize]);
-        if node_n.count.max(node_m.count) <= BUCKET || (node_n.children == 0 && node_m.children == 0) {
+        let [x, y] = [n, m].map(|n| self.nodes[n as usize]);
+        if x.count.max(y.count) <= BUCKET {
             return None;
         }
-        let is_first = node_m.children == 0 || (node_n.children > 0 && node_n.count >= node_m.count);
-        let children = if is_first { node_n.children() } else { node_m.children() };
-        Some(children.map(|child| if is_first { [child, m] } else { [n, child] }).collect())
+        // The larger node is no leaf, because leaves are at most as large as buckets.
+        Some(match x.count >= y.count {
+            true => x.children().map(|child| [child, m]).collect(),
+            false => y.children().map(|child| [n, child]).collect(),
+        })
     }
 
-    /// Returns the stored pairs of a node's children.
-    pub(crate) fn stored_of_node(&self, n: u32) -> Result<Vec<StoredPair>, Refusal> {
-        let start = self.starts[n as usize];
-        if start == NO_PAIRS { Ok(Vec::new()) } else { self.stored(start) }
+    /// Returns the pairs of a node's children in the pair tree: where they start. Queries test a bucket as a whole, so the pair tree has no
+    /// pairs within it.
+    pub(crate) fn start(&self, n: u32) -> Option<u32> {
+        let is_bucket = n != 0 && self.nodes[n as usize].count <= BUCKET;
+        self.starts.get(n as usize).copied().filter(|_| !is_bucket)
     }
 
     /// Returns the list of siblings that begins at `start`.
-    pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>, Refusal> {
+    pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>> {
         let mut list = Vec::new();
+        if start == NO_PAIRS {
+            return Ok(list);
+        }
         for (&radius, &link) in self.radii.iter().zip(&self.links).skip(start as usize).take(8) {
-            let (start, which) = (link & ((1 << 28) - 1), link >> 28 & 7);
-            list.push(StoredPair { radius: f64::from(radius), which, start });
+            list.push(StoredPair { radius, which: link >> 28 & 7, start: link & ((1 << 28) - 1) });
             if link >> 31 == 1 {
                 return Ok(list);
             }
@@ -158,7 +161,7 @@ impl Certificates {
 
 /// Checks that each triangle is listed once, that the triangles of each node are the disjoint union of those of its
 /// children, and that no leaf is larger than a bucket.
-fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
+fn check_partition(nodes: &[Node], order: &[u32]) -> Result<()> {
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
     let is_each_listed = sorted.iter().enumerate().all(|(a, listed)| *listed as usize == a);
@@ -167,23 +170,23 @@ fn check_partition(nodes: &[Node], order: &[u32]) -> Result<(), Refusal> {
     claim(has_all, "hierarchy: the root does not have all triangles")?;
     let are_small = nodes.iter().all(|node| node.children > 0 || node.count <= BUCKET);
     claim(are_small, "hierarchy: a leaf has more than 64 triangles")?;
-    let (mut next, mut levels) = (1_u64, vec![0_usize; nodes.len()]);
+    let (mut next, mut levels) = (1, vec![0; nodes.len()]);
     for (n, node) in nodes.iter().enumerate().filter(|(_, node)| node.children > 0) {
-        let end = u64::from(node.first_child) + u64::from(node.children);
+        let end = usize::saturating_add(next, node.children as usize);
         let has_children = (2..=MAX_CHILDREN).contains(&node.children)
-            && u64::from(node.first_child) == next
-            && end <= nodes.len() as u64;
+            && node.first_child as usize == next
+            && end <= nodes.len();
         claim(has_children, "hierarchy: the children of a node are not the next two to four nodes")?;
-        let (mut is_union, mut first) = (levels[n] < MAX_LEVELS, u64::from(node.first));
-        for child in node.children() {
-            let part = nodes[child as usize];
-            is_union &= u64::from(part.first) == first && part.count > 0;
-            first += u64::from(part.count);
-            levels[child as usize] = levels[n] + 1;
+        let level: usize = levels[n];
+        levels[next..end].fill(level + 1);
+        let (mut is_union, mut first) = (level < MAX_LEVELS, u64::from(node.first));
+        for child in &nodes[next..end] {
+            is_union &= u64::from(child.first) == first && child.count > 0;
+            first += u64::from(child.count);
         }
         is_union &= first == u64::from(node.first) + u64::from(node.count);
         claim(is_union, "hierarchy: a node is too deep, or not the disjoint union of its children")?;
         next = end;
     }
-    claim(next == nodes.len() as u64, "hierarchy: some nodes have no parent")
+    claim(next == nodes.len(), "hierarchy: some nodes have no parent")
 }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 use std::iter::Sum;
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
@@ -25,17 +25,16 @@ impl Dyadic {
     /// Returns the exact value of a finite number, and 0 for other numbers. Only the node maps of a proof, which may be any, and
     /// computed positions at a huge centre are not finite: their distance from the exact positions is measured after this.
     pub(crate) fn of(x: f64) -> Self {
-        let bits = x.to_bits();
-        let (biased, fraction) = ((bits >> 52) as i64 & 0x7ff, (bits & ((1 << 52) - 1)) as i64);
-        let (mantissa, exponent) =
-            if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-        if mantissa == 0 || biased == 0x7ff {
+        if x == 0.0 || !x.is_finite() {
             return Self::default();
         }
+        let (biased, fraction) = (x.abs().to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
+        let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
         // Trailing zeros are removed, because short mantissas make short products.
         let zeros = mantissa.trailing_zeros();
-        let mantissa = mantissa >> zeros;
-        Self::new(if x < 0.0 { -mantissa } else { mantissa }, exponent + i64::from(zeros))
+        let mantissa = IBig::from(mantissa >> zeros);
+        let exponent = biased.max(1) as i64 - 1075 + i64::from(zeros);
+        Self { mantissa: if x < 0.0 { -mantissa } else { mantissa }, exponent }
     }
 
     pub(crate) fn is_zero(&self) -> bool {
@@ -139,51 +138,19 @@ impl Mul for &Dyadic {
 
 impl Sum for Dyadic {
     fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
-        numbers.fold(Self::default(), |mut sum, x| {
-            sum += x;
-            sum
-        })
-    }
-}
-
-impl AddAssign for Dyadic {
-    /// Adds a number like `+`, but consumes it, so that memory can be reused.
-    fn add_assign(&mut self, other: Self) {
-        if self.is_zero() {
-            *self = other;
-        } else if !other.is_zero() {
-            let shift = other.exponent - self.exponent;
-            if shift >= 0 {
-                self.mantissa += other.mantissa << shift as usize;
-            } else {
-                self.mantissa <<= shift.unsigned_abs() as usize;
-                self.mantissa += other.mantissa;
-                self.exponent = other.exponent;
-            }
-        }
+        numbers.fold(Self::default(), |sum, x| &sum + &x)
     }
 }
 
 impl PartialEq for Dyadic {
     fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
+        (self - other).is_zero()
     }
 }
-
-impl Eq for Dyadic {}
 
 impl PartialOrd for Dyadic {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Dyadic {
-    fn cmp(&self, other: &Self) -> Ordering {
-        if self.is_zero() || other.is_zero() || self.is_positive() != other.is_positive() {
-            return self.mantissa.cmp(&other.mantissa);
-        }
-        (self - other).mantissa.cmp(&IBig::ZERO)
+        Some((self - other).mantissa.cmp(&IBig::ZERO))
     }
 }
 
@@ -199,10 +166,6 @@ pub(crate) fn squared_norm(row: &[Dyadic]) -> Dyadic {
 
 /// A vector of three numbers.
 pub(crate) type Vector = [Dyadic; 3];
-
-pub(crate) fn vector(x: [f64; 3]) -> Vector {
-    x.map(Dyadic::of)
-}
 
 pub(crate) fn minus(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|c| &a[c] - &b[c])

@@ -5,7 +5,7 @@
 //! between the children of one and the other.
 
 use crate::certificates::{Certificates, StoredPair};
-use crate::refusal::{Refusal, proof};
+use crate::refusal::{Result, claim};
 
 /// Two nodes, or the same node twice, and the radius below which their pairs that count must be free.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub(crate) struct Entry {
 }
 
 /// Returns all entries, in the order in which proofs number them.
-pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>, Refusal> {
+pub(crate) fn entries(certificates: &Certificates) -> Result<Vec<Entry>> {
     let mut traversal = Traversal { certificates, entries: Vec::new(), visited: 0 };
     traversal.within(0, 0.0)?;
     Ok(traversal.entries)
@@ -31,59 +31,49 @@ struct Traversal<'a> {
 
 impl Traversal<'_> {
     /// Adds the entries of the pairs within a node. `around`: the largest radius of the nodes that contain it.
-    fn within(&mut self, n: u32, around: f64) -> Result<(), Refusal> {
+    fn within(&mut self, n: u32, around: f64) -> Result<()> {
         let certificates = self.certificates;
         let radius = around.max(certificates.node_radii[n as usize]);
-        let node = certificates.nodes[n as usize];
-        if node.children == 0 {
+        let children = certificates.nodes[n as usize].children();
+        if children.is_empty() {
             self.entries.push(Entry { nodes: [n, n], radius });
             return Ok(());
         }
-        for child in node.children() {
+        for child in children.clone() {
             self.within(child, radius)?;
         }
-        let children = node.children();
-        let pairs: Vec<[u32; 2]> =
-            children.clone().flat_map(|a| (a + 1..children.end).map(move |b| [a, b])).collect();
+        let pairs = children.clone().flat_map(|a| (a + 1..children.end).map(move |b| [a, b]));
         let of_root = |which: usize| if n == 0 { certificates.root_pair_radii[which] } else { 0.0 };
+        let pair = |(which, nodes)| Entry { nodes, radius: radius.max(of_root(which)) };
+        let pairs: Vec<Entry> = pairs.enumerate().map(pair).collect();
         // Without a pair tree, and within a bucket, no pairs are stored, and the limit does not apply.
-        let has_pairs = certificates.pair_limit > 0.0 && !certificates.is_bucket(n);
-        let stored = if has_pairs { certificates.stored_of_node(n)? } else { Vec::new() };
-        let limit = if has_pairs { certificates.pair_limit } else { 0.0 };
-        self.siblings(&pairs, &stored, limit, &|which| radius.max(of_root(which)))
+        let Some(start) = certificates.start(n) else {
+            self.entries.extend(pairs);
+            return Ok(());
+        };
+        self.siblings(pairs, start)
     }
 
-    /// Adds the entries of siblings in the pair tree: those that are stored, and the others, which are free below the limit.
-    fn siblings(
-        &mut self,
-        pairs: &[[u32; 2]],
-        stored: &[StoredPair],
-        limit: f64,
-        radius: &dyn Fn(usize) -> f64,
-    ) -> Result<(), Refusal> {
+    /// Adds the entries of siblings in the pair tree, which are listed from `start`: those that are stored, and the others, which are free
+    /// below the limit. `pairs`: the siblings, with the largest radius of the pairs and nodes that contain them.
+    fn siblings(&mut self, pairs: Vec<Entry>, start: u32) -> Result<()> {
+        let certificates = self.certificates;
+        let (stored, limit) = (certificates.stored(start)?, certificates.pair_limit);
         self.visited += stored.len();
-        let is_listed = |which: u32| (which as usize) < pairs.len();
-        if self.visited > self.certificates.links.len()
-            || !stored.is_sorted_by(|a, b| a.which < b.which)
-            || !stored.iter().all(|entry| is_listed(entry.which) && entry.radius < limit)
-        {
-            return proof("pair tree: an entry is listed twice, does not exist, or is not below the limit");
-        }
-        for (which, &nodes) in pairs.iter().enumerate() {
-            match stored.iter().find(|entry| entry.which as usize == which) {
-                Some(entry) => self.stored(nodes, *entry, radius(which).max(entry.radius))?,
-                None => self.entries.push(Entry { nodes, radius: radius(which).max(limit) }),
-            }
-        }
-        Ok(())
-    }
-
-    fn stored(&mut self, nodes: [u32; 2], entry: StoredPair, radius: f64) -> Result<(), Refusal> {
-        match self.certificates.split(nodes) {
-            None => self.entries.push(Entry { nodes, radius }),
-            Some(pairs) => {
-                let stored = self.certificates.stored(entry.start)?;
-                self.siblings(&pairs, &stored, self.certificates.pair_limit, &|_| radius)?;
+        let is_valid = |entry: &StoredPair| (entry.which as usize) < pairs.len() && entry.radius < limit;
+        let are_valid = self.visited <= certificates.links.len()
+            && stored.is_sorted_by(|a, b| a.which < b.which)
+            && stored.iter().all(is_valid);
+        claim(are_valid, "pair tree: an entry is listed twice, does not exist, or is not below the limit")?;
+        for (which, Entry { nodes, radius }) in pairs.into_iter().enumerate() {
+            let entry = stored.iter().find(|entry| entry.which as usize == which);
+            let radius = radius.max(entry.map_or(limit, |entry| entry.radius));
+            match entry.zip(certificates.split(nodes)) {
+                Some((entry, parts)) => {
+                    let parts = parts.into_iter().map(|nodes| Entry { nodes, radius }).collect();
+                    self.siblings(parts, entry.start)?;
+                }
+                None => self.entries.push(Entry { nodes, radius }),
             }
         }
         Ok(())

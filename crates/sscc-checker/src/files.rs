@@ -3,15 +3,15 @@
 use std::fs;
 use std::path::Path;
 
-use crate::container::Number;
+use crate::container::reals;
 use crate::model::Model;
-use crate::refusal::{Refusal, input};
+use crate::refusal::{Refusal, Result, input};
 
 /// Reads all bytes of a file.
 ///
 /// # Errors
 /// When the system reports an error.
-pub fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
+pub fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).or_else(|cause| input(format!("{}: {cause}", shown(path))))
 }
 
@@ -26,36 +26,28 @@ impl Model {
     ///
     /// # Errors
     /// When a file cannot be read, or its content is invalid.
-    pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self, Refusal> {
+    pub fn read(mesh: &Path, modes: Option<&Path>) -> Result<Self> {
         let bytes = read(mesh)?;
-        let named = |path: &Path| {
-            let name = shown(path);
-            move |refusal: Refusal| refusal.of(&name)
-        };
-        let Some(path) = modes else { return Self::from_container(&bytes).map_err(named(mesh)) };
-        let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(named(mesh))?;
-        let (modes, rank) = parse_npy(&read(path)?, positions.len()).map_err(named(path))?;
-        Self::new(positions, faces, modes, rank).map_err(named(path))
+        let of_mesh = |refusal: Refusal| refusal.of(&shown(mesh));
+        let Some(path) = modes else { return Self::from_container(&bytes).map_err(of_mesh) };
+        let of_modes = |refusal: Refusal| refusal.of(&shown(path));
+        let (positions, faces) = parse_obj(&String::from_utf8_lossy(&bytes)).map_err(of_mesh)?;
+        let (modes, rank) = parse_npy(&read(path)?, positions.len()).map_err(of_modes)?;
+        Self::new(positions, faces, modes, rank).map_err(of_modes)
     }
 }
 
 /// Positions and faces of a mesh of triangles.
 type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-fn parse_obj(text: &str) -> Result<Mesh, Refusal> {
+fn parse_obj(text: &str) -> Result<Mesh> {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
-        let wrong = || {
-            Refusal::Input(format!(
-                "line {}: a vertex of three numbers or a triangle was expected (other polygons are not read)",
-                number + 1
-            ))
-        };
         let mut words = line.split_whitespace();
-        match words.next() {
+        let parsed = match words.next() {
             Some("v") => {
                 let numbers: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
-                positions.push(*numbers.first_chunk().ok_or_else(wrong)?);
+                numbers.first_chunk().map(|position| positions.push(*position))
             }
             Some("f") => {
                 let count = positions.len() as i64;
@@ -64,16 +56,20 @@ fn parse_obj(text: &str) -> Result<Mesh, Refusal> {
                     u32::try_from(if number < 0 { count + number } else { number - 1 }).ok()
                 };
                 let corners: Option<Vec<u32>> = words.map(vertex).collect();
-                faces.push(corners.and_then(|c| c.try_into().ok()).ok_or_else(wrong)?);
+                corners.and_then(|corners| corners.try_into().ok()).map(|face| faces.push(face))
             }
-            _ => {}
+            _ => Some(()),
+        };
+        if parsed.is_none() {
+            let wanted = "a vertex of three numbers or a triangle was expected (other polygons are not read)";
+            return input(format!("line {}: {wanted}", number + 1));
         }
     }
     Ok((positions, faces))
 }
 
 /// Returns the modes (3V x r by rows) of an array of f64 of the shape (3V, r) or (V, 3, r), and r.
-fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal> {
+fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize)> {
     let parsed = || {
         let length = match (bytes.strip_prefix(b"\x93NUMPY")?, bytes.get(6)?) {
             (_, 1) => 10 + usize::from(u16::from_le_bytes(*bytes.get(8..10)?.first_chunk()?)),
@@ -83,14 +79,11 @@ fn parse_npy(bytes: &[u8], vertices: usize) -> Result<(Vec<f64>, usize), Refusal
         let is_known = header.contains("'<f8'") && header.contains("'fortran_order': False");
         let shape = header.split_once('(')?.1.split_once(')')?.0;
         let axes = shape.split(',').map(|axis| axis.trim().parse::<usize>().ok());
-        let rank = match *axes.collect::<Option<Vec<_>>>()?.as_slice() {
-            [rows, rank] if rows == 3 * vertices => rank,
-            [first, 3, rank] if first == vertices => rank,
-            _ => return None,
-        };
-        let numbers = f64::list(&bytes[length..]);
-        let size = (3 * vertices).checked_mul(rank)?;
-        (is_known && numbers.len() == size && bytes.len() - length == 8 * size).then_some((numbers, rank))
+        let axes = axes.collect::<Option<Vec<_>>>()?;
+        let data = &bytes[length..];
+        let rank = (data.len() / 8).checked_div(3 * vertices)?;
+        let fits = axes == [3 * vertices, rank] || axes == [vertices, 3, rank];
+        (is_known && fits && data.len() == 24 * vertices * rank).then(|| (reals(data), rank))
     };
     parsed().ok_or_else(|| {
         let rows = 3 * vertices;

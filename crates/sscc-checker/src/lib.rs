@@ -2,37 +2,37 @@
 //! neither certificates nor proofs. `docs/guarantees.md`, "The checker", has the statement that it confirms.
 //!
 //! `entries` lists the statements that must be proven, from the certificates alone. `proof` reads the witnesses, which `node_maps`,
-//! `corners` and `affine` check. `scaled` bounds the rounding of computed positions.
+//! `directions` and `affine` check. `points` has the inequality of all witnesses, and `scaled` bounds the rounding of computed positions.
 
 mod affine;
 mod certificates;
 mod container;
-mod corners;
+mod counted;
 mod digest;
+mod directions;
 mod dyadic;
 mod entries;
 mod exceptions;
 mod files;
-mod inequality;
 mod model;
 mod node_maps;
+mod points;
 mod proof;
 mod refusal;
 mod scaled;
 mod scope;
-mod uncounted;
 
 use std::fmt;
 
 pub use files::read;
 pub use model::Model;
-pub use refusal::{IsCancelled, Refusal};
+pub use refusal::{IsCancelled, Refusal, Result};
 
 use certificates::Certificates;
-use proof::{Check, Proof};
+use counted::CountedPairs;
+use proof::Proof;
 use refusal::require;
-use scope::{CountedPairs, Scope};
-use uncounted::UncountedPairs;
+use scope::Scope;
 
 /// The result of a check that confirmed the radii of pairs that count.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +56,7 @@ impl Confirmed {
     ///
     /// # Errors
     /// When not all entries were proven: the author of the proof chose the sample.
-    pub fn of_all_entries(self) -> Result<Self, Refusal> {
+    pub fn of_all_entries(self) -> Result<Self> {
         let Self { entries, proven, .. } = &self;
         let cause =
             format!("proof: it has {proven} of {entries} entries: samples are accepted on request alone");
@@ -68,7 +68,7 @@ impl Confirmed {
     ///
     /// # Errors
     /// When the proof is a sample of entries of radius 0.
-    pub fn of_sample(self) -> Result<Self, Refusal> {
+    pub fn of_sample(self) -> Result<Self> {
         let Self { entries, proven, .. } = &self;
         let cause = format!("proof: its {proven} of {entries} entries have radius 0, and state nothing");
         if proven == entries || self.proven_positive > 0 { Ok(self) } else { Err(Refusal::Proof(cause)) }
@@ -84,10 +84,8 @@ impl fmt::Display for Confirmed {
             write!(f, "root's radius {root_radius:?}")?;
         } else {
             write!(f, "confirmed a sample: {proven} of {entries} entries, {proven_positive} of {positive} ")?;
-            write!(
-                f,
-                "with a positive radius, chosen by the author of the proof; nothing is known of the others"
-            )?;
+            write!(f, "with a positive radius, chosen by the author of the proof; ")?;
+            write!(f, "nothing is known of the others")?;
         }
         write!(f, "; left out: {left_out}")
     }
@@ -97,7 +95,7 @@ impl fmt::Display for Confirmed {
 ///
 /// # Errors
 /// As [`check_until`].
-pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed, Refusal> {
+pub fn check(model: &Model, certificates: &[u8], proof: &[u8], threads: usize) -> Result<Confirmed> {
     check_until(model, certificates, proof, threads, &|| false)
 }
 
@@ -115,27 +113,22 @@ pub fn check_until(
     proof: &[u8],
     threads: usize,
     is_cancelled: &IsCancelled<'_>,
-) -> Result<Confirmed, Refusal> {
+) -> Result<Confirmed> {
     let of_certificates = |refusal: Refusal| refusal.of("certificates");
     let of_proof = |refusal: Refusal| refusal.of("proof");
     let file = container::Container::parse(certificates, "sscc.certificates", 8).map_err(of_certificates)?;
     let scope = Scope::read(&file, model).map_err(of_certificates)?;
     let certificates = Certificates::read(&file, model.faces.len()).map_err(of_certificates)?;
     // Files that do not belong together are refused before work that takes longer than reading them.
-    let proof = Proof::parse(proof).map_err(of_proof)?;
-    proof.check_head(&certificates, model.rank).map_err(of_proof)?;
-    let counted = CountedPairs::new(model, &scope);
-    let is_of_model = digest::digest(model, &scope, &counted.classes) == certificates.digest;
+    let proof = Proof::parse(proof, &certificates, model.rank).map_err(of_proof)?;
+    let counted = CountedPairs::new(model, &scope, &certificates);
+    let is_of_model = digest::digest(&counted) == certificates.digest;
     require(is_of_model, "certificates: of another model or scope: the digests differ")?;
     let entries = entries::entries(&certificates).map_err(of_certificates)?;
-    proof.check_entries(&entries).map_err(of_proof)?;
-    exceptions::check(model, &scope, &counted, is_cancelled).map_err(of_certificates)?;
+    require(proof.entries == entries.len() as u64, "proof: of other certificates")?;
+    exceptions::check(&counted, is_cancelled).map_err(of_certificates)?;
     let scaled = scaled::ScaledModel::new(model, &scope, is_cancelled).map_err(of_certificates)?;
-    let uncounted = UncountedPairs::new(model, &certificates, &counted, &scope);
-    let (certificates, counted, uncounted, scaled) = (&certificates, &counted, &uncounted, &scaled);
-    Check { certificates, counted, uncounted, scaled, model, is_cancelled }
-        .run(&proof, &entries, threads)
-        .map_err(of_proof)?;
+    proof.check(&entries, &counted, &scaled, threads, is_cancelled).map_err(of_proof)?;
     let is_positive = |index: usize| entries[index].radius > 0.0;
     let local = if file.has("local_nodes") { "local certificates" } else { "no local certificates" };
     Ok(Confirmed {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::thread;
 
-use sscc_checker::{Confirmed, Model, Refusal, check, read};
+use sscc_checker::{Confirmed, Model, Refusal, Result, check, read};
 
 const USAGE: &str = "usage: sscc-checker [--sample] MODEL.model.safetensors CERTIFICATES PROOF
        sscc-checker [--sample] MESH.obj MODES.npy CERTIFICATES PROOF
@@ -22,7 +22,7 @@ a seal does not match, the metric is out of range, or the answer cannot be writt
 /// The exit code of errors.
 const ERROR: u8 = 2;
 
-fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed, Refusal> {
+fn run(paths: &[PathBuf], takes_sample: bool) -> Result<Confirmed> {
     let (mesh, modes, certificates, proof): (&Path, Option<&Path>, _, _) = match paths {
         [mesh, certificates, proof] => (mesh, None, certificates, proof),
         [mesh, modes, certificates, proof] => (mesh, Some(modes), certificates, proof),

@@ -1,7 +1,7 @@
 //! The model: faces, positions at rest, modes.
 
 use crate::container::Container;
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Result, require};
 
 /// The largest magnitude of coordinates, and of the entries of dense metrics, 2^200.
 pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
@@ -24,12 +24,7 @@ impl Model {
     /// # Errors
     /// When there are no faces, no modes or more than 2^20, sizes do not fit each other, a face names a vertex that does not
     /// exist, or a number is not finite or beyond 2^200.
-    pub fn new(
-        positions: Vec<[f64; 3]>,
-        faces: Vec<[u32; 3]>,
-        modes: Vec<f64>,
-        rank: usize,
-    ) -> Result<Self, Refusal> {
+    pub fn new(positions: Vec<[f64; 3]>, faces: Vec<[u32; 3]>, modes: Vec<f64>, rank: usize) -> Result<Self> {
         let size = rank.checked_mul(3).and_then(|rows| rows.checked_mul(positions.len()));
         let fits = !faces.is_empty() && rank > 0 && size == Some(modes.len());
         require(fits, "model: it has no faces, no modes, or not three rows of modes for each vertex")?;
@@ -45,28 +40,24 @@ impl Model {
     ///
     /// # Errors
     /// When the file is damaged, of another kind or version, or not a model.
-    pub fn from_container(bytes: &[u8]) -> Result<Self, Refusal> {
+    pub fn from_container(bytes: &[u8]) -> Result<Self> {
         let file = Container::parse(bytes, "sscc.model", 3)?;
-        let positions = file.shaped::<f64>("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
-        let faces = file.shaped::<u32>("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
-        let (modes, shape) = file.tensor::<f64>("modes")?;
-        match *shape {
-            [vertices, 3, rank] if vertices == positions.len() => Self::new(positions, faces, modes, rank),
-            _ => input("tensor 'modes' has another shape"),
-        }
+        let positions: Vec<[f64; 3]> = file.reals("rest_positions", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let faces = file.integers("faces", &[None, Some(3)])?.as_chunks().0.to_vec();
+        let modes = file.reals("modes", &[Some(positions.len()), Some(3), None])?;
+        let rank = modes.len().checked_div(3 * positions.len()).unwrap_or(0);
+        Self::new(positions, faces, modes, rank)
     }
 
-    /// Returns the three rows of a vertex.
-    pub(crate) fn modes_of(&self, vertex: usize) -> &[f64] {
-        &self.modes[vertex * 3 * self.rank..][..3 * self.rank]
+    /// Returns the row of a vertex and a component.
+    pub(crate) fn row(&self, vertex: usize, component: usize) -> &[f64] {
+        &self.modes[(3 * vertex + component) * self.rank..][..self.rank]
     }
 
     /// Returns the position of a vertex at q as queries compute it: `x = p`, then `x += U_k q_k`, each product and sum rounded.
     pub(crate) fn computed_position(&self, vertex: usize, q: &[f64]) -> [f64; 3] {
-        let modes = self.modes_of(vertex);
         std::array::from_fn(|c| {
-            let row = modes[c * self.rank..][..self.rank].iter();
-            row.zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
+            self.row(vertex, c).iter().zip(q).fold(self.positions[vertex][c], |x, (u, q)| x + u * q)
         })
     }
 }

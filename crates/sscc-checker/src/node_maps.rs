@@ -4,110 +4,77 @@
 //! box of the node about c and the residuals of its vertices. All vertices lie in the hull of the eight corners of the box, whose
 //! modes are those of the map, up to the residuals. So it is enough to check the pairs of corners of two boxes.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use crate::certificates::Certificates;
-use crate::dyadic::{Dyadic, Vector, dot, minus};
-use crate::inequality::stays_open;
-use crate::model::Model;
-use crate::scaled::{Radius, ScaledModel};
-
-/// Returns the number of numbers of a node's map: its centre, M by components, then G (for each direction three components, a row
-/// each).
-pub(crate) fn numbers_of_map(rank: usize) -> usize {
-    3 + 12 * rank
-}
+use crate::container::reals;
+use crate::counted::CountedPairs;
+use crate::dyadic::{Dyadic, Vector, dot};
+use crate::points::{Radius, along, are_apart, difference, position, squared_residual, sum};
+use crate::scaled::ScaledModel;
 
 /// The maps of all nodes, and the boxes of those that have been needed.
 pub(crate) struct NodeMaps<'a> {
-    model: &'a Model,
-    scaled: &'a ScaledModel,
-    certificates: &'a Certificates,
-    numbers: &'a [u8],
-    boxes: Vec<OnceLock<NodeBox>>,
+    pub(crate) counted: &'a CountedPairs<'a>,
+    pub(crate) scaled: &'a ScaledModel,
+    /// For each node the same number of bytes: c, M by components, then G (for each direction three components, a row each).
+    pub(crate) numbers: &'a [u8],
+    pub(crate) boxes: Vec<OnceLock<NodeBox>>,
 }
 
-struct NodeBox {
-    center: Vector,
-    /// Half extents about the centre.
-    half: Vector,
+/// The corners of a box, with the modes of the map: the sums of the centre and of each half extent or its negative.
+pub(crate) struct NodeBox {
+    center: Vec<Dyadic>,
+    /// The half extent along each axis, as the difference of two points.
+    halves: [Vec<Dyadic>; 3],
     /// The largest residual along each axis.
     residual: Vector,
-    modes: Vec<Dyadic>,
-    gradient: Vec<Dyadic>,
 }
 
-impl<'a> NodeMaps<'a> {
-    /// Creates the maps. `numbers`: [`numbers_of_map`] numbers of eight bytes for each node.
-    pub(crate) fn new(
-        model: &'a Model,
-        scaled: &'a ScaledModel,
-        certificates: &'a Certificates,
-        numbers: &'a [u8],
-    ) -> Self {
-        let boxes = certificates.nodes.iter().map(|_| OnceLock::new()).collect();
-        Self { model, scaled, certificates, numbers, boxes }
-    }
-
+impl NodeMaps<'_> {
     /// Whether a direction separates all vertices of two nodes below a radius.
     pub(crate) fn are_apart(&self, [n, m]: [u32; 2], dir: &Vector, radius: &Radius) -> bool {
         let [n, m] = [n, m].map(|n| self.boxes[n as usize].get_or_init(|| self.compute(n)));
         let [rest_error, rate_error] = self.scaled.errors(dir);
         let along = |residual: &Vector| dot(&dir.clone().map(|d| d.abs()), residual);
-        let rate = &(&along(&m.residual) + &along(&n.residual)) + &rate_error;
-        let [of_n, of_m] = [n, m].map(|node| node.corners(dir, self.scaled.rank));
-        of_m.iter().all(|(at_m, row_m)| {
-            of_n.iter().all(|(at_n, row_n)| {
-                let gap = &(at_m - at_n) - &rest_error;
-                let square = row_m.iter().zip(row_n).map(|(a, b)| (a - b).square()).sum();
-                stays_open(&gap, &rate, &square, radius)
-            })
-        })
+        let errors = [rest_error, &(&along(&m.residual) + &along(&n.residual)) + &rate_error];
+        let [of_n, of_m] = [n, m].map(|node| node.corners(dir));
+        of_n.iter().all(|x| of_m.iter().all(|y| are_apart(x, y, &errors, radius)))
     }
 
     fn compute(&self, n: u32) -> NodeBox {
         let rank = self.scaled.rank;
-        let len = 8 * numbers_of_map(rank);
-        let numbers = self.numbers[n as usize * len..][..len].as_chunks().0.iter();
-        let numbers: Vec<Dyadic> = numbers.map(|bytes| Dyadic::of(f64::from_le_bytes(*bytes))).collect();
-        let center: Vector = std::array::from_fn(|c| numbers[c].clone());
-        let (modes, gradient) = (numbers[3..][..3 * rank].to_vec(), numbers[3 + 3 * rank..].to_vec());
-        let triangles = self.certificates.triangles(n).iter();
-        let mut vertices: Vec<u32> = triangles.flat_map(|t| self.model.faces[*t as usize]).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let (mut half, mut squares) = (Vector::default(), Vector::default());
+        let len = self.numbers.len() / self.boxes.len();
+        let numbers = reals(&self.numbers[n as usize * len..][..len]);
+        let numbers: Vec<Dyadic> = numbers.into_iter().map(Dyadic::of).collect();
+        let (center, rows) = numbers.split_at(3);
+        let rows: Vec<&[Dyadic]> = rows.chunks(rank).collect();
+        let center: Vec<Dyadic> = (0..3).flat_map(|c| [&center[c..=c], rows[c]].concat()).collect();
+        let CountedPairs { model, certificates, .. } = self.counted;
+        let triangles = certificates.triangles(n).iter();
+        let vertices: BTreeSet<u32> = triangles.flat_map(|t| model.faces[*t as usize]).collect();
+        let [mut half, mut squares] = <[Vector; 2]>::default();
         for i in vertices {
-            let offset = minus(&self.scaled.positions[i as usize], &center);
+            let from_center = difference(self.scaled.point(i), &center);
+            let offset = position(&from_center);
             for c in 0..3 {
-                let residual = self.scaled.row(i, c).iter().enumerate().map(|(k, a)| {
-                    let map = (0..3).map(|j| &offset[j] * &gradient[(3 * j + c) * rank + k]);
-                    &(a - &modes[c * rank + k]) - &map.sum()
-                });
-                squares[c].raise(residual.map(|e| e.square()).sum());
+                squares[c].raise(squared_residual(&from_center, c, [rows[3 + c], rows[6 + c], rows[9 + c]]));
                 half[c].raise(offset[c].abs());
             }
         }
-        NodeBox { center, half, residual: squares.map(|x| x.root_up()), modes, gradient }
+        let row = |j: usize, c: usize| [&[Dyadic::new(i64::from(c == j), 0)], rows[3 + 3 * j + c]].concat();
+        let halves = std::array::from_fn(|j| (0..3).flat_map(|c| row(j, c)).map(|x| &x * &half[j]).collect());
+        NodeBox { center, halves, residual: squares.map(|x| x.root_up()) }
     }
 }
 
 impl NodeBox {
-    /// Returns position and modes of the eight corners along a direction.
-    fn corners(&self, dir: &Vector, rank: usize) -> Vec<(Dyadic, Vec<Dyadic>)> {
-        let along = |rows: &[Dyadic], k: usize| (0..3).map(|c| &dir[c] * &rows[c * rank + k]).sum::<Dyadic>();
-        let center: Vec<Dyadic> = (0..rank).map(|k| along(&self.modes, k)).collect();
-        let mut corners = vec![(dot(dir, &self.center), center)];
-        for j in 0..3 {
-            let step = &dir[j] * &self.half[j];
-            let rows = &self.gradient[3 * j * rank..][..3 * rank];
-            let row: Vec<Dyadic> = (0..rank).map(|k| &along(rows, k) * &self.half[j]).collect();
-            let sides = |(at, modes): &(Dyadic, Vec<Dyadic>)| {
-                let plus = modes.iter().zip(&row).map(|(a, b)| a + b).collect();
-                let minus = modes.iter().zip(&row).map(|(a, b)| a - b).collect();
-                [(at + &step, plus), (at - &step, minus)]
-            };
-            corners = corners.iter().flat_map(sides).collect();
+    /// Returns the rows of the eight corners along a direction.
+    fn corners(&self, dir: &Vector) -> Vec<Vec<Dyadic>> {
+        let mut corners = vec![along(&self.center, dir)];
+        for half in &self.halves {
+            let half = along(half, dir);
+            corners = corners.iter().flat_map(|row| [sum(row, &half), difference(row, &half)]).collect();
         }
         corners
     }

@@ -1,19 +1,20 @@
 //! The file of a proof, and the check of its entries. `docs/formats.md` has the format.
 
+use std::iter;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use crate::affine::{AffineMap, AffineWitness};
+use crate::affine::AffineMap;
 use crate::certificates::Certificates;
-use crate::corners::{Corner, Directions, Triangle, middles, quarters};
-use crate::dyadic::{Dyadic, Vector, vector};
+use crate::counted::{CountedPairs, Simplices};
+use crate::directions::Directions;
+use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
-use crate::model::Model;
-use crate::node_maps::{NodeMaps, numbers_of_map};
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, claim, proof, require};
-use crate::scaled::{Radius, ScaledModel};
-use crate::scope::{CountedPairs, Simplices};
-use crate::uncounted::UncountedPairs;
+use crate::node_maps::NodeMaps;
+use crate::points::{Radius, Triangle, middles, quarters};
+use crate::refusal::{IsCancelled, Refusal, Result, check_cancelled, claim, proof, require};
+use crate::scaled::ScaledModel;
 
 const MAGIC: &[u8; 8] = b"SSCCPRF1";
 /// The largest depth of quarters within quarters.
@@ -34,11 +35,8 @@ const QUARTER_SECOND: u8 = 251;
 
 /// The parts of a proof.
 pub(crate) struct Proof<'a> {
-    digest: &'a [u8],
     /// The number of all entries, proven or not.
-    entries: u64,
-    rank: u32,
-    nodes: u32,
+    pub(crate) entries: u64,
     maps: &'a [u8],
     /// The number of each proven entry, ascending, and its witnesses.
     pub(crate) proven: Vec<(usize, &'a [u8])>,
@@ -48,38 +46,35 @@ pub(crate) struct Proof<'a> {
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Refusal> {
-        let Some((front, rest)) = self.0.split_at_checked(count) else { return proof("it ends too early") };
-        self.0 = rest;
-        Ok(front)
+    fn take(&mut self, count: usize) -> Result<&'a [u8]> {
+        self.0.split_off(..count).ok_or_else(|| Refusal::Proof("it ends too early".into()))
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], Refusal> {
+    fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         Ok(self.take(N)?.try_into().unwrap_or([0; N]))
     }
 
-    fn real(&mut self) -> Result<f64, Refusal> {
-        match f64::from_le_bytes(self.array()?) {
-            x if x.is_finite() => Ok(x),
-            _ => proof("a number is not finite"),
-        }
+    fn real(&mut self) -> Result<Dyadic> {
+        let x = f64::from_le_bytes(self.array()?);
+        claim(x.is_finite(), "a number is not finite")?;
+        Ok(Dyadic::of(x))
     }
 
-    fn vector(&mut self) -> Result<Vector, Refusal> {
-        Ok(vector([self.real()?, self.real()?, self.real()?]))
+    fn vector(&mut self) -> Result<Vector> {
+        Ok([self.real()?, self.real()?, self.real()?])
     }
 }
 
 impl<'a> Proof<'a> {
-    pub(crate) fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+    /// Parses a proof, and checks its head before costly work: that it is of these certificates, and of a model with this rank.
+    pub(crate) fn parse(bytes: &'a [u8], certificates: &Certificates, rank: usize) -> Result<Self> {
         require(bytes.iter().zip(MAGIC).all(|(a, b)| a == b), "not a proof of certificates")?;
         let mut bytes = Bytes(bytes);
         bytes.take(MAGIC.len())?;
         let digest = bytes.take(32)?;
         let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
-        let [rank, nodes] = [u32::from_le_bytes(bytes.array()?), u32::from_le_bytes(bytes.array()?)];
-        let numbers = numbers_of_map(rank as usize).checked_mul(nodes as usize);
-        let maps = bytes.take(numbers.and_then(|count| count.checked_mul(8)).unwrap_or(usize::MAX))?;
+        let size = [u32::from_le_bytes(bytes.array()?) as usize, u32::from_le_bytes(bytes.array()?) as usize];
+        let maps = bytes.take(size[1].saturating_mul(8 * (3 + 12 * size[0])))?;
         let mut proven: Vec<(usize, &[u8])> = Vec::new();
         for _ in 0..count {
             let index = u64::from_le_bytes(bytes.array()?);
@@ -90,49 +85,34 @@ impl<'a> Proof<'a> {
             }
             proven.push((index as usize, bytes.take(length as usize)?));
         }
-        if !bytes.0.is_empty() {
-            return proof("there are bytes after its end");
-        }
+        claim(bytes.0.is_empty(), "there are bytes after its end")?;
         claim(!proven.is_empty(), "it proves no entry")?;
-        Ok(Self { digest, entries, rank, nodes, maps, proven })
+        require(digest == certificates.digest, "of other certificates")?;
+        let fits = size == [rank, certificates.nodes.len()];
+        claim(fits, "it has another number of modes or nodes than the certificates")?;
+        Ok(Self { entries, maps, proven })
     }
 
-    /// Checks that the proof is of these certificates, before costly work.
-    pub(crate) fn check_head(&self, certificates: &Certificates, rank: usize) -> Result<(), Refusal> {
-        require(self.digest == certificates.digest, "of other certificates")?;
-        let fits = (self.rank as usize, self.nodes as usize) == (rank, certificates.nodes.len());
-        claim(fits, "it has another number of modes or nodes than the certificates")
-    }
-
-    /// Checks that the proof has entries of this list.
-    pub(crate) fn check_entries(&self, entries: &[Entry]) -> Result<(), Refusal> {
-        require(self.entries == entries.len() as u64, "of other certificates")
-    }
-}
-
-/// The data that the checks of all entries share.
-pub(crate) struct Check<'a> {
-    pub(crate) certificates: &'a Certificates,
-    pub(crate) counted: &'a CountedPairs<'a>,
-    pub(crate) uncounted: &'a UncountedPairs<'a>,
-    pub(crate) scaled: &'a ScaledModel,
-    pub(crate) model: &'a Model,
-    pub(crate) is_cancelled: &'a IsCancelled<'a>,
-}
-
-impl Check<'_> {
-    /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some.
-    pub(crate) fn run(&self, file: &Proof<'_>, entries: &[Entry], threads: usize) -> Result<(), Refusal> {
-        let maps = NodeMaps::new(self.model, self.scaled, self.certificates, file.maps);
+    /// Checks all entries that are proven, on several threads, or on fewer if the system refuses some. `entries`: all entries.
+    pub(crate) fn check(
+        &self,
+        entries: &[Entry],
+        counted: &CountedPairs<'_>,
+        scaled: &ScaledModel,
+        threads: usize,
+        is_cancelled: &IsCancelled<'_>,
+    ) -> Result<()> {
+        let boxes = counted.certificates.nodes.iter().map(|_| OnceLock::new()).collect();
+        let maps = &NodeMaps { counted, scaled, numbers: self.maps, boxes };
         let next = AtomicUsize::new(0);
-        let work = || {
-            loop {
-                let (index, bytes) = file.proven.get(next.fetch_add(1, Ordering::Relaxed))?;
-                if let Err(refusal) = self.entry(&maps, entries[*index], bytes, threads) {
-                    return Some((*index, refusal));
-                }
-            }
+        let take = || self.proven.get(next.fetch_add(1, Ordering::Relaxed));
+        let refused = |&(index, bytes): &(usize, &[u8])| {
+            let radius = &scaled.radius(entries[index].radius);
+            let (bytes, directions) = (Bytes(bytes), Directions::new(scaled, radius, threads));
+            let mut reader = EntryReader { maps, is_cancelled, radius, bytes, directions, map: None };
+            Some((index, reader.entry(entries[index]).err()?))
         };
+        let work = || iter::from_fn(take).find_map(refused);
         let refused = thread::scope(|scope| {
             // The system may refuse threads.
             let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
@@ -143,53 +123,44 @@ impl Check<'_> {
             others.chain(own).min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
-        if refusal == Refusal::Cancelled {
-            return Err(refusal);
-        }
         let Entry { nodes: [n, m], radius } = entries[index];
-        proof(format!("entry {index}, nodes {n} and {m}, radius {radius:e}: {refusal}"))
-    }
-
-    fn entry(&self, maps: &NodeMaps<'_>, entry: Entry, bytes: &[u8], threads: usize) -> Result<(), Refusal> {
-        let radius = self.scaled.radius(entry.radius);
-        let (bytes, directions) = (Bytes(bytes), Directions::new(threads));
-        let mut reader = EntryReader { check: self, maps, radius, bytes, threads, directions, map: None };
-        // An entry of radius 0 needs no witness.
-        if entry.radius > 0.0 {
-            reader.nodes(entry.nodes)?;
-        }
-        if reader.bytes.0.is_empty() { Ok(()) } else { proof("there are witnesses after its end") }
+        Err(refusal.of(&format!("entry {index}, nodes {n} and {m}, radius {radius:e}")))
     }
 }
 
 /// Reads and checks the witnesses of an entry.
 struct EntryReader<'a> {
-    check: &'a Check<'a>,
     maps: &'a NodeMaps<'a>,
-    radius: Radius,
+    is_cancelled: &'a IsCancelled<'a>,
+    radius: &'a Radius,
     bytes: Bytes<'a>,
-    threads: usize,
     /// The directions of the last list of triangles.
-    directions: Directions,
+    directions: Directions<'a>,
     /// The last affine map of this list.
     map: Option<AffineMap>,
 }
 
 impl EntryReader<'_> {
+    fn entry(&mut self, Entry { nodes, radius }: Entry) -> Result<()> {
+        // An entry of radius 0 needs no witness.
+        if radius > 0.0 {
+            self.nodes(nodes)?;
+        }
+        claim(self.bytes.0.is_empty(), "there are witnesses after its end")
+    }
+
     /// Checks all pairs between two nodes, or within one.
-    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<(), Refusal> {
-        check_cancelled(self.check.is_cancelled)?;
-        let children = |n: u32| self.check.certificates.nodes[n as usize].children();
+    fn nodes(&mut self, [n, m]: [u32; 2]) -> Result<()> {
+        check_cancelled(self.is_cancelled)?;
+        let children = |n: u32| self.maps.counted.certificates.nodes[n as usize].children();
         let has = |n: u32| !children(n).is_empty();
         match self.bytes.array()? {
             [DIRECTION] => {
                 let dir = self.bytes.vector()?;
-                if n != m && self.maps.are_apart([n, m], &dir, &self.radius) {
-                    return Ok(());
-                }
-                proof(format!("the direction does not separate nodes {n} and {m}"))
+                let are_apart = n != m && self.maps.are_apart([n, m], &dir, self.radius);
+                claim(are_apart, &format!("the direction does not separate nodes {n} and {m}"))
             }
-            [NOTHING_COUNTS] => self.check.uncounted.check([n, m]),
+            [NOTHING_COUNTS] => self.maps.counted.check_uncounted([n, m]),
             [SPLIT_FIRST] if n != m && has(n) => children(n).try_for_each(|child| self.nodes([child, m])),
             [SPLIT_SECOND] if n != m && has(m) => children(m).try_for_each(|child| self.nodes([n, child])),
             [TRIANGLES] if !has(n) && !has(m) => self.triangles([n, m]),
@@ -197,13 +168,15 @@ impl EntryReader<'_> {
         }
     }
 
-    fn triangles(&mut self, nodes: [u32; 2]) -> Result<(), Refusal> {
-        (self.directions, self.map) = (Directions::new(self.threads), None);
-        let Check { certificates, counted, .. } = self.check;
-        for [a, b] in certificates.pairs(nodes) {
-            check_cancelled(self.check.is_cancelled)?;
+    /// Checks all pairs of triangles between two leaves, or within one.
+    fn triangles(&mut self, nodes: [u32; 2]) -> Result<()> {
+        self.directions.clear();
+        self.map = None;
+        let NodeMaps { counted, scaled, .. } = *self.maps;
+        for [a, b] in counted.certificates.pairs(nodes) {
             for simplices in counted.simplices(a, b) {
-                if !self.simplices(simplices)? {
+                let corners = simplices.map(|simplex| simplex.map(|i| scaled.point(i)));
+                if !self.parts(corners, Some(simplices), 0)? {
                     return proof(format!("the witness of triangles {a} and {b} does not hold"));
                 }
             }
@@ -211,45 +184,30 @@ impl EntryReader<'_> {
         Ok(())
     }
 
-    /// Whether the next witness holds for two simplices.
-    fn simplices(&mut self, simplices: Simplices) -> Result<bool, Refusal> {
-        let scaled = self.check.scaled;
+    /// Whether the next witness holds for two triangles, or parts of them. `whole`: their vertices if they are simplices of the mesh.
+    fn parts(&mut self, [x, y]: [Triangle<'_>; 2], whole: Option<Simplices>, depth: usize) -> Result<bool> {
+        check_cancelled(self.is_cancelled)?;
+        let scaled = self.maps.scaled;
         let [tag] = self.bytes.array()?;
-        match self.direction(tag)? {
-            Some(index) => Ok(self.directions.separate(index, scaled, simplices, &self.radius)),
-            None => {
-                let [x, y] = simplices.map(|simplex| simplex.map(|i| Corner::of(scaled, i)));
-                self.parts([x.each_ref(), y.each_ref()], tag, 0)
-            }
-        }
-    }
-
-    /// Returns the index of the direction of a witness, if it has one; reads a new direction.
-    fn direction(&mut self, tag: u8) -> Result<Option<usize>, Refusal> {
-        if tag == NEW_DIRECTION {
-            // Only as many directions are kept as have an index; a further one replaces the last.
-            let index = self.directions.len().min(QUARTER_SECOND.into());
-            self.directions.set(index, self.check.scaled, self.bytes.vector()?);
-            return Ok(Some(index));
-        }
-        let is_known = tag < QUARTER_SECOND && usize::from(tag) < self.directions.len();
-        Ok(is_known.then_some(tag.into()))
-    }
-
-    /// Whether a witness holds for two triangles, or parts of them.
-    fn parts(&mut self, [x, y]: [Triangle<'_>; 2], tag: u8, depth: usize) -> Result<bool, Refusal> {
-        check_cancelled(self.check.is_cancelled)?;
-        let scaled = self.check.scaled;
-        if let Some(index) = self.direction(tag)? {
-            return Ok(self.directions.separate_corners(index, [x, y], &self.radius));
-        }
         match tag {
+            NEW_DIRECTION | ..QUARTER_SECOND => {
+                let mut index = usize::from(tag);
+                if tag == NEW_DIRECTION {
+                    // Only as many directions are kept as have an index; a further one replaces the last.
+                    index = self.directions.len().min(QUARTER_SECOND.into());
+                    self.directions.set(index, self.bytes.vector()?);
+                }
+                Ok(match whole {
+                    _ if index >= self.directions.len() => false,
+                    Some(simplices) => self.directions.separate(index, simplices),
+                    None => self.directions.separate_corners(index, [x, y]),
+                })
+            }
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
                 let whole = if tag == QUARTER_FIRST { x } else { y };
-                for part in quarters(whole, middles(whole).each_ref()) {
+                for part in quarters(whole, &middles(whole)) {
                     let pair = if tag == QUARTER_FIRST { [part, y] } else { [x, part] };
-                    let [tag] = self.bytes.array()?;
-                    if !self.parts(pair, tag, depth + 1)? {
+                    if !self.parts(pair, None, depth + 1)? {
                         return Ok(false);
                     }
                 }
@@ -257,15 +215,14 @@ impl EntryReader<'_> {
             }
             NEW_MAP | LAST_MAP => {
                 if tag == NEW_MAP {
-                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real().map(Dyadic::of));
-                    self.map = Some(AffineMap::new(numbers.collect::<Result<_, _>>()?));
+                    let numbers = (0..9 * scaled.rank).map(|_| self.bytes.real());
+                    self.map = Some(AffineMap::new(numbers.collect::<Result<_>>()?));
                 }
                 let (dir, rate) = (self.bytes.vector()?, self.bytes.real()?);
                 let mut direction = || self.bytes.vector();
                 let pyramid = [direction()?, direction()?, direction()?, direction()?];
-                let witness = AffineWitness { dir, rate, pyramid };
-                let map = self.map.as_ref();
-                Ok(map.is_some_and(|map| map.separates(scaled, [x, y], &witness, &self.radius)))
+                let Some(map) = &self.map else { return Ok(false) };
+                Ok(map.separates(scaled, [x, y], &dir, &rate, &pyramid, self.radius))
             }
             _ => Ok(false),
         }
@@ -277,6 +234,7 @@ mod tests {
     use std::sync::atomic::AtomicBool;
 
     use super::*;
+    use crate::model::Model;
     use crate::scope::Scope;
 
     /// The number of entries of [`check`].
@@ -284,13 +242,13 @@ mod tests {
 
     /// Checks a proof of the same entry again and again, on this number of threads: two triangles one unit apart, which the mode
     /// brings together at 1, are separate below 1/2 by the direction along z. The numbered entry has a direction across.
-    fn check(threads: usize, wrong: Option<usize>, is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+    fn check(threads: usize, wrong: Option<usize>, is_cancelled: &IsCancelled<'_>) -> Result<()> {
         let corners = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
         let mode = (0..18).map(|row| if row >= 9 && row % 3 == 2 { -1.0 } else { 0.0 }).collect();
         let model = Model::new([corners(0.0), corners(1.0)].concat(), vec![[0, 1, 2], [3, 4, 5]], mode, 1)?;
         let scope = Scope::of_factor(vec![1.0], 1);
-        let (certificates, counted) = (Certificates::of_leaf(2, 0.5), CountedPairs::new(&model, &scope));
-        let uncounted = &UncountedPairs::new(&model, &certificates, &counted, &scope);
+        let certificates = Certificates::of_leaf(2, 0.5);
+        let counted = CountedPairs::new(&model, &scope, &certificates);
         let scaled = &ScaledModel::new(&model, &scope, &|| false)?;
         let witness = |dir: [f64; 3]| {
             let numbers = dir.into_iter().flat_map(f64::to_le_bytes);
@@ -299,15 +257,15 @@ mod tests {
         let (along, across) = (witness([0.0, 0.0, 1.0]), witness([1.0, 0.0, 0.0]));
         let bytes = |index: usize| if wrong == Some(index) { &across[..] } else { &along[..] };
         let proven = (0..ENTRIES).map(|index| (index, bytes(index))).collect();
-        let file = Proof { digest: &[], entries: ENTRIES as u64, rank: 1, nodes: 1, maps: &[], proven };
+        let file = Proof { entries: ENTRIES as u64, maps: &[], proven };
         let entries = [Entry { nodes: [0, 0], radius: 0.5 }; ENTRIES];
-        let (certificates, counted, model) = (&certificates, &counted, &model);
-        Check { certificates, counted, uncounted, scaled, model, is_cancelled }.run(&file, &entries, threads)
+        file.check(&entries, &counted, scaled, threads, is_cancelled)
     }
 
     #[test]
     fn the_head_is_checked_before_all_else() {
-        let cause = |bytes: &[u8]| Proof::parse(bytes).err();
+        let certificates = Certificates::of_leaf(2, 0.5);
+        let cause = |bytes: &[u8]| Proof::parse(bytes, &certificates, 1).err();
         let head = |rank: u32, nodes: u32, count: u64| {
             let numbers =
                 [&2_u64.to_le_bytes()[..], &count.to_le_bytes(), &rank.to_le_bytes(), &nodes.to_le_bytes()];
@@ -326,14 +284,12 @@ mod tests {
         assert!(matches!(cause(&[head(1, 1, 2), entry.clone(), entry].concat()), Some(Refusal::Proof(_))));
         // No memory is reserved for numbers that the file does not have.
         assert_eq!(cause(&head(u32::MAX, 1, u64::MAX)), Some(Refusal::Proof("it ends too early".into())));
-        let certificates = Certificates::of_leaf(2, 0.5);
-        let check = |bytes: &[u8]| Proof::parse(bytes).unwrap().check_head(&certificates, 1).err();
-        assert_eq!(check(&whole), None);
+        assert_eq!(cause(&whole), None);
         let mut other = whole.clone();
         other[8] ^= 1;
-        assert_eq!(check(&other), Some(Refusal::Input("of other certificates".into())));
+        assert_eq!(cause(&other), Some(Refusal::Input("of other certificates".into())));
         let two_nodes = [head(1, 2, 1), whole[whole.len() - 12..].to_vec()].concat();
-        assert!(matches!(check(&two_nodes), Some(Refusal::Proof(_))));
+        assert!(matches!(cause(&two_nodes), Some(Refusal::Proof(_))));
     }
 
     /// One thread is what remains if the system refuses all others.

@@ -13,6 +13,9 @@ pub enum Refusal {
     Cancelled,
 }
 
+/// The result of reading or checking.
+pub type Result<T> = std::result::Result<T, Refusal>;
+
 /// Whether the caller cancels a check. Several threads call it often. Once true, it must stay true.
 pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
 
@@ -38,26 +41,26 @@ impl Refusal {
 }
 
 /// Ends a check that the caller cancels.
-pub(crate) fn check_cancelled(is_cancelled: &IsCancelled<'_>) -> Result<(), Refusal> {
+pub(crate) fn check_cancelled(is_cancelled: &IsCancelled<'_>) -> Result<()> {
     if is_cancelled() { Err(Refusal::Cancelled) } else { Ok(()) }
 }
 
 /// Returns the refusal of an input.
-pub(crate) fn input<T>(line: impl Into<String>) -> Result<T, Refusal> {
+pub(crate) fn input<T>(line: impl Into<String>) -> Result<T> {
     Err(Refusal::Input(line.into()))
 }
 
 /// Refuses an input unless a condition holds.
-pub(crate) fn require(holds: bool, line: &str) -> Result<(), Refusal> {
+pub(crate) fn require(holds: bool, line: &str) -> Result<()> {
     if holds { Ok(()) } else { input(line) }
 }
 
 /// Refuses certificates unless a condition holds.
-pub(crate) fn claim(holds: bool, line: &str) -> Result<(), Refusal> {
+pub(crate) fn claim(holds: bool, line: &str) -> Result<()> {
     if holds { Ok(()) } else { proof(line) }
 }
 
 /// Returns the refusal of a proof.
-pub(crate) fn proof<T>(line: impl Into<String>) -> Result<T, Refusal> {
+pub(crate) fn proof<T>(line: impl Into<String>) -> Result<T> {
     Err(Refusal::Proof(line.into()))
 }

@@ -9,9 +9,12 @@
 //! The positions at the centre are the computed ones, from which witnesses are found. Their distance from the exact ones is part of
 //! the rounding.
 
-use crate::dyadic::{Dyadic, Vector, squared_norm, vector};
+use std::collections::BTreeSet;
+
+use crate::dyadic::{Dyadic, Vector, dot, squared_norm};
 use crate::model::Model;
-use crate::refusal::{IsCancelled, Refusal, check_cancelled, input};
+use crate::points::{Point, Radius};
+use crate::refusal::{IsCancelled, Result, check_cancelled, input};
 use crate::scope::Scope;
 
 /// Binary digits to which each entry of `S T` is right, for a diagonal and for a dense factor. An entry of T is rounded when the rows
@@ -25,19 +28,11 @@ const MAX_GROWTH: i64 = 64;
 /// Binary digits of the magnitudes of modes, rounded up.
 const MAGNITUDE_DIGITS: usize = 53;
 
-/// A radius for `|z'|`.
-#[derive(Clone, Debug)]
-pub(crate) enum Radius {
-    Finite(Dyadic),
-    Infinite,
-}
-
 /// Computed positions at the centre, modes A, and the rounding of computed positions.
 pub(crate) struct ScaledModel {
     pub(crate) rank: usize,
-    pub(crate) positions: Vec<Vector>,
-    /// The modes A: three rows for each vertex.
-    modes: Vec<Dyadic>,
+    /// Three rows for each vertex: a position, then the modes A.
+    points: Vec<Dyadic>,
     /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from `positions + A z'`.
     rest_errors: Vector,
     /// See `rest_errors`.
@@ -46,111 +41,86 @@ pub(crate) struct ScaledModel {
 }
 
 impl ScaledModel {
-    pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self, Refusal> {
+    pub(crate) fn new(model: &Model, scope: &Scope, is_cancelled: &IsCancelled<'_>) -> Result<Self> {
         let rank = model.rank;
         let (columns, delta) = inverse(scope, rank, is_cancelled)?;
         // Entries of |T| that are rounded up make |U| |T| larger, by a relative error of at most 2^-52.
-        let magnitudes: Vec<Column> = columns.iter().map(Column::magnitudes).collect();
-        let mut used = vec![false; model.positions.len()];
-        model.faces.as_flattened().iter().for_each(|i| used[*i as usize] = true);
+        let magnitude = |(k, t): &(usize, Dyadic)| (*k, t.abs().round_up(MAGNITUDE_DIGITS));
+        let magnitudes: Vec<Column> =
+            columns.iter().map(|column| column.iter().map(magnitude).collect()).collect();
         let center: Vec<Dyadic> = scope.center.iter().map(|x| Dyadic::of(*x)).collect();
-        let mut this = Self {
-            rank,
-            positions: vec![Vector::default(); used.len()],
-            modes: vec![Dyadic::default(); 3 * rank * used.len()],
-            rest_errors: Vector::default(),
-            rate_errors: Vector::default(),
-            delta,
-        };
-        let mut center_errors = Vector::default();
-        for i in (0..used.len()).filter(|i| used[*i]) {
+        let mut points = vec![Dyadic::default(); 3 * (1 + rank) * model.positions.len()];
+        let [mut rest_errors, mut rate_errors, mut center_errors] = <[Vector; 3]>::default();
+        let used: BTreeSet<usize> = model.faces.as_flattened().iter().map(|i| *i as usize).collect();
+        for i in used {
             check_cancelled(is_cancelled)?;
-            let rest = vector(model.positions[i]);
-            this.positions[i] = vector(model.computed_position(i, &scope.center));
-            for c in 0..3 {
-                let row = &model.modes_of(i)[c * rank..][..rank];
-                let row: Vec<Dyadic> = row.iter().map(|u| Dyadic::of(*u)).collect();
+            let computed = model.computed_position(i, &scope.center);
+            for (c, computed) in computed.map(Dyadic::of).into_iter().enumerate() {
+                let rest = Dyadic::of(model.positions[i][c]);
+                let row: Vec<Dyadic> = model.row(i, c).iter().map(|u| Dyadic::of(*u)).collect();
                 let moved = || row.iter().zip(&center).map(|(u, x)| u * x);
-                let exact = &rest[c] + &moved().sum();
-                center_errors[c].raise((&exact - &this.positions[i][c]).abs());
-                let magnitude = &rest[c].abs() + &moved().map(|x| x.abs()).sum();
-                let out = &mut this.modes[(3 * i + c) * rank..][..rank];
-                out.iter_mut().zip(&columns).for_each(|(a, column)| *a = column.product(&row));
+                let exact = &rest + &moved().sum();
+                center_errors[c].raise((&exact - &computed).abs());
+                rest_errors[c].raise(&rest.abs() + &moved().map(|x| x.abs()).sum());
+                let out = &mut points[(3 * i + c) * (1 + rank)..][..1 + rank];
+                out[0] = computed;
+                out[1..].iter_mut().zip(&columns).for_each(|(a, column)| *a = product(&row, column));
                 let row: Vec<Dyadic> = row.iter().map(Dyadic::abs).collect();
-                let magnitudes: Vec<Dyadic> = magnitudes.iter().map(|column| column.product(&row)).collect();
-                this.rest_errors[c].raise(magnitude);
-                this.rate_errors[c].raise(squared_norm(&magnitudes).root_up());
+                let magnitudes: Vec<Dyadic> = magnitudes.iter().map(|column| product(&row, column)).collect();
+                rate_errors[c].raise(squared_norm(&magnitudes).root_up());
             }
         }
         // Each product and each of r sums is rounded to nearest once. So the error is at most gamma_(r+1) <= (r + 2) 2^-53 (as r <=
         // 2^20) times the magnitudes, and 2^-1075 for each product that underflows.
         let (gamma, least) = (Dyadic::new(rank as i64 + 2, -53), Dyadic::new(rank as i64 + 2, -1074));
-        let error = |c: usize| &(&this.rest_errors[c] * &gamma) + &center_errors[c];
-        this.rest_errors = std::array::from_fn(|c| &error(c).round_up(64) + &least);
-        this.rate_errors = this.rate_errors.map(|x| (&x * &gamma).round_up(64));
-        Ok(this)
+        let error = |c: usize| &(&rest_errors[c] * &gamma) + &center_errors[c];
+        let rest_errors = std::array::from_fn(|c| &error(c).round_up(64) + &least);
+        let rate_errors = rate_errors.map(|x| (&x * &gamma).round_up(64));
+        Ok(Self { rank, points, rest_errors, rate_errors, delta })
     }
 
-    /// Returns the row of the modes for a vertex and a component.
-    pub(crate) fn row(&self, vertex: u32, component: usize) -> &[Dyadic] {
-        &self.modes[(3 * vertex as usize + component) * self.rank..][..self.rank]
+    /// Returns a vertex.
+    pub(crate) fn point(&self, vertex: u32) -> &Point {
+        let length = 3 * (1 + self.rank);
+        &self.points[vertex as usize * length..][..length]
     }
 
     /// Converts a radius of z to one of z', rounded up.
     pub(crate) fn radius(&self, radius: f64) -> Radius {
-        if radius.is_infinite() {
-            return Radius::Infinite;
-        }
-        let radius = Dyadic::of(radius);
+        let radius = radius.is_finite().then(|| Dyadic::of(radius))?;
         // 1 / (1 - delta) <= 1 + 2 delta for delta <= 1/2.
-        Radius::Finite((&radius + &(&radius * &self.delta.times_power(1))).round_up(128))
+        Some((&radius + &(&radius * &self.delta.times_power(1))).round_up(128))
     }
 
     /// Returns two bounds e0 and e1: the gap of two computed points along a direction is smaller than the exact one by at most
     /// `e0 + e1 |z'|`.
     pub(crate) fn errors(&self, dir: &Vector) -> [Dyadic; 2] {
-        [&self.rest_errors, &self.rate_errors].map(|errors| {
-            let sum: Dyadic = dir.iter().zip(errors).map(|(d, e)| &d.abs() * e).sum();
-            sum.times_power(1)
-        })
+        let magnitudes = dir.each_ref().map(Dyadic::abs);
+        [&self.rest_errors, &self.rate_errors].map(|errors| dot(&magnitudes, errors).times_power(1))
     }
 }
 
-/// A column of T: its nonzero entries, with their rows.
-struct Column(Vec<(usize, Dyadic)>);
+/// The nonzero entries of a column of T, with their rows.
+type Column = Vec<(usize, Dyadic)>;
 
-impl Column {
-    /// Returns the product of a row and the column.
-    fn product(&self, row: &[Dyadic]) -> Dyadic {
-        self.0.iter().map(|(k, t)| &row[*k] * t).sum()
-    }
-
-    /// Returns upper bounds of the magnitudes of the entries.
-    fn magnitudes(&self) -> Self {
-        Self(self.0.iter().map(|(k, t)| (*k, t.abs().round_up(MAGNITUDE_DIGITS))).collect())
-    }
+/// Returns the product of a row and a column.
+fn product(row: &[Dyadic], column: &Column) -> Dyadic {
+    column.iter().map(|(k, t)| &row[*k] * t).sum()
 }
 
 /// Returns the columns of T, and delta.
-fn inverse(
-    scope: &Scope,
-    rank: usize,
-    is_cancelled: &IsCancelled<'_>,
-) -> Result<(Vec<Column>, Dyadic), Refusal> {
+fn inverse(scope: &Scope, rank: usize, is_cancelled: &IsCancelled<'_>) -> Result<(Vec<Column>, Dyadic)> {
     let digits = DIGITS[usize::from(scope.is_dense)];
-    let entry = |i: usize, j: usize| match scope.is_dense {
-        true => Dyadic::of(scope.factor[i * rank + j]),
-        false if i == j => Dyadic::of(scope.factor[i]),
-        false => Dyadic::default(),
-    };
+    // Of a diagonal factor only entries of the diagonal are needed.
+    let entry = |i: usize, j: usize| Dyadic::of(scope.factor[if scope.is_dense { i * rank + j } else { i }]);
     let (mut columns, mut error) = (Vec::new(), Dyadic::default());
     for l in 0..rank {
         check_cancelled(is_cancelled)?;
         // Solves S t = e_l by back substitution. The column has entries from its first row to its l-th.
         let first = if scope.is_dense { 0 } else { l };
-        let mut column = Column(Vec::new());
+        let mut column = Column::new();
         for i in (first..=l).rev() {
-            let known = column.0.iter().map(|(j, t)| &entry(i, *j) * t).sum();
+            let known = column.iter().map(|(j, t)| &entry(i, *j) * t).sum();
             let wanted = &Dyadic::new(i64::from(i == l), 0) - &known;
             if wanted.magnitude() > MAX_GROWTH {
                 return input("metric: it is nearly singular");
@@ -158,9 +128,9 @@ fn inverse(
             let pivot = entry(i, i);
             let t = wanted.divided_by(&pivot, -digits - pivot.magnitude());
             // The entry of D: the products of the row with the known entries, and with this one, without the entry of I.
-            error += (&(&pivot * &t) - &wanted).square();
+            error = &error + &(&(&pivot * &t) - &wanted).square();
             if !t.is_zero() {
-                column.0.push((i, t));
+                column.push((i, t));
             }
         }
         columns.push(column);
@@ -203,13 +173,13 @@ mod tests {
                     scope.factor[i * rank..][..rank].iter().map(|s| Dyadic::of(*s)).collect();
                 for (l, column) in columns.iter().enumerate() {
                     let one = Dyadic::new(i64::from(i == l), 0);
-                    square += (&column.product(&row) - &one).square();
+                    square = &square + &(&product(&row, column) - &one).square();
                 }
             }
             assert!(square <= delta.square() && delta < Dyadic::new(rank as i64, -digits), "{rank} {units}");
             assert!(rank == 1 || delta > Dyadic::new(1, -digits - 10), "{rank} {units}");
             // Numbers stay short.
-            let longest = columns.iter().flat_map(|column| &column.0).map(|(_, t)| t.size()).max();
+            let longest = columns.iter().flatten().map(|(_, t)| t.size()).max();
             assert!(longest.unwrap() <= size_of::<Dyadic>() + (DIGITS[1] + MAX_GROWTH) as usize / 8 + 1);
         }
     }

@@ -1,10 +1,8 @@
 //! The scope of certificates: metric, centre, and which pairs of triangles count.
 
-use std::collections::HashMap;
-
 use crate::container::Container;
 use crate::model::{LARGEST, Model};
-use crate::refusal::{Refusal, input, require};
+use crate::refusal::{Result, input, require};
 
 /// The largest number of modes of a dense metric, whose factor takes a time cubic in it.
 const MAX_DENSE: usize = 1024;
@@ -31,44 +29,49 @@ pub(crate) struct Groups {
 }
 
 impl Scope {
-    pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self, Refusal> {
+    pub(crate) fn read(file: &Container<'_>, model: &Model) -> Result<Self> {
         require(!file.has("clearance"), "certificates with a clearance are not checked")?;
         let rank = model.rank;
         let is_dense = file.has("metric_factor");
-        let factor: Vec<f64> = match is_dense {
-            true => file.shaped("metric_factor", &[Some(rank), Some(rank)])?,
-            false => file.shaped("metric_scales", &[Some(rank)])?,
-        };
+        let (name, axes) = if is_dense { ("metric_factor", 2) } else { ("metric_scales", 1) };
+        let factor = file.reals(name, &vec![Some(rank); axes])?;
         require(!is_dense || rank <= MAX_DENSE, "metric: it is dense, and has more than 1024 rows")?;
         let is_row = |i: usize| {
             let row = &factor[i * rank..][..rank];
             let is_in_range = row[i] >= LARGEST.recip() && row.iter().all(|s| s.abs() <= LARGEST);
             is_in_range && row[..i].iter().all(|s| *s == 0.0)
         };
-        let is_factor = match is_dense {
-            true => (0..rank).all(is_row),
-            false => factor.iter().all(|s| *s > 0.0 && s.is_finite()),
-        };
-        let center = file.shaped::<f64>("center", &[Some(rank)])?;
+        let is_scale = |s: &f64| *s > 0.0 && s.is_finite();
+        let is_factor = if is_dense { (0..rank).all(is_row) } else { factor.iter().all(is_scale) };
+        let center = file.reals("center", &[Some(rank)])?;
         let is_finite = center.iter().all(|x| x.is_finite());
         require(is_factor && is_finite, "metric or centre: a number is out of range")?;
         let one_vertex = is_second(file, "neighbours", ["exclude", "include-one-vertex"])?;
         let weld = is_second(file, "weld", ["none", "equal"])?;
         let triangles = model.faces.len();
-        let pairs = |name: &str| -> Result<Vec<[u32; 2]>, Refusal> {
-            let pairs = if file.has(name) { file.pairs(name)? } else { Vec::new() };
-            let are_triangles = pairs.iter().all(|[a, b]| a != b && (*b as usize) < triangles);
-            require(are_triangles, "a pair names a triangle that does not exist, or one twice")?;
-            Ok(pairs)
-        };
+        let pairs = |name: &str| if file.has(name) { file.pairs(name) } else { Ok(Vec::new()) };
+        let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
+        let is_pair = |[a, b]: &[u32; 2]| a != b && (*b as usize) < triangles;
+        let are_pairs = ignored.iter().chain(&exceptions).all(is_pair);
+        require(are_pairs, "a pair names a triangle that does not exist, or one twice")?;
         let mut groups = None;
         if file.has("groups") {
             let others_count = is_second(file, "group_pairs", ["counted", "ignored"])?;
-            let of_triangles = file.shaped("groups", &[Some(triangles)])?;
+            let of_triangles = file.integers("groups", &[Some(triangles)])?;
             groups = Some(Groups { of_triangles, others_count, listed: file.pairs("group_pairs")? });
         }
-        let (ignored, exceptions) = (pairs("ignored")?, pairs("exceptions")?);
         Ok(Self { factor, is_dense, center, one_vertex, weld, ignored, exceptions, groups })
+    }
+
+    /// Returns the group of a triangle, if there are groups.
+    pub(crate) fn group(&self, t: u32) -> Option<u32> {
+        self.groups.as_ref().map(|groups| groups.of_triangles[t as usize])
+    }
+
+    /// Whether triangles of two groups count; they do if the groups are not known.
+    pub(crate) fn groups_count(&self, g: Option<u32>, h: Option<u32>) -> bool {
+        let (Some(groups), Some(g), Some(h)) = (&self.groups, g, h) else { return true };
+        groups.listed.binary_search(&[g.min(h), g.max(h)]).is_ok() != groups.others_count
     }
 
     /// Returns which pairs of triangles do not count, as text.
@@ -86,87 +89,9 @@ impl Scope {
 }
 
 /// Whether a text of the file is the second of two possible values.
-fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool, Refusal> {
+fn is_second(file: &Container<'_>, key: &str, values: [&str; 2]) -> Result<bool> {
     let which = values.iter().position(|value| Ok(*value) == file.text(key));
     which.map_or_else(|| input(format!("text '{key}' is missing or not known")), |which| Ok(which == 1))
-}
-
-/// Two simplices by their vertices: triangles, or edges, whose last vertex is repeated.
-pub(crate) type Simplices = [[u32; 3]; 2];
-
-/// The pairs of triangles that count.
-pub(crate) struct CountedPairs<'a> {
-    model: &'a Model,
-    scope: &'a Scope,
-    /// For each vertex the lowest vertex with the same position and modes; without welds the vertex itself.
-    pub(crate) classes: Vec<u32>,
-}
-
-impl<'a> CountedPairs<'a> {
-    pub(crate) fn new(model: &'a Model, scope: &'a Scope) -> Self {
-        let mut lowest = HashMap::new();
-        let class = |i: u32| {
-            if !scope.weld {
-                return i;
-            }
-            let numbers = model.positions[i as usize].iter().chain(model.modes_of(i as usize));
-            // Adding 0 makes -0 equal to 0.
-            let key: Vec<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
-            *lowest.entry(key).or_insert(i)
-        };
-        let classes = (0..model.positions.len() as u32).map(class).collect();
-        Self { model, scope, classes }
-    }
-
-    /// Returns pairs of simplices such that one pair meets if two triangles collide in a way that counts; no pairs for triangles
-    /// that never count together, or are an exception.
-    pub(crate) fn simplices(&self, a: u32, b: u32) -> Vec<Simplices> {
-        let pair = [a.min(b), a.max(b)];
-        let is_exception = self.scope.exceptions.binary_search(&pair).is_ok();
-        if is_exception { Vec::new() } else { self.with_exceptions(a, b) }
-    }
-
-    /// Returns the pairs of simplices of [`Self::simplices`], also for exceptions.
-    pub(crate) fn with_exceptions(&self, a: u32, b: u32) -> Vec<Simplices> {
-        let pair = [a.min(b), a.max(b)];
-        if a == b || self.scope.ignored.binary_search(&pair).is_ok() || !self.groups_count(a, b) {
-            return Vec::new();
-        }
-        let faces = [a, b].map(|t| self.model.faces[t as usize]);
-        let [x, y] = faces.map(|face| face.map(|i| self.classes[i as usize]));
-        let Some(&class) = x.iter().find(|class| y.contains(class)) else { return vec![faces] };
-        let shared = |x: [u32; 3], y: [u32; 3], first: u32| x.iter().any(|i| *i != first && y.contains(i));
-        let number = faces[0].iter().find(|i| faces[1].contains(i));
-        let is_one = !shared(x, y, class) && number.is_none_or(|i| !shared(faces[0], faces[1], *i));
-        if !self.scope.one_vertex || !is_one {
-            return Vec::new();
-        }
-        // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them
-        // meets the other triangle (follow the ray from the vertex through that point to the first of the two edges).
-        let opposite = |face: [u32; 3]| {
-            let others: Vec<u32> = face.into_iter().filter(|i| self.classes[*i as usize] != class).collect();
-            Some([*others.first()?, *others.last()?, *others.last()?])
-        };
-        match (opposite(faces[0]), opposite(faces[1])) {
-            (Some(x), Some(y)) => vec![[x, faces[1]], [faces[0], y]],
-            // One face consists of the common vertex alone.
-            _ => Vec::new(),
-        }
-    }
-
-    fn groups_count(&self, a: u32, b: u32) -> bool {
-        let Some(groups) = &self.scope.groups else { return true };
-        let [g, h] = [a, b].map(|t| groups.of_triangles[t as usize]);
-        groups.count(g, h)
-    }
-}
-
-impl Groups {
-    /// Whether triangles of two groups count.
-    pub(crate) fn count(&self, g: u32, h: u32) -> bool {
-        let is_listed = self.listed.binary_search(&[g.min(h), g.max(h)]).is_ok();
-        is_listed != self.others_count
-    }
 }
 
 #[cfg(test)]
