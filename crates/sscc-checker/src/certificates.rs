@@ -118,14 +118,14 @@ impl Certificates {
         })
     }
 
-    /// Returns the pairs of a node's children in the pair tree: where they start. Queries test a bucket as a whole, so the pair tree has no
-    /// pairs within it.
+    /// Returns where the pairs of a node's children start in the pair tree. Queries test a bucket as a whole, so the pair tree has no pairs
+    /// within it.
     pub(crate) fn start(&self, n: u32) -> Option<u32> {
         let is_bucket = n != 0 && self.nodes[n as usize].count <= BUCKET;
         self.starts.get(n as usize).copied().filter(|_| !is_bucket)
     }
 
-    /// Returns the list of siblings that begins at `start`.
+    /// Returns the list of siblings that begins at `start`; an empty one for [`NO_PAIRS`].
     pub(crate) fn stored(&self, start: u32) -> Result<Vec<StoredPair>> {
         let mut list = Vec::new();
         if start == NO_PAIRS {

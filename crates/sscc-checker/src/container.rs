@@ -131,7 +131,7 @@ mod tests {
             tensor("a", "4", 0, 4) + &tensor("b", "3", 5, 8),
             tensor("a", "5", 0, 5) + &tensor("b", "4", 4, 8),
             tensor("a", "4", 0, 4) + &tensor("b", "3", 4, 8),
-            // A name twice, and texts twice.
+            // A name twice, of which the last one leaves a gap, and texts twice.
             tensor("a", "4", 0, 4) + &tensor("a", "4", 4, 8),
             two.clone() + ",'__metadata__':{'format':'f','version':'1'}",
             // Sizes that overflow.

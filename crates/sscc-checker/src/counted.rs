@@ -92,9 +92,9 @@ impl<'a> CountedPairs<'a> {
         }
         let common = |[x, y]: [[u32; 3]; 2]| x.into_iter().filter(|i| y.contains(i)).collect::<BTreeSet<_>>();
         let faces = [a, b].map(|t| self.model.faces[t as usize]);
-        let classes = common(faces.map(|face| face.map(|i| self.classes[i as usize])));
-        let Some(&class) = classes.first() else { return vec![faces] };
-        if !scope.one_vertex || classes.len() > 1 || common(faces).len() > 1 {
+        let classes = faces.map(|face| face.map(|i| self.classes[i as usize]));
+        let Some(class) = classes[0].into_iter().find(|i| classes[1].contains(i)) else { return vec![faces] };
+        if !scope.one_vertex || common(classes).len() > 1 || common(faces).len() > 1 {
             return Vec::new();
         }
         // If two triangles with one common vertex have another common point, the edge opposite to the vertex in one of them

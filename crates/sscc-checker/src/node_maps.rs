@@ -25,8 +25,9 @@ pub(crate) struct NodeMaps<'a> {
 /// The corners of a box, with the modes of the map: the sums of the centre and of each half extent or its negative.
 pub(crate) struct NodeBox {
     center: Vec<Dyadic>,
-    /// The half extent along each axis, as the difference of two points.
-    halves: [Vec<Dyadic>; 3],
+    /// For each axis its unit vector with the rates of the map, as a point. With the half extent, this is half an edge of the box.
+    axes: [Vec<Dyadic>; 3],
+    half: Vector,
     /// The largest residual along each axis.
     residual: Vector,
 }
@@ -36,15 +37,16 @@ impl NodeMaps<'_> {
     pub(crate) fn are_apart(&self, [n, m]: [u32; 2], dir: &Vector, radius: &Radius) -> bool {
         let [n, m] = [n, m].map(|n| self.boxes[n as usize].get_or_init(|| self.compute(n)));
         let [rest_error, rate_error] = self.scaled.errors(dir);
-        let along = |residual: &Vector| dot(&dir.clone().map(|d| d.abs()), residual);
-        let errors = [rest_error, &(&along(&m.residual) + &along(&n.residual)) + &rate_error];
+        let magnitudes = dir.each_ref().map(Dyadic::abs);
+        let [of_m, of_n] = [m, n].map(|node| dot(&magnitudes, &node.residual));
+        let errors = [rest_error, &(&of_m + &of_n) + &rate_error];
         let [of_n, of_m] = [n, m].map(|node| node.corners(dir));
         of_n.iter().all(|x| of_m.iter().all(|y| are_apart(x, y, &errors, radius)))
     }
 
     fn compute(&self, n: u32) -> NodeBox {
         let rank = self.scaled.rank;
-        let len = self.numbers.len() / self.boxes.len();
+        let len = 8 * (3 + 12 * rank);
         let numbers = reals(&self.numbers[n as usize * len..][..len]);
         let numbers: Vec<Dyadic> = numbers.into_iter().map(Dyadic::of).collect();
         let (center, rows) = numbers.split_at(3);
@@ -63,8 +65,8 @@ impl NodeMaps<'_> {
             }
         }
         let row = |j: usize, c: usize| [&[Dyadic::new(i64::from(c == j), 0)], rows[3 + 3 * j + c]].concat();
-        let halves = std::array::from_fn(|j| (0..3).flat_map(|c| row(j, c)).map(|x| &x * &half[j]).collect());
-        NodeBox { center, halves, residual: squares.map(|x| x.root_up()) }
+        let axes = std::array::from_fn(|j| (0..3).flat_map(|c| row(j, c)).collect());
+        NodeBox { center, axes, half, residual: squares.map(|x| x.root_up()) }
     }
 }
 
@@ -72,9 +74,9 @@ impl NodeBox {
     /// Returns the rows of the eight corners along a direction.
     fn corners(&self, dir: &Vector) -> Vec<Vec<Dyadic>> {
         let mut corners = vec![along(&self.center, dir)];
-        for half in &self.halves {
-            let half = along(half, dir);
-            corners = corners.iter().flat_map(|row| [sum(row, &half), difference(row, &half)]).collect();
+        for (axis, half) in self.axes.iter().zip(&self.half) {
+            let step: Vec<Dyadic> = along(axis, dir).iter().map(|x| x * half).collect();
+            corners = corners.iter().flat_map(|row| [sum(row, &step), difference(row, &step)]).collect();
         }
         corners
     }

@@ -60,7 +60,8 @@ pub(crate) fn differences(x: Triangle<'_>, y: Triangle<'_>) -> Vec<Vec<Dyadic>> 
     x.iter().flat_map(|i| y.iter().map(move |j| difference(j, i))).collect()
 }
 
-/// Returns the squared length of what an affine map leaves of a component's rates. `gradient`: the rates of the map along each axis.
+/// Returns the squared length of what an affine map leaves of a component's rates. `gradient`: the rates of
+/// this component along each axis.
 pub(crate) fn squared_residual(point: &Point, component: usize, gradient: [&[Dyadic]; 3]) -> Dyadic {
     let offset = position(point);
     let map = |k: usize| (0..3).map(|j| &offset[j] * &gradient[j][k]).sum();

@@ -106,20 +106,20 @@ impl<'a> Proof<'a> {
         let maps = &NodeMaps { counted, scaled, numbers: self.maps, boxes };
         let next = AtomicUsize::new(0);
         let take = || self.proven.get(next.fetch_add(1, Ordering::Relaxed));
-        let refused = |&(index, bytes): &(usize, &[u8])| {
+        let refusal_of = |&(index, bytes): &(usize, &[u8])| {
             let radius = &scaled.radius(entries[index].radius);
             let (bytes, directions) = (Bytes(bytes), Directions::new(scaled, radius, threads));
             let mut reader = EntryReader { maps, is_cancelled, radius, bytes, directions, map: None };
             Some((index, reader.entry(entries[index]).err()?))
         };
-        let work = || iter::from_fn(take).find_map(refused);
+        let work = || iter::from_fn(take).find_map(refusal_of);
         let refused = thread::scope(|scope| {
             // The system may refuse threads.
             let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
-            let threads: Vec<_> = (1..threads).map_while(start).collect();
+            let started: Vec<_> = (1..threads).map_while(start).collect();
             let own = work();
             let failed = |_| Some((0, Refusal::Proof("a thread failed".into())));
-            let others = threads.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
+            let others = started.into_iter().filter_map(|t| t.join().unwrap_or_else(failed));
             others.chain(own).min_by_key(|(index, _)| *index)
         });
         let Some((index, refusal)) = refused else { return Ok(()) };
@@ -204,8 +204,8 @@ impl EntryReader<'_> {
                 })
             }
             QUARTER_FIRST | QUARTER_SECOND if depth < MAX_DEPTH => {
-                let whole = if tag == QUARTER_FIRST { x } else { y };
-                for part in quarters(whole, &middles(whole)) {
+                let divided = if tag == QUARTER_FIRST { x } else { y };
+                for part in quarters(divided, &middles(divided)) {
                     let pair = if tag == QUARTER_FIRST { [part, y] } else { [x, part] };
                     if !self.parts(pair, None, depth + 1)? {
                         return Ok(false);

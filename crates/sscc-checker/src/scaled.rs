@@ -33,7 +33,7 @@ pub(crate) struct ScaledModel {
     pub(crate) rank: usize,
     /// Three rows for each vertex: a position, then the modes A.
     points: Vec<Dyadic>,
-    /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from `positions + A z'`.
+    /// For each axis, the sum of this and of `rate_errors |z'|` bounds the difference of a computed coordinate from that of `points` at z'.
     rest_errors: Vector,
     /// See `rest_errors`.
     rate_errors: Vector,

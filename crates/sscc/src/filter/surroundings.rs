@@ -128,4 +128,21 @@ mod tests {
             .collect();
         assert_eq!(surroundings(&filter, &[(4, 1)], 1, None), Ok(expected));
     }
+
+    /// Pairs that are found twice count once, whatever the order in which the limit is checked.
+    #[test]
+    fn the_limits_are_those_of_different_pairs() {
+        let find = |n: u32, m: u32, kept: fn(Pair) -> Option<Pair>| {
+            let around = |_| ((0..n).collect(), (0..m).collect());
+            collect([(0, 0)].into_iter(), 1, None, around, kept).map(|pairs| pairs.len())
+        };
+        let too_many = Err(Error::TooManyIgnored { most: MAX_PAIRS, rings: 1 });
+        let side = MAX_PAIRS.isqrt() as u32;
+        assert_eq!(find(side, side, Some), Ok(MAX_PAIRS));
+        assert_eq!(find(side, side + 1, Some), too_many);
+        // More than the limit, of which two differ.
+        assert_eq!(find(side + 1, side + 1, |(_, b)| Some((0, b % 2))), Ok(2));
+        // The surroundings of one pair are not even listed if they have four times as many.
+        assert_eq!(find(2 * side, 2 * side + 1, |_| panic!("listed")), too_many);
+    }
 }

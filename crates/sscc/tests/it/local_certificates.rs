@@ -79,6 +79,18 @@ struct Seen {
     states: usize,
 }
 
+impl Seen {
+    /// Whether so many answers were decided by local certificates of nodes that a test need not count more of them.
+    fn has_nodes(&self) -> bool {
+        self.nodes > threshold(500) && self.hits_beside > threshold(50)
+    }
+
+    /// See [`Self::has_nodes`]: for motions.
+    fn has_swept_nodes(&self) -> bool {
+        self.swept_nodes > threshold(300) && self.swept_hits_beside > threshold(50)
+    }
+}
+
 fn compare(
     model: &ReducedModel,
     certificates: &Certificates,
@@ -101,7 +113,7 @@ fn compare(
         let at = |scale: f64| -> Vec<f64> { center.iter().zip(&ray).map(|(c, d)| c + scale * d).collect() };
         // The largest scale at which the root's local certificate holds.
         let mut is_proven =
-            |scale: f64| alone.discrete(&at(scale)).is_ok() && alone.statistics().proof == Proof::Local;
+            |scale: f64| alone.first(&at(scale)).is_ok() && alone.statistics().proof == Proof::Local;
         let first = [1.0, 0.3, 0.1, 0.01, 1e-3].into_iter().find(|scale| is_proven(*scale));
         let mut edge = first.unwrap_or(0.1);
         if first.is_some() {
@@ -124,7 +136,7 @@ fn compare(
             assert_eq!(alone.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
             assert_eq!(full.discrete(&q).unwrap(), expected, "{name}: {scale} of {ray:?}");
             seen.states += 1;
-            let of_node = alone.statistics().proof == Proof::Search && {
+            let of_node = !seen.has_nodes() && alone.statistics().proof == Proof::Search && {
                 none.discrete(&q).unwrap();
                 alone.statistics().box_tests < none.statistics().box_tests
             };
@@ -140,7 +152,7 @@ fn compare(
                 let expected = oracle.continuous(&start, &q).unwrap().to_vec();
                 assert_eq!(alone.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
                 assert_eq!(full.continuous(&start, &q).unwrap(), expected, "{name}: {start:?} to {q:?}");
-                let of_node = alone.statistics().proof == Proof::Search && {
+                let of_node = !seen.has_swept_nodes() && alone.statistics().proof == Proof::Search && {
                     none.continuous(&start, &q).unwrap();
                     alone.statistics().box_tests < none.statistics().box_tests
                 };
@@ -184,10 +196,8 @@ fn answers_are_those_of_brute_force() {
         let rays = (0..12).map(|_| random_ray(&model, Some(&shape), random));
         compare(&model, &certificates, rays, &format!("{kind:?} {seed}"), &mut seen);
     }
-    assert!(seen.roots > threshold(500) && seen.nodes > threshold(500), "{seen:?}");
-    assert!(seen.hits_beside > threshold(50), "{seen:?}");
-    assert!(seen.swept_roots > threshold(100) && seen.swept_nodes > threshold(300), "{seen:?}");
-    assert!(seen.swept_hits_beside > threshold(50), "{seen:?}");
+    assert!(seen.roots > threshold(500) && seen.has_nodes(), "{seen:?}");
+    assert!(seen.swept_roots > threshold(100) && seen.has_swept_nodes(), "{seen:?}");
 }
 
 /// The models have unusual meshes and modes of every kind, in one bucket or a few.

@@ -42,13 +42,8 @@ impl LocalCertificates {
         if (self.gradients.len(), self.ellipsoids.len()) != (gradients, ellipsoids) {
             return Err("gradients or ellipsoids are not those of their modes");
         }
-        // Queries store the starts in 32 bits.
-        let is_addressed = |count: usize| u32::try_from(count / LANES).is_ok();
-        if is_addressed(gradients) && is_addressed(ellipsoids) {
-            Ok(())
-        } else {
-            Err("they have more numbers than their indices can address")
-        }
+        let are_addressed = [gradients, ellipsoids].into_iter().all(is_addressed);
+        if are_addressed { Ok(()) } else { Err("they have more numbers than their indices can address") }
     }
 
     fn check_numbers(&self) -> Result<(), &'static str> {
@@ -117,6 +112,11 @@ fn ranges(starts: &[u32], count: usize, end: usize) -> Option<impl Iterator<Item
     let is_whole = starts.len() == count + 1 && starts[0] == 0 && starts[count] as usize == end;
     let ranges = starts.windows(2).map(|pair| pair[0] as usize..pair[1] as usize);
     (is_whole && starts.is_sorted()).then_some(ranges)
+}
+
+/// Whether the starts in a list of this many numbers fit into the 32 bits in which queries store them.
+fn is_addressed(count: usize) -> bool {
+    u32::try_from(count / LANES).is_ok()
 }
 
 #[cfg(test)]

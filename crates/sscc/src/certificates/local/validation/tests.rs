@@ -420,3 +420,11 @@ fn each_condition_is_checked_by_itself() {
     assert_eq!(with_modes(MOST_MODES), Ok(()));
     assert_eq!(with_modes(MOST_MODES + 1), Err("a certificate has too many modes"));
 }
+
+/// Larger starts would be those of another certificate.
+#[test]
+#[cfg(target_pointer_width = "64")]
+fn starts_have_32_bits() {
+    let most = (LANES << 32) - 1;
+    assert!(is_addressed(0) && is_addressed(most) && !is_addressed(most + 1) && !is_addressed(usize::MAX));
+}
