@@ -169,6 +169,8 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::geometry::distance_triangle_triangle;
+    use crate::test_models::Random;
 
     /// A point is above a face by less than the rounding bound of the gap along its normal: no step follows.
     #[test]
@@ -180,5 +182,28 @@ mod tests {
         let pair = MovingPair::new(&face, &point);
         assert_eq!(advance_along_features([&face, &point], &pair, 0.0, 0.0, &mut steps), Some(0.0));
         assert_eq!(steps, 99);
+    }
+
+    /// Two triangles whose distance is above the tolerance have a gap above it along the direction of two features, so that no
+    /// search ends at the start.
+    #[test]
+    fn features_separate_triangles_at_rest() {
+        let random = &mut Random(8);
+        let mut tried = 0;
+        while tried < 200 {
+            let [a, b] = [1.0, 2.5].map(|size| {
+                let place = if size > 1.0 { random.vector() * size } else { DVec3::ZERO };
+                let corners = [(); 3].map(|()| place + random.vector());
+                MovingTriangle { t0: corners, t1: corners }
+            });
+            let distance = distance_triangle_triangle(&a.t0, &b.t0);
+            if distance < 0.01 {
+                continue;
+            }
+            tried += 1;
+            let (pair, mut steps) = (MovingPair::new(&a, &b), 100);
+            let found = advance_along_features([&a, &b], &pair, 0.0, 0.99 * distance, &mut steps);
+            assert_eq!(found, None, "{tried}: {distance}");
+        }
     }
 }

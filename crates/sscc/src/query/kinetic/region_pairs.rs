@@ -167,6 +167,23 @@ mod tests {
         }
     }
 
+    /// A search that finds no pairs is one of a region, too.
+    #[test]
+    fn few_distances_are_remembered() {
+        for (found, count, are_kept) in
+            [(0, 1024, true), (0, 1025, false), (40, 1344, true), (40, 1345, false)]
+        {
+            let remembered = (0..count).map(|i| SafePair::new(9.0, (7, i))).collect();
+            let mut region_pairs = RegionPairs { remembered, ..RegionPairs::default() };
+            let (found, mut pending): (Vec<Pair>, _) = ((0..found).map(|i| (1, i)).collect(), vec![(3, 4)]);
+            region_pairs.begin_region(1.0);
+            region_pairs.take(&found, &mut pending);
+            assert_eq!(pending, found);
+            region_pairs.end_step();
+            assert_eq!(region_pairs.remembered.len(), if are_kept { count as usize } else { 0 });
+        }
+    }
+
     #[test]
     fn pairs_expire_in_order_and_never_late() {
         let mut region_pairs = RegionPairs::default();

@@ -549,6 +549,7 @@ fn regions_end_where_z_leaves_them_and_where_it_has_travelled_too_far() {
         let expected = oracle.discrete(&contact).unwrap();
         assert!(!expected.is_empty());
         assert_eq!(kinetic.discrete(&contact).unwrap(), expected);
+        assert_eq!(kinetic.pairs(), expected);
     }
 }
 
