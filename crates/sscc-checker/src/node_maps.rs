@@ -13,11 +13,16 @@ use crate::dyadic::{Dyadic, Vector, dot};
 use crate::points::{Radius, along, are_apart, difference, position, squared_residual, sum};
 use crate::scaled::ScaledModel;
 
+/// Returns the number of bytes of a node's map: c, M by components, then G (for each direction three components, a row each).
+pub(crate) fn bytes_of_map(rank: usize) -> usize {
+    8 * (3 + 12 * rank)
+}
+
 /// The maps of all nodes, and the boxes of those that have been needed.
 pub(crate) struct NodeMaps<'a> {
     pub(crate) counted: &'a CountedPairs<'a>,
     pub(crate) scaled: &'a ScaledModel,
-    /// For each node the same number of bytes: c, M by components, then G (for each direction three components, a row each).
+    /// [`bytes_of_map`] bytes for each node.
     pub(crate) numbers: &'a [u8],
     pub(crate) boxes: Vec<OnceLock<NodeBox>>,
 }
@@ -46,7 +51,7 @@ impl NodeMaps<'_> {
 
     fn compute(&self, n: u32) -> NodeBox {
         let rank = self.scaled.rank;
-        let len = 8 * (3 + 12 * rank);
+        let len = bytes_of_map(rank);
         let numbers = reals(&self.numbers[n as usize * len..][..len]);
         let numbers: Vec<Dyadic> = numbers.into_iter().map(Dyadic::of).collect();
         let (center, rows) = numbers.split_at(3);

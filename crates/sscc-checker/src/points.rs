@@ -41,13 +41,9 @@ pub(crate) fn difference(a: &[Dyadic], b: &[Dyadic]) -> Vec<Dyadic> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-fn middle(p: &Point, q: &Point) -> Vec<Dyadic> {
-    sum(p, q).iter().map(|x| x.times_power(-1)).collect()
-}
-
 /// Returns the middles of the three edges of a triangle.
 pub(crate) fn middles([p, q, r]: Triangle<'_>) -> [Vec<Dyadic>; 3] {
-    [middle(p, q), middle(q, r), middle(r, p)]
+    [[p, q], [q, r], [r, p]].map(|[a, b]| sum(a, b).iter().map(|x| x.times_power(-1)).collect())
 }
 
 /// Returns the four quarters of a triangle, which share its corners and its middles.

@@ -11,7 +11,7 @@ use crate::counted::{CountedPairs, Simplices};
 use crate::directions::Directions;
 use crate::dyadic::{Dyadic, Vector};
 use crate::entries::Entry;
-use crate::node_maps::NodeMaps;
+use crate::node_maps::{NodeMaps, bytes_of_map};
 use crate::points::{Radius, Triangle, middles, quarters};
 use crate::refusal::{IsCancelled, Refusal, Result, check_cancelled, claim, proof, require};
 use crate::scaled::ScaledModel;
@@ -74,7 +74,7 @@ impl<'a> Proof<'a> {
         let digest = bytes.take(32)?;
         let [entries, count] = [u64::from_le_bytes(bytes.array()?), u64::from_le_bytes(bytes.array()?)];
         let size = [u32::from_le_bytes(bytes.array()?) as usize, u32::from_le_bytes(bytes.array()?) as usize];
-        let maps = bytes.take(size[1].saturating_mul(8 * (3 + 12 * size[0])))?;
+        let maps = bytes.take(size[1].saturating_mul(bytes_of_map(size[0])))?;
         let mut proven: Vec<(usize, &[u8])> = Vec::new();
         for _ in 0..count {
             let index = u64::from_le_bytes(bytes.array()?);

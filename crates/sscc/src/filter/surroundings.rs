@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(surroundings(&filter, &[(4, 1)], 1, None), Ok(expected));
     }
 
-    /// Pairs that are found twice count once, whatever the order in which the limit is checked.
+    /// Pairs that are found more than once count once.
     #[test]
     fn the_limits_are_those_of_different_pairs() {
         let find = |n: u32, m: u32, kept: fn(Pair) -> Option<Pair>| {

@@ -600,6 +600,8 @@ mutants! {
     SweepCutOffIsFree: CaughtBy("lib query::sweep::work::tests::limited_sweeps_end_at_a_weight_up_to_which_the_shape_is_free");
     /// A configuration whose first colliding pair does not count is free.
     ResolvedByFirstPair: CaughtBy("it resolve::answers_are_free_and_no_farther_than_stepping_back");
+    /// Half-spaces take the weights of the first modes for those of the modes that move their corners.
+    HalfSpacesOfFirstModes: CaughtBy("lib query::resolve::separations::tests::modes_that_move_other_triangles_change_no_half_space");
     /// The bound of a pair of nodes is that of its first part.
     ParentOfFirstChild: CaughtBy("lib certificates::tests::below_the_limit_whatever_collides_is_open");
     /// Pairs of buckets that were bounded do not limit the radius of a node.
@@ -632,6 +634,8 @@ mutants! {
     LocalComponentsToNearest: Covered("quotients by gaps are rounded up by more");
     /// Gaps of a table are longer by as much as they should be shorter.
     LocalTableLonger: CaughtBy("lib certificates::local::corner_gaps::tests::stored_gaps_do_not_exceed_exact_distances");
+    /// Certificates may have more numbers than 32 bits address.
+    LocalAddressesUnlimited: CaughtBy("lib certificates::local::validation::tests::starts_have_32_bits");
     /// A pair of images is skipped though its ratio may be above the largest by the rounding of its distance.
     LocalLimitsWidened: CaughtBy("lib certificates::local::strain_search::tests::ratios_just_above_the_largest_are_found");
     /// The residuals of a fit are those of another affine map.

@@ -116,7 +116,7 @@ fn ranges(starts: &[u32], count: usize, end: usize) -> Option<impl Iterator<Item
 
 /// Whether the starts in a list of this many numbers fit into the 32 bits in which queries store them.
 fn is_addressed(count: usize) -> bool {
-    u32::try_from(count / LANES).is_ok()
+    with_mutant!(u32::try_from(count / LANES).is_ok(), LocalAddressesUnlimited, true)
 }
 
 #[cfg(test)]

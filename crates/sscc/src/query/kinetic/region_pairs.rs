@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// A search that finds no pairs is one of a region, too.
+    /// At most 1024 safe distances, and eight for each pair that a search finds, are remembered; it may find none.
     #[test]
     fn few_distances_are_remembered() {
         for (found, count, are_kept) in

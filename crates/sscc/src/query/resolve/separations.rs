@@ -199,7 +199,7 @@ impl Separations {
         if modes.len() < self.rank {
             scratch.clear();
             scratch.extend(modes.iter().map(|k| displacement[*k as usize]));
-            of_modes = scratch;
+            of_modes = with_mutant!(&scratch[..], HalfSpacesOfFirstModes, displacement);
         }
         let rates = &self.rates[CORNERS * self.list[at].modes.start..];
         std::array::from_fn(|corner| dot(&rates[corner * modes.len()..][..modes.len()], of_modes))

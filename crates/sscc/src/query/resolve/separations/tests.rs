@@ -2,7 +2,7 @@ use super::*;
 use crate::certificates::Scope;
 use crate::query::query::Query;
 use crate::test_models::{Random, strips};
-use crate::{ContactFilter, Method, Neighbours};
+use crate::{ContactFilter, Method, Metric, MetricKind, Modes, Neighbours, ReducedModel, TriMesh};
 
 /// Displacements within the half-spaces of all pairs keep all pairs free; at the most violated half-space the gap is the
 /// margin.
@@ -52,4 +52,56 @@ fn displacements_within_the_half_spaces_are_free() {
         assert!(!near.is_empty() && !separations.contains(near[0]) && separations.take_near(1e9).is_empty());
     }
     assert!(kept > 100 && cut > 100 && collided > 50, "{kept} {cut} {collided}");
+}
+
+/// Modes that move none of the six corners of a pair change none of its half-spaces, whatever their weights.
+#[test]
+fn modes_that_move_other_triangles_change_no_half_space() {
+    let (mut added, mut violated) = (0, 0);
+    for case in 0..200 {
+        let random = &mut Random(case as u64 + 1000);
+        let (model, half) = strips(random, case);
+        let rank = model.rank();
+        // A further triangle far away has a mode of its own before each mode of the strips.
+        let rest = model.mesh().rest_positions();
+        let first = rest.len() as u32;
+        let far = [DVec3::X, DVec3::Y, DVec3::Z].map(|p| p + DVec3::splat(100.0));
+        let positions = [rest, &far].concat();
+        let faces = [model.mesh().faces(), &[[first, first + 1, first + 2]]].concat();
+        let of_strips = (0..first).flat_map(|v| model.modes().of_vertex(v)).flat_map(|u| [DVec3::ZERO, *u]);
+        let mut modes: Vec<DVec3> = of_strips.collect();
+        modes.extend((0..3 * rank).flat_map(|_| [random.vector(), DVec3::ZERO]));
+        let scales: Vec<f64> = (0..rank).map(|_| random.power(-1.0, 1.0)).collect();
+        let mut wide =
+            |row: &[f64]| row.iter().flat_map(|x| [random.power(-1.0, 1.0), *x]).collect::<Vec<_>>();
+        let metric = |scales| Metric::from_scales(MetricKind::Given, scales).unwrap();
+        let mesh = TriMesh::new(positions, faces).unwrap();
+        let modes = Modes::new(2 * rank, modes).unwrap();
+        let with_far = ReducedModel::with_metric(mesh, modes, metric(wide(&scales))).unwrap();
+        let (mesh, modes) = (model.mesh().clone(), model.modes().clone());
+        let model = ReducedModel::with_metric(mesh, modes, metric(scales)).unwrap();
+        let [query, with_far] = [&model, &with_far]
+            .map(|model| Query::without_certificates(model, Scope::of(model), Method::BruteForce).unwrap());
+        let [mut separations, mut of_all] = [rank, 2 * rank].map(Separations::new);
+        let start = vec![0.01; rank];
+        let wide_start = wide(&start);
+        for (a, b) in (0..2 * half).flat_map(|a| (a + 1..2 * half).map(move |b| (a, b))) {
+            let is_added = separations.add(&query.context, &start, (a, b), 1e-6);
+            assert_eq!(of_all.add(&with_far.context, &wide_start, (a, b), 1e-6), is_added);
+            added += usize::from(is_added);
+        }
+        let displacement = vec![3.0 * (case as f64).sin(); rank];
+        let wide_displacement = wide(&displacement);
+        assert_eq!(separations.allowed_share(&displacement), of_all.allowed_share(&wide_displacement));
+        let expected = separations.most_violated(&displacement, 100);
+        let found = of_all.most_violated(&wide_displacement, 100);
+        assert_eq!(found.len(), expected.len(), "case {case}");
+        for ((normal, offset), (expected, expected_offset)) in found.iter().zip(&expected) {
+            let of_strips: Vec<f64> = expected.iter().flat_map(|rate| [0.0, *rate]).collect();
+            assert_eq!((normal, offset), (&of_strips, expected_offset), "case {case}");
+        }
+        violated += found.len();
+        assert_eq!(separations.take_near(1.0), of_all.take_near(1.0), "case {case}");
+    }
+    assert!(added > 1000 && violated > 1000, "{added} {violated}");
 }
