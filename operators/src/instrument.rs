@@ -171,7 +171,7 @@ impl VisitMut for Instrument {
 }
 
 /// Whether the attributes make an item a test, or a part of tests alone.
-fn is_test(attributes: &[Attribute]) -> bool {
+pub fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let text = attribute.to_token_stream().to_string();
         text == "# [test]" || text.contains("cfg") && text.contains("test")

@@ -59,16 +59,31 @@ fn run(source: &Path, excluded: &Path, list: &Path, folders: &[String]) -> Resul
     Ok(fs::write(list, instrument.lines().concat())?)
 }
 
-/// Adds the source files below a folder, without those of tests.
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        let is_test = path.file_stem().is_some_and(|stem| stem == "tests");
-        if path.is_dir() && !is_test {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") && !is_test {
-            files.push(path);
+/// Adds a source file, or the source files below a folder, without those that only tests compile.
+fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
+    if path.is_dir() {
+        let skipped = test_modules(&path.join("mod.rs"))?;
+        for entry in fs::read_dir(path)? {
+            let path = entry?.path();
+            if path.file_stem().is_none_or(|stem| !skipped.iter().any(|name| stem == name.as_str())) {
+                collect(&path, files)?;
+            }
         }
+    } else if path.extension().is_some_and(|extension| extension == "rs") {
+        files.push(path.into());
     }
     Ok(())
+}
+
+/// Returns the names of the modules that only tests compile: `tests`, and those that a file, if it exists, declares so.
+fn test_modules(file: &Path) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut names = vec!["tests".to_owned()];
+    if file.exists() {
+        let items = syn::parse_file(&fs::read_to_string(file)?)?.items;
+        names.extend(items.iter().filter_map(|item| match item {
+            syn::Item::Mod(module) if instrument::is_test(&module.attrs) => Some(module.ident.to_string()),
+            _ => None,
+        }));
+    }
+    Ok(names)
 }

@@ -10,8 +10,18 @@ use serde_json::Value;
 use crate::program::{cargo, output, root, succeed};
 
 /// Folders and files of the core whose code has variants.
-const FOLDERS: [&str; 7] =
-    ["bounds", "certificates/local", "query/hulls", "geometry/ccd", "query/kinetic", "posed", "filter"];
+const FOLDERS: [&str; 10] = [
+    "arithmetic.rs",
+    "bounds",
+    "certificates",
+    "detect",
+    "filter",
+    "geometry",
+    "hierarchy",
+    "model",
+    "posed",
+    "query",
+];
 
 /// Maximum number of compilations in which variants that do not compile are found. The compiler reports errors of borrowing
 /// only when all types are right.

@@ -11,7 +11,8 @@ use clap::Args;
     help_template = with_examples!(
         "sscc demo"
         "sscc demo --out demo"
-    )
+    ),
+    after_help = "Exit codes: 0 done, 2 error or two exact methods differ, 130 interrupted."
 )]
 pub struct Demo {
     /// Also write the spring, its model, its certificates, the animation and a report to this folder

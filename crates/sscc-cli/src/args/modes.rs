@@ -32,7 +32,8 @@ pub struct Modes {
     /// How to compute the modes
     #[arg(long, value_enum)]
     pub kind: ModesKind,
-    /// Number of modes [default: 20 for linear, 30 for nonlinear; for pca as many as explain 99.9% of the variance]
+    /// Number of modes [default: 20 for linear, 30 for nonlinear; for pca as many as explain 99.9% of the variance; not
+    /// for polynomial]
     #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=500))]
     pub rank: Option<u32>,
     /// A solid that moves the surface SOURCE, such as a coarse mesh around it: each vertex moves with the element that
@@ -47,7 +48,7 @@ pub struct Modes {
     pub units: Option<String>,
     /// Vertices that do not move: numbers counted from 0, as in 0,5,7 (with --solid those of the solid);
     /// box:X0,Y0,Z0,X1,Y1,Z1 in the units of the file; or a file of numbers (.npy, text; VegaFEM's .bou counts from 1)
-    /// [default: none; the modes are those of a free body, without its rigid motions]
+    /// [default: none; the modes are those of a free body, without its rigid motions; not for polynomial]
     #[arg(long, value_name = "VERTICES", allow_hyphen_values = true)]
     pub fix: Option<String>,
     /// The material: steel, aluminium, glass, ceramic, wood, plastic, polycarbonate, rubber,

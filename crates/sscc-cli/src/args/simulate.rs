@@ -10,7 +10,7 @@ use clap::Args;
 #[derive(Debug, Args)]
 #[command(
     help_template = with_examples!(
-        "sscc simulate scenes/spring.toml --out spring"
+        "sscc simulate spring --out spring"
         "sscc simulate bunny16 --models models/ --out bunnies"
         "sscc simulate bunny16 --models models/ --out bunnies --steps 500"
         "sscc simulate my.toml --json"
@@ -19,7 +19,7 @@ use clap::Args;
 The command writes trajectories.npz, costs.npz, animation.glb, summary.json, report.html and, for scenes with sound, \
 sound.wav and sound_float.wav. The same command resumes a simulation that was interrupted or killed. The results are \
 bit for bit those of an uninterrupted one.\n\
-Embedded scenes: spring, bunny16, bunny128, dragon-nonlinear, dragon-polynomial.\n\
+Embedded scenes: spring, spring-gentle, bunny16, bunny16-gentle, bunny128, dragon-nonlinear, dragon-polynomial.\n\
 Exit codes: 0 done, 2 error or the motion diverges (the steps before are written), 130 interrupted."
 )]
 pub struct Simulate {

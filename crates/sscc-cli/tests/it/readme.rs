@@ -49,6 +49,7 @@ pub fn commands(text: &str) -> Vec<Vec<String>> {
         if line.starts_with("```") {
             in_block = line == "```sh";
         } else if let (true, Some(rest)) = (in_block, line.strip_prefix("sscc ")) {
+            let (rest, _comment) = rest.split_once("  # ").unwrap_or((rest, ""));
             commands.push(rest.split_whitespace().map(str::to_owned).collect());
         }
     }

@@ -89,7 +89,7 @@ pub fn check(
     let before = (tally.false_negatives, tally.wrong);
     for _ in 0..free.len().min(MOST_ATTACKS) {
         let (a, b) = free.swap_remove(random.below(free.len()));
-        tally.reach("pairs proven free");
+        tally.reach("pairs attacked");
         let effort = if random.one_in(400) { Effort::Roots } else { Effort::Halving };
         attack_free(tally, &moving(a), &moving(b), effort);
     }
@@ -98,7 +98,6 @@ pub fn check(
         if !oracle.counts_whole(pair) {
             continue;
         }
-        tally.reach("impacts checked");
         let effort = if random.one_in(100) { Effort::Roots } else { Effort::Halving };
         attack_impact(random, tally, &moving(pair.0), &moving(pair.1), time, effort);
     }

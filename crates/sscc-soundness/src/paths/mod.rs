@@ -61,7 +61,7 @@ pub const PATHS: [Path; 12] = [
     Path {
         name: "continuous",
         wanted: 500_000,
-        inner: &["proof by local", "proof by search", "colliding", "pairs proven free", "impacts checked"],
+        inner: &["proof by local", "proof by search", "colliding", "pairs attacked", "impact checked"],
         run: continuous::run,
     },
     Path { name: "centres", wanted: 200_000, inner: SEARCHES, run: discrete::run_centers },

@@ -34,6 +34,12 @@ const LARGEST: f64 = 1e12;
 /// Ratios with other nodes that are below this share of the ratio within the node are not distinguished.
 const OWN_SHARE: f32 = 1.0;
 
+/// The largest memory of all certificates, whatever the budget: starts of modes, lists and matrices have 32 bits.
+const MOST_BYTES: u64 = 1 << 34;
+
+/// Entries of lists take the least memory, eight bytes each.
+const _: () = assert!(MOST_BYTES / 8 <= u32::MAX as u64);
+
 /// Smaller bounds of heights are not distinguished: a rotation costs a multiple of them.
 const LEAST_FLATNESS: f32 = 1e-3;
 
@@ -107,6 +113,7 @@ pub(crate) fn compute_local_certificates(
 /// memory. Keeps no certificate if they cover less than [`LEAST_PROVEN_SHARE`] of all triangles. `found` has the largest nodes
 /// first, and is sorted by node afterwards.
 fn keep_within(found: &mut Vec<(u32, LocalCertificate)>, hierarchy: &Hierarchy, most_bytes: usize) {
+    let most_bytes = most_bytes.min(usize::try_from(MOST_BYTES).unwrap_or(usize::MAX));
     let mut bytes = 0;
     found.sort_by_key(|(_, certificate)| certificate.modes.len());
     found.retain(|(_, certificate)| {

@@ -212,4 +212,82 @@ mod tests {
         assert!(control.has_paid);
         assert_eq!(control.capsules.share, FIRST_CAPSULE);
     }
+
+    #[test]
+    fn sizes_follow_the_cost_of_each_unit() {
+        let mut control = RegionControl { plain_cost: 100, ..RegionControl::FIRST };
+        control.begin_search(RegionKind::Capsule, false);
+        control.record_search(1000, 0.1);
+        assert_eq!(control.capsules.share, 0.1 * GROWTH);
+        // The cost of each unit falls, then rises, then falls again.
+        control.record_search(1000, 0.2);
+        assert_eq!(control.capsules.share, 0.2 * GROWTH);
+        control.record_search(2000, 0.2);
+        assert_eq!(control.capsules.share, 0.2 * SHRINKAGE);
+        control.record_search(1000, 0.15);
+        assert_eq!(control.capsules.share, 0.15 * SHRINKAGE);
+        control.record_search(1500, 0.2);
+        assert_eq!(control.capsules.share, 0.2 * GROWTH);
+        control.record_search(1, 5.0);
+        assert_eq!(control.capsules.share, MAX_CAPSULE);
+        let before = control.capsules.share;
+        control.begin_search(RegionKind::Capsule, true);
+        control.record_search(5000, 0.01);
+        assert_eq!(control.capsules.share, before, "a region that was cut");
+        assert_eq!(control.balls.share, FIRST_BALL);
+    }
+
+    #[test]
+    fn a_search_that_overflows_is_followed_by_a_smaller_one() {
+        let mut control = RegionControl { plain_cost: 10, ..RegionControl::FIRST };
+        control.begin_search(RegionKind::Ball, false);
+        control.record_overflow(1000, 0.2);
+        assert_eq!((control.balls.share, control.balls.pause), (0.05, 2 * 100));
+        control.record_overflow(u64::MAX, MIN_SHARE);
+        assert_eq!((control.balls.share, control.balls.pause), (MIN_SHARE, MAX_PAUSE));
+        // The next search is larger only after one whose unit cost more.
+        control.record_search(10, 0.01);
+        assert_eq!(control.balls.share, 0.01 * SHRINKAGE);
+    }
+
+    #[test]
+    fn searches_may_cost_a_share_of_what_they_save() {
+        let control = RegionControl { plain_cost: 10, ..RegionControl::FIRST };
+        let costs = [0.0, 32.0, 40.0, 256.0, 1e300, f64::INFINITY].map(|steps| control.largest_cost(steps));
+        assert_eq!(costs, [80, 80, 100, 640, 640, 640]);
+        let control = RegionControl { plain_cost: u64::MAX, ..RegionControl::FIRST };
+        assert_eq!(control.largest_cost(0.0), u64::MAX);
+    }
+
+    #[test]
+    fn a_ball_is_better_where_its_steps_cost_less() {
+        let mut control = RegionControl { plain_cost: 100, cost: 400, ..RegionControl::FIRST };
+        assert!(!control.is_ball_better(), "no capsule has cost anything yet");
+        control.begin_search(RegionKind::Capsule, false);
+        control.end_region(10);
+        // A step in a capsule costs 40; that in a ball is unknown, a fifth of a plain query.
+        assert!(control.is_ball_better());
+        control.begin_search(RegionKind::Ball, false);
+        control.cost = 500;
+        control.end_region(10);
+        assert!(!control.is_ball_better());
+        control.cost = 300;
+        control.end_region(10);
+        assert!(control.is_ball_better());
+        control.balls.pause = 1;
+        assert!(!control.is_ball_better());
+        control.count_pause();
+        assert!(control.is_ball_better());
+    }
+
+    #[test]
+    fn the_step_after_a_jump_is_expected_once() {
+        let mut control = RegionControl { plain_cost: 100, cost: 100, ..RegionControl::FIRST };
+        control.record_step(0.5);
+        assert_eq!(control.step_after_jump(), None);
+        control.end_region(MIN_STEPS as u64 - 1);
+        assert_eq!(control.step_after_jump(), None, "too few steps");
+        control.end_region(MIN_STEPS as u64);
+        assert_eq!([control.step_after_jump(), control.step_after_jump()], [Some(0.5), None]);
+    }
 }

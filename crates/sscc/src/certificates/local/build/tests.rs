@@ -528,7 +528,7 @@ fn error_terms_are_products_of_norms_over_the_smallest_gap() {
 fn lists_have_the_nodes_that_share_a_vertex_with_ratios_of_their_own() {
     let case = Case::ring(300, 2);
     let random = &mut Numbers(12);
-    let (mut buckets, mut larger) = (0, 0);
+    let (mut buckets, mut larger, mut mixed) = (0, 0, 0);
     case.with_builder(|builder| {
         let nodes = case.hierarchy.nodes();
         let mut patch = Patch::new(builder.model.positions.len());
@@ -560,8 +560,13 @@ fn lists_have_the_nodes_that_share_a_vertex_with_ratios_of_their_own() {
             let mut stack = parts[1..].to_vec();
             while let Some(part) = stack.pop() {
                 let (m, children) = search.node(part);
-                stack.extend(children.into_iter().flatten());
                 let Ok(at) = around.binary_search(&m) else { continue };
+                if let Some(children) = children {
+                    let is_touching = |part: u32| around.binary_search(&search.node(part).0).is_ok();
+                    mixed +=
+                        u32::from(children.clone().any(is_touching) && !children.clone().all(is_touching));
+                    stack.extend(children);
+                }
                 let ratio = list[at].1;
                 let alone = search.between(builder.gaps, (0, part), 0.0);
                 assert!(alone.is_finite(), "nodes {n} {m}");
@@ -576,7 +581,7 @@ fn lists_have_the_nodes_that_share_a_vertex_with_ratios_of_their_own() {
             }
         }
     });
-    assert!(buckets > 3 && larger > 0, "{buckets} {larger}");
+    assert!(buckets > 3 && larger > 0 && mixed > 0, "{buckets} {larger} {mixed}");
 }
 
 /// Returns the index of the largest number.
@@ -643,6 +648,9 @@ fn blocks_are_quotients_of_residuals_of_vertices_and_of_the_largest_pairs() {
                 assert!((norm(block) - expected).abs() <= 1e-12 * expected, "node {n}: {expected}");
             }
             assert!(blocks.next().is_none());
+            // A vertex at the place of the first one has no quotient.
+            patch.offsets[1] = DVec3::ZERO;
+            assert_eq!(builder.blocks(n, &patch), all[width..], "node {n}");
         }
     });
     assert!(others > 0);
