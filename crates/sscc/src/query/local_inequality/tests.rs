@@ -549,3 +549,89 @@ fn regions_of_dense_metrics_have_no_proofs() {
         assert!(inequality.set_motion(&tables, &region(0.0)));
     }
 }
+
+/// T of a patch that not all modes move is the sum over its own modes, though two of them cancel.
+#[test]
+fn a_mode_that_does_not_move_a_patch_changes_nothing() {
+    let random = &mut Numbers(31);
+    let half = |x: f64| f64::from(f32::from_bits((x as f32).to_bits() & 0xffff_0000));
+    let (mut positive, mut none) = (0, 0);
+    for case in 0..300 {
+        let rank = 2 + case % 15;
+        let numbers = |random: &mut Numbers| [(); 9].map(|()| f64::from((0.2 * random.signed()) as f32));
+        let mut gradients: Vec<DMat3> = (0..rank).map(|_| DMat3::from_cols_array(&numbers(random))).collect();
+        gradients[1] = gradients[0];
+        let mut entry = |i: usize, k: usize| if k >= i { half(1e-3 * random.signed()) } else { 0.0 };
+        let ellipsoid = (0..rank).map(|i| (0..rank).map(|k| entry(i, k)).collect()).collect();
+        let certificate = certificate(gradients, ellipsoid);
+        let mut f: Vec<f64> = (0..rank).map(|_| 0.1 * random.signed()).collect();
+        let large = random.power(1.0, 7.5);
+        (f[0], f[1]) = (large + 0.3 * random.signed(), -large);
+        let of_all = allowed(&certificate.local, rank, [&f]);
+        let mut of_some = certificate.local.clone();
+        of_some.modes.iter_mut().for_each(|k| *k += 1);
+        let at = |far: f64| [vec![far], f.clone()].concat();
+        assert_eq!(allowed(&of_some, rank + 1, [&at(0.0)]), of_all, "case {case}");
+        let found = allowed(&of_some, rank + 1, [&at(1e9)]);
+        assert!(found <= of_all, "case {case}");
+        if found > 0.0 {
+            positive += 1;
+            assert!(holds(&certificate, found, &f), "case {case}");
+        } else {
+            none += 1;
+        }
+    }
+    assert!(positive > 50 && none > 50, "{positive} {none}");
+}
+
+#[test]
+fn errors_hold_the_rounding_at_the_centre_and_at_q_in_units_of_the_shape() {
+    let unit = |k: usize| (0..3).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+    let certificate = certificate(vec![DMat3::ZERO; 3], (0..3).map(unit).collect());
+    let (mut tables, _) = tables_of(&certificate.local, &[0.0; 3], &Metric::identity(3));
+    let q = [0.1; 3];
+    for (center, there, scale) in [(1e9, 1.0, 1.0), (1.0, 1e9, 1.0), (1e9, 1.0, 1e3), (1.0, 1e9, 1e-3)] {
+        (tables.scales.reach, tables.scales.scale) = (center, scale);
+        let mut inequality = LocalInequality::<1>::new();
+        assert!(inequality.set_motion(&tables, &DeformedMotion::new([&q[..]], there)));
+        // 2 (r + 1) roundings along each of three axes, for two vertices.
+        let least = 2.0 * 3.0_f64.sqrt() * 8.0 * (f64::EPSILON / 2.0) * (center + there) * scale;
+        assert!(inequality.error >= least && inequality.error < 25.0 * least, "{center} {there} {scale}");
+    }
+}
+
+/// Two affine parts cancel up to the map, whose rounding is that of their products.
+#[test]
+fn maps_of_affine_parts_that_cancel_are_rounded() {
+    let random = &mut Numbers(19);
+    let mut positive = 0;
+    for case in 0..300 {
+        let large = random.power(6.0, 13.0);
+        let unit = |k: usize| (0..3).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+        let parts = vec![(unit(0), DMat3::IDENTITY * large, 0.0), (unit(1), DMat3::IDENTITY * -large, 0.0)];
+        let certificate = certificate(vec![DMat3::ZERO; 3], (0..3).map(unit).collect());
+        let first = 1.0 + random.signed().abs();
+        let f = [first, first + 0.5 * random.signed() / large, 1e-3];
+        let (mut tables, _) = tables_of(&certificate.local, &[0.0; 3], &Metric::identity(3));
+        tables.affine = Some(AffineModes::of_parts(parts));
+        let mut inequality = LocalInequality::<1>::new();
+        assert!(inequality.set_motion(&tables, &DeformedMotion::new([&f[..]], 0.0)));
+        let allowed = f64::from(inequality.allowed(&tables, 0));
+        if allowed > 0.0 {
+            positive += 1;
+            let stretch = exact(1.0) + (exact(f[0]) - exact(f[1])) * exact(large);
+            assert!(exact(allowed) * exact(f[2]) < stretch, "case {case}: {large:e}");
+        }
+    }
+    assert!(positive > 100, "{positive}");
+}
+
+#[test]
+fn factors_below_single_precision_still_have_strain() {
+    let wide = f64::from(f32::from_bits(9e11_f32.to_bits() & 0xffff_0000));
+    let certificate = certificate(vec![DMat3::ZERO], vec![vec![wide]]);
+    // It is 0 in single precision.
+    let f = [6e-46];
+    let found = allowed(&certificate.local, 1, [&f[..]]);
+    assert!(found > 0.0 && holds(&certificate, found, &f), "{found:e}");
+}

@@ -191,3 +191,36 @@ impl<'w> Walk<'w> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::parts::Scope;
+    use crate::test_models::square;
+    use crate::{Method, Modes, ReducedModel, TriMesh};
+
+    /// The whole step and its first half have more impacts than a query lists; its first quarter has none, which is no proof for
+    /// the rest.
+    #[test]
+    fn a_step_with_too_many_impacts_stays_before_them() {
+        let sheet = square(18);
+        let n = sheet.rest_positions().len() as u32;
+        let p = [DVec3::ZERO, DVec3::Z]
+            .into_iter()
+            .flat_map(|by| sheet.rest_positions().iter().map(move |p| *p + by));
+        let faces = [0, n]
+            .into_iter()
+            .flat_map(|first| sheet.faces().iter().map(move |face| face.map(|v| v + first)));
+        let modes = (0..2 * n).map(|v| if v < n { DVec3::ZERO } else { DVec3::NEG_Z }).collect();
+        let mesh = TriMesh::new(p.collect(), faces.collect()).unwrap();
+        let model = ReducedModel::new(mesh, Modes::new(1, modes).unwrap()).unwrap();
+        let mut query = Query::without_certificates(&model, Scope::of(&model), Method::Traditional).unwrap();
+        assert!(query.continuous(&[0.0], &[1.0]).unwrap().len() > MAX_IMPACTS);
+        let mut walk = Walk::new(&mut query, &[2.0], vec![0.0], true);
+        walk.step(1e-3).unwrap();
+        let q = walk.into_configuration();
+        assert!(q[0] > 0.0 && q[0] < 1.0, "{q:?}");
+    }
+}

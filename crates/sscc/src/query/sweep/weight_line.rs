@@ -202,6 +202,49 @@ mod tests {
         assert!(farthest > 0.3, "{farthest}");
     }
 
+    /// All roundings of a position go the same way: those of the sums after the mode, or those of the product and of the sum.
+    #[test]
+    fn the_slack_covers_the_sum_of_the_mode_and_all_later_sums() {
+        let power = |n: i32| 2.0_f64.powi(n);
+        let unit = f64::EPSILON / 2.0;
+        // It is lost in a sum from 1 to 2, and rounded up to a unit in one from 0.5 to 1.
+        let lost = 0.98 * unit;
+        for (later, rest, by, w0, w1, w, share) in [
+            (20, 0.0, 1.0, 0.75, 1.5, 1.0, 6_u32),
+            (
+                0,
+                lost,
+                1.0 + power(-27),
+                1.0 - unit * (power(37) - power(26) - 1.0),
+                1.0 + 2.0 * unit * (power(36) + power(26) + 1.0),
+                1.0 + 2.0 * unit * (power(26) - 1.0),
+                2,
+            ),
+        ] {
+            let rank = 1 + later;
+            let of_vertex =
+                |sign: f64| (0..rank).map(move |k| DVec3::X * (sign * if k == 0 { by } else { lost }));
+            let modes = Modes::new(rank, [1.0, -1.0, 0.0].into_iter().flat_map(of_vertex).collect()).unwrap();
+            let p = [1.0, -1.0, 0.0].map(|sign| DVec3::X * (sign * rest)).to_vec();
+            let mesh = TriMesh::new(p, vec![[0, 1, 2]]).unwrap();
+            let model = ReducedModel::with_metric(mesh, modes, Metric::identity(rank)).unwrap();
+            let at = |w: f64| (0..rank).map(|k| if k == 0 { w } else { 1.0 }).collect::<Vec<f64>>();
+            let mut line = WeightLine::new(&model, &at(0.0), 0);
+            line.set([w0, w1]);
+            let slack = exact(line.slack(line.ends().map(|q| model.reach(q))));
+            let distance = |w: f64| {
+                let [x, y] = [0, 1].map(|v| exact(model.position(v, &at(w)).x));
+                y - x
+            };
+            let whole = exact(w1) - exact(w0);
+            let off = (distance(w) - distance(w0)) * &whole
+                - (distance(w1) - distance(w0)) * (exact(w) - exact(w0));
+            let (off, limit) = (off.magnitude().clone(), whole.magnitude() * slack.magnitude());
+            assert!(off <= limit, "{later}");
+            assert!(off * share > limit, "{later}");
+        }
+    }
+
     #[test]
     fn weights_are_rounded_towards_the_start() {
         let random = &mut Random(12);
